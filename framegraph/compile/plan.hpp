@@ -1,0 +1,117 @@
+#pragma once
+// What will run: ordered passes with resolved accesses, batched barriers, heaps with placements, history slots.
+// Flat arrays, no pointers; the same inputs give the same bytes. Reasons are a side table.
+
+#include "framegraph/model/graph.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace dermis {
+
+// A physical image or buffer. Transients have one instance; a history resource of N frames has up to N+1
+// instances of which one is current: in frame f (counted per view from 0), `frames_back` b of history resource r
+// lives in instance first_instance + (f - b) mod instance_count.
+struct PlanResource {
+  ResourceId declared;
+  ResourceType type = ResourceType::image;
+  Origin origin = Origin::transient;
+  bool exported = false;
+  Format format = Format::undefined;
+  uint32_t width = 1, height = 1, mips = 1, layers = 1; // images, at the allocated view size
+  uint64_t bytes = 0;                                    // buffers: size asked for
+  uint32_t vk_usage = 0;                                 // union of its ports' usages
+  uint32_t instance_count = 1;                           // > 1: history
+  uint32_t first_instance = 0;                           // into Plan::placements; none for imports (0xffffffff)
+  int32_t slot = -1;                                     // imports and exports: slot number, as the C ABI counts
+};
+
+inline constexpr uint32_t no_instance = 0xffffffffu;
+
+struct Placement {      // one physical instance in memory
+  uint32_t resource = 0; // into Plan::resources
+  uint32_t heap = 0;     // into Plan::heaps
+  uint64_t offset = 0, size = 0, alignment = 1;
+  uint32_t first_use = 0, last_use = 0; // positions in Plan::passes; history: 0 .. last pass
+  bool persistent = false;              // keeps its contents across frames
+};
+
+struct Heap {
+  uint32_t memory_type_bits = 0xffffffffu; // allowed memory types, all occupants agreed
+  uint64_t size = 0, alignment = 1;
+  uint64_t max_live_bytes = 0;             // lower bound of any packing
+};
+
+struct PlanAccess { // one bound port of one pass
+  uint32_t port = 0;
+  uint32_t resource = 0; // into Plan::resources
+  uint32_t frames_back = 0;
+  Stage stages = 0;
+  Access access = 0;
+  Layout layout = Layout::undefined;
+};
+
+// One memory dependency. `resource` none: a global memory barrier (aliasing of buffers only).
+// For images every barrier is an image barrier over all mips and layers.
+struct PlanBarrier {
+  uint32_t resource = 0;
+  uint32_t frames_back = 0;
+  Stage source_stages = 0, destination_stages = 0;
+  Access source_access = 0, destination_access = 0;
+  Layout old_layout = Layout::undefined, new_layout = Layout::undefined;
+  enum class Why : uint8_t { first_use, read_after_write, write_after_read, write_after_write, layout, alias, history, host_before, host_after } why = Why::first_use;
+  bool from_host = false; // source scope and old layout come from the binding's `before`
+  bool to_host = false;   // destination scope and new layout come from the binding's `after`
+};
+
+struct PlanSetting {   // value of one setting of one pass kind, resolved
+  SettingId from;      // valid: follows this run-time setting; `value` is its value at compile time
+  SettingValue value;
+};
+
+struct PlanPass {
+  PassId declared;
+  KindId kind;
+  uint32_t first_access = 0, access_count = 0;   // into Plan::accesses
+  uint32_t first_barrier = 0, barrier_count = 0; // into Plan::barriers: one batch before the pass
+  uint32_t first_setting = 0;                    // into Plan::settings, one per KindSetting
+};
+
+// History as the executor keeps it.
+struct PlanHistory {
+  uint32_t resource = 0; // into Plan::resources
+  uint32_t frames = 1;
+  HistoryDeclaration declaration;
+};
+
+struct Plan {
+  std::string graph;                  // name
+  uint32_t view_width = 0, view_height = 0; // allocated size
+  std::string device_profile;         // name
+  std::vector<PlanResource> resources;
+  std::vector<Heap> heaps;
+  std::vector<Placement> placements;
+  std::vector<PlanPass> passes;
+  std::vector<PlanAccess> accesses;
+  std::vector<PlanBarrier> barriers;
+  std::vector<PlanSetting> settings;
+  std::vector<PlanHistory> histories;
+  uint32_t first_final_barrier = 0, final_barrier_count = 0; // batch after the last pass: to the host's `after`
+  uint64_t transient_bytes = 0, history_bytes = 0;           // heap bytes by kind
+};
+
+// Why something was decided, outside the canonical bytes.
+struct Reason {
+  enum class About : uint8_t { pass, resource, barrier, placement, choice } about = About::pass;
+  uint32_t index = 0; // pass: PassId in the graph; resource: ResourceId; barrier/placement: index in the plan
+  std::string text;
+};
+
+struct CompiledPlan {
+  Plan plan;
+  std::vector<Reason> reasons;
+};
+
+} // namespace dermis

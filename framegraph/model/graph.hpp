@@ -1,0 +1,126 @@
+#pragma once
+// What was declared: a graph read from a file, with every name resolved to an index and every value still
+// knowing where it came from. Pure data; reading it is in read_graph.hpp, compiling it in compile/.
+
+#include "framegraph/model/ids.hpp"
+#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/text/diagnostic.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace dermis {
+
+struct Rational {
+  int64_t numerator = 1, denominator = 1; // denominator > 0
+};
+
+enum class Rounding : uint8_t { ceil, floor };
+
+// width and height of an image: rational multiples of the view, of another resource, or absolute texels.
+// value = align_up(round(base * factor), align); never below 1.
+struct SizeExpression {
+  enum class Base : uint8_t { view, resource, fixed } base = Base::view;
+  ResourceId resource;
+  Rational x, y;                 // factors; for fixed the sizes themselves over 1
+  Rounding rounding = Rounding::ceil;
+  uint32_t align = 1;
+};
+
+enum class ResourceType : uint8_t { image, buffer };
+enum class Origin : uint8_t { imported, transient }; // imported: memory belongs to the host
+
+struct HistoryDeclaration {
+  uint32_t frames = 0; // 0: no history; N: `name@-1` .. `name@-N` may be read
+  enum class First : uint8_t { discard, clear } first = First::discard;
+  enum class OnCut : uint8_t { invalidate, keep } on_cut = OnCut::invalidate;
+  enum class OnResize : uint8_t { invalidate, rescale } on_resize = OnResize::invalidate;
+};
+
+struct ResourceDeclaration {
+  std::string name;
+  ResourceType type = ResourceType::image;
+  Origin origin = Origin::transient;
+  bool exported = false;        // its last version is handed to the host
+  bool optional = false;        // import or export that the host may leave unbound
+  std::vector<Format> formats;  // in order of preference
+  SizeExpression size;          // images; buffers: element count = ceil-size x*y + extra_elements
+  uint32_t mips = 1;            // 0 = full chain
+  uint32_t layers = 1;
+  uint32_t stride = 0;          // buffers: bytes an element
+  uint64_t extra_elements = 0;  // buffers
+  HistoryDeclaration history;
+  std::string note;
+  SourceLocation where;
+};
+
+struct SettingDeclaration {
+  std::string name;
+  SettingType type = SettingType::integer;
+  SettingValue default_value;
+  double minimum = 0.0, maximum = 0.0;
+  std::vector<std::string> options; // enumeration and choice
+  bool by_budget = false;           // a choice the library makes
+  std::string unit, note;
+  SourceLocation where;
+};
+
+// `when`: a total, typed expression over settings. Nodes in a pool; leaves refer to settings or literals.
+struct Expression {
+  enum class Op : uint8_t {
+    literal, setting, logical_not, logical_and, logical_or, equal, not_equal, less, less_equal, greater, greater_equal, in
+  } op = Op::literal;
+  SettingValue literal;
+  SettingId setting;
+  ExpressionId left, right;
+  std::vector<SettingValue> list; // for `in`
+};
+
+struct PortBinding {
+  uint32_t port = 0;           // index into PassKind::ports
+  ResourceId resource;
+  uint32_t frames_back = 0;    // 0: this frame; 1: `name@-1`
+  SourceLocation where;
+};
+
+struct SettingBinding {
+  uint32_t setting = 0;        // index into PassKind::settings
+  SettingId from;              // valid: "$name" of the graph's settings; else the literal
+  SettingValue literal;
+  SourceLocation where;
+};
+
+// When the pass is off, readers of what `output` would have produced get `instead`.
+struct PassThrough {
+  ResourceId output, instead;
+  SourceLocation where;
+};
+
+struct Ordering {
+  PassId after;
+  std::string reason; // never empty
+  SourceLocation where;
+};
+
+struct PassDeclaration {
+  std::string name;
+  KindId kind;
+  ExpressionId when; // invalid: always
+  std::vector<PortBinding> reads, writes;
+  std::vector<SettingBinding> settings;
+  std::vector<PassThrough> otherwise;
+  std::vector<Ordering> after;
+  std::string note;
+  SourceLocation where;
+};
+
+struct Graph {
+  std::string name;
+  std::vector<SettingDeclaration> settings;
+  std::vector<ResourceDeclaration> resources; // imports first, in file order, then resources
+  std::vector<Expression> expressions;
+  std::vector<PassDeclaration> passes;        // in file order: versions of a resource follow it
+};
+
+} // namespace dermis

@@ -1,0 +1,77 @@
+#pragma once
+// The signature of a pass kind: its ports, its settings and how it is dispatched. This one declaration is the
+// source of descriptor layouts, push constants, GLSL binding headers, schema and documentation.
+
+#include "framegraph/model/ids.hpp"
+#include "framegraph/model/vocabulary.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace dermis {
+
+struct Port {
+  std::string_view name;
+  Usage usage = Usage::sampled_image;
+  bool optional = false;
+  std::string_view glsl_type; // images: "texture2D", "utexture2D", "image2D", "uimage2D"; buffers: the element type
+  std::string_view doc;
+  std::span<const Format> formats = {}; // formats the shader can work with; empty = any the resource declares
+};
+
+enum class SettingType : uint8_t { boolean, integer, real, enumeration, choice };
+
+// A value of a setting. Enumerations and choices are held as the index of the option.
+struct SettingValue {
+  SettingType type = SettingType::integer;
+  int64_t integer = 0; // boolean (0/1), integer, enumeration, choice
+  double real = 0.0;   // real
+};
+
+struct KindSetting {
+  std::string_view name;
+  SettingType type = SettingType::integer;
+  SettingValue default_value;
+  double minimum = 0.0, maximum = 0.0; // inclusive; for integer and real
+  std::span<const std::string_view> options = {}; // for enumeration
+  std::string_view unit; // "px", "mm", "taps", or "" when dimensionless
+  std::string_view doc;
+};
+
+enum class DispatchShape : uint8_t {
+  over_view,      // one 8x8 group per tile of the render rectangle
+  over_tiles,     // indirect: one group per listed tile, from the port with usage indirect_arguments
+  over_tile_grid, // one 64-invocation group per 64 tiles of the render rectangle
+  single_group,   // one group
+  none            // not a dispatch (clear)
+};
+
+struct PassKind {
+  std::string_view name;   // "subsurface.burley"
+  std::string_view shader; // file stem in shaders/, "" for kinds without one
+  std::string_view doc;
+  std::span<const Port> ports; // read and written, in binding order: port i is binding i of set 0
+  std::span<const KindSetting> settings; // push constants: uint port_mask, then 4 bytes each in this order
+  DispatchShape dispatch = DispatchShape::over_view;
+  bool side_effects = false; // never culled
+};
+
+// The kinds a graph may use. Order of registration is the order of KindId; names are unique.
+class KindRegistry {
+public:
+  KindId add(const PassKind& kind); // invalid id if the name exists
+  KindId find(std::string_view name) const;
+  const PassKind& operator[](KindId id) const { return kinds_[id.value]; }
+  uint32_t size() const { return static_cast<uint32_t>(kinds_.size()); }
+
+private:
+  std::vector<PassKind> kinds_;
+};
+
+// Index of a port or setting by name; -1 when the kind has none of that name.
+int find_port(const PassKind& kind, std::string_view name);
+int find_setting(const PassKind& kind, std::string_view name);
+
+} // namespace dermis

@@ -1,0 +1,91 @@
+#pragma once
+// The words a graph is written in: formats, usages, and the synchronisation scopes that follow from a usage.
+// The numbers of stages, access flags and layouts are those of Vulkan 1.3 (VkPipelineStageFlagBits2,
+// VkAccessFlagBits2, VkImageLayout), kept here without including it; framegraph/vulkan/ asserts that they agree.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace dermis {
+
+enum class Format : uint8_t {
+  undefined,
+  r8_unorm, r8_uint, r16_uint, r32_uint, r16f, r32f,
+  rg8_unorm, rg16f, rg32f, rg32_uint,
+  rgba8_unorm, rgba8_srgb, rgba16f, rgba32f, rgba32_uint, b10g11r11f,
+  d16, d24, d32f, d24s8, d32fs8,
+  count
+};
+
+struct FormatInfo {
+  std::string_view name;  // as written in a graph file
+  uint32_t vulkan;        // VkFormat
+  uint32_t bytes_per_texel; // packed size; the driver's VkMemoryRequirements decide, never this
+  bool depth;             // has a depth aspect
+};
+
+const FormatInfo& format_info(Format format);
+// nullopt for an unknown name. The class name "depth" is not a format: see Graph's readers.
+std::optional<Format> format_from_name(std::string_view name);
+std::optional<Format> format_from_vulkan(uint32_t vk_format);
+
+using Stage = uint64_t;  // bits of VkPipelineStageFlags2
+using Access = uint64_t; // bits of VkAccessFlags2
+
+namespace stage {
+inline constexpr Stage none = 0;
+inline constexpr Stage draw_indirect = 0x2;
+inline constexpr Stage compute_shader = 0x800;
+inline constexpr Stage all_transfer = 0x1000;
+inline constexpr Stage host = 0x4000;
+inline constexpr Stage all_commands = 0x10000;
+inline constexpr Stage copy = 0x100000000ull;
+inline constexpr Stage clear = 0x800000000ull;
+} // namespace stage
+
+namespace access {
+inline constexpr Access none = 0;
+inline constexpr Access indirect_command_read = 0x1;
+inline constexpr Access uniform_read = 0x8;
+inline constexpr Access transfer_read = 0x800;
+inline constexpr Access transfer_write = 0x1000;
+inline constexpr Access memory_read = 0x8000;
+inline constexpr Access memory_write = 0x10000;
+inline constexpr Access shader_sampled_read = 0x100000000ull;
+inline constexpr Access shader_storage_read = 0x200000000ull;
+inline constexpr Access shader_storage_write = 0x400000000ull;
+} // namespace access
+
+enum class Layout : uint32_t { // VkImageLayout
+  undefined = 0, general = 1, depth_stencil_attachment = 3, depth_stencil_read_only = 4,
+  shader_read_only = 5, transfer_source = 6, transfer_destination = 7
+};
+
+// What a port does with what is bound to it. Stages, access masks and layouts follow; no file writes them.
+enum class Usage : uint8_t {
+  sampled_image,         // compute shader, texelFetch or texture(); read only
+  storage_image_write,   // compute shader, imageStore of every texel it owns; previous contents may be kept
+  storage_image_update,  // compute shader, imageLoad and imageStore of the same texels
+  storage_buffer_read, storage_buffer_write, storage_buffer_update,
+  indirect_arguments,    // read by vkCmdDispatchIndirect
+  clear,                 // vkCmdFillBuffer / vkCmdClearColorImage
+  count
+};
+
+struct UsageInfo {
+  std::string_view name;
+  Stage stages;
+  Access access;
+  Layout layout;      // undefined for buffers
+  uint32_t vk_usage;  // VkImageUsageFlags for images, VkBufferUsageFlags for buffers
+  bool image, reads, writes;
+};
+
+const UsageInfo& usage_info(Usage usage);
+
+inline constexpr Access all_write_access =
+    access::transfer_write | access::memory_write | access::shader_storage_write | 0x40 /* shader write */ |
+    0x100 /* colour attachment write */ | 0x400 /* depth stencil write */ | 0x4000 /* host write */;
+
+} // namespace dermis

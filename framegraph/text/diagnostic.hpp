@@ -1,0 +1,66 @@
+#pragma once
+// One message with a stable id: what, where, what was expected, what to do. Errors are values.
+
+#include "framegraph/model/ids.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis {
+
+// Where a value stands in the text it was read from. Lines and columns count from 1, columns in bytes.
+struct SourceLocation {
+  FileId file;             // into Diagnostics::files
+  uint32_t line = 0, column = 0;
+  std::string pointer;     // JSON pointer (RFC 6901), "" for the root
+};
+
+enum class Severity : uint8_t { note, warning, error };
+
+enum class DiagnosticId : uint16_t {
+#define DERMIS_DIAGNOSTIC(id, name, severity, hint) name = id,
+#include "framegraph/text/diagnostics.def"
+#undef DERMIS_DIAGNOSTIC
+};
+
+struct DiagnosticInfo {
+  DiagnosticId id;
+  std::string_view code; // "D0123"
+  std::string_view name; // "unknown_key"
+  Severity severity;
+  std::string_view hint; // what to do, in general
+};
+
+const DiagnosticInfo& diagnostic_info(DiagnosticId id);
+
+struct Diagnostic {
+  DiagnosticId id{};
+  SourceLocation where;
+  std::string text;            // names the thing, what was expected and what was found
+  std::string suggestion;      // "did you mean 'size'?", may be empty
+  std::vector<std::pair<SourceLocation, std::string>> related; // the other end: "declared here"
+};
+
+struct SourceFile {
+  std::string name; // as given by the caller, for messages
+  std::string text; // kept for excerpts
+};
+
+// All that was found in one run, in order of discovery; and the texts they point into.
+struct Diagnostics {
+  std::vector<SourceFile> files;
+  std::vector<Diagnostic> list;
+
+  Diagnostic& add(DiagnosticId id, SourceLocation where, std::string text);
+  bool has_errors() const;
+  uint32_t count(Severity severity) const;
+};
+
+// "file:line:column: error[D0101 unknown_key]: text", excerpt with caret, hint. No trailing newline.
+std::string format_for_people(const Diagnostics& all, const Diagnostic& one, bool excerpt = true);
+// The whole list as a JSON array.
+std::string format_as_json(const Diagnostics& all);
+
+} // namespace dermis
