@@ -1,0 +1,373 @@
+/* Dermis: a data-driven frame graph for subsurface scattering, embedded in a host engine.
+ *
+ * DERMIS DOES
+ *   - read a frame graph from JSON, check it, compile it to a plan, and record that plan into your command buffer;
+ *   - own its pipelines, descriptors, transient and history images, and its timestamp queries;
+ *   - put every image back into the state that you ask for.
+ * DERMIS DOES NOT
+ *   - create an instance, a device or a queue; submit; wait; present; make a thread; print; open a file;
+ *   - touch an image that you did not bind, or keep a pointer of yours after a call returns.
+ *
+ * STEP BY STEP
+ *   1. dermis_context_create       once per device, with the device's functions
+ *   2. dermis_graph_create         a JSON graph at a size; errors come back in a report
+ *   3. dermis_graph_slots          the images that the graph wants, by name and number
+ *   4. each frame: fill a dermis_frame (bindings, camera, frame numbers), dermis_graph_record, submit yourself
+ *   5. dermis_graph_destroy, dermis_context_destroy, after the device has finished the recorded frames
+ *
+ * BARRIER CONTRACT
+ *   Before dermis_graph_record each bound image is in `before.layout` and was last touched by `before.stages` and
+ *   `before.access`. At the end of the recorded commands it is in `after.layout`, visible to `after.stages` and
+ *   `after.access`. If `after` equals `before` you get the image back as you gave it. Images are not touched
+ *   outside of their bindings. Depth images are judged by their format.
+ *
+ * STRUCTS
+ *   Every struct starts with `struct_size`; use its DERMIS_..._INIT. Zero means default. A struct from a newer
+ *   header is accepted when the part unknown to the library is zero, else DERMIS_ERROR_VERSION.
+ *
+ * THREADS
+ *   Stated at each function. "Any" means: from any thread, at any time. "One per graph" means: no two calls with
+ *   the same graph at the same time; different graphs are independent.
+ */
+#ifndef DERMIS_DERMIS_H
+#define DERMIS_DERMIS_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <vulkan/vulkan_core.h>
+
+#if defined(_WIN32)
+#define DERMIS_CALL __cdecl
+#if defined(DERMIS_BUILDING)
+#define DERMIS_API __declspec(dllexport)
+#elif defined(DERMIS_STATIC)
+#define DERMIS_API
+#else
+#define DERMIS_API __declspec(dllimport)
+#endif
+#else
+#define DERMIS_CALL
+#define DERMIS_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define DERMIS_VERSION_MAJOR 0
+#define DERMIS_VERSION_MINOR 1
+#define DERMIS_VERSION_PATCH 0
+/* The version of the interface in this header; goes into dermis_context_desc. */
+#define DERMIS_ABI_VERSION 1u
+
+typedef enum dermis_result {
+  DERMIS_OK = 0,
+  DERMIS_ERROR_ARGUMENT = -1,      /* a null, a size or a range is wrong: fix the call; nothing changed */
+  DERMIS_ERROR_VERSION = -2,       /* the header is newer than the library and its new fields are used */
+  DERMIS_ERROR_CONFIG = -3,        /* the graph or a profile has errors: see the report; a running graph runs on */
+  DERMIS_ERROR_SHADER = -4,        /* a kernel does not fit its signature or the device refused it */
+  DERMIS_ERROR_UNSUPPORTED = -5,   /* the device lacks something required; the report lists all of it */
+  DERMIS_ERROR_MEMORY = -6,        /* host memory; the object is as before the call */
+  DERMIS_ERROR_DEVICE_MEMORY = -7, /* device memory; the object is as before the call */
+  DERMIS_ERROR_VULKAN = -8,        /* a Vulkan call failed; the message names call and result */
+  DERMIS_ERROR_DEVICE_LOST = -9,   /* tear down */
+  DERMIS_ERROR_INTERNAL = -10,     /* a defect of the library; please report it with the message */
+  DERMIS_INCOMPLETE = 1,           /* the array was too short; count holds what is needed */
+  DERMIS_NOT_READY = 2,            /* no completed frame yet */
+  DERMIS_RESULT_FORCE_32BIT = 0x7fffffff
+} dermis_result;
+
+typedef enum dermis_severity {
+  DERMIS_SEVERITY_NOTE = 0,
+  DERMIS_SEVERITY_WARNING = 1,
+  DERMIS_SEVERITY_ERROR = 2,
+  DERMIS_SEVERITY_FORCE_32BIT = 0x7fffffff
+} dermis_severity;
+
+typedef struct dermis_context_t* dermis_context;
+typedef struct dermis_graph_t* dermis_graph;
+typedef struct dermis_report_t* dermis_report;
+
+/* One message. Strings belong to the report (or, in a log call, to the library until the call returns). */
+typedef struct dermis_message {
+  size_t struct_size;
+  dermis_severity severity;
+  uint32_t code;          /* stable number, documented in docs/diagnostics.md */
+  const char* code_name;  /* "unknown_key" */
+  const char* file;       /* as named by the caller; "" when there is none */
+  uint32_t line, column;  /* from 1; 0 when there is none */
+  const char* pointer;    /* JSON pointer */
+  const char* text;       /* what is wrong, what was expected, what was found */
+  const char* hint;       /* what to do */
+} dermis_message;
+#define DERMIS_MESSAGE_INIT {sizeof(dermis_message), DERMIS_SEVERITY_NOTE, 0, NULL, NULL, 0, 0, NULL, NULL, NULL}
+
+/* May be called from any thread that is inside a Dermis call, never from another. Must not call Dermis. */
+typedef void(DERMIS_CALL* dermis_log_fn)(void* user, const dermis_message* message);
+
+/* ---- version ------------------------------------------------------------------------------------------- */
+
+/* major << 22 | minor << 12 | patch. Thread: any. Errors: none. */
+DERMIS_API uint32_t DERMIS_CALL dermis_version(void);
+/* Static string, never NULL, also for unknown values. Thread: any. Errors: none. */
+DERMIS_API const char* DERMIS_CALL dermis_result_name(dermis_result result);
+
+/* ---- before the device exists ---------------------------------------------------------------------------- */
+
+typedef enum dermis_requirement_kind {
+  DERMIS_REQUIREMENT_API_VERSION = 0, /* version holds VK_API_VERSION_1_3 */
+  DERMIS_REQUIREMENT_FEATURE = 1,     /* name of a VkBool32 in a VkPhysicalDevice...Features struct */
+  DERMIS_REQUIREMENT_DEVICE_EXTENSION = 2,
+  DERMIS_REQUIREMENT_KIND_FORCE_32BIT = 0x7fffffff
+} dermis_requirement_kind;
+
+typedef struct dermis_requirement {
+  size_t struct_size;
+  dermis_requirement_kind kind;
+  const char* name;  /* static string */
+  uint32_t version;
+  uint32_t required; /* 1: without it dermis_context_create fails; 0: used if enabled */
+  uint32_t present;  /* 1: the physical device has it */
+  const char* why;   /* static string */
+} dermis_requirement;
+#define DERMIS_REQUIREMENT_INIT {sizeof(dermis_requirement), DERMIS_REQUIREMENT_API_VERSION, NULL, 0, 0, 0, NULL}
+
+/* What the library needs of a device. Call with items NULL for the count, then with an array whose first
+ * element has struct_size set. Thread: any. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
+                                                               VkInstance instance, VkPhysicalDevice physical_device,
+                                                               uint32_t* count, dermis_requirement* items);
+
+/* ---- context --------------------------------------------------------------------------------------------- */
+
+#define DERMIS_CONTEXT_TIMINGS 0x1u /* write timestamps around each pass */
+#define DERMIS_CONTEXT_LABELS 0x2u  /* debug labels and object names; needs VK_EXT_debug_utils enabled */
+
+typedef struct dermis_context_desc {
+  size_t struct_size;
+  uint32_t abi_version;      /* DERMIS_ABI_VERSION */
+  uint32_t flags;            /* DERMIS_CONTEXT_... */
+  uint32_t frames_in_flight; /* 1..8; 0 = 2 */
+  uint32_t queue_family;     /* of the command buffers that are recorded into; needs compute */
+  VkInstance instance;
+  VkPhysicalDevice physical_device;
+  VkDevice device;
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr;
+  VkPipelineCache pipeline_cache;          /* may be null */
+  const VkAllocationCallbacks* vk_allocator; /* may be NULL; must outlive the context */
+  dermis_log_fn log;                       /* may be NULL */
+  void* log_user;
+} dermis_context_desc;
+#define DERMIS_CONTEXT_DESC_INIT \
+  {sizeof(dermis_context_desc), DERMIS_ABI_VERSION, 0, 0, 0, NULL, NULL, NULL, NULL, VK_NULL_HANDLE, NULL, NULL, NULL}
+
+/* Resolves every Vulkan function by name and reports all that are missing at once. *context is NULL on failure.
+ * Thread: any. Errors: ARGUMENT, VERSION, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_context_create(const dermis_context_desc* desc, dermis_context* context);
+/* The device must have finished every frame recorded through the context; its graphs must have been destroyed
+ * (those that were not are destroyed here and logged). NULL is ignored. Thread: any, alone. Errors: none. */
+DERMIS_API void DERMIS_CALL dermis_context_destroy(dermis_context context);
+/* The last failure on this thread; NULL for none. The text lives until the next Dermis call on this thread.
+ * Thread: any. Errors: none. */
+DERMIS_API const char* DERMIS_CALL dermis_last_error(void);
+
+/* ---- reports --------------------------------------------------------------------------------------------- */
+
+/* Number of messages; 0 for NULL. Thread: any. Errors: none. */
+DERMIS_API uint32_t DERMIS_CALL dermis_report_count(dermis_report report);
+/* Message `index`, in order of discovery. Strings live as long as the report. Thread: any. Errors: ARGUMENT. */
+DERMIS_API dermis_result DERMIS_CALL dermis_report_message(dermis_report report, uint32_t index, dermis_message* message);
+/* All messages as text for people, with excerpts; "" for NULL. Lives as long as the report. Thread: any. */
+DERMIS_API const char* DERMIS_CALL dermis_report_text(dermis_report report);
+/* All messages as a JSON array; "[]" for NULL. Lives as long as the report. Thread: any. Errors: none. */
+DERMIS_API const char* DERMIS_CALL dermis_report_json(dermis_report report);
+/* NULL is ignored. Thread: any, alone. Errors: none. */
+DERMIS_API void DERMIS_CALL dermis_report_destroy(dermis_report report);
+
+/* ---- graphs ---------------------------------------------------------------------------------------------- */
+
+/* JSON text. Copied during the call. */
+typedef struct dermis_source {
+  size_t struct_size;
+  const char* name; /* for messages only, for example a file name; may be NULL */
+  const char* text; /* need not end in 0 */
+  size_t length;    /* bytes */
+} dermis_source;
+#define DERMIS_SOURCE_INIT {sizeof(dermis_source), NULL, NULL, 0}
+
+/* Subsurface profile number `id` (1..255, 0 means: no subsurface) of the material image. */
+typedef struct dermis_profile {
+  size_t struct_size;
+  uint32_t id;
+  uint32_t reserved;    /* 0 */
+  dermis_source source; /* a profile file */
+} dermis_profile;
+#define DERMIS_PROFILE_INIT {sizeof(dermis_profile), 0, 0, DERMIS_SOURCE_INIT}
+
+/* The format of the image that will be bound to a slot. */
+typedef struct dermis_slot_format {
+  size_t struct_size;
+  const char* name; /* of the slot */
+  VkFormat format;
+  uint32_t reserved; /* 0 */
+} dermis_slot_format;
+#define DERMIS_SLOT_FORMAT_INIT {sizeof(dermis_slot_format), NULL, VK_FORMAT_UNDEFINED, 0}
+
+typedef struct dermis_graph_desc {
+  size_t struct_size;
+  dermis_source source;
+  uint32_t width, height;          /* allocated view size in pixels, 1..16384; frames render a rectangle inside */
+  const dermis_profile* profiles;  /* at least one for graphs that scatter */
+  uint32_t profile_count;
+  uint32_t unbound_count;          /* names of optional slots that will not be bound */
+  const char* const* unbound;
+  const dermis_slot_format* formats; /* formats of the images to be bound; others: first declared */
+  uint32_t format_count;
+  uint32_t reserved;               /* 0 */
+} dermis_graph_desc;
+#define DERMIS_GRAPH_DESC_INIT \
+  {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0}
+
+/* Checks a graph without a device. *report (may be NULL) gets the messages. Thread: any.
+ * Errors: ARGUMENT, CONFIG, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source, dermis_report* report);
+/* Parses, checks, compiles and allocates. *graph is NULL on failure. *report (may be NULL) gets the messages and
+ * is to be destroyed also on success. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY,
+ * DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context, const dermis_graph_desc* desc,
+                                                         dermis_graph* graph, dermis_report* report);
+/* Builds a new graph beside the running one and swaps it in at the next record. On failure nothing changes. Histories
+ * and settings are carried over by name where they agree; what is not is listed in the report.
+ * Thread: one per graph. Errors: as dermis_graph_create. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_source* source,
+                                                         dermis_report* report);
+/* A new allocated size; histories become invalid. Thread: one per graph. Errors: as dermis_graph_create. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width, uint32_t height,
+                                                         dermis_report* report);
+/* The device must have finished every frame recorded with it. NULL is ignored. Thread: one per graph. */
+DERMIS_API void DERMIS_CALL dermis_graph_destroy(dermis_graph graph);
+
+typedef struct dermis_slot {
+  size_t struct_size;
+  uint32_t id;           /* goes into dermis_image_binding */
+  uint32_t required;     /* 0: may be left unbound if named so at creation */
+  const char* name;      /* lives until the next reload or destroy */
+  uint32_t written;      /* 1: the graph writes it */
+  uint32_t read;         /* 1: the graph reads what is in it */
+  VkFormat format;       /* that the plan was compiled for */
+  VkImageUsageFlags usage; /* that the image must have been created with */
+  VkImageLayout best_layout; /* the layout of its first use: no transition needed if it comes so */
+  uint32_t width, height; /* smallest extent of the image */
+  uint32_t bound;        /* 0: named as unbound at creation, or used by no live pass: a binding is ignored */
+} dermis_slot;
+#define DERMIS_SLOT_INIT {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0}
+
+/* Two-call array. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint32_t* count, dermis_slot* slots);
+
+typedef enum dermis_describe_format {
+  DERMIS_DESCRIBE_JSON = 0, /* the whole plan with reasons */
+  DERMIS_DESCRIBE_DOT = 1,
+  DERMIS_DESCRIBE_TEXT = 2,
+  DERMIS_DESCRIBE_FORMAT_FORCE_32BIT = 0x7fffffff
+} dermis_describe_format;
+
+/* *size in: room in `text`; out: bytes needed with the final 0. text may be NULL. Thread: one per graph.
+ * Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, dermis_describe_format format,
+                                                           size_t* size, char* text);
+
+typedef struct dermis_memory {
+  size_t struct_size;
+  uint64_t transient_bytes;         /* image and buffer heaps that live within a frame */
+  uint64_t transient_unaliased_bytes; /* the same without sharing memory */
+  uint64_t history_bytes;
+  uint64_t constant_bytes;          /* frame constants, profile and kernel tables */
+} dermis_memory;
+#define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}
+
+/* Thread: one per graph. Errors: ARGUMENT. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory);
+
+typedef struct dermis_pass_timing {
+  size_t struct_size;
+  const char* pass;      /* lives until the next reload or destroy */
+  uint64_t frame_index;  /* of the frame that was timed */
+  uint64_t nanoseconds;  /* of device time */
+} dermis_pass_timing;
+#define DERMIS_PASS_TIMING_INIT {sizeof(dermis_pass_timing), NULL, 0, 0}
+
+/* Device times of the newest completed frame, in plan order; needs DERMIS_CONTEXT_TIMINGS. `completed_frame_index`
+ * as in dermis_frame. Two-call array. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE, NOT_READY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, uint64_t completed_frame_index,
+                                                          uint32_t* count, dermis_pass_timing* timings);
+
+/* Sets a declared setting from JSON text ("16", "true", "\"post\""), effective at the next record. A value that
+ * changes which passes run recompiles here. Thread: one per graph. Errors: ARGUMENT, CONFIG, and those of creation. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name, const char* json,
+                                                              dermis_report* report);
+
+/* ---- each frame ------------------------------------------------------------------------------------------ */
+
+typedef struct dermis_image_state {
+  VkImageLayout layout;
+  uint32_t queue_family; /* VK_QUEUE_FAMILY_IGNORED: no ownership transfer */
+  VkPipelineStageFlags2 stages;
+  VkAccessFlags2 access;
+} dermis_image_state;
+
+typedef struct dermis_image_binding {
+  size_t struct_size;
+  uint32_t slot;          /* dermis_slot.id */
+  VkFormat format;
+  VkImage image;          /* 2-D, one sample, created with dermis_slot.usage */
+  VkImageView view;       /* of mip 0, layer 0; for depth formats of the depth aspect alone */
+  uint32_t width, height; /* extent of mip 0 */
+  dermis_image_state before, after;
+} dermis_image_binding;
+#define DERMIS_IMAGE_BINDING_INIT \
+  {sizeof(dermis_image_binding), 0, VK_FORMAT_UNDEFINED, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, \
+   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}}
+
+typedef enum dermis_depth_kind {
+  DERMIS_DEPTH_DEVICE = 0,      /* what the depth test wrote, for clip_from_view; reversed and infinite are fine */
+  DERMIS_DEPTH_VIEW_UNITS = 1,  /* distance along the view axis in world units, positive; 0 = nothing there */
+  DERMIS_DEPTH_KIND_FORCE_32BIT = 0x7fffffff
+} dermis_depth_kind;
+
+#define DERMIS_FRAME_RESET_HISTORY 0x1u /* camera cut, teleport, new level */
+
+/* One frame. Matrices act on column vectors (clip = clip_from_view * view) and are stored row by row: element
+ * [r * 4 + c]. View space: x right, y up, the camera looks down -z. Clip space is Vulkan's: y down, depth 0..1.
+ * clip_from_view includes the jitter if there is one. */
+typedef struct dermis_frame {
+  size_t struct_size;
+  VkCommandBuffer command_buffer;  /* recording, outside a render pass, of the context's queue family */
+  const dermis_image_binding* bindings;
+  uint32_t binding_count;
+  uint32_t flags;                  /* DERMIS_FRAME_... */
+  uint64_t frame_index;            /* from 1, grows by at least 1 from frame to frame */
+  uint64_t completed_frame_index;  /* newest frame whose commands the device has finished; less than frame_index;
+                                      frame_index - completed_frame_index <= frames_in_flight. 0 before the first */
+  uint32_t rect_x, rect_y, rect_width, rect_height; /* rendered part in pixels; width 0: the allocated size */
+  float clip_from_view[16];
+  float view_from_world[16];
+  float previous_clip_from_view[16];
+  float previous_view_from_world[16];
+  float jitter_x, jitter_y;        /* pixels, +x right, +y down, that clip_from_view contains */
+  float metres_per_unit;           /* 0 = 1 */
+  float exposure;                  /* linear factor the host applies later; 0 = 1 */
+  float delta_seconds;
+  dermis_depth_kind depth_kind;
+} dermis_frame;
+#define DERMIS_FRAME_INIT \
+  {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, DERMIS_DEPTH_DEVICE}
+
+/* Records the plan. Never submits, waits, prints or allocates host memory. On an error nothing was recorded.
+ * Thread: one per graph. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, const dermis_frame* frame);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* DERMIS_DERMIS_H */
