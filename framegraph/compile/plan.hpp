@@ -11,6 +11,8 @@
 
 namespace dermis {
 
+inline constexpr uint32_t no_instance = 0xffffffffu;
+
 // A physical image or buffer. Transients have one instance; a history resource of N frames has up to N+1
 // instances of which one is current: in frame f (counted per view from 0), `frames_back` b of history resource r
 // lives in instance first_instance + (f - b) mod instance_count.
@@ -18,17 +20,15 @@ struct PlanResource {
   ResourceId declared;
   ResourceType type = ResourceType::image;
   Origin origin = Origin::transient;
-  bool exported = false;
+  bool exported = false; // bound by the host: the host owns the memory; an unbound export is an ordinary transient
   Format format = Format::undefined;
   uint32_t width = 1, height = 1, mips = 1, layers = 1; // images, at the allocated view size
   uint64_t bytes = 0;                                    // buffers: size asked for
   uint32_t vk_usage = 0;                                 // union of its ports' usages
   uint32_t instance_count = 1;                           // > 1: history
-  uint32_t first_instance = 0;                           // into Plan::placements; none for imports (0xffffffff)
-  int32_t slot = -1;                                     // imports and exports: slot number, as the C ABI counts
+  uint32_t first_instance = no_instance;                 // into Plan::placements; no_instance: the host's memory
+  int32_t slot = -1; // imports and exports, bound or not: running number among them in the order of Graph::resources
 };
-
-inline constexpr uint32_t no_instance = 0xffffffffu;
 
 struct Placement {      // one physical instance in memory
   uint32_t resource = 0; // into Plan::resources
@@ -42,6 +42,7 @@ struct Heap {
   uint32_t memory_type_bits = 0xffffffffu; // allowed memory types, all occupants agreed
   uint64_t size = 0, alignment = 1;
   uint64_t max_live_bytes = 0;             // lower bound of any packing
+  bool persistent = false;                 // holds history instances only; else transients only
 };
 
 struct PlanAccess { // one bound port of one pass
@@ -53,15 +54,20 @@ struct PlanAccess { // one bound port of one pass
   Layout layout = Layout::undefined;
 };
 
-// One memory dependency. `resource` none: a global memory barrier (aliasing of buffers only).
-// For images every barrier is an image barrier over all mips and layers.
+// One memory dependency on the whole of one resource: an image barrier over all mips and layers, or a buffer
+// barrier over all bytes (layouts undefined). Source masks name accesses of this frame and of the frames before
+// it on the same queue. Every slot the host binds has one barrier with to_host in the final batch; one that no
+// pass touches has from_host and to_host in it.
 struct PlanBarrier {
   uint32_t resource = 0;
   uint32_t frames_back = 0;
   Stage source_stages = 0, destination_stages = 0;
   Access source_access = 0, destination_access = 0;
   Layout old_layout = Layout::undefined, new_layout = Layout::undefined;
-  enum class Why : uint8_t { first_use, read_after_write, write_after_read, write_after_write, layout, alias, history, host_before, host_after } why = Why::first_use;
+  enum class Why : uint8_t {
+    first_use, read_after_write, write_after_read, write_after_write, layout, alias, history, host_before,
+    host_after
+  } why = Why::first_use;
   bool from_host = false; // source scope and old layout come from the binding's `before`
   bool to_host = false;   // destination scope and new layout come from the binding's `after`
 };
@@ -79,10 +85,13 @@ struct PlanPass {
   uint32_t first_setting = 0;                    // into Plan::settings, one per KindSetting
 };
 
-// History as the executor keeps it.
+// History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned with
+// their contents discarded) into layout_at_start before the first frame that reads them.
 struct PlanHistory {
   uint32_t resource = 0; // into Plan::resources
-  uint32_t frames = 1;
+  uint32_t frames = 1;                 // deepest `@-N` this plan reads; instance_count is frames + 1
+  std::vector<Layout> layout_at_start; // by frames_back 0 .. frames: layout of that instance when a frame starts;
+                                       // [0] is undefined: its old contents are discarded
   HistoryDeclaration declaration;
 };
 
@@ -90,6 +99,7 @@ struct Plan {
   std::string graph;                  // name
   uint32_t view_width = 0, view_height = 0; // allocated size
   std::string device_profile;         // name
+  std::vector<SettingValue> setting_values; // one per Graph::settings: what `when` was folded with
   std::vector<PlanResource> resources;
   std::vector<Heap> heaps;
   std::vector<Placement> placements;

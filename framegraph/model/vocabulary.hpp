@@ -79,7 +79,8 @@ struct UsageInfo {
   Access access;
   Layout layout;      // undefined for buffers
   uint32_t vk_usage;  // VkImageUsageFlags for images, VkBufferUsageFlags for buffers
-  bool image, reads, writes;
+  bool image, buffer; // what may be bound; both for `clear`
+  bool reads, writes;
 };
 
 const UsageInfo& usage_info(Usage usage);

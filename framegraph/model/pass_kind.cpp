@@ -1,0 +1,34 @@
+#include "framegraph/model/pass_kind.hpp"
+
+namespace dermis {
+namespace {
+
+template <class Named> int index_of(std::span<const Named> list, std::string_view name) {
+  for (size_t i = 0; i < list.size(); ++i)
+    if (list[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+} // namespace
+
+KindId KindRegistry::add(const PassKind& kind) {
+  if (find(kind.name).valid()) return {};
+  kinds_.push_back(kind);
+  return KindId{size() - 1};
+}
+
+KindId KindRegistry::find(std::string_view name) const {
+  for (uint32_t i = 0; i < size(); ++i)
+    if (kinds_[i].name == name) return KindId{i};
+  return {};
+}
+
+int find_port(const PassKind& kind, std::string_view name) {
+  return index_of(kind.ports, name);
+}
+
+int find_setting(const PassKind& kind, std::string_view name) {
+  return index_of(kind.settings, name);
+}
+
+} // namespace dermis
