@@ -1,0 +1,45 @@
+#pragma once
+// The host's device as a value: handles, functions and the limits that running a plan needs. Owns nothing.
+
+#include "framegraph/vulkan/error.hpp"
+#include "framegraph/vulkan/function_table.hpp"
+
+#include <cstdint>
+#include <vulkan/vulkan_core.h>
+
+namespace dermis::vulkan {
+
+struct DeviceInput { // all handles belong to the host and must outlive the Device
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE; // Vulkan 1.3 with synchronization2 and maintenance4 enabled
+  const VkAllocationCallbacks* allocator = nullptr; // may be null; must outlive the Device
+  uint32_t queue_family = 0;                        // of the command buffers that will be recorded into
+  bool labels = false;                              // object names and debug labels; needs VK_EXT_debug_utils
+  bool timings = false;                             // timestamps around each pass
+};
+
+struct Device {
+  FunctionTable vk;
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  const VkAllocationCallbacks* allocator = nullptr;
+  uint32_t queue_family = 0;
+  VkPhysicalDeviceProperties properties{};
+  VkPhysicalDeviceMemoryProperties memory{};
+  uint32_t timestamp_valid_bits = 0; // of the queue family; 0: it cannot write timestamps
+  bool labels = false;
+  bool timings = false; // asked for, and timestamp_valid_bits > 0
+};
+
+// Fills `device`. Errors: argument (a null handle, a queue family that does not exist or cannot compute),
+// unsupported (a physical device below Vulkan 1.3; every function the device does not give, all named in one
+// text). `device` is unspecified on error. Free-threaded.
+Error make_device(const DeviceInput& input, Device& device);
+
+// Names an object for debuggers when `device.labels`; any text, copied. Free-threaded.
+void name_object(const Device& device, VkObjectType type, uint64_t handle, const char* name);
+
+} // namespace dermis::vulkan

@@ -1,0 +1,152 @@
+#pragma once
+// Runs a Plan on the host's device: owns its images, buffers, memory, pipelines, descriptors and queries, and
+// records frames into command buffers of the host. One executor is one view: it owns that view's history.
+
+#include "framegraph/compile/plan.hpp"
+#include "framegraph/vulkan/device.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis::vulkan {
+
+inline constexpr uint32_t max_frames_in_flight = 8;
+
+// One compiled kernel: `shader` is PassKind::shader, the entry point is "main".
+struct KernelCode {
+  std::string_view shader;
+  std::span<const uint32_t> spirv;
+};
+
+// Descriptor set 1, common to all kernels: entry i is binding i. Binding 0, if it is a uniform buffer, holds
+// the frame constants and exists once per frame in flight; the others are written once.
+enum class EnvironmentType : uint8_t { uniform_buffer, storage_buffer, linear_sampler };
+struct EnvironmentBinding {
+  EnvironmentType type = EnvironmentType::uniform_buffer;
+  uint64_t bytes = 0;                    // of the buffer, 1 or more; ignored for samplers
+  std::span<const std::byte> contents{}; // at most `bytes`, the rest is zero; ignored for frame constants
+};
+
+// Why a history holds nothing worth reading.
+enum class HistoryReason : uint8_t {
+  valid,       // it does
+  first_frame, // nothing has been recorded yet
+  cut,         // FrameInput::reset_history
+  resized,     // the executor was made for a new size
+  reloaded,    // the executor was made for a new graph
+  discarded    // discard_frames()
+};
+// Static string for people, for example "camera cut". Free-threaded.
+const char* history_reason_text(HistoryReason reason);
+
+struct ExecutorInput { // nothing is kept but `device`; all the rest is copied or consumed during the call
+  const Device* device = nullptr; // must outlive the executor
+  const Graph* graph = nullptr;   // that the plan was compiled from: names
+  const KindRegistry* kinds = nullptr;
+  const Plan* plan = nullptr;                         // compiled with device_profile(*device)
+  std::span<const KernelCode> kernels;                // at least those of the plan's kinds
+  std::span<const EnvironmentBinding> environment;    // may be empty
+  uint32_t frames_in_flight = 2;                      // 1 .. max_frames_in_flight
+  VkPipelineCache pipeline_cache = VK_NULL_HANDLE;    // may be null
+  HistoryReason history = HistoryReason::first_frame; // why histories start invalid
+};
+
+struct HostState {
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  uint32_t queue_family = VK_QUEUE_FAMILY_IGNORED; // the executor's own or IGNORED: no ownership transfer
+  VkPipelineStageFlags2 stages = 0;
+  VkAccessFlags2 access = 0;
+};
+
+// What the host binds to slot i (PlanResource::slot). A queue family transfer keeps the layout: the host
+// releases to the executor's family, or acquires from it, with old and new layout both before.layout, or both
+// after.layout.
+struct HostImage {
+  VkImage image = VK_NULL_HANDLE; // null: not bound
+  VkImageView view = VK_NULL_HANDLE;
+  HostState before, after;
+};
+
+struct Rectangle { // pixels; inside the allocated view size
+  uint32_t x = 0, y = 0, width = 0, height = 0;
+};
+
+struct FrameInput {
+  VkCommandBuffer command_buffer =
+      VK_NULL_HANDLE;                         // recording, outside a render pass, of Device::queue_family
+  std::span<const HostImage> images;          // by slot number; shorter: the rest is not bound
+  std::span<const std::byte> frame_constants; // for set 1 binding 0; at most its bytes
+  std::span<const SettingValue> settings;     // one per Graph::settings; empty: those of the plan
+  Rectangle rectangle;                        // width 0: the allocated view size
+  uint64_t frame_index = 1;                   // grows; the frame `frame_index - frames_in_flight` is finished
+  bool reset_history = false;                 // camera cut: histories with on_cut invalidate become invalid
+};
+
+// Like Error, without memory of its own.
+struct RecordResult {
+  ErrorKind kind = ErrorKind::none;
+  VkResult result = VK_SUCCESS;
+  const char* text = ""; // static
+  int32_t slot = -1;     // that the error is about; -1: none
+
+  explicit operator bool() const { return kind != ErrorKind::none; } // true: there is an error
+};
+
+struct HistoryState {
+  std::string_view resource; // lives as long as the executor
+  bool valid = false;        // `@-1` holds what the frame before this one wrote
+  uint32_t age = 0;          // number of consecutive frames it holds; `@-N` is valid when age >= N
+  HistoryReason reason = HistoryReason::first_frame;
+};
+
+struct PassTiming {
+  std::string_view pass; // name; lives as long as the executor
+  uint64_t nanoseconds = 0;
+};
+
+class Executor {
+public:
+  // Everything a frame needs is allocated here. Errors: argument, unsupported, shader, host_memory,
+  // device_memory, device_lost, vulkan; nothing is left behind and `executor` is unchanged. May throw
+  // std::bad_alloc. Free-threaded.
+  static Error create(const ExecutorInput& input, std::unique_ptr<Executor>& executor);
+  // The device must have finished every recorded frame.
+  ~Executor();
+
+  // Records the whole plan. On an error nothing was recorded and nothing changed. Never allocates host memory
+  // of its own, never throws, submits or waits. One thread at a time per executor.
+  RecordResult record(const FrameInput& frame) noexcept;
+
+  // State of history `index` (Plan::histories) as the next recorded frame sees it; give `reset_history` as
+  // that frame will. One thread at a time per executor.
+  HistoryState history_state(uint32_t index, bool reset_history = false) const noexcept;
+  uint32_t history_count() const noexcept;
+  // Rectangle of the frame recorded last; that is what histories cover. Width 0: none yet.
+  Rectangle previous_rectangle() const noexcept;
+  // A recorded frame was not submitted: every history starts anew. One thread at a time per executor.
+  void discard_frames() noexcept;
+
+  // Device time of each pass, in plan order, of the newest recorded frame <= completed_frame_index; it is
+  // written to `frame_index` and `timings` (one per plan pass). False: none ready, or no timings asked for.
+  // One thread at a time per executor.
+  bool read_timings(uint64_t completed_frame_index, uint64_t& frame_index,
+                    std::span<PassTiming> timings) noexcept;
+
+  const Plan& plan() const noexcept;
+  uint64_t constant_bytes() const noexcept; // device memory for set 1 and stand-ins of unbound ports
+
+  Executor(const Executor&) = delete;
+  Executor& operator=(const Executor&) = delete;
+  struct State; // internal
+
+private:
+  explicit Executor(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+} // namespace dermis::vulkan
