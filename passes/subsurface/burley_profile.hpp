@@ -1,0 +1,41 @@
+#pragma once
+// Burley's normalised diffusion profile in fp64: density, distribution, inverse, sampler, and its scaling by
+// albedo. shaders/burley.glsl mirrors these functions under the same names.
+
+namespace dermis::subsurface {
+
+// Sources: Burley 2015 ("Extending the Disney BRDF to a BSDF with integrated subsurface scattering"),
+// Christensen & Burley 2015 ("Approximate reflectance profiles for efficient subsurface scattering"), Golubev
+// 2019 (exact inverse). All functions are pure. r and d share one unit of length; d > 0 unless said. The
+// profile's total is 1 (albedo is multiplied in after scattering), so R below is Burley's equation 5.3 with A
+// = 1.
+
+// Smallest survival that is inverted: 24 random bits never give less, and r stays below 49 d.
+inline constexpr double burley_min_survival = 1.0 / 16777216.0;
+
+// R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r), per unit of area. Infinite at r = 0: use burley_pdf where r may
+// be 0.
+double burley_R(double r, double d);
+// Radial density 2 pi r R(r) = (e^(-r/d) + e^(-r/3d)) / (4 d), r >= 0.
+double burley_pdf(double r, double d);
+// Share of the energy within radius r: 1 - e^(-r/d)/4 - 3 e^(-r/3d)/4. 0 for r <= 0; 1 for d = 0 and r > 0.
+double burley_cdf(double r, double d);
+
+// Exact inverse in survival form: the r with 1 - cdf(r) = u. u is clamped to [burley_min_survival, 1].
+// Solves s^3 + 3 s = 4 u for s = e^(-r/3d) by the hyperbolic form of Cardano's formula; never negative.
+double burley_inverse_survival(double u, double d);
+
+// The sampler of the kernels: s(u) = u (1 + (1 - u^2) Q(u^2)) approximates the root above, r = -3 d ln s(u).
+// Radius within 0.52 % of the exact inverse; u as above.
+double burley_sample_survival(double u, double d);
+// Weight that makes burley_sample_survival exactly unbiased: pdf(r) / (density of the sampler at r)
+// = 3/4 (1 + s^2) s'(u). Within 1.25 % of 1, and its mean over u is 1. Independent of d.
+double burley_sample_weight(double u);
+
+// s(A) for a diffuse mean free path on the surface: 3.5 + 100 (A - 0.33)^4 (Christensen & Burley 2015, eq.
+// 8). A is clamped to [0, 1]; NaN counts as 0.33.
+double burley_scaling_dmfp(double albedo);
+// Shape parameter d = dmfp / s(A), in dmfp's unit. 0 (no scattering) for dmfp <= 0 and for NaN.
+double burley_d_from_dmfp(double dmfp, double albedo);
+
+} // namespace dermis::subsurface

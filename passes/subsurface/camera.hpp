@@ -1,0 +1,44 @@
+#pragma once
+// What a pixel sees: from a projection matrix to the few numbers with which truth and kernels rebuild
+// positions.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace dermis::subsurface {
+
+// A 4x4 matrix, row-major (m[4 * row + column]); it multiplies column vectors: clip = M * view.
+using Matrix4 = std::array<double, 16>;
+
+// View space: x right, y up, looking down -z, in metres. Depth is the distance along the view axis, metres, >
+// 0. Pixel (i, j) counts from the render rectangle's upper left corner; its centre has the view position
+//   x = (scale_x * i + offset_x) * k,  y = (scale_y * j + offset_y) * k,  z = -depth,  k = perspective ?
+//   depth : 1.
+struct PixelRays {
+  double scale_x = 1, offset_x = 0;  // metres per pixel (at depth 1 m if perspective)
+  double scale_y = -1, offset_y = 0; // negative: pixel rows go down, y goes up
+  bool perspective = false;
+};
+
+// View depth in metres from a depth buffer's value: depth = (a * value + b) / (c * value + e).
+// Serves standard, reversed and infinite projections alike.
+struct DepthDecode {
+  double a = 0, b = 0, c = 0, e = 1;
+};
+
+// Rays of a w x h rectangle onto which clip space [-1, 1]^2 maps (Vulkan: y down, so m[1][1] < 0 for a camera
+// that is not flipped). `clip_from_view` excludes the jitter; `jitter_px` is how far the picture was shifted
+// by it (+x right, +y down). The matrix works in host units, `metres_per_unit` turns them into metres. Empty
+// if the matrix is not an axis-aligned perspective or orthographic projection with finite entries, or a size,
+// or the unit is not positive.
+std::optional<PixelRays> pixel_rays(const Matrix4& clip_from_view, uint32_t width, uint32_t height,
+                                    double metres_per_unit, std::array<double, 2> jitter_px);
+
+// Decoder for a depth attachment written with the same matrix and Vulkan's depth range 0..1.
+DepthDecode depth_decode(const Matrix4& clip_from_view, double metres_per_unit);
+
+// Orthographic rays with square pixels of `pitch_m` metres, centred on the view axis.
+PixelRays orthographic_rays(uint32_t width, uint32_t height, double pitch_m);
+
+} // namespace dermis::subsurface
