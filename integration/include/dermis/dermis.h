@@ -339,7 +339,7 @@ typedef enum dermis_depth_kind {
 
 /* One frame. Matrices act on column vectors (clip = clip_from_view * view) and are stored row by row: element
  * [r * 4 + c]. View space: x right, y up, the camera looks down -z. Clip space is Vulkan's: y down, depth 0..1.
- * clip_from_view includes the jitter if there is one. */
+ * clip_from_view is without jitter; jitter_x and jitter_y tell how far the picture was shifted by it. */
 typedef struct dermis_frame {
   size_t struct_size;
   VkCommandBuffer command_buffer;  /* recording, outside a render pass, of the context's queue family */
@@ -354,7 +354,7 @@ typedef struct dermis_frame {
   float view_from_world[16];
   float previous_clip_from_view[16];
   float previous_view_from_world[16];
-  float jitter_x, jitter_y;        /* pixels, +x right, +y down, that clip_from_view contains */
+  float jitter_x, jitter_y;        /* pixels, +x right, +y down: shift of the picture, not in the matrices */
   float metres_per_unit;           /* 0 = 1 */
   float exposure;                  /* linear factor the host applies later; 0 = 1 */
   float delta_seconds;

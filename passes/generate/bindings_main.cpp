@@ -1,0 +1,85 @@
+// Build tool: writes one GLSL header a kernel from its signature, so that bindings and push constants are written
+// once. Usage: write_bindings <output folder>
+#include "passes/subsurface/kinds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <string>
+
+namespace {
+
+using namespace dermis;
+
+std::string upper(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return out;
+}
+
+std::string declare_port(const Port& port, uint32_t binding) {
+  const std::string layout = fmt::format("set = 0, binding = {}", binding);
+  switch (port.usage) {
+  case Usage::sampled_image:
+    return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
+  case Usage::storage_image_write:
+    return fmt::format("layout({}) writeonly uniform {} {}_image;\n", layout, port.glsl_type, port.name);
+  case Usage::storage_buffer_read:
+    return fmt::format("layout(std430, {}) readonly buffer {}_block {{ {} {}_data[]; }};\n", layout, port.name,
+                       port.glsl_type, port.name);
+  case Usage::storage_buffer_write:
+    return fmt::format("layout(std430, {}) writeonly buffer {}_block {{ {} {}_data[]; }};\n", layout, port.name,
+                       port.glsl_type, port.name);
+  case Usage::storage_buffer_update:
+    return fmt::format("layout(std430, {}) buffer {}_block {{ {} {}_data[]; }};\n", layout, port.name, port.glsl_type,
+                       port.name);
+  default: // no descriptor
+    return {};
+  }
+}
+
+std::string declare_setting(const KindSetting& setting) {
+  const char* type = setting.type == SettingType::real ? "float" : "int";
+  std::string out = fmt::format("  {} {}; // {}{}{}\n", type, setting.name, setting.doc, setting.unit.empty() ? "" : "; ",
+                                setting.unit);
+  return out;
+}
+
+std::string header_of(const PassKind& kind) {
+  std::string out = fmt::format("// Generated from the signature of {}.\n\n", kind.name);
+  for (uint32_t i = 0; i < kind.ports.size(); ++i)
+    out += declare_port(kind.ports[i], i);
+  out += "\nlayout(push_constant) uniform settings_block {\n  uint port_mask; // bit i: port i is bound\n";
+  for (const KindSetting& setting : kind.settings)
+    out += declare_setting(setting);
+  out += "} settings;\n\n";
+  for (const KindSetting& setting : kind.settings)
+    for (uint32_t i = 0; i < setting.options.size(); ++i)
+      out += fmt::format("const int {}_{} = {};\n", upper(setting.name), upper(setting.options[i]), i);
+  for (uint32_t i = 0; i < kind.ports.size(); ++i)
+    if (kind.ports[i].optional)
+      out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n", kind.ports[i].name, 1u << i);
+  return out;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "usage: write_bindings <output folder>\n");
+    return 2;
+  }
+  const dermis::KindRegistry kinds = dermis::subsurface::make_kinds();
+  for (uint32_t i = 0; i < kinds.size(); ++i) {
+    const dermis::PassKind& kind = kinds[dermis::KindId{i}];
+    std::ofstream file(fmt::format("{}/{}.bindings.glsl", argv[1], kind.shader), std::ios::binary);
+    file << header_of(kind);
+    if (!file.flush()) {
+      fmt::print(stderr, "write_bindings: cannot write the header of {} into {}\n", kind.name, argv[1]);
+      return 1;
+    }
+  }
+  return 0;
+}

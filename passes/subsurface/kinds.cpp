@@ -1,0 +1,15 @@
+#include "passes/subsurface/kinds.hpp"
+
+#include "passes/subsurface/signatures.hpp"
+
+namespace dermis::subsurface {
+
+KindRegistry make_kinds() {
+  KindRegistry registry;
+  for (const PassKind* kind : {&classify_kind, &tile_list_kind, &setup_kind, &burley_kind, &separable_kind,
+                               &combine_kind, &light_kind})
+    registry.add(*kind);
+  return registry;
+}
+
+} // namespace dermis::subsurface

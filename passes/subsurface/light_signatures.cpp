@@ -1,0 +1,101 @@
+// Light on its way into scattering and out of it.
+
+#include "passes/subsurface/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre"};
+constexpr std::string_view output_options[] = {"color", "light"};
+
+constexpr KindSetting texturing{
+    .name = "texturing",
+    .type = SettingType::enumeration,
+    .default_value = option_value(0),
+    .minimum = 0,
+    .maximum = 0,
+    .options = texturing_options,
+    .unit = "",
+    .doc = "where albedo is applied: after scattering (keeps texture detail), its square root on both sides, or before"};
+
+constexpr Port setup_ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    port::material,
+    port::depth,
+    port::albedo,
+    port::tiles,
+    port::arguments,
+    {"light", Usage::storage_image_write, false, "image2D",
+     "rgb scatterable light, a = area of the pixel's surface patch over its projected area; 0 outside", {}},
+    {"slope", Usage::storage_image_write, false, "image2D",
+     "change of depth from pixel to pixel over the pixel's size, x and y", {}},
+};
+constexpr KindSetting setup_settings[] = {texturing};
+
+constexpr Port combine_ports[] = {
+    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light", {}},
+    port::material,
+    port::albedo,
+    port::tiles,
+    port::arguments,
+    {"lighting", Usage::storage_image_write, false, "image2D",
+     "written where there is subsurface, untouched elsewhere; alpha becomes 1 there", {}},
+};
+constexpr KindSetting combine_settings[] = {
+    texturing,
+    {.name = "output",
+     .type = SettingType::enumeration,
+     .default_value = option_value(0),
+     .minimum = 0,
+     .maximum = 0,
+     .options = output_options,
+     .unit = "",
+     .doc = "color: scattered light times albedo; light: scattered light alone, for hosts that texture later"},
+};
+
+constexpr Port light_ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light", {}},
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::albedo,
+    {"light", Usage::storage_image_write, false, "image2D",
+     "scattered light before albedo; the input light where nothing scatters, in full precision", {}},
+};
+constexpr KindSetting light_settings[] = {texturing};
+
+} // namespace
+
+const PassKind setup_kind{
+    .name = "subsurface.setup",
+    .shader = "subsurface_setup",
+    .doc = "Takes the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to nearest even.",
+    .ports = setup_ports,
+    .settings = setup_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind combine_kind{
+    .name = "subsurface.combine",
+    .shader = "subsurface_combine",
+    .doc = "Puts scattered light back into the host's lighting. Specular stays with the host.",
+    .ports = combine_ports,
+    .settings = combine_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind light_kind{
+    .name = "subsurface.light",
+    .shader = "subsurface_light",
+    .doc = "Hands out scattered light before albedo for every pixel, for tools and hosts that texture later.",
+    .ports = light_ports,
+    .settings = light_settings,
+    .dispatch = DispatchShape::over_view,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

@@ -1,0 +1,54 @@
+// What every kernel sees beside its ports: descriptor set 1. Mirrors passes/subsurface/environment.hpp.
+#ifndef DERMIS_ENVIRONMENT_GLSL
+#define DERMIS_ENVIRONMENT_GLSL
+
+layout(std140, set = 1, binding = 0) uniform frame_block {
+  ivec4 rect;        // x, y, width, height of the render rectangle, pixels
+  ivec2 tiles;       // 8x8 tiles of the rectangle
+  uint frame_index;
+  uint flags;        // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid
+  vec2 ray_scale;    // view x, y = (scale * pixel + offset) * (perspective ? depth : 1), mm
+  vec2 ray_offset;
+  vec4 depth_decode; // depth mm = (a * value + b) / (c * value + e)
+  float depth_unit;  // mm per unit of view distance
+  float exposure;
+  vec2 jitter;       // pixels
+} frame;
+
+struct profile_entry {
+  vec4 d_mm;   // rgb: shape parameter per channel, a: of the widest
+  vec3 albedo; // of the profile
+  uint widest; // channel
+};
+layout(std430, set = 1, binding = 1) readonly buffer profile_block { profile_entry profiles[]; };
+
+const float largest_depth_mm = 1e9; // a thousand kilometres: sky and infinite far planes are beyond
+
+bool is_perspective() { return (frame.flags & 1u) != 0u; }
+
+// View distance in mm from a value of the depth import; 0 where there is nothing.
+float view_depth(float value) {
+  float depth = (frame.flags & 2u) != 0u
+                    ? value * frame.depth_unit
+                    : (frame.depth_decode.x * value + frame.depth_decode.y) /
+                          (frame.depth_decode.z * value + frame.depth_decode.w);
+  return depth > 0.0 && depth < largest_depth_mm ? depth : 0.0; // NaN and Inf compare false
+}
+
+// Size of a pixel across the view at a depth, mm in x and y.
+vec2 pixel_footprint(float depth) { return abs(frame.ray_scale) * (is_perspective() ? depth : 1.0); }
+
+// View position in mm; x right, y up, the camera looks down -z. Integers are pixel centres, counted from the
+// rectangle's corner.
+vec3 view_position(vec2 pixel, float depth) {
+  return vec3((frame.ray_scale * pixel + frame.ray_offset) * (is_perspective() ? depth : 1.0), -depth);
+}
+
+bool inside_rect(ivec2 pixel) {
+  return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, frame.rect.zw));
+}
+
+// Where a pixel of the rectangle stands in the images.
+ivec2 texel_of(ivec2 pixel) { return pixel + frame.rect.xy; }
+
+#endif

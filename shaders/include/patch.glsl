@@ -1,0 +1,63 @@
+// The surface patch behind a pixel, from depth differences; mirrors passes/subsurface/truth/surface.cpp.
+// Include after bindings with `material` and `depth`.
+#ifndef DERMIS_PATCH_GLSL
+#define DERMIS_PATCH_GLSL
+
+#include "environment.glsl"
+
+const float min_patch_cosine = 0.15; // 1/cos is capped at 1/.15
+
+// Depth of a pixel of profile `id`, mm; 0 if it is outside, of another profile or has none.
+float depth_of_profile(ivec2 pixel, uint id) {
+  if (!inside_rect(pixel))
+    return 0.0;
+  ivec2 texel = texel_of(pixel);
+  if (texelFetch(material_image, texel, 0).r != id)
+    return 0.0;
+  return view_depth(texelFetch(depth_image, texel, 0).r);
+}
+
+// Tangent along an axis: towards the neighbour of the same profile that is nearer in depth; across the view where
+// there is none.
+vec3 patch_tangent(ivec2 pixel, ivec2 axis, uint id, float depth, vec3 position) {
+  float after = depth_of_profile(pixel + axis, id), before = depth_of_profile(pixel - axis, id);
+  bool backwards = before > 0.0 && (after <= 0.0 || abs(before - depth) < abs(after - depth));
+  float neighbour = backwards ? before : (after > 0.0 ? after : depth);
+  int side = backwards ? -1 : 1;
+  return float(side) * (view_position(vec2(pixel + side * axis), neighbour) - position);
+}
+
+struct surface_patch {
+  vec2 slope;  // d depth / d pixel, in footprints per pixel
+  float area;  // over the area of the pixel's cross-section: 1 / cos to the viewer, capped
+};
+
+surface_patch build_patch(ivec2 pixel, uint id, float depth) {
+  vec3 position = view_position(vec2(pixel), depth);
+  vec3 ray = is_perspective() ? position / depth : vec3(0.0, 0.0, -1.0);
+  vec3 viewer = -normalize(ray);
+  vec3 normal = cross(patch_tangent(pixel, ivec2(1, 0), id, depth, position),
+                      patch_tangent(pixel, ivec2(0, 1), id, depth, position));
+  float size = length(normal);
+  normal = size > 0.0 ? normal / size : viewer;
+  if (dot(normal, viewer) < 0.0)
+    normal = -normal;
+  float cosine = dot(normal, viewer);
+  if (cosine < min_patch_cosine) { // tilt towards the viewer until it meets the limit
+    vec3 across = normal - viewer * cosine;
+    float across_size = length(across);
+    normal = across_size > 0.0
+                 ? across * (sqrt(1.0 - min_patch_cosine * min_patch_cosine) / across_size) + viewer * min_patch_cosine
+                 : viewer;
+    cosine = max(dot(normal, viewer), min_patch_cosine);
+  }
+  surface_patch result;
+  // The plane dot(normal, P) = const, P = depth * (scale * pixel + offset, -1), differentiated by pixel; an
+  // orthographic ray has no depth in its x and y, which leaves the same quotient.
+  vec2 signs = sign(frame.ray_scale);
+  result.slope = is_perspective() ? -normal.xy * signs / dot(normal, ray) : normal.xy * signs / normal.z;
+  result.area = 1.0 / cosine;
+  return result;
+}
+
+#endif

@@ -1,0 +1,12 @@
+// How a tile is packed into the list, and how lists longer than a dispatch dimension fold into rows of groups.
+#ifndef DERMIS_TILE_PACKING_GLSL
+#define DERMIS_TILE_PACKING_GLSL
+
+const uint class_none = 0u;    // no subsurface
+const uint class_scatter = 1u;
+const uint class_copy = 2u;    // every pixel scatters below a pixel
+
+const uint tile_copy_bit = 0x80000000u;
+const uint tile_groups_per_row = 32768u; // below the 65535 groups a dimension that Vulkan guarantees
+
+#endif

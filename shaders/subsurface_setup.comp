@@ -1,0 +1,37 @@
+#version 460
+// The light that can scatter, and the surface it lies on.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "subsurface_setup.bindings.glsl"
+#include "environment.glsl"
+#include "tiles.glsl"
+#include "half.glsl"
+#include "sanitise.glsl"
+#include "patch.glsl"
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  ivec2 texel = texel_of(pixel);
+  uint id = texelFetch(material_image, texel, 0).r;
+  vec4 light = vec4(0.0);
+  vec2 slope = vec2(0.0);
+  if (id != 0u) {
+    light.rgb = clean_light(texelFetch(lighting_image, texel, 0).rgb);
+    if (settings.texturing != TEXTURING_POST && has_albedo()) {
+      vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
+      light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
+    }
+    float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    light.a = 1.0;
+    if (depth > 0.0 && !copy_only) {
+      surface_patch surface = build_patch(pixel, id, depth);
+      light.a = surface.area;
+      slope = surface.slope;
+    }
+  }
+  imageStore(light_image, texel, round_to_half(light));
+  imageStore(slope_image, texel, vec4(round_to_half(vec3(slope, 0.0)), 0.0));
+}
