@@ -45,9 +45,9 @@ vec3 scatter(ivec2 pixel, uint id, float depth, vec3 d, float d_max, vec3 own) {
     // Weight in channel c: R_c(distance) * area / density, with density = pdf(r) / (2 pi r) on the view plane at the
     // pixel's depth; 2 pi R_c = pdf_c(distance) / distance.
     float zoom = is_perspective() ? tap_depth / depth : 1.0;
-    float common = burley_sample_weight(survival) / burley_pdf(r, d_max) * (r / distance_3d) * light.a * zoom * zoom;
+    float tap_weight = burley_sample_weight(survival) / burley_pdf(r, d_max) * (r / distance_3d) * light.a * zoom * zoom;
     vec3 e = exp(-distance_3d * inverse_d * (1.0 / 3.0));
-    vec3 weight = common * 0.25 * inverse_d * (e * e * e + e);
+    vec3 weight = tap_weight * 0.25 * inverse_d * (e * e * e + e);
     sum += weight * light.rgb;
     total += weight;
   }

@@ -17,7 +17,7 @@ void main() {
   if (texelFetch(material_image, texel, 0).r == 0u)
     return;
   vec3 color = texelFetch(scattered_image, texel, 0).rgb;
-  if (settings.output == OUTPUT_COLOR && settings.texturing != TEXTURING_PRE && has_albedo()) {
+  if (settings.result == RESULT_COLOR && settings.texturing != TEXTURING_PRE && has_albedo()) {
     vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
     color *= settings.texturing == TEXTURING_POST ? albedo : sqrt(albedo);
   }

@@ -1,5 +1,5 @@
-// Build tool: writes one GLSL header a kernel from its signature, so that bindings and push constants are written
-// once. Usage: write_bindings <output folder>
+// Build tool: writes one GLSL header a kernel from its signature, so that bindings and push constants are
+// written once. Usage: write_bindings <output folder>
 #include "passes/subsurface/kinds.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,8 @@ using namespace dermis;
 
 std::string upper(std::string_view text) {
   std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return out;
 }
 
@@ -27,14 +28,14 @@ std::string declare_port(const Port& port, uint32_t binding) {
   case Usage::storage_image_write:
     return fmt::format("layout({}) writeonly uniform {} {}_image;\n", layout, port.glsl_type, port.name);
   case Usage::storage_buffer_read:
-    return fmt::format("layout(std430, {}) readonly buffer {}_block {{ {} {}_data[]; }};\n", layout, port.name,
-                       port.glsl_type, port.name);
+    return fmt::format("layout(std430, {}) readonly buffer {}_block {{ {} {}_data[]; }};\n", layout,
+                       port.name, port.glsl_type, port.name);
   case Usage::storage_buffer_write:
-    return fmt::format("layout(std430, {}) writeonly buffer {}_block {{ {} {}_data[]; }};\n", layout, port.name,
-                       port.glsl_type, port.name);
+    return fmt::format("layout(std430, {}) writeonly buffer {}_block {{ {} {}_data[]; }};\n", layout,
+                       port.name, port.glsl_type, port.name);
   case Usage::storage_buffer_update:
-    return fmt::format("layout(std430, {}) buffer {}_block {{ {} {}_data[]; }};\n", layout, port.name, port.glsl_type,
-                       port.name);
+    return fmt::format("layout(std430, {}) buffer {}_block {{ {} {}_data[]; }};\n", layout, port.name,
+                       port.glsl_type, port.name);
   default: // no descriptor
     return {};
   }
@@ -42,8 +43,8 @@ std::string declare_port(const Port& port, uint32_t binding) {
 
 std::string declare_setting(const KindSetting& setting) {
   const char* type = setting.type == SettingType::real ? "float" : "int";
-  std::string out = fmt::format("  {} {}; // {}{}{}\n", type, setting.name, setting.doc, setting.unit.empty() ? "" : "; ",
-                                setting.unit);
+  std::string out = fmt::format("  {} {}; // {}{}{}\n", type, setting.name, setting.doc,
+                                setting.unit.empty() ? "" : "; ", setting.unit);
   return out;
 }
 
@@ -60,7 +61,8 @@ std::string header_of(const PassKind& kind) {
       out += fmt::format("const int {}_{} = {};\n", upper(setting.name), upper(setting.options[i]), i);
   for (uint32_t i = 0; i < kind.ports.size(); ++i)
     if (kind.ports[i].optional)
-      out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n", kind.ports[i].name, 1u << i);
+      out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n", kind.ports[i].name,
+                         1u << i);
   return out;
 }
 

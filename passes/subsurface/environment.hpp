@@ -13,22 +13,29 @@
 namespace dermis::subsurface {
 
 // Bindings of set 1.
-enum class EnvironmentSlot : uint32_t { frame = 0, profiles = 1, separable = 2, linear_sampler = 3, count = 4 };
+enum class EnvironmentSlot : uint32_t {
+  frame = 0,
+  profiles = 1,
+  separable = 2,
+  linear_sampler = 3,
+  count = 4
+};
 
 enum class DepthKind : uint32_t { device = 0, view_units = 1 };
 
 // std140. Lengths on the device are millimetres: fp32 keeps a micrometre at 10 m.
 struct FrameConstants {
-  int32_t rect[4];          // x, y, width, height of the render rectangle, pixels
-  int32_t tiles[2];         // 8x8 tiles of the rectangle, x and y
-  uint32_t frame_index;     // low 32 bits
-  uint32_t flags;           // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid
-  float ray_scale[2];       // view x, y = (scale * pixel + offset) * (perspective ? depth : 1); pixel counts from
-  float ray_offset[2];      // the rectangle's corner, integers at pixel centres; mm (per mm of depth if perspective)
-  float depth_decode[4];    // depth mm = (a * value + b) / (c * value + e)
-  float depth_unit;         // mm per unit of view distance
+  int32_t rect[4];      // x, y, width, height of the render rectangle, pixels
+  int32_t tiles[2];     // 8x8 tiles of the rectangle, x and y
+  uint32_t frame_index; // low 32 bits
+  uint32_t flags;       // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid
+  float ray_scale[2];   // view x, y = (scale * pixel + offset) * (perspective ? depth : 1); pixel counts from
+  float
+      ray_offset[2]; // the rectangle's corner, integers at pixel centres; mm (per mm of depth if perspective)
+  float depth_decode[4]; // depth mm = (a * value + b) / (c * value + e)
+  float depth_unit;      // mm per unit of view distance
   float exposure;
-  float jitter[2];          // pixels
+  float jitter[2]; // pixels
 };
 static_assert(sizeof(FrameConstants) == 96);
 
@@ -44,7 +51,7 @@ inline constexpr uint32_t profile_capacity = 256;
 
 struct FrameInput {
   uint32_t rect_x = 0, rect_y = 0, rect_width = 0, rect_height = 0;
-  Matrix4 clip_from_view{};  // without jitter
+  Matrix4 clip_from_view{}; // without jitter
   std::array<double, 2> jitter_px{};
   double metres_per_unit = 1.0;
   DepthKind depth_kind = DepthKind::device;
@@ -53,8 +60,8 @@ struct FrameInput {
   bool history_invalid = false;
 };
 
-// False if the matrix is not an axis-aligned perspective or orthographic projection or a number is not finite; then
-// `out` is unchanged. Allocates nothing. Thread: any.
+// False if the matrix is not an axis-aligned perspective or orthographic projection or a number is not
+// finite; then `out` is unchanged. Allocates nothing. Thread: any.
 bool fill_frame_constants(const FrameInput& input, FrameConstants& out);
 
 struct NumberedProfile {

@@ -7,17 +7,17 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre"};
-constexpr std::string_view output_options[] = {"color", "light"};
+constexpr std::string_view result_options[] = {"color", "light"};
 
-constexpr KindSetting texturing{
-    .name = "texturing",
-    .type = SettingType::enumeration,
-    .default_value = option_value(0),
-    .minimum = 0,
-    .maximum = 0,
-    .options = texturing_options,
-    .unit = "",
-    .doc = "where albedo is applied: after scattering (keeps texture detail), its square root on both sides, or before"};
+constexpr KindSetting texturing{.name = "texturing",
+                                .type = SettingType::enumeration,
+                                .default_value = option_value(0),
+                                .minimum = 0,
+                                .maximum = 0,
+                                .options = texturing_options,
+                                .unit = "",
+                                .doc = "where albedo is applied: after scattering (keeps texture detail), "
+                                       "its square root on both sides, or before"};
 
 constexpr Port setup_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
@@ -26,10 +26,18 @@ constexpr Port setup_ports[] = {
     port::albedo,
     port::tiles,
     port::arguments,
-    {"light", Usage::storage_image_write, false, "image2D",
-     "rgb scatterable light, a = area of the pixel's surface patch over its projected area; 0 outside", {}},
-    {"slope", Usage::storage_image_write, false, "image2D",
-     "change of depth from pixel to pixel over the pixel's size, x and y", {}},
+    {"light",
+     Usage::storage_image_write,
+     false,
+     "image2D",
+     "rgb scatterable light, a = area of the pixel's surface patch over its projected area; 0 outside",
+     {}},
+    {"slope",
+     Usage::storage_image_write,
+     false,
+     "image2D",
+     "change of depth from pixel to pixel over the pixel's size, x and y",
+     {}},
 };
 constexpr KindSetting setup_settings[] = {texturing};
 
@@ -39,19 +47,24 @@ constexpr Port combine_ports[] = {
     port::albedo,
     port::tiles,
     port::arguments,
-    {"lighting", Usage::storage_image_write, false, "image2D",
-     "written where there is subsurface, untouched elsewhere; alpha becomes 1 there", {}},
+    {"lighting",
+     Usage::storage_image_write,
+     false,
+     "image2D",
+     "written where there is subsurface, untouched elsewhere; alpha becomes 1 there",
+     {}},
 };
 constexpr KindSetting combine_settings[] = {
     texturing,
-    {.name = "output",
+    {.name = "result",
      .type = SettingType::enumeration,
      .default_value = option_value(0),
      .minimum = 0,
      .maximum = 0,
-     .options = output_options,
+     .options = result_options,
      .unit = "",
-     .doc = "color: scattered light times albedo; light: scattered light alone, for hosts that texture later"},
+     .doc =
+         "color: scattered light times albedo; light: scattered light alone, for hosts that texture later"},
 };
 
 constexpr Port light_ports[] = {
@@ -61,8 +74,12 @@ constexpr Port light_ports[] = {
     port::depth,
     port::scatter_scale,
     port::albedo,
-    {"light", Usage::storage_image_write, false, "image2D",
-     "scattered light before albedo; the input light where nothing scatters, in full precision", {}},
+    {"light",
+     Usage::storage_image_write,
+     false,
+     "image2D",
+     "scattered light before albedo; the input light where nothing scatters, in full precision",
+     {}},
 };
 constexpr KindSetting light_settings[] = {texturing};
 
@@ -71,7 +88,8 @@ constexpr KindSetting light_settings[] = {texturing};
 const PassKind setup_kind{
     .name = "subsurface.setup",
     .shader = "subsurface_setup",
-    .doc = "Takes the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to nearest even.",
+    .doc = "Takes the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to "
+           "nearest even.",
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -7,14 +7,17 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr Port light{"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}};
-constexpr Port scattered{"scattered", Usage::storage_image_write, false, "image2D",
-                         "scattered light where there is subsurface, undefined elsewhere", {}};
+constexpr Port scattered{"scattered",
+                         Usage::storage_image_write,
+                         false,
+                         "image2D",
+                         "scattered light where there is subsurface, undefined elsewhere",
+                         {}};
 
 constexpr Port slope{"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}};
 
 constexpr Port burley_ports[] = {
-    light,       slope,           port::material,   port::depth,     port::scatter_scale,
-    port::tiles, port::arguments,  scattered,
+    light, slope, port::material, port::depth, port::scatter_scale, port::tiles, port::arguments, scattered,
 };
 constexpr KindSetting burley_settings[] = {
     {.name = "samples",
@@ -32,7 +35,12 @@ constexpr std::string_view taps_options[] = {"11", "17", "25"};
 constexpr Port separable_ports[] = {
     light,
     slope,
-    {"blurred", Usage::sampled_image, true, "texture2D", "the horizontal pass's result; bound for the vertical pass", {}},
+    {"blurred",
+     Usage::sampled_image,
+     true,
+     "texture2D",
+     "the horizontal pass's result; bound for the vertical pass",
+     {}},
     port::material,
     port::depth,
     port::scatter_scale,
@@ -64,7 +72,8 @@ constexpr KindSetting separable_settings[] = {
 const PassKind burley_kind{
     .name = "subsurface.burley",
     .shader = "subsurface_burley",
-    .doc = "Importance sampling of Burley's normalised diffusion on a disc, weighted by 3-D distance and patch area.",
+    .doc = "Importance sampling of Burley's normalised diffusion on a disc, weighted by 3-D distance and "
+           "patch area.",
     .ports = burley_ports,
     .settings = burley_settings,
     .dispatch = DispatchShape::over_tiles,

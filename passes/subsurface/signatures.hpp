@@ -1,5 +1,6 @@
 #pragma once
-// One signature a kernel; kinds.cpp lists them. Split by what they serve: tiles, light in and out, scattering.
+// One signature a kernel; kinds.cpp lists them. Split by what they serve: tiles, light in and out,
+// scattering.
 
 #include "framegraph/model/pass_kind.hpp"
 
@@ -11,21 +12,42 @@ extern const PassKind burley_kind, separable_kind;          // scatter_signature
 
 // Ports that several kinds declare with the same meaning.
 namespace port {
-inline constexpr Port material{"material", Usage::sampled_image, false, "utexture2D",
-                               "profile id per pixel, 0 = no subsurface", {}};
-inline constexpr Port depth{"depth", Usage::sampled_image, false, "texture2D",
-                            "device depth or view-space distance, as the frame says", {}};
-inline constexpr Port scatter_scale{"scatter_scale", Usage::sampled_image, true, "texture2D",
-                                    "factor on d per pixel, 0 = diffuse; unbound = 1", {}};
-inline constexpr Port albedo{"albedo", Usage::sampled_image, true, "texture2D",
-                             "diffuse albedo, linear; unbound = 1", {}};
-inline constexpr Port tiles{"tiles", Usage::storage_buffer_read, false, "uint",
-                            "element 0 = number of tiles; then packed tiles: x in bits 0-14, y in bits 15-29, bit 31 = copy only", {}};
-inline constexpr Port arguments{"arguments", Usage::indirect_arguments, false, "uint",
-                                "group counts x, y, z of an indirect dispatch over the tiles", {}};
+inline constexpr Port material{
+    "material", Usage::sampled_image, false, "utexture2D", "profile id per pixel, 0 = no subsurface", {}};
+inline constexpr Port depth{"depth",
+                            Usage::sampled_image,
+                            false,
+                            "texture2D",
+                            "device depth or view-space distance, as the frame says",
+                            {}};
+inline constexpr Port scatter_scale{"scatter_scale",
+                                    Usage::sampled_image,
+                                    true,
+                                    "texture2D",
+                                    "factor on d per pixel, 0 = diffuse; unbound = 1",
+                                    {}};
+inline constexpr Port albedo{
+    "albedo", Usage::sampled_image, true, "texture2D", "diffuse albedo, linear; unbound = 1", {}};
+inline constexpr Port tiles{
+    "tiles",
+    Usage::storage_buffer_read,
+    false,
+    "uint",
+    "element 0 = number of tiles; then packed tiles: x in bits 0-14, y in bits 15-29, bit 31 = copy only",
+    {}};
+inline constexpr Port arguments{"arguments",
+                                Usage::indirect_arguments,
+                                false,
+                                "uint",
+                                "group counts x, y, z of an indirect dispatch over the tiles",
+                                {}};
 } // namespace port
 
-constexpr SettingValue integer_value(int64_t value) { return {SettingType::integer, value, 0.0}; }
-constexpr SettingValue option_value(int64_t index) { return {SettingType::enumeration, index, 0.0}; }
+constexpr SettingValue integer_value(int64_t value) {
+  return {SettingType::integer, value, 0.0};
+}
+constexpr SettingValue option_value(int64_t index) {
+  return {SettingType::enumeration, index, 0.0};
+}
 
 } // namespace dermis::subsurface

@@ -10,8 +10,13 @@ constexpr Port classify_ports[] = {
     port::material,
     port::depth,
     port::scatter_scale,
-    {"classes", Usage::storage_buffer_write, false, "uint",
-     "per tile of the render rectangle, row by row: 0 = no subsurface, 1 = scatters, 2 = below a pixel (copy)", {}},
+    {"classes",
+     Usage::storage_buffer_write,
+     false,
+     "uint",
+     "per tile of the render rectangle, row by row: 0 = no subsurface, 1 = scatters, 2 = below a pixel "
+     "(copy)",
+     {}},
 };
 
 constexpr Port tile_list_ports[] = {
@@ -35,7 +40,8 @@ const PassKind classify_kind{
 const PassKind tile_list_kind{
     .name = "subsurface.tile_list",
     .shader = "subsurface_tile_list",
-    .doc = "Compacts tile classes into a list in row order and the indirect arguments for it (a scan without atomics: "
+    .doc = "Compacts tile classes into a list in row order and the indirect arguments for it (a scan without "
+           "atomics: "
            "the same classes give the same list).",
     .ports = tile_list_ports,
     .settings = {},
