@@ -4,17 +4,19 @@
 #include "framegraph/model/ids.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace dermis {
 
 // Where a value stands in the text it was read from. Lines and columns count from 1, columns in bytes.
 struct SourceLocation {
-  FileId file;             // into Diagnostics::files
-  uint32_t line = 0, column = 0;
-  std::string pointer;     // JSON pointer (RFC 6901), "" for the root
+  FileId file;                   // into Diagnostics::files; invalid: no file at all
+  uint32_t line = 0, column = 0; // 0: the file as a whole
+  std::string pointer;           // JSON pointer (RFC 6901), "" for the root
 };
 
 enum class Severity : uint8_t { note, warning, error };
@@ -34,12 +36,13 @@ struct DiagnosticInfo {
 };
 
 const DiagnosticInfo& diagnostic_info(DiagnosticId id);
+std::span<const DiagnosticInfo> all_diagnostic_infos(); // sorted by id
 
 struct Diagnostic {
   DiagnosticId id{};
   SourceLocation where;
-  std::string text;            // names the thing, what was expected and what was found
-  std::string suggestion;      // "did you mean 'size'?", may be empty
+  std::string text;       // names the thing, what was expected and what was found
+  std::string suggestion; // "did you mean 'size'?", may be empty
   std::vector<std::pair<SourceLocation, std::string>> related; // the other end: "declared here"
 };
 
@@ -48,19 +51,25 @@ struct SourceFile {
   std::string text; // kept for excerpts
 };
 
-// All that was found in one run, in order of discovery; and the texts they point into.
+// All that was found in one run, in order of discovery; and the texts they point into. At most
+// limits::diagnostics are kept, then one too_many_diagnostics; errors beyond that still count as errors.
 struct Diagnostics {
   std::vector<SourceFile> files;
   std::vector<Diagnostic> list;
+  uint64_t dropped_errors = 0;
+  Diagnostic dropped; // what add() returns once the list is full
 
+  // The new entry, to add a suggestion or related locations to; valid until the next add().
   Diagnostic& add(DiagnosticId id, SourceLocation where, std::string text);
+  bool full() const; // nothing more will be listed: readers may stop looking
   bool has_errors() const;
   uint32_t count(Severity severity) const;
 };
 
 // "file:line:column: error[D0101 unknown_key]: text", excerpt with caret, hint. No trailing newline.
 std::string format_for_people(const Diagnostics& all, const Diagnostic& one, bool excerpt = true);
-// The whole list as a JSON array.
+// The whole list as a JSON array of {id, name, severity, file, line, column, pointer, text, suggestion, hint,
+// related}.
 std::string format_as_json(const Diagnostics& all);
 
 } // namespace dermis

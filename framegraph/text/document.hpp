@@ -1,0 +1,62 @@
+#pragma once
+// A JSON text as flat arrays, every value knowing the line and column it came from. Nothing is interpreted
+// here; reader.hpp reads objects strictly.
+
+#include "framegraph/text/diagnostic.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis {
+
+enum class NodeKind : uint8_t { null, boolean, integer, real, string, array, object };
+
+// "an object", "a string" ...: for messages.
+std::string_view kind_name(NodeKind kind);
+
+struct Node {
+  NodeKind kind = NodeKind::null;
+  uint32_t offset = 0;                   // byte of the value's first character in the text
+  uint32_t line = 1, column = 1;         // of the same
+  uint32_t key_line = 0, key_column = 0; // of the key's opening quote; 0 in arrays and at the root
+  NodeId parent, first_child, next;      // invalid: none
+  uint32_t child_count = 0;
+  uint32_t index = 0;                         // position among its siblings
+  uint32_t key_begin = 0, key_size = 0;       // into Document::characters
+  uint32_t string_begin = 0, string_size = 0; // likewise
+  int64_t integer = 0;                        // integer; boolean as 0 or 1
+  double real = 0.0;                          // integer and real, rounded to nearest
+};
+
+// Nodes in the order of the text, [0] the root. Strings are unescaped UTF-8 and contain no U+0000.
+struct Document {
+  FileId file; // into Diagnostics::files
+  std::vector<Node> nodes;
+  std::string characters;
+
+  NodeId root() const { return {0}; }
+  const Node& operator[](NodeId id) const { return nodes[id.value]; }
+  std::string_view text(NodeId id) const;                 // of a string
+  std::string_view key(NodeId id) const;                  // "" in arrays and at the root
+  NodeId find(NodeId object, std::string_view key) const; // invalid when there is none; linear
+
+  std::string pointer(NodeId id) const;      // RFC 6901
+  SourceLocation where(NodeId id) const;     // the value
+  SourceLocation where_key(NodeId id) const; // its key, or the value where there is none
+};
+
+// The byte `decoded` of string `id` as a place in the text, seen through escapes. `all` holds the text.
+SourceLocation where_in_string(const Document& document, NodeId id, size_t decoded, const Diagnostics& all);
+
+// Strict JSON plus // comments. Registers `text` under `name` with `diagnostics` and parses it. Refused, with
+// an error: syntax errors, duplicate keys, integers that do not fit in 64 signed bits, numbers beyond the
+// range of double, ill-formed UTF-8, U+0000, anything beyond limits.hpp. Free-threaded.
+std::optional<Document> parse_document(std::string name, std::string text, Diagnostics& diagnostics);
+
+// The same for a regular file; `path` is used as its name.
+std::optional<Document> read_document(const std::string& path, Diagnostics& diagnostics);
+
+} // namespace dermis

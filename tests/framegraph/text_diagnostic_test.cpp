@@ -1,0 +1,103 @@
+#include "framegraph/text/diagnostic.hpp"
+#include "framegraph/text/document.hpp"
+#include "framegraph/text/limits.hpp"
+#include "tests/framegraph/text_support.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace dermis {
+namespace {
+
+Diagnostics with_text(std::string text) {
+  Diagnostics out;
+  out.files.push_back({"a.json", std::move(text)});
+  return out;
+}
+
+TEST(Diagnostic, ForPeopleHasPlaceIdTextPointerExcerptCaretAndHint) {
+  Diagnostics all = with_text("{\n  \"sise\": 1\n}");
+  all.add(DiagnosticId::unknown_key, {{0}, 2, 3, "/sise"}, "import 'depth' has no key 'sise'").suggestion =
+      "did you mean 'size'?";
+  EXPECT_EQ(format_for_people(all, all.list[0]), "a.json:2:3: error[D0103 unknown_key]: import 'depth' has "
+                                                 "no key 'sise'; did you mean 'size'? (at /sise)\n"
+                                                 "     2 |   \"sise\": 1\n"
+                                                 "       |   ^\n"
+                                                 "  Remove the key or correct its spelling.");
+}
+
+TEST(Diagnostic, TheCaretCountsCodePointsAndTabsAsOneColumn) {
+  Diagnostics all = with_text("\t\xc3\xa9\xc3\xa9 x");
+  all.add(DiagnosticId::syntax, {{0}, 1, 7, ""}, "t");
+  EXPECT_NE(format_for_people(all, all.list[0]).find("     1 |  \xc3\xa9\xc3\xa9 x\n       |     ^\n"),
+            std::string::npos)
+      << format_for_people(all, all.list[0]);
+}
+
+TEST(Diagnostic, LongLinesAreCutOnBothSides) {
+  Diagnostics all = with_text(std::string(1u << 20, 'a'));
+  all.add(DiagnosticId::syntax, {{0}, 1, 5000, ""}, "t");
+  const std::string text = format_for_people(all, all.list[0]);
+  EXPECT_LT(text.size(), 500u);
+  EXPECT_NE(text.find("...a"), std::string::npos);
+  EXPECT_NE(text.find("a...\n"), std::string::npos);
+}
+
+TEST(Diagnostic, NothingUnprintableReachesTheTerminal) {
+  Diagnostics all = with_text("[\x1b[31m\xff\x7f]");
+  all.add(DiagnosticId::syntax, {{0}, 1, 3, "/\x1b"}, "bad \x1b[0m \xfe")
+      .related.emplace_back(SourceLocation{{0}, 1, 8, ""}, "\x07");
+  const std::string text = format_for_people(all, all.list[0]);
+  for (char c : text) {
+    EXPECT_TRUE(c == '\n' ||
+                (static_cast<uint8_t>(c) >= 0x20 && c != 0x7f && static_cast<uint8_t>(c) < 0x80));
+  }
+}
+
+TEST(Diagnostic, PlacesOutsideTheTextGiveNoExcerptAndNoCrash) {
+  for (const SourceLocation& where : {SourceLocation{{0}, 9, 1, ""}, SourceLocation{{0}, 1, 99, ""},
+                                      SourceLocation{{7}, 1, 1, ""}, SourceLocation{{}, 0, 0, ""}}) {
+    Diagnostics all = with_text("x");
+    all.add(DiagnosticId::syntax, where, "t");
+    EXPECT_EQ(format_for_people(all, all.list[0]).find('|'), std::string::npos);
+  }
+}
+
+TEST(Diagnostic, AsJsonIsJsonWhateverTheTexts) {
+  Diagnostics all = with_text("x");
+  all.files[0].name = "quote\".json";
+  all.add(DiagnosticId::syntax, {{0}, 1, 1, "/a\\b"}, "line\nbreak \x01 \xff \xc3\xa9")
+      .related.emplace_back(SourceLocation{{0}, 1, 1, ""}, "there");
+  all.add(DiagnosticId::unknown_key, {{0}, 1, 1, ""}, "second");
+  Diagnostics again;
+  const auto document = parse_document("out.json", format_as_json(all), again);
+  ASSERT_TRUE(document) << testing::all_messages(again);
+  const NodeId first = (*document)[document->root()].first_child;
+  EXPECT_EQ(document->text(document->find(first, "id")), "D0101");
+  EXPECT_EQ(document->text(document->find(first, "file")), "quote\".json");
+  EXPECT_EQ(document->text(document->find(first, "text")), "line\nbreak \x01 \xef\xbf\xbd \xc3\xa9");
+  EXPECT_EQ((*document)[document->find(first, "related")].child_count, 1u);
+  EXPECT_EQ(format_as_json(Diagnostics()), "[]");
+}
+
+TEST(Diagnostic, ErrorsBeyondTheListedOnesStillCountAsErrors) {
+  Diagnostics all;
+  for (size_t i = 0; i < limits::diagnostics; ++i)
+    all.add(DiagnosticId::too_many_diagnostics, {}, "a mere note");
+  EXPECT_FALSE(all.has_errors());
+  EXPECT_TRUE(all.full());
+  all.add(DiagnosticId::syntax, {}, "an error").suggestion = "kept nowhere";
+  EXPECT_TRUE(all.has_errors());
+  EXPECT_EQ(all.list.size(), limits::diagnostics + 1);
+}
+
+TEST(Diagnostic, EveryIdHasANameAHintAndItsNumberInItsCode) {
+  for (const DiagnosticInfo& info : all_diagnostic_infos()) {
+    EXPECT_EQ(&diagnostic_info(info.id), &info);
+    EXPECT_FALSE(info.hint.empty()) << info.name;
+    EXPECT_EQ(info.code, "D0" + std::to_string(static_cast<int>(info.id)));
+  }
+}
+
+} // namespace
+} // namespace dermis

@@ -1,0 +1,260 @@
+#include "framegraph/text/document.hpp"
+#include "framegraph/text/limits.hpp"
+#include "tests/framegraph/text_support.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace dermis {
+namespace {
+
+using testing::all_messages;
+using testing::expect_only;
+using testing::parse;
+using testing::Parsed;
+
+std::string place(const SourceLocation& where) {
+  return std::to_string(where.line) + ":" + std::to_string(where.column);
+}
+
+TEST(Document, EveryValueAndKeyKnowsLineColumnAndPointer) {
+  const Parsed parsed = parse("{ // first\n  \"a/b\": [1, -2.5, true,\n\tnull],\r\n \"c~\" :{\"d\":\"x\"} }");
+  ASSERT_TRUE(parsed.document) << all_messages(parsed.diagnostics);
+  const Document& document = *parsed.document;
+  ASSERT_EQ(document.nodes.size(), 8u);
+  EXPECT_EQ(place(document.where(document.root())), "1:1");
+  EXPECT_EQ(document.where(document.root()).pointer, "");
+  const NodeId list = document.find(document.root(), "a/b");
+  ASSERT_TRUE(list.valid());
+  EXPECT_EQ(place(document.where(list)), "2:10");
+  EXPECT_EQ(place(document.where_key(list)), "2:3");
+  EXPECT_EQ(document.pointer(list), "/a~1b");
+  EXPECT_EQ(document[list].child_count, 4u);
+  const std::vector<std::string> places = {"2:11", "2:14", "2:20", "3:2"};
+  size_t i = 0;
+  for (NodeId child = document[list].first_child; child.valid(); child = document[child].next, ++i) {
+    EXPECT_EQ(place(document.where(child)), places[i]);
+    EXPECT_EQ(document.pointer(child), "/a~1b/" + std::to_string(i));
+  }
+  const NodeId object = document.find(document.root(), "c~");
+  ASSERT_TRUE(object.valid());
+  EXPECT_EQ(place(document.where_key(object)), "4:2");
+  EXPECT_EQ(place(document.where(object)), "4:8");
+  const NodeId inner = document.find(object, "d");
+  EXPECT_EQ(document.pointer(inner), "/c~0/d");
+  EXPECT_EQ(place(document.where(inner)), "4:13");
+  EXPECT_EQ(document.text(inner), "x");
+}
+
+TEST(Document, ValuesAreReadExactly) {
+  const Parsed parsed =
+      parse("[9223372036854775807, -9223372036854775808, 0.1, 1e308, 5e-324, \"\\u00e9\\n\\\"\", false]");
+  ASSERT_TRUE(parsed.document) << all_messages(parsed.diagnostics);
+  const Document& d = *parsed.document;
+  EXPECT_EQ(d[{1}].integer, INT64_MAX);
+  EXPECT_EQ(d[{2}].integer, INT64_MIN);
+  EXPECT_EQ(d[{3}].real, 0.1);
+  EXPECT_EQ(d[{4}].real, 1e308);
+  EXPECT_EQ(d[{5}].real, 5e-324);
+  EXPECT_EQ(d.text({6}), "\xc3\xa9\n\"");
+  EXPECT_EQ(d[{7}].kind, NodeKind::boolean);
+  EXPECT_EQ(d[{7}].integer, 0);
+}
+
+TEST(Document, AByteOrderMarkIsNoPartOfTheFirstLine) {
+  const Parsed parsed = parse("\xef\xbb\xbf[7]");
+  ASSERT_TRUE(parsed.document) << all_messages(parsed.diagnostics);
+  EXPECT_EQ(place(parsed.document->where({1})), "1:2");
+}
+
+TEST(Document, APlaceInsideAStringIsFoundThroughEscapes) {
+  const Parsed parsed = parse("[\n  \"a\\u00e9\\n\\ud83d\\ude00b\"]");
+  ASSERT_TRUE(parsed.document) << all_messages(parsed.diagnostics);
+  const Document& d = *parsed.document;
+  ASSERT_EQ(d.text({1}), "a\xc3\xa9\n\xf0\x9f\x98\x80"
+                         "b");
+  EXPECT_EQ(place(where_in_string(d, {1}, 0, parsed.diagnostics)), "2:4");  // a
+  EXPECT_EQ(place(where_in_string(d, {1}, 1, parsed.diagnostics)), "2:5");  // \u00e9: two bytes
+  EXPECT_EQ(place(where_in_string(d, {1}, 3, parsed.diagnostics)), "2:11"); // \n
+  EXPECT_EQ(place(where_in_string(d, {1}, 4, parsed.diagnostics)), "2:13"); // pair: four bytes
+  EXPECT_EQ(place(where_in_string(d, {1}, 8, parsed.diagnostics)), "2:25"); // b
+}
+
+TEST(Document, DuplicateKeysAreRefusedWithBothLocations) {
+  const Parsed parsed = parse("{ \"a\": 1,\n  \"b\": 2,\n  \"a\": 3 }");
+  EXPECT_FALSE(parsed.document);
+  expect_only(parsed.diagnostics, DiagnosticId::duplicate_key, 3, 3, {"'a'"});
+  ASSERT_EQ(parsed.diagnostics.list[0].related.size(), 1u);
+  EXPECT_EQ(place(parsed.diagnostics.list[0].related[0].first), "1:3");
+}
+
+TEST(Document, EveryRepetitionOfAKeyIsReportedInTheOrderOfTheText) {
+  const Parsed parsed = parse("{\"z\":1,\"a\":1,\"z\":1,\"a\":1,\"z\":1}");
+  ASSERT_EQ(parsed.diagnostics.list.size(), 3u);
+  EXPECT_EQ(place(parsed.diagnostics.list[0].where), "1:14");
+  EXPECT_EQ(place(parsed.diagnostics.list[1].where), "1:20");
+  EXPECT_EQ(place(parsed.diagnostics.list[2].where), "1:26");
+  EXPECT_EQ(place(parsed.diagnostics.list[2].related[0].first), "1:2");
+}
+
+TEST(Document, TheSameKeyInDifferentObjectsIsNoDuplicate) {
+  EXPECT_TRUE(parse("{\"a\":{\"a\":1},\"b\":{\"a\":1}}").document);
+}
+
+struct Malformed {
+  const char* text;
+  uint32_t line, column;
+};
+
+class MalformedText : public ::testing::TestWithParam<Malformed> {};
+
+TEST_P(MalformedText, IsRefusedWhereItGoesWrong) {
+  const Parsed parsed = parse(GetParam().text);
+  EXPECT_FALSE(parsed.document);
+  expect_only(parsed.diagnostics, DiagnosticId::syntax, GetParam().line, GetParam().column);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Document, MalformedText,
+    ::testing::Values(Malformed{"", 1, 1}, Malformed{"{", 1, 2}, Malformed{"[1,\n 2,, 3]", 2, 4},
+                      Malformed{"[1 2]", 1, 4}, Malformed{"[12,\n34 56]", 2, 4}, Malformed{"{\"a\" 1}", 1, 6},
+                      Malformed{"{\"a\": }", 1, 7}, Malformed{"{a: 1}", 1, 2}, Malformed{"[1] x", 1, 5},
+                      Malformed{"[tru]", 1, 5}, Malformed{"[\"a\\q\"]", 1, 5}, Malformed{"[\"a\nb\"]", 1, 4},
+                      Malformed{"[1,]", 1, 4}, Malformed{"[01]", 1, 2}, Malformed{"[\"\\ud800\"]", 1, 9},
+                      Malformed{"[1, /* no */ 2]", 1, 6}, Malformed{"[NaN]", 1, 2},
+                      Malformed{"[\"a\\u0000b\"]", 1, 2}, Malformed{"{\"\\u0000\": 1}", 1, 2}));
+
+TEST(Document, TextBehindANulByteIsNotSilentlyIgnored) {
+  using namespace std::string_literals;
+  const Parsed parsed = parse("[1]\n\0 rubbish"s);
+  EXPECT_FALSE(parsed.document);
+  expect_only(parsed.diagnostics, DiagnosticId::syntax, 2, 1, {"NUL"});
+  const Parsed comment = parse("[1] // \0\n]"s);
+  EXPECT_FALSE(comment.document);
+  expect_only(comment.diagnostics, DiagnosticId::syntax, 1, 8, {"NUL"});
+}
+
+TEST(Document, IntegersThatWouldBecomeDoublesAreRefused) {
+  for (const char* text :
+       {"[1,\n 9223372036854775808]", "[1,\n -9223372036854775809]", "[1,\n 99999999999999999999]"}) {
+    const Parsed parsed = parse(text);
+    EXPECT_FALSE(parsed.document);
+    expect_only(parsed.diagnostics, DiagnosticId::integer_precision, 2, 2, {"64"});
+  }
+}
+
+TEST(Document, NumbersBeyondDoubleAreRefused) {
+  const Parsed parsed = parse("{ \"x\": 1e999 }");
+  EXPECT_FALSE(parsed.document);
+  expect_only(parsed.diagnostics, DiagnosticId::out_of_range, 1, 8, {"1e999"});
+}
+
+TEST(Document, IllFormedUtf8IsRefusedWhereItStands) {
+  for (const char* bytes : {"\xff", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\xc3"}) {
+    const Parsed parsed = parse(std::string("[\n\"ab") + bytes + "\"]");
+    EXPECT_FALSE(parsed.document);
+    expect_only(parsed.diagnostics, DiagnosticId::invalid_utf8, 2, 4);
+  }
+  expect_only(parse("[] // \x80").diagnostics, DiagnosticId::invalid_utf8, 1, 7);
+}
+
+TEST(Document, ATextBeyondTheFileLimitIsRefused) {
+  const Parsed parsed = parse(std::string(20u << 20, ' '));
+  EXPECT_FALSE(parsed.document);
+  expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 0, 0, {"16777216"});
+}
+
+TEST(Document, AFileBeyondTheLimitIsRefusedBeforeItIsRead) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / "dermis_text_document_test_large.json";
+  std::ofstream(path).put('[');
+  std::filesystem::resize_file(path, 1ull << 34); // sparse; reading it would take 16 GiB
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_document(path.string(), diagnostics));
+  std::filesystem::remove(path);
+  expect_only(diagnostics, DiagnosticId::limit_exceeded, 0, 0, {"17179869184"});
+}
+
+TEST(Document, WhatIsNoReadableFileIsRefused) {
+  Diagnostics missing;
+  EXPECT_FALSE(read_document("/nonexistent/graph.json", missing));
+  expect_only(missing, DiagnosticId::file_unreadable, 0, 0, {"/nonexistent/graph.json", "does not exist"});
+  Diagnostics folder;
+  EXPECT_FALSE(read_document("/", folder));
+  expect_only(folder, DiagnosticId::file_unreadable, 0, 0, {"not a regular file"});
+}
+
+TEST(Document, NestingBeyondTheLimitIsRefusedAtTheBracket) {
+  const size_t most = limits::nesting;
+  EXPECT_TRUE(parse(std::string(most, '[') + std::string(most, ']')).document);
+  const Parsed parsed = parse(std::string(1000000, '['));
+  EXPECT_FALSE(parsed.document);
+  expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, static_cast<uint32_t>(most + 1),
+              {"nested"});
+}
+
+TEST(Document, StringsBeyondTheLimitAreRefusedAtTheirStart) {
+  const size_t most = limits::string_bytes;
+  EXPECT_TRUE(parse("[\"" + std::string(most, 'x') + "\"]").document);
+  for (const std::string& text :
+       {"[\"" + std::string(most + 1, 'x') + "\"]", "[\"" + std::string(8u << 20, 'x'),
+        "{\"" + std::string(most + 1, 'x') + "\": 1}"}) {
+    const Parsed parsed = parse(text);
+    EXPECT_FALSE(parsed.document);
+    expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, 2);
+  }
+}
+
+TEST(Document, KeysAndNumbersBeyondTheirLimitAreRefused) {
+  expect_only(parse("{\"" + std::string(limits::key_bytes + 1, 'k') + "\": 1}").diagnostics,
+              DiagnosticId::limit_exceeded, 1, 2, {"key"});
+  EXPECT_TRUE(parse("{\"" + std::string(limits::key_bytes, 'k') + "\": 1}").document);
+  expect_only(parse("[0." + std::string(1u << 20, '1') + "]").diagnostics, DiagnosticId::limit_exceeded, 1,
+              2);
+}
+
+TEST(Document, MoreValuesThanTheLimitAreRefused) {
+  std::string text = "[0";
+  for (size_t i = 0; i < limits::nodes; ++i)
+    text += ",0";
+  const Parsed parsed = parse(text + "]");
+  EXPECT_FALSE(parsed.document);
+  // The root is one value, so entry number `nodes` (counted from 1) is the first too many; two bytes an
+  // entry.
+  expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, static_cast<uint32_t>(2 * limits::nodes));
+}
+
+TEST(Document, HugeNumbersOfRepeatedKeysCostBoundedDiagnostics) {
+  std::string text = "{\"k\":0";
+  for (size_t i = 0; i + 3 < limits::nodes; ++i)
+    text += ",\"k\":0";
+  const Parsed parsed = parse(text + "}");
+  EXPECT_FALSE(parsed.document);
+  EXPECT_EQ(parsed.diagnostics.list.size(), limits::diagnostics + 1);
+  EXPECT_EQ(parsed.diagnostics.list.back().id, DiagnosticId::too_many_diagnostics);
+}
+
+// Every prefix and every single-byte change of a valid text: no crash, and refused texts say why.
+TEST(Document, DamagedTextsAreAcceptedOrExplained) {
+  const std::string whole =
+      "{ \"a\": [1, -2.5e3, \"x\\u00e9\\n\", true, null], // c\n \"b\": { \"c\": {} } }";
+  const auto check = [](const std::string& text) {
+    const Parsed parsed = parse(text);
+    EXPECT_EQ(parsed.document.has_value(), !parsed.diagnostics.has_errors()) << text;
+    for (const Diagnostic& one : parsed.diagnostics.list)
+      EXPECT_FALSE(format_for_people(parsed.diagnostics, one).empty());
+  };
+  for (size_t length = 0; length < whole.size(); ++length)
+    check(whole.substr(0, length));
+  for (size_t at = 0; at < whole.size(); ++at) {
+    for (int byte = 0; byte < 256; byte += 3) {
+      std::string damaged = whole;
+      damaged[at] = static_cast<char>(byte);
+      check(damaged);
+    }
+  }
+}
+
+} // namespace
+} // namespace dermis

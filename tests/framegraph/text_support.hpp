@@ -1,0 +1,44 @@
+#pragma once
+// Parsing a text in a test and looking for the one diagnostic it must give.
+
+#include "framegraph/text/document.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+namespace dermis::testing {
+
+struct Parsed {
+  Diagnostics diagnostics;
+  std::optional<Document> document;
+};
+
+inline Parsed parse(std::string text) {
+  Parsed out;
+  out.document = parse_document("test.json", std::move(text), out.diagnostics);
+  return out;
+}
+
+inline std::string all_messages(const Diagnostics& diagnostics) {
+  std::string out;
+  for (const Diagnostic& one : diagnostics.list)
+    out += format_for_people(diagnostics, one) + "\n";
+  return out;
+}
+
+// The only diagnostic, of that id at that place; its text contains each of `words`.
+inline void expect_only(const Diagnostics& diagnostics, DiagnosticId id, uint32_t line, uint32_t column,
+                        const std::vector<std::string>& words = {}) {
+  ASSERT_EQ(diagnostics.list.size(), 1u) << all_messages(diagnostics);
+  const Diagnostic& one = diagnostics.list[0];
+  EXPECT_EQ(diagnostic_info(one.id).name, diagnostic_info(id).name) << all_messages(diagnostics);
+  EXPECT_EQ(one.where.line, line) << all_messages(diagnostics);
+  EXPECT_EQ(one.where.column, column) << all_messages(diagnostics);
+  const std::string whole = format_for_people(diagnostics, one);
+  for (const std::string& word : words)
+    EXPECT_NE(whole.find(word), std::string::npos) << word << "\n" << whole;
+}
+
+} // namespace dermis::testing
