@@ -1,0 +1,97 @@
+// A room may include only rooms above it: the rule of the architecture, read off the #include lines.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis {
+namespace {
+
+// Rooms in the order in which they may know of each other; a file belongs to the longest prefix that fits.
+constexpr std::string_view rooms[] = {"framegraph/", "framegraph/vulkan/", "passes/", "integration/",
+                                      "tests/"};
+
+// Index into rooms; -1: no room of ours (system headers, shaders).
+int room_of(std::string_view path) {
+  int best = -1;
+  for (int i = 0; i < static_cast<int>(std::size(rooms)); ++i) {
+    const std::string_view room = rooms[i];
+    if (path.substr(0, room.size()) == room && (best < 0 || room.size() > rooms[best].size())) best = i;
+  }
+  return best;
+}
+
+// The path between the quotes or brackets of an #include line; empty for any other line.
+std::string included(std::string_view line) {
+  const auto skip = [&](std::string_view characters) {
+    line.remove_prefix(std::min(line.find_first_not_of(characters), line.size()));
+  };
+  skip(" \t");
+  if (line.empty() || line.front() != '#') return {};
+  line.remove_prefix(1);
+  skip(" \t");
+  constexpr std::string_view word = "include";
+  if (line.substr(0, word.size()) != word) return {};
+  line.remove_prefix(word.size());
+  skip(" \t\"<");
+  return std::string(line.substr(0, line.find_first_of("\">")));
+}
+
+// What is wrong with `path` (from the repository root) including `target`; empty: nothing.
+std::string violation(const std::string& path, const std::string& target) {
+  const int from = room_of(path), to = room_of(target);
+  if (from < 0) return {};
+  if (to > from) return path + " includes " + target + ", which stands below it in the house";
+  const bool vulkan_header =
+      target.rfind("vulkan/", 0) == 0 || target.rfind("vk_", 0) == 0 || target == "volk.h";
+  if (from == 0 && vulkan_header)
+    return path + " includes " + target + ", but the graph itself knows no device";
+  return {};
+}
+
+TEST(IncludeRule, NoFileIncludesARoomBelowItsOwn) {
+  const std::filesystem::path root = DERMIS_SOURCE_DIR;
+  size_t files = 0, includes = 0;
+  for (const char* room : {"framegraph", "passes", "integration"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / room)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension != ".hpp" && extension != ".cpp" && extension != ".h" && extension != ".c" &&
+          extension != ".def")
+        continue;
+      ++files;
+      const std::string path = std::filesystem::relative(entry.path(), root).generic_string();
+      std::ifstream stream(entry.path());
+      for (std::string line; std::getline(stream, line);) {
+        const std::string target = included(line);
+        if (target.empty()) continue;
+        ++includes;
+        EXPECT_EQ(violation(path, target), "");
+      }
+    }
+  }
+  // A scan that found nothing would prove nothing.
+  EXPECT_GT(files, 10u);
+  EXPECT_GT(includes, files);
+}
+
+TEST(IncludeRule, TheRuleSeesWhatItForbids) {
+  EXPECT_EQ(included("  # include \"framegraph/text/document.hpp\" // x"), "framegraph/text/document.hpp");
+  EXPECT_EQ(included("#include <vulkan/vulkan.h>"), "vulkan/vulkan.h");
+  EXPECT_EQ(included("// #include \"passes/x.hpp\""), "");
+  EXPECT_NE(violation("framegraph/compile/pack.cpp", "passes/x.hpp"), "");
+  EXPECT_NE(violation("framegraph/compile/pack.cpp", "framegraph/vulkan/device.hpp"), "");
+  EXPECT_NE(violation("framegraph/model/graph.hpp", "vulkan/vulkan.h"), "");
+  EXPECT_NE(violation("framegraph/vulkan/device.hpp", "integration/abi/x.hpp"), "");
+  EXPECT_NE(violation("passes/subsurface/x.cpp", "integration/files/exr.hpp"), "");
+  EXPECT_NE(violation("integration/command/main.cpp", "tests/x.hpp"), "");
+  EXPECT_EQ(violation("framegraph/vulkan/device.hpp", "vulkan/vulkan.h"), "");
+  EXPECT_EQ(violation("passes/subsurface/x.cpp", "framegraph/vulkan/device.hpp"), "");
+}
+
+} // namespace
+} // namespace dermis
