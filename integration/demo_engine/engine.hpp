@@ -1,0 +1,115 @@
+#pragma once
+// Renders a scene frame by frame without a window, with or without Dermis, and hands out what an engine, its
+// graph and its user see: pictures, the graph's inputs as floats, the camera, device times.
+
+#include "integration/demo_engine/result.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace demo {
+
+// A glTF file that takes the place of each object of shape "model". Maps override those of the file.
+struct ModelOptions {
+  std::string mesh;                     // .glb or .gltf; "" = none
+  std::string albedo, normal, specular; // image files; "" = none
+  double height_metres = 0.0;           // scales the model to this height; 0 = as in the file (metres)
+};
+
+struct RenderOptions {
+  std::string scene; // scene file
+  std::string graph; // graph file; "" = without Dermis: light times albedo, as an engine has it before
+  ModelOptions model;
+  uint32_t width = 640, height = 360; // pixels, 1..16384
+  uint32_t first_frame = 0, frames = 1;
+  bool reversed_depth = false; // far plane at depth 0
+  bool jitter = false;         // sub-pixel camera jitter (Halton 2, 3; period 8)
+  bool validation = false;     // run under the Khronos validation layer
+  std::string device;          // part of the device's name; "" = choose
+  std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text
+};
+
+// Row by row from the top left; channels floats a pixel.
+struct FloatImage {
+  uint32_t width = 0, height = 0, channels = 0;
+  std::vector<float> texels;
+};
+
+struct ScatteringProfile {
+  uint32_t id = 0;  // in the profile image; 1..255
+  std::string name; // as the scene calls it
+  std::string file; // path of the profile file
+};
+
+// Matrices act on column vectors and are listed row by row, as in dermis.h.
+struct FrameCamera {
+  bool orthographic = false;
+  std::array<float, 16> clip_from_view{}, view_from_world{};
+  std::array<float, 16> previous_clip_from_view{}, previous_view_from_world{};
+  std::array<float, 2> jitter_pixels{};
+  float metres_per_unit = 1.0f;
+};
+
+struct PassTime {
+  std::string pass;
+  double milliseconds = 0.0; // of device time
+};
+
+// What the graph was given; read back before it ran.
+struct GraphInputs {
+  FloatImage lighting; // 3: diffuse light before albedo
+  FloatImage depth;    // 1: metres along the view axis, 0 = nothing there
+  FloatImage normal;   // 3: geometric normal in view space, unit length; 0 where nothing is
+  FloatImage albedo;   // 3: linear
+  FloatImage profile;  // 1: id, 0 = no subsurface
+  FloatImage velocity; // 2: pixels, now - previous, +x right, +y down, without jitter
+  FloatImage specular; // 3: reflected light, never given to the graph
+};
+
+struct FrameOutputs {
+  uint32_t frame = 0;   // first_frame .. first_frame + frames - 1
+  double seconds = 0.0; // scene time
+  float exposure = 1.0f;
+  FrameCamera camera;
+  GraphInputs inputs;
+  FloatImage scattered; // 3: light before albedo after scattering; empty when the graph does not export
+                        // "scattered_light"
+  FloatImage color;     // 3: linear radiance times exposure
+  std::vector<uint8_t> display;       // RGB, tonemapped and sRGB encoded
+  std::vector<PassTime> host_times;   // shadows, gbuffer, lighting, composite
+  std::vector<PassTime> dermis_times; // passes of the graph in plan order; empty without Dermis or timestamps
+};
+
+// Known once everything is loaded, before the first frame.
+struct RenderInfo {
+  std::string scene, device;
+  uint64_t triangles = 0;
+  double load_seconds = 0.0;
+  float metres_per_unit = 1.0f;
+  std::vector<ScatteringProfile> profiles;
+  std::vector<std::string> credits;  // to be printed: who made the model, under which licence
+  std::vector<std::string> warnings; // of the scene, the model and the graph
+};
+
+struct RenderSummary {
+  uint32_t frames = 0;
+  std::vector<std::string> validation_messages; // empty unless validation found something
+};
+
+struct RenderCallbacks {
+  std::function<Result<>(const RenderInfo&)> on_start;   // may be empty
+  std::function<Result<>(const FrameOutputs&)> on_frame; // may be empty; an error ends the rendering with it
+};
+
+// Runs on the calling thread (loading uses two more). Errors: input (scene, model, graph, profile; the text
+// holds all located messages), usage (size, frames), environment (no driver, no memory), internal.
+Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks);
+
+// Filmic curve after Narkowicz 2016, "ACES Filmic Tone Mapping Curve", then the sRGB curve; 8 bits a channel.
+std::vector<uint8_t> tonemap(const FloatImage& linear_rgb);
+
+} // namespace demo
