@@ -1,6 +1,7 @@
 // Build tool: writes one GLSL header a kernel from its signature, so that bindings and push constants are
 // written once. Usage: write_bindings <output folder>
 #include "passes/subsurface/kinds.hpp"
+#include "passes/subsurface/truth/surface.hpp"
 
 #include <fmt/format.h>
 
@@ -66,6 +67,23 @@ std::string header_of(const PassKind& kind) {
   return out;
 }
 
+// Numbers that C++ and GLSL must agree on.
+std::string shared_constants() {
+  return fmt::format("// Generated from the constants of passes/subsurface/.\n\n"
+                     "const float copy_below_d_px = {}; // kinds.hpp\n"
+                     "const float min_patch_cosine = {}; // truth/surface.hpp\n",
+                     subsurface::copy_below_d_px, subsurface::min_patch_cosine);
+}
+
+bool write(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (file.flush())
+    return true;
+  fmt::print(stderr, "write_bindings: cannot write {}\n", path);
+  return false;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -76,12 +94,10 @@ int main(int argc, char** argv) {
   const dermis::KindRegistry kinds = dermis::subsurface::make_kinds();
   for (uint32_t i = 0; i < kinds.size(); ++i) {
     const dermis::PassKind& kind = kinds[dermis::KindId{i}];
-    std::ofstream file(fmt::format("{}/{}.bindings.glsl", argv[1], kind.shader), std::ios::binary);
-    file << header_of(kind);
-    if (!file.flush()) {
-      fmt::print(stderr, "write_bindings: cannot write the header of {} into {}\n", kind.name, argv[1]);
+    if (!write(fmt::format("{}/{}.bindings.glsl", argv[1], kind.shader), header_of(kind)))
       return 1;
-    }
   }
+  if (!write(fmt::format("{}/constants.glsl", argv[1]), shared_constants()))
+    return 1;
   return 0;
 }

@@ -3,9 +3,8 @@
 #ifndef DERMIS_PATCH_GLSL
 #define DERMIS_PATCH_GLSL
 
+#include "constants.glsl"
 #include "environment.glsl"
-
-const float min_patch_cosine = 0.15; // 1/cos is capped at 1/.15
 
 // Depth of a pixel of profile `id`, mm; 0 if it is outside, of another profile or has none.
 float depth_of_profile(ivec2 pixel, uint id) {

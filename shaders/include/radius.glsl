@@ -2,10 +2,8 @@
 #ifndef DERMIS_RADIUS_GLSL
 #define DERMIS_RADIUS_GLSL
 
+#include "constants.glsl"
 #include "environment.glsl"
-
-// copy_below_d_px of passes/subsurface/kinds.hpp: below it less than 1 % of the energy leaves the pixel.
-const float copy_below_d_px = 0.0546;
 
 // Factor on d from an optional per-pixel map; what is not a number or negative counts as 0 (diffuse).
 float clean_scatter_scale(float value) { return value > 0.0 ? min(value, 1e6) : 0.0; }
