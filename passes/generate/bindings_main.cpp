@@ -78,8 +78,7 @@ std::string shared_constants() {
 bool write(const std::string& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
-  if (file.flush())
-    return true;
+  if (file.flush()) return true;
   fmt::print(stderr, "write_bindings: cannot write {}\n", path);
   return false;
 }
@@ -94,10 +93,8 @@ int main(int argc, char** argv) {
   const dermis::KindRegistry kinds = dermis::subsurface::make_kinds();
   for (uint32_t i = 0; i < kinds.size(); ++i) {
     const dermis::PassKind& kind = kinds[dermis::KindId{i}];
-    if (!write(fmt::format("{}/{}.bindings.glsl", argv[1], kind.shader), header_of(kind)))
-      return 1;
+    if (!write(fmt::format("{}/{}.bindings.glsl", argv[1], kind.shader), header_of(kind))) return 1;
   }
-  if (!write(fmt::format("{}/constants.glsl", argv[1]), shared_constants()))
-    return 1;
+  if (!write(fmt::format("{}/constants.glsl", argv[1]), shared_constants())) return 1;
   return 0;
 }

@@ -37,7 +37,7 @@ struct FrameConstants {
   float exposure;
   float jitter[2]; // pixels
 };
-static_assert(sizeof(FrameConstants) == 96);
+static_assert(sizeof(FrameConstants) == 80);
 
 // std430, one per profile id 0..255; entry 0 and undeclared ids have d = 0: light passes through.
 struct ProfileEntry {

@@ -1,0 +1,62 @@
+#include "passes/subsurface/environment.hpp"
+
+#include <cmath>
+
+namespace dermis::subsurface {
+
+namespace {
+constexpr double mm_per_metre = 1000.0;
+constexpr uint32_t tile_pixels = 8;
+
+int32_t tiles_of(uint32_t pixels) {
+  return static_cast<int32_t>((pixels + tile_pixels - 1) / tile_pixels);
+}
+} // namespace
+
+bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
+  const auto rays = pixel_rays(input.clip_from_view, input.rect_width, input.rect_height,
+                               input.metres_per_unit, input.jitter_px);
+  if (!rays || !std::isfinite(input.exposure)) return false;
+  // Rays are metres (per metre of depth when perspective, where the unit cancels).
+  const double ray_unit = rays->perspective ? 1.0 : mm_per_metre;
+  const DepthDecode decode = depth_decode(input.clip_from_view, input.metres_per_unit);
+  out.rect[0] = static_cast<int32_t>(input.rect_x);
+  out.rect[1] = static_cast<int32_t>(input.rect_y);
+  out.rect[2] = static_cast<int32_t>(input.rect_width);
+  out.rect[3] = static_cast<int32_t>(input.rect_height);
+  out.tiles[0] = tiles_of(input.rect_width);
+  out.tiles[1] = tiles_of(input.rect_height);
+  out.frame_index = static_cast<uint32_t>(input.frame_index);
+  out.flags = (rays->perspective ? 1u : 0u) | (input.depth_kind == DepthKind::view_units ? 2u : 0u) |
+              (input.history_invalid ? 4u : 0u);
+  out.ray_scale[0] = static_cast<float>(rays->scale_x * ray_unit);
+  out.ray_scale[1] = static_cast<float>(rays->scale_y * ray_unit);
+  out.ray_offset[0] = static_cast<float>(rays->offset_x * ray_unit);
+  out.ray_offset[1] = static_cast<float>(rays->offset_y * ray_unit);
+  out.depth_decode[0] = static_cast<float>(decode.a * mm_per_metre);
+  out.depth_decode[1] = static_cast<float>(decode.b * mm_per_metre);
+  out.depth_decode[2] = static_cast<float>(decode.c);
+  out.depth_decode[3] = static_cast<float>(decode.e);
+  out.depth_unit = static_cast<float>(input.metres_per_unit * mm_per_metre);
+  out.exposure = input.exposure;
+  out.jitter[0] = static_cast<float>(input.jitter_px[0]);
+  out.jitter[1] = static_cast<float>(input.jitter_px[1]);
+  return true;
+}
+
+std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles) {
+  std::vector<ProfileEntry> table(profile_capacity, ProfileEntry{});
+  for (const NumberedProfile& numbered : profiles) {
+    if (numbered.id == 0 || numbered.id >= profile_capacity) continue;
+    ProfileEntry& entry = table[numbered.id];
+    entry.widest = static_cast<uint32_t>(numbered.profile.widest);
+    for (int c = 0; c < 3; ++c) {
+      entry.d_mm[c] = static_cast<float>(numbered.profile.d_mm[c]);
+      entry.albedo[c] = static_cast<float>(numbered.profile.albedo[c]);
+    }
+    entry.d_max_mm = entry.d_mm[entry.widest];
+  }
+  return table;
+}
+
+} // namespace dermis::subsurface
