@@ -1,0 +1,32 @@
+#pragma once
+// A picture in memory, as files and metrics see it.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace dermis::tools {
+
+// Interleaved, row-major, first row on top: values[(y * width + x) * channels + channel].
+struct Image {
+  uint32_t width = 0, height = 0, channels = 0;
+  std::vector<float> values;
+
+  static Image sized(uint32_t width, uint32_t height, uint32_t channels) {
+    return {width, height, channels, std::vector<float>(size_t{width} * height * channels)};
+  }
+  float& at(uint32_t x, uint32_t y, uint32_t channel) {
+    return values[(size_t{y} * width + x) * channels + channel];
+  }
+  float at(uint32_t x, uint32_t y, uint32_t channel) const {
+    return values[(size_t{y} * width + x) * channels + channel];
+  }
+};
+
+// What any picture file may measure at most: Vulkan's guaranteed image side is 4096, today's devices stop at
+// 32768.
+inline constexpr uint32_t max_image_side = 32768;
+inline constexpr uint64_t max_image_bytes = uint64_t{4} << 30; // decoded
+inline constexpr uint64_t max_image_file_bytes = uint64_t{1} << 30;
+
+} // namespace dermis::tools

@@ -1,0 +1,42 @@
+#include "integration/files/zlib.hpp"
+
+#include <climits>
+#include <cstdlib>
+
+// Private copies: a program may carry another stb beside this one.
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <stb/stb_image.h>
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
+
+namespace dermis::tools {
+
+namespace {
+constexpr int effort = 5; // length of the search for matches; the least that the encoder takes
+}
+
+bool zlib_inflate(std::span<const uint8_t> packed, std::span<uint8_t> out) {
+  if (packed.size() > INT_MAX || out.size() > INT_MAX) return false;
+  const int size =
+      stbi_zlib_decode_buffer(reinterpret_cast<char*>(out.data()), static_cast<int>(out.size()),
+                              reinterpret_cast<const char*>(packed.data()), static_cast<int>(packed.size()));
+  return size >= 0 && static_cast<size_t>(size) == out.size();
+}
+
+std::vector<uint8_t> zlib_deflate(std::span<const uint8_t> bytes) {
+  if (bytes.size() > INT_MAX) return {};
+  // The encoder only reads, though its signature does not say so.
+  std::vector<uint8_t> copy(bytes.begin(), bytes.end());
+  int size = 0;
+  unsigned char* packed = stbi_zlib_compress(copy.data(), static_cast<int>(copy.size()), &size, effort);
+  std::vector<uint8_t> result(packed, packed ? packed + size : packed);
+  std::free(packed);
+  return result;
+}
+
+} // namespace dermis::tools
