@@ -1,0 +1,54 @@
+# Sourced by demo.sh and test.sh: the one list of packages, and how they are installed and the project is built.
+# shellcheck shell=bash
+
+packages=(
+  cmake ninja-build g++ ccache glslang-tools
+  libvulkan-dev libvulkan-volk-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev
+  libtinygltf-dev libtinyexr-dev libstb-dev libglm-dev libgtest-dev libgmock-dev
+  mesa-vulkan-drivers vulkan-validationlayers
+)
+
+say() { printf '%s\n' "$*"; }
+fail() { # exit code, message
+  printf '%s: %s\n' "$(basename "$0")" "$2" >&2
+  exit "$1"
+}
+
+# Packages that the build needs and that are not installed, one a line.
+missing_packages() {
+  local package
+  for package in "${packages[@]}"; do
+    [[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)" == installed ]] || say "$package"
+  done
+}
+
+install_packages() {
+  if ! command -v dpkg-query >/dev/null; then
+    say "This is no Debian: taking it that what these packages hold is installed: ${packages[*]}"
+    return
+  fi
+  local missing become=()
+  mapfile -t missing < <(missing_packages)
+  [[ ${#missing[@]} -gt 0 ]] || return 0
+  if [[ $EUID -ne 0 ]]; then
+    if command -v sudo >/dev/null && sudo -n true 2>/dev/null; then
+      become=(sudo)
+    else
+      fail 3 "missing packages; as root: apt-get install --no-install-recommends ${missing[*]}"
+    fi
+  fi
+  say "Installing ${#missing[@]} packages: ${missing[*]}"
+  local apt=("${become[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq)
+  "${apt[@]}" update || fail 3 "apt-get update failed: is there a network?"
+  "${apt[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null ||
+    fail 3 "apt-get install failed for: ${missing[*]}"
+}
+
+# Configures and builds one preset; further arguments go to the build.
+build_preset() {
+  local preset=$1
+  shift
+  say "Building $preset ..."
+  cmake --preset "$preset" --log-level=WARNING >/dev/null || fail 1 "configuring the preset '$preset' failed"
+  cmake --build --preset "$preset" -j "$(nproc)" "$@" || fail 1 "building the preset '$preset' failed"
+}

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Builds the project, renders the default scene with two graphs and prints what it cost and how exact it is. On Debian
+# as root (or with sudo) it installs the packages that are missing.
+set -euo pipefail
+root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
+cd "$root"
+# shellcheck source=.ci/common.sh
+source .ci/common.sh
+
+usage="usage: ./demo.sh [--head FOLDER]
+  --head FOLDER   also renders the head scan of that folder: LeePerrySmith.glb, Map-COL.jpg, Map-SPEC.jpg and
+                  Infinite-Level_02_Tangent_SmoothUV.jpg"
+
+head=
+while [[ $# -gt 0 ]]; do
+  case "$1" in
+    --head)
+      [[ $# -ge 2 ]] || fail 2 "--head needs a folder"$'\n'"$usage"
+      head=$2
+      shift 2
+      ;;
+    -h | --help) say "$usage"; exit 0 ;;
+    *) fail 2 "unknown option '$1'"$'\n'"$usage" ;;
+  esac
+done
+
+install_packages
+build_preset release --target dermis_command
+
+render() { # scene, graph, folder, more options
+  say
+  build/release/dermis render "configs/scenes/$1.json" --graph "configs/graphs/$2.json" --size 640x360 --frames 8 \
+    --out "out/$3" "${@:4}"
+}
+
+for graph in burley separable; do
+  render bust "$graph" "bust_$graph"
+done
+
+say
+if [[ -z "$head" ]]; then
+  say "Head scan: skipped, no folder given (./demo.sh --head FOLDER)."
+elif [[ ! -f "$head/LeePerrySmith.glb" ]]; then
+  say "Head scan: skipped, there is no LeePerrySmith.glb in '$head'."
+else
+  for graph in burley separable; do
+    render head "$graph" "head_$graph" --model "$head/LeePerrySmith.glb" --height 0.24 --albedo "$head/Map-COL.jpg" \
+      --specular "$head/Map-SPEC.jpg" --normal "$head/Infinite-Level_02_Tangent_SmoothUV.jpg"
+  done
+fi
+say "Pictures and EXRs are in $root/out."
