@@ -1,0 +1,75 @@
+#include "framegraph/vulkan/device.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis::vulkan {
+namespace {
+
+Error check_handles(const DeviceInput& input) {
+  std::string null;
+  const auto require = [&](bool given, const char* name) {
+    if (!given) null += (null.empty() ? "" : ", ") + std::string(name);
+  };
+  require(input.get_instance_proc_addr != nullptr, "get_instance_proc_addr");
+  require(input.instance != VK_NULL_HANDLE, "instance");
+  require(input.physical != VK_NULL_HANDLE, "physical device");
+  require(input.device != VK_NULL_HANDLE, "device");
+  if (null.empty()) return {};
+  return {ErrorKind::argument, VK_SUCCESS, "null where a handle is needed: " + null};
+}
+
+Error read_queue_family(const DeviceInput& input, Device& device) {
+  uint32_t count = 0;
+  device.vk.vkGetPhysicalDeviceQueueFamilyProperties(device.physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  device.vk.vkGetPhysicalDeviceQueueFamilyProperties(device.physical, &count, families.data());
+  if (input.queue_family >= count)
+    return {ErrorKind::argument, VK_SUCCESS,
+            fmt::format("queue family {} does not exist, the device has {}", input.queue_family, count)};
+  const VkQueueFamilyProperties& family = families[input.queue_family];
+  if ((family.queueFlags & VK_QUEUE_COMPUTE_BIT) == 0)
+    return {ErrorKind::argument, VK_SUCCESS,
+            fmt::format("queue family {} has no compute; give one with VK_QUEUE_COMPUTE_BIT",
+                        input.queue_family)};
+  device.queue_family = input.queue_family;
+  device.timestamp_valid_bits = family.timestampValidBits;
+  return {};
+}
+
+} // namespace
+
+Error make_device(const DeviceInput& input, Device& device) {
+  if (Error error = check_handles(input)) return error;
+  device = {};
+  const std::vector<std::string> missing =
+      load_functions(input.get_instance_proc_addr, input.instance, input.device, input.labels, device.vk);
+  if (!missing.empty())
+    return {ErrorKind::unsupported, VK_SUCCESS,
+            fmt::format("the device does not give {} needed function{}: {}", missing.size(),
+                        missing.size() == 1 ? "" : "s", fmt::join(missing, ", "))};
+  device.instance = input.instance;
+  device.physical = input.physical;
+  device.device = input.device;
+  device.allocator = input.allocator;
+  device.vk.vkGetPhysicalDeviceProperties(device.physical, &device.properties);
+  device.vk.vkGetPhysicalDeviceMemoryProperties(device.physical, &device.memory);
+  const uint32_t version = device.properties.apiVersion;
+  if (version < VK_API_VERSION_1_3)
+    return {ErrorKind::unsupported, VK_SUCCESS,
+            fmt::format("the device {} speaks Vulkan {}.{}, 1.3 is needed", device.properties.deviceName,
+                        VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
+  if (Error error = read_queue_family(input, device)) return error;
+  device.labels = input.labels;
+  device.timings = input.timings && device.timestamp_valid_bits > 0;
+  return {};
+}
+
+void name_object(const Device& device, VkObjectType type, uint64_t handle, const char* name) {
+  if (!device.labels || handle == 0) return;
+  const VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type,
+                                           handle, name};
+  // A debugging aid: that it failed is no reason to fail.
+  static_cast<void>(device.vk.vkSetDebugUtilsObjectNameEXT(device.device, &info));
+}
+
+} // namespace dermis::vulkan

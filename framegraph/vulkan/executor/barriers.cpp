@@ -1,0 +1,149 @@
+// The plan's barriers as Vulkan's, with the host's states where the plan leaves them open.
+#include "framegraph/vulkan/create_infos.hpp"
+#include "framegraph/vulkan/executor/state.hpp"
+
+namespace dermis::vulkan {
+namespace {
+
+constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+constexpr VkAccessFlags2 all_memory = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+
+bool foreign(const Device& device, uint32_t queue_family) {
+  return queue_family != VK_QUEUE_FAMILY_IGNORED && queue_family != device.queue_family;
+}
+
+struct Scopes {
+  VkPipelineStageFlags2 source_stages, destination_stages;
+  VkAccessFlags2 source_access, destination_access;
+  VkImageLayout old_layout, new_layout;
+};
+
+Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostImage* host) {
+  Scopes s{barrier.source_stages,
+           barrier.destination_stages,
+           barrier.source_access,
+           barrier.destination_access,
+           static_cast<VkImageLayout>(barrier.old_layout),
+           static_cast<VkImageLayout>(barrier.new_layout)};
+  if (barrier.from_host) {
+    // After an acquire all that the host did is visible to all commands: only their order is left to keep.
+    const bool acquired = foreign(device, host->before.queue_family);
+    s.source_stages = acquired ? all_commands : host->before.stages;
+    s.source_access = acquired ? 0 : host->before.access;
+    s.old_layout = host->before.layout;
+  }
+  if (barrier.to_host) {
+    const bool released = foreign(device, host->after.queue_family); // the release follows, on all commands
+    s.destination_stages = released ? all_commands : host->after.stages;
+    s.destination_access = released ? all_memory : host->after.access;
+    s.new_layout = host->after.layout;
+  }
+  return s;
+}
+
+// Nothing to wait for and no layout to change. The host's word ends where our commands begin: what it does
+// before and after is ordered by itself when we do not touch the image.
+bool nothing_to_do(const PlanBarrier& barrier, const Scopes& s) {
+  if (s.old_layout != s.new_layout) return false;
+  if (barrier.from_host && barrier.to_host) return true;
+  if (barrier.from_host || barrier.to_host) return s.source_stages == 0 && s.source_access == 0;
+  return false;
+}
+
+VkImageMemoryBarrier2 image_barrier(VkImage image, Format format, const Scopes& s) {
+  VkImageMemoryBarrier2 out{};
+  out.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+  out.srcStageMask = s.source_stages;
+  out.srcAccessMask = s.source_access;
+  out.dstStageMask = s.destination_stages;
+  out.dstAccessMask = s.destination_access;
+  out.oldLayout = s.old_layout;
+  out.newLayout = s.new_layout;
+  out.srcQueueFamilyIndex = out.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  out.image = image;
+  out.subresourceRange = {barrier_aspects(format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  return out;
+}
+
+void submit_batch(const State& state, VkCommandBuffer commands, uint32_t images, uint32_t buffers) {
+  if (images == 0 && buffers == 0) return;
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.imageMemoryBarrierCount = images;
+  info.pImageMemoryBarriers = state.image_barriers.data();
+  info.bufferMemoryBarrierCount = buffers;
+  info.pBufferMemoryBarriers = state.buffer_barriers.data();
+  state.device->vk.vkCmdPipelineBarrier2(commands, &info);
+}
+
+} // namespace
+
+uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t frames_back) noexcept {
+  const uint32_t count = resource.instance_count;
+  const auto phase = static_cast<uint32_t>(state.frame_counter % count);
+  return resource.first_instance + (phase + count - frames_back % count) % count;
+}
+
+void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count) noexcept {
+  uint32_t images = 0, buffers = 0;
+  for (uint32_t i = first; i < first + count; ++i) {
+    const PlanBarrier& barrier = state.plan.barriers[i];
+    const PlanResource& resource = state.plan.resources[barrier.resource];
+    const bool host_owned = resource.first_instance == no_instance;
+    const HostImage* host = host_owned ? &frame.images[static_cast<size_t>(resource.slot)] : nullptr;
+    const Scopes s = scopes_of(*state.device, barrier, host);
+    if (nothing_to_do(barrier, s)) continue;
+    if (host_owned) {
+      state.image_barriers[images++] = image_barrier(host->image, resource.format, s);
+      continue;
+    }
+    const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
+    if (resource.type == ResourceType::image) {
+      state.image_barriers[images++] = image_barrier(instance.image, resource.format, s);
+      continue;
+    }
+    VkBufferMemoryBarrier2& out = state.buffer_barriers[buffers++];
+    out = {};
+    out.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
+    out.srcStageMask = s.source_stages;
+    out.srcAccessMask = s.source_access;
+    out.dstStageMask = s.destination_stages;
+    out.dstAccessMask = s.destination_access;
+    out.srcQueueFamilyIndex = out.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    out.buffer = instance.buffer;
+    out.size = VK_WHOLE_SIZE;
+  }
+  submit_batch(state, frame.command_buffer, images, buffers);
+}
+
+void record_acquires(State& state, const FrameInput& frame) noexcept {
+  uint32_t images = 0;
+  for (size_t slot = 0; slot < state.slot_resource.size(); ++slot) {
+    if (state.slot_resource[slot] == no_index) continue;
+    const HostImage& host = frame.images[slot];
+    if (!foreign(*state.device, host.before.queue_family)) continue;
+    const Scopes s{0, all_commands, 0, all_memory, host.before.layout, host.before.layout};
+    VkImageMemoryBarrier2& out = state.image_barriers[images++];
+    out = image_barrier(host.image, state.plan.resources[state.slot_resource[slot]].format, s);
+    out.srcQueueFamilyIndex = host.before.queue_family;
+    out.dstQueueFamilyIndex = state.device->queue_family;
+  }
+  submit_batch(state, frame.command_buffer, images, 0);
+}
+
+void record_releases(State& state, const FrameInput& frame) noexcept {
+  uint32_t images = 0;
+  for (size_t slot = 0; slot < state.slot_resource.size(); ++slot) {
+    if (state.slot_resource[slot] == no_index) continue;
+    const HostImage& host = frame.images[slot];
+    if (!foreign(*state.device, host.after.queue_family)) continue;
+    const Scopes s{all_commands, 0, VK_ACCESS_2_MEMORY_WRITE_BIT, 0, host.after.layout, host.after.layout};
+    VkImageMemoryBarrier2& out = state.image_barriers[images++];
+    out = image_barrier(host.image, state.plan.resources[state.slot_resource[slot]].format, s);
+    out.srcQueueFamilyIndex = state.device->queue_family;
+    out.dstQueueFamilyIndex = host.after.queue_family;
+  }
+  submit_batch(state, frame.command_buffer, images, 0);
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,155 @@
+// Making and unmaking an Executor.
+#include "framegraph/vulkan/executor/state.hpp"
+
+#include <algorithm>
+#include <fmt/core.h>
+
+namespace dermis::vulkan {
+namespace {
+
+Error argument(std::string text) {
+  return {ErrorKind::argument, VK_SUCCESS, std::move(text)};
+}
+
+Error check_input(const ExecutorInput& input) {
+  if (input.device == nullptr || input.graph == nullptr || input.kinds == nullptr || input.plan == nullptr)
+    return argument("device, graph, kinds and plan are needed");
+  if (input.frames_in_flight < 1 || input.frames_in_flight > max_frames_in_flight)
+    return argument(fmt::format("{} frames in flight, 1 to {} are possible", input.frames_in_flight,
+                                max_frames_in_flight));
+  for (const PlanResource& resource : input.plan->resources)
+    if (resource.first_instance == no_instance && resource.type == ResourceType::buffer)
+      return {ErrorKind::unsupported, VK_SUCCESS,
+              fmt::format("'{}' is a buffer that the host would bind; only images can be bound",
+                          input.graph->resources[resource.declared.value].name)};
+  return {};
+}
+
+void make_passes(State& state, const ExecutorInput& input) {
+  state.passes.resize(state.plan.passes.size());
+  for (size_t p = 0; p < state.passes.size(); ++p) {
+    const PlanPass& planned = state.plan.passes[p];
+    const PassKind& kind = (*input.kinds)[planned.kind];
+    Pass& pass = state.passes[p];
+    pass.name = input.graph->passes[planned.declared.value].name;
+    pass.access_of_port.assign(kind.ports.size(), no_index);
+    for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
+      const uint32_t port = state.plan.accesses[a].port;
+      pass.access_of_port[port] = a;
+      pass.port_mask |= uint32_t{1} << port;
+    }
+  }
+}
+
+// What a kind without kernel clears, and that an indirect dispatch has its arguments, known before the first
+// frame.
+Error check_passes(const State& state, const KindRegistry& kinds) {
+  for (size_t p = 0; p < state.passes.size(); ++p) {
+    const PlanPass& planned = state.plan.passes[p];
+    const Pass& pass = state.passes[p];
+    const PassKind& kind = kinds[planned.kind];
+    constexpr size_t mask_bits = 32;
+    if (kind.ports.size() > mask_bits)
+      return argument(fmt::format("kind '{}' has {} ports, the port mask holds {}", kind.name,
+                                  kind.ports.size(), mask_bits));
+    if (pass.kernel != no_index) {
+      const Kernel& kernel = state.kernels[pass.kernel];
+      if (kernel.dispatch == DispatchShape::over_tiles &&
+          pass.access_of_port[kernel.indirect_port] == no_index)
+        return argument(fmt::format("pass '{}' dispatches over tiles, but its port '{}' is not bound",
+                                    pass.name, kind.ports[kernel.indirect_port].name));
+      continue;
+    }
+    for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
+      const PlanResource& resource = state.plan.resources[state.plan.accesses[a].resource];
+      if (resource.type == ResourceType::image && format_info(resource.format).depth)
+        return argument(fmt::format(
+            "pass '{}' clears an image with a depth format; only colour can be cleared", pass.name));
+    }
+  }
+  return {};
+}
+
+void make_slots(State& state) {
+  for (uint32_t r = 0; r < state.plan.resources.size(); ++r) {
+    const PlanResource& resource = state.plan.resources[r];
+    if (resource.slot < 0) continue;
+    const auto slot = static_cast<size_t>(resource.slot);
+    if (state.slot_resource.size() <= slot) state.slot_resource.resize(slot + 1, no_index);
+    if (resource.first_instance == no_instance) state.slot_resource[slot] = r;
+  }
+}
+
+void make_histories(State& state, const ExecutorInput& input) {
+  for (const PlanHistory& history : state.plan.histories) {
+    HistoryRecord& record = state.histories.emplace_back();
+    record.name = input.graph->resources[state.plan.resources[history.resource].declared.value].name;
+    record.reason = input.history == HistoryReason::valid ? HistoryReason::first_frame : input.history;
+    for (const PlanPass& planned : state.plan.passes)
+      for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
+        const PlanAccess& access = state.plan.accesses[a];
+        if (access.resource == history.resource && access.frames_back == 0 &&
+            (access.access & all_write_access) != 0)
+          record.written = true;
+      }
+  }
+}
+
+// Room for everything that recording needs, so that it never allocates.
+void reserve_for_recording(State& state) {
+  size_t largest = std::max<size_t>(state.plan.final_barrier_count, state.slot_resource.size());
+  size_t most_settings = 0;
+  for (const PlanPass& planned : state.plan.passes)
+    largest = std::max<size_t>(largest, planned.barrier_count);
+  for (const Kernel& kernel : state.kernels)
+    most_settings = std::max<size_t>(most_settings, kernel.push_bytes / sizeof(uint32_t));
+  state.image_barriers.resize(largest);
+  state.buffer_barriers.resize(largest);
+  state.push_constants.resize(most_settings);
+}
+
+} // namespace
+
+Executor::State::~State() {
+  if (device == nullptr) return;
+  destroy_kernels(*this);
+  destroy_descriptors(*this);
+  destroy_environment(*this);
+  destroy_stand_ins(*this);
+  destroy_memory(*this);
+  device->vk.vkDestroyQueryPool(device->device, timestamps.pool, device->allocator);
+}
+
+Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& executor) {
+  if (Error error = check_input(input)) return error;
+  auto state = std::make_unique<State>();
+  state->device = input.device;
+  state->plan = *input.plan;
+  state->frames_in_flight = input.frames_in_flight;
+  make_passes(*state, input);
+  make_slots(*state);
+  make_histories(*state, input);
+  if (Error error = create_environment(*state, input.environment)) return error;
+  if (Error error = create_kernels(*state, input)) return error;
+  if (Error error = check_passes(*state, *input.kinds)) return error;
+  if (Error error = create_memory(*state, *input.graph)) return error;
+  if (Error error = create_descriptors(*state)) return error;
+  if (Error error = create_stand_ins(*state)) return error;
+  if (Error error = create_timestamps(*state)) return error;
+  reserve_for_recording(*state);
+  executor.reset(new Executor(std::move(state)));
+  return {};
+}
+
+Executor::Executor(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Executor::~Executor() = default;
+
+const Plan& Executor::plan() const noexcept {
+  return state_->plan;
+}
+
+uint64_t Executor::constant_bytes() const noexcept {
+  return state_->environment.total_bytes;
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,136 @@
+// Descriptor set 0 of every pass, once per frame in flight. Sets are allocated at creation; what they point
+// to is written each frame, because the host's images and the current instance of a history change.
+#include "framegraph/vulkan/executor/state.hpp"
+
+#include <array>
+
+namespace dermis::vulkan {
+namespace {
+
+void list_ports(State& state) {
+  for (uint32_t p = 0; p < state.passes.size(); ++p) {
+    const Pass& pass = state.passes[p];
+    if (pass.kernel == no_index) continue;
+    const Kernel& kernel = state.kernels[pass.kernel];
+    for (uint32_t port = 0; port < kernel.ports.size(); ++port) {
+      if (!kernel.ports[port].type) continue;
+      PortWrite write;
+      write.pass = p;
+      write.port = port;
+      const uint32_t access = pass.access_of_port[port];
+      if (access == no_index)
+        write.stand_in = stand_in_for(state, kernel.ports[port]);
+      else {
+        write.resource = state.plan.accesses[access].resource;
+        write.frames_back = state.plan.accesses[access].frames_back;
+      }
+      state.descriptors.ports.push_back(write);
+    }
+  }
+}
+
+void prepare_writes(State& state) {
+  Descriptors& d = state.descriptors;
+  d.writes.resize(d.ports.size());
+  d.images.resize(d.ports.size());
+  d.buffers.resize(d.ports.size());
+  for (size_t i = 0; i < d.ports.size(); ++i) {
+    const PortWrite& port = d.ports[i];
+    const Pass& pass = state.passes[port.pass];
+    VkWriteDescriptorSet& write = d.writes[i];
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstBinding = port.port;
+    write.descriptorCount = 1;
+    write.descriptorType = *state.kernels[pass.kernel].ports[port.port].type;
+    write.pImageInfo = &d.images[i];
+    write.pBufferInfo = &d.buffers[i];
+    d.buffers[i] = {VK_NULL_HANDLE, 0, VK_WHOLE_SIZE};
+    const uint32_t access = pass.access_of_port[port.port];
+    d.images[i].imageLayout = access == no_index // stand-ins rest in GENERAL
+                                  ? VK_IMAGE_LAYOUT_GENERAL
+                                  : static_cast<VkImageLayout>(state.plan.accesses[access].layout);
+  }
+}
+
+Error create_sets(State& state) {
+  const Device& device = *state.device;
+  Descriptors& d = state.descriptors;
+  constexpr std::array types{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                             VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
+  std::vector<VkDescriptorPoolSize> sizes;
+  for (const VkDescriptorType type : types) {
+    uint32_t count = 0;
+    for (const VkWriteDescriptorSet& write : d.writes)
+      count += write.descriptorType == type ? 1 : 0;
+    if (count > 0) sizes.push_back({type, count * state.frames_in_flight});
+  }
+  std::vector<VkDescriptorSetLayout> layouts;
+  for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
+    for (const Pass& pass : state.passes)
+      if (pass.kernel != no_index) layouts.push_back(state.kernels[pass.kernel].set_layout);
+  if (layouts.empty()) return {};
+  VkDescriptorPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  pool.maxSets = static_cast<uint32_t>(layouts.size());
+  pool.poolSizeCount = static_cast<uint32_t>(sizes.size());
+  pool.pPoolSizes = sizes.data();
+  VkResult result = device.vk.vkCreateDescriptorPool(device.device, &pool, device.allocator, &d.pool);
+  if (result != VK_SUCCESS) {
+    d.pool = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateDescriptorPool", "ports");
+  }
+  std::vector<VkDescriptorSet> sets(layouts.size(), VK_NULL_HANDLE);
+  VkDescriptorSetAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  info.descriptorPool = d.pool;
+  info.descriptorSetCount = static_cast<uint32_t>(layouts.size());
+  info.pSetLayouts = layouts.data();
+  result = device.vk.vkAllocateDescriptorSets(device.device, &info, sets.data());
+  if (result != VK_SUCCESS) return call_error(result, "vkAllocateDescriptorSets", "ports");
+  size_t next = 0;
+  d.sets.assign(state.frames_in_flight * state.passes.size(), VK_NULL_HANDLE);
+  for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
+    for (size_t p = 0; p < state.passes.size(); ++p)
+      if (state.passes[p].kernel != no_index) d.sets[slot * state.passes.size() + p] = sets[next++];
+  return {};
+}
+
+} // namespace
+
+Error create_descriptors(State& state) {
+  list_ports(state);
+  prepare_writes(state);
+  return create_sets(state);
+}
+
+void destroy_descriptors(State& state) {
+  const Device& device = *state.device;
+  device.vk.vkDestroyDescriptorPool(device.device, state.descriptors.pool, device.allocator);
+}
+
+void write_descriptors(State& state, uint32_t frame_slot, std::span<const HostImage> images) noexcept {
+  Descriptors& d = state.descriptors;
+  for (size_t i = 0; i < d.ports.size(); ++i) {
+    const PortWrite& port = d.ports[i];
+    d.writes[i].dstSet = d.sets[frame_slot * state.passes.size() + port.pass];
+    if (port.resource == no_index) {
+      d.images[i].imageView = state.stand_ins[port.stand_in].view;
+      d.buffers[i].buffer = state.stand_ins[port.stand_in].buffer;
+      continue;
+    }
+    const PlanResource& resource = state.plan.resources[port.resource];
+    if (resource.first_instance == no_instance) {
+      d.images[i].imageView = images[static_cast<size_t>(resource.slot)].view;
+      continue;
+    }
+    const Instance& instance = state.instances[instance_of(state, resource, port.frames_back)];
+    const bool sampled = d.writes[i].descriptorType == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    d.images[i].imageView = sampled ? instance.all_mips : instance.first_mip;
+    d.buffers[i].buffer = instance.buffer;
+  }
+  if (!d.writes.empty())
+    state.device->vk.vkUpdateDescriptorSets(state.device->device, static_cast<uint32_t>(d.writes.size()),
+                                            d.writes.data(), 0, nullptr);
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,205 @@
+// Descriptor set 1: one host-visible buffer with the frame constants of every frame in flight, then the
+// static tables; and a linear sampler.
+#include "framegraph/vulkan/create_infos.hpp"
+#include "framegraph/vulkan/executor/state.hpp"
+#include "framegraph/vulkan/shader/signature_check.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <fmt/core.h>
+
+namespace dermis::vulkan {
+namespace {
+
+constexpr uint64_t align_up(uint64_t value, uint64_t alignment) {
+  return (value + alignment - 1) / alignment * alignment;
+}
+
+Error check_bindings(const Device& device, std::span<const EnvironmentBinding> bindings) {
+  const VkPhysicalDeviceLimits& limits = device.properties.limits;
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    const EnvironmentBinding& binding = bindings[i];
+    if (binding.type == EnvironmentType::linear_sampler) continue;
+    const uint64_t most = binding.type == EnvironmentType::uniform_buffer ? limits.maxUniformBufferRange
+                                                                          : limits.maxStorageBufferRange;
+    if (binding.bytes == 0 || binding.bytes > most)
+      return {
+          ErrorKind::argument, VK_SUCCESS,
+          fmt::format("environment binding {} has {} bytes, 1 to {} are possible", i, binding.bytes, most)};
+    if (binding.contents.size() > binding.bytes)
+      return {ErrorKind::argument, VK_SUCCESS,
+              fmt::format("environment binding {} has {} bytes, its contents {}", i, binding.bytes,
+                          binding.contents.size())};
+  }
+  return {};
+}
+
+// Offset of each binding in the buffer; frame constants: of frame slot 0.
+std::vector<uint64_t> lay_out(State& state, std::span<const EnvironmentBinding> bindings) {
+  const VkPhysicalDeviceLimits& limits = state.device->properties.limits;
+  const uint64_t alignment = std::max<uint64_t>(
+      {limits.minUniformBufferOffsetAlignment, limits.minStorageBufferOffsetAlignment, 16});
+  Environment& environment = state.environment;
+  std::vector<uint64_t> offsets(bindings.size(), 0);
+  uint64_t end = 0;
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    if (bindings[i].type == EnvironmentType::linear_sampler) continue;
+    offsets[i] = end;
+    const uint64_t stride = align_up(bindings[i].bytes, alignment);
+    const bool constants = i == 0 && bindings[i].type == EnvironmentType::uniform_buffer;
+    if (constants) {
+      environment.constants_bytes = bindings[i].bytes;
+      environment.constants_stride = stride;
+    }
+    end += stride * (constants ? state.frames_in_flight : 1);
+  }
+  environment.total_bytes = end;
+  return offsets;
+}
+
+Error create_buffer(State& state) {
+  const Device& device = *state.device;
+  Environment& environment = state.environment;
+  if (environment.total_bytes == 0) return {};
+  const VkBufferCreateInfo info = buffer_create_info(
+      {environment.total_bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &environment.buffer);
+  if (result != VK_SUCCESS) {
+    environment.buffer = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateBuffer", "environment");
+  }
+  name_object(device, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(environment.buffer), "environment");
+  VkMemoryRequirements needs{};
+  device.vk.vkGetBufferMemoryRequirements(device.device, environment.buffer, &needs);
+  constexpr VkMemoryPropertyFlags visible =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  if (Error error = allocate(device, needs, visible, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+                             "environment buffer", environment.memory))
+    return error;
+  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, environment.buffer,
+                                    environment.memory, 0};
+  result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
+  if (result != VK_SUCCESS) return call_error(result, "vkBindBufferMemory2", "environment buffer");
+  void* mapped = nullptr;
+  result = device.vk.vkMapMemory(device.device, environment.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
+  if (result != VK_SUCCESS) return call_error(result, "vkMapMemory", "environment buffer");
+  environment.mapped = static_cast<std::byte*>(mapped);
+  std::memset(mapped, 0, environment.total_bytes);
+  return {};
+}
+
+Error create_sampler(State& state) {
+  const Device& device = *state.device;
+  VkSamplerCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+  info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.maxLod = VK_LOD_CLAMP_NONE;
+  const VkResult result =
+      device.vk.vkCreateSampler(device.device, &info, device.allocator, &state.environment.sampler);
+  if (result != VK_SUCCESS) state.environment.sampler = VK_NULL_HANDLE;
+  return call_error(result, "vkCreateSampler", "environment");
+}
+
+Error create_sets(State& state, std::span<const EnvironmentBinding> bindings) {
+  const Device& device = *state.device;
+  Environment& environment = state.environment;
+  std::vector<VkDescriptorSetLayoutBinding> slots;
+  std::vector<VkDescriptorPoolSize> sizes;
+  for (uint32_t i = 0; i < bindings.size(); ++i) {
+    const VkDescriptorType type = descriptor_type(bindings[i].type);
+    slots.push_back({i, type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+    sizes.push_back({type, state.frames_in_flight});
+  }
+  VkDescriptorSetLayoutCreateInfo layout{};
+  layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  layout.bindingCount = static_cast<uint32_t>(slots.size());
+  layout.pBindings = slots.data();
+  VkResult result = device.vk.vkCreateDescriptorSetLayout(device.device, &layout, device.allocator,
+                                                          &environment.set_layout);
+  if (result != VK_SUCCESS) {
+    environment.set_layout = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateDescriptorSetLayout", "environment");
+  }
+  VkDescriptorPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  pool.maxSets = state.frames_in_flight;
+  pool.poolSizeCount = static_cast<uint32_t>(sizes.size());
+  pool.pPoolSizes = sizes.data();
+  result = device.vk.vkCreateDescriptorPool(device.device, &pool, device.allocator, &environment.pool);
+  if (result != VK_SUCCESS) {
+    environment.pool = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateDescriptorPool", "environment");
+  }
+  const std::vector<VkDescriptorSetLayout> layouts(state.frames_in_flight, environment.set_layout);
+  environment.sets.assign(state.frames_in_flight, VK_NULL_HANDLE);
+  VkDescriptorSetAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  info.descriptorPool = environment.pool;
+  info.descriptorSetCount = state.frames_in_flight;
+  info.pSetLayouts = layouts.data();
+  result = device.vk.vkAllocateDescriptorSets(device.device, &info, environment.sets.data());
+  return call_error(result, "vkAllocateDescriptorSets", "environment");
+}
+
+void write_sets(State& state, std::span<const EnvironmentBinding> bindings,
+                const std::vector<uint64_t>& offsets) {
+  const Device& device = *state.device;
+  const Environment& environment = state.environment;
+  for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
+    for (uint32_t i = 0; i < bindings.size(); ++i) {
+      const bool constants = i == 0 && environment.constants_bytes > 0;
+      const VkDescriptorBufferInfo buffer{environment.buffer,
+                                          offsets[i] + (constants ? slot * environment.constants_stride : 0),
+                                          bindings[i].bytes};
+      const VkDescriptorImageInfo sampler{environment.sampler, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED};
+      VkWriteDescriptorSet write{};
+      write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+      write.dstSet = environment.sets[slot];
+      write.dstBinding = i;
+      write.descriptorCount = 1;
+      write.descriptorType = descriptor_type(bindings[i].type);
+      write.pBufferInfo = &buffer;
+      write.pImageInfo = &sampler;
+      device.vk.vkUpdateDescriptorSets(device.device, 1, &write, 0, nullptr);
+    }
+}
+
+} // namespace
+
+Error create_environment(State& state, std::span<const EnvironmentBinding> bindings) {
+  if (bindings.empty()) return {};
+  if (Error error = check_bindings(*state.device, bindings)) return error;
+  const std::vector<uint64_t> offsets = lay_out(state, bindings);
+  if (Error error = create_buffer(state)) return error;
+  if (Error error = create_sampler(state)) return error;
+  if (Error error = create_sets(state, bindings)) return error;
+  write_sets(state, bindings, offsets);
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    const bool constants = i == 0 && state.environment.constants_bytes > 0;
+    if (!constants && !bindings[i].contents.empty() && bindings[i].type != EnvironmentType::linear_sampler)
+      std::memcpy(state.environment.mapped + offsets[i], bindings[i].contents.data(),
+                  bindings[i].contents.size());
+  }
+  return {};
+}
+
+void destroy_environment(State& state) {
+  const Device& device = *state.device;
+  const Environment& environment = state.environment;
+  device.vk.vkDestroyDescriptorPool(device.device, environment.pool, device.allocator);
+  device.vk.vkDestroyDescriptorSetLayout(device.device, environment.set_layout, device.allocator);
+  device.vk.vkDestroySampler(device.device, environment.sampler, device.allocator);
+  device.vk.vkDestroyBuffer(device.device, environment.buffer, device.allocator);
+  device.vk.vkFreeMemory(device.device, environment.memory, device.allocator); // unmaps
+}
+
+void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept {
+  const Environment& environment = state.environment;
+  if (!constants.empty())
+    std::memcpy(environment.mapped + frame_slot * environment.constants_stride, constants.data(),
+                constants.size());
+}
+
+} // namespace dermis::vulkan

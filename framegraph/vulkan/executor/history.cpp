@@ -1,0 +1,54 @@
+// What the executor knows about its histories.
+#include "framegraph/vulkan/executor/state.hpp"
+
+namespace dermis::vulkan {
+
+const char* history_reason_text(HistoryReason reason) {
+  switch (reason) {
+  case HistoryReason::valid:
+    return "valid";
+  case HistoryReason::first_frame:
+    return "nothing has been recorded yet";
+  case HistoryReason::cut:
+    return "camera cut";
+  case HistoryReason::resized:
+    return "the view was resized";
+  case HistoryReason::reloaded:
+    return "the graph was reloaded";
+  case HistoryReason::discarded:
+    return "a recorded frame was discarded";
+  }
+  return "unknown";
+}
+
+uint32_t Executor::history_count() const noexcept {
+  return static_cast<uint32_t>(state_->histories.size());
+}
+
+HistoryState Executor::history_state(uint32_t index, bool reset_history) const noexcept {
+  if (index >= state_->histories.size()) return {};
+  const HistoryRecord& record = state_->histories[index];
+  const HistoryDeclaration& declaration = state_->plan.histories[index].declaration;
+  if (reset_history && declaration.on_cut == HistoryDeclaration::OnCut::invalidate)
+    return {record.name, false, 0, HistoryReason::cut};
+  return {record.name, record.age > 0, record.age, record.reason};
+}
+
+Rectangle Executor::previous_rectangle() const noexcept {
+  return state_->previous_rectangle;
+}
+
+void Executor::discard_frames() noexcept {
+  for (HistoryRecord& record : state_->histories) {
+    record.age = 0;
+    record.reason = HistoryReason::discarded;
+  }
+  for (Instance& instance : state_->instances)
+    instance.ready = false;
+  for (uint64_t& frame : state_->timestamps.frame_of_slot)
+    frame = 0;
+  state_->stand_ins_ready = false;
+  state_->previous_rectangle = {};
+}
+
+} // namespace dermis::vulkan

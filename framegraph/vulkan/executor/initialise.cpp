@@ -1,0 +1,89 @@
+// Zero for what is read before anything of the plan wrote it: stand-ins of unbound ports, and history
+// instances that are new or hold frames from before a cut. Two batches with the clears between them; nothing
+// when all is ready.
+#include "framegraph/vulkan/executor/state.hpp"
+
+namespace dermis::vulkan {
+namespace {
+
+constexpr VkClearColorValue zero{};
+constexpr VkImageSubresourceRange whole_image{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                                              VK_REMAINING_ARRAY_LAYERS};
+
+// Earlier frames may still use the memory, and all later commands may use the zeros: rare, so all commands.
+struct Target {
+  VkImage image = VK_NULL_HANDLE;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; // to be in afterwards
+  bool clear = true; // false: created without transfer usage, contents stay undefined
+};
+
+void record_barrier(const Device& device, VkCommandBuffer commands, const Target& target, bool before_clear) {
+  VkImageMemoryBarrier2 image{};
+  image.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+  image.srcStageMask = before_clear ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_CLEAR_BIT;
+  image.srcAccessMask = before_clear ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  image.dstStageMask =
+      before_clear && target.clear ? VK_PIPELINE_STAGE_2_CLEAR_BIT : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  image.dstAccessMask = before_clear && target.clear
+                            ? VK_ACCESS_2_TRANSFER_WRITE_BIT
+                            : VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  image.oldLayout = before_clear ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  image.newLayout = before_clear && target.clear ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : target.layout;
+  image.srcQueueFamilyIndex = image.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  image.image = target.image;
+  image.subresourceRange = whole_image;
+  VkBufferMemoryBarrier2 buffer{};
+  buffer.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
+  buffer.srcStageMask = image.srcStageMask;
+  buffer.srcAccessMask = image.srcAccessMask;
+  buffer.dstStageMask = image.dstStageMask;
+  buffer.dstAccessMask = image.dstAccessMask;
+  buffer.srcQueueFamilyIndex = buffer.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  buffer.buffer = target.buffer;
+  buffer.size = VK_WHOLE_SIZE;
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.imageMemoryBarrierCount = target.image != VK_NULL_HANDLE ? 1 : 0;
+  info.pImageMemoryBarriers = &image;
+  info.bufferMemoryBarrierCount = target.buffer != VK_NULL_HANDLE ? 1 : 0;
+  info.pBufferMemoryBarriers = &buffer;
+  device.vk.vkCmdPipelineBarrier2(commands, &info);
+}
+
+void initialise(const Device& device, VkCommandBuffer commands, const Target& target) {
+  record_barrier(device, commands, target, true);
+  if (!target.clear) return;
+  if (target.image != VK_NULL_HANDLE)
+    device.vk.vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &zero, 1,
+                                   &whole_image);
+  if (target.buffer != VK_NULL_HANDLE)
+    device.vk.vkCmdFillBuffer(commands, target.buffer, 0, VK_WHOLE_SIZE, 0);
+  record_barrier(device, commands, target, false);
+}
+
+} // namespace
+
+void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
+  const Device& device = *state.device;
+  if (!state.stand_ins_ready)
+    for (const StandIn& stand_in : state.stand_ins)
+      initialise(device, commands, {stand_in.image, stand_in.buffer, VK_IMAGE_LAYOUT_GENERAL, true});
+  state.stand_ins_ready = true;
+  for (const PlanHistory& history : state.plan.histories) {
+    const PlanResource& resource = state.plan.resources[history.resource];
+    if (resource.first_instance == no_instance) continue;
+    for (uint32_t back = 1; back < resource.instance_count; ++back) {
+      Instance& instance = state.instances[instance_of(state, resource, back)];
+      if (instance.ready) continue;
+      const bool clear =
+          (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0; // the same bit for buffers
+      initialise(device, commands,
+                 {instance.image, instance.buffer, static_cast<VkImageLayout>(history.layout_at_start[back]),
+                  clear});
+      instance.ready = true;
+    }
+  }
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,190 @@
+// Pipelines of the pass kinds that the plan runs: layouts from the signature, checked against the kernel's
+// SPIR-V.
+#include "framegraph/vulkan/executor/state.hpp"
+#include "framegraph/vulkan/shader/signature_check.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis::vulkan {
+namespace {
+
+// A format for the stand-in of an unbound port: what the shader declares, else any that reads as the same
+// number.
+VkFormat stand_in_format(const ShaderBinding& binding) {
+  // SPIR-V specification, 3.11 Image Format.
+  switch (binding.image_format) {
+  case 1:
+    return VK_FORMAT_R32G32B32A32_SFLOAT;
+  case 2:
+    return VK_FORMAT_R16G16B16A16_SFLOAT;
+  case 3:
+    return VK_FORMAT_R32_SFLOAT;
+  case 4:
+    return VK_FORMAT_R8G8B8A8_UNORM;
+  case 6:
+    return VK_FORMAT_R32G32_SFLOAT;
+  case 7:
+    return VK_FORMAT_R16G16_SFLOAT;
+  case 8:
+    return VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+  case 9:
+    return VK_FORMAT_R16_SFLOAT;
+  case 13:
+    return VK_FORMAT_R8G8_UNORM;
+  case 15:
+    return VK_FORMAT_R8_UNORM;
+  case 30:
+    return VK_FORMAT_R32G32B32A32_UINT;
+  case 33:
+    return VK_FORMAT_R32_UINT;
+  case 35:
+    return VK_FORMAT_R32G32_UINT;
+  case 38:
+    return VK_FORMAT_R16_UINT;
+  case 39:
+    return VK_FORMAT_R8_UINT;
+  default:
+    break;
+  }
+  switch (binding.numeric) {
+  case Numeric::unsigned_integer:
+    return VK_FORMAT_R32_UINT;
+  case Numeric::signed_integer:
+    return VK_FORMAT_R32_SINT;
+  case Numeric::real:
+  case Numeric::none:
+    break;
+  }
+  return VK_FORMAT_R16G16B16A16_SFLOAT;
+}
+
+std::string join_lines(const std::vector<std::string>& lines) {
+  return fmt::format("{}", fmt::join(lines, "\n"));
+}
+
+Error create_set_layout(State& state, const PassKind& kind, Kernel& kernel) {
+  const Device& device = *state.device;
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (uint32_t i = 0; i < kernel.ports.size(); ++i)
+    if (kernel.ports[i].type)
+      bindings.push_back({i, *kernel.ports[i].type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  VkDescriptorSetLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  info.bindingCount = static_cast<uint32_t>(bindings.size());
+  info.pBindings = bindings.data();
+  const VkResult result =
+      device.vk.vkCreateDescriptorSetLayout(device.device, &info, device.allocator, &kernel.set_layout);
+  if (result != VK_SUCCESS) kernel.set_layout = VK_NULL_HANDLE;
+  return call_error(result, "vkCreateDescriptorSetLayout", fmt::format("kind '{}'", kind.name));
+}
+
+Error create_layout(State& state, const PassKind& kind, Kernel& kernel) {
+  const Device& device = *state.device;
+  const VkDescriptorSetLayout sets[] = {kernel.set_layout, state.environment.set_layout};
+  const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, kernel.push_bytes};
+  VkPipelineLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = state.environment.set_layout != VK_NULL_HANDLE ? 2 : 1;
+  info.pSetLayouts = sets;
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &range;
+  const VkResult result =
+      device.vk.vkCreatePipelineLayout(device.device, &info, device.allocator, &kernel.layout);
+  if (result != VK_SUCCESS) kernel.layout = VK_NULL_HANDLE;
+  return call_error(result, "vkCreatePipelineLayout", fmt::format("kind '{}'", kind.name));
+}
+
+Error create_pipeline(State& state, const PassKind& kind, std::span<const uint32_t> spirv,
+                      VkPipelineCache cache, Kernel& kernel) {
+  const Device& device = *state.device;
+  VkShaderModuleCreateInfo module_info{};
+  module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  module_info.codeSize = spirv.size_bytes();
+  module_info.pCode = spirv.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  const std::string thing = fmt::format("kernel '{}'", kind.shader);
+  VkResult result = device.vk.vkCreateShaderModule(device.device, &module_info, device.allocator, &module);
+  if (result != VK_SUCCESS) return call_error(result, "vkCreateShaderModule", thing);
+  VkComputePipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = module;
+  info.stage.pName = "main";
+  info.layout = kernel.layout;
+  result =
+      device.vk.vkCreateComputePipelines(device.device, cache, 1, &info, device.allocator, &kernel.pipeline);
+  device.vk.vkDestroyShaderModule(device.device, module, device.allocator);
+  if (result != VK_SUCCESS) {
+    kernel.pipeline = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateComputePipelines", thing);
+  }
+  name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(kernel.pipeline),
+              std::string(kind.name).c_str());
+  return {};
+}
+
+Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel& kernel) {
+  const PassKind& kind = (*input.kinds)[id];
+  const auto code =
+      std::find_if(input.kernels.begin(), input.kernels.end(),
+                   [&](const KernelCode& candidate) { return candidate.shader == kind.shader; });
+  if (code == input.kernels.end())
+    return {ErrorKind::shader, VK_SUCCESS,
+            fmt::format("kernel '{}' of kind '{}' is not among the {} given", kind.shader, kind.name,
+                        input.kernels.size())};
+  std::string problem;
+  const std::optional<Reflection> reflection = reflect(code->spirv, problem);
+  if (!reflection)
+    return {ErrorKind::shader, VK_SUCCESS,
+            fmt::format("kernel '{}' cannot be read: {}", kind.shader, problem)};
+  const std::vector<std::string> mismatches = check_signature(kind, input.environment, *reflection);
+  if (!mismatches.empty()) return {ErrorKind::shader, VK_SUCCESS, join_lines(mismatches)};
+  kernel.kind = id;
+  kernel.dispatch = kind.dispatch;
+  kernel.ports.resize(kind.ports.size());
+  for (uint32_t p = 0; p < kind.ports.size(); ++p) {
+    kernel.ports[p].type = descriptor_type(kind.ports[p].usage);
+    if (kind.ports[p].usage == Usage::indirect_arguments) kernel.indirect_port = p;
+    for (const ShaderBinding& binding : reflection->bindings)
+      if (binding.set == 0 && binding.binding == p) kernel.ports[p].stand_in = stand_in_format(binding);
+    if (kernel.ports[p].stand_in == VK_FORMAT_UNDEFINED)
+      kernel.ports[p].stand_in = VK_FORMAT_R16G16B16A16_SFLOAT;
+  }
+  if (kind.dispatch == DispatchShape::over_tiles && kernel.indirect_port == no_index)
+    return {ErrorKind::shader, VK_SUCCESS,
+            fmt::format("kind '{}' dispatches over tiles but has no port with usage indirect_arguments",
+                        kind.name)};
+  kernel.push_bytes = static_cast<uint32_t>(sizeof(uint32_t) * (1 + kind.settings.size()));
+  if (Error error = create_set_layout(state, kind, kernel)) return error;
+  if (Error error = create_layout(state, kind, kernel)) return error;
+  return create_pipeline(state, kind, code->spirv, input.pipeline_cache, kernel);
+}
+
+} // namespace
+
+Error create_kernels(State& state, const ExecutorInput& input) {
+  for (uint32_t p = 0; p < state.passes.size(); ++p) {
+    const KindId kind = state.plan.passes[p].kind;
+    if ((*input.kinds)[kind].dispatch == DispatchShape::none) continue;
+    const auto existing = std::find_if(state.kernels.begin(), state.kernels.end(),
+                                       [&](const Kernel& kernel) { return kernel.kind == kind; });
+    state.passes[p].kernel = static_cast<uint32_t>(existing - state.kernels.begin());
+    if (existing != state.kernels.end()) continue;
+    Kernel& added = state.kernels.emplace_back();
+    if (Error error = create_kernel(state, input, kind, added)) return error;
+  }
+  return {};
+}
+
+void destroy_kernels(State& state) {
+  const Device& device = *state.device;
+  for (const Kernel& kernel : state.kernels) {
+    device.vk.vkDestroyPipeline(device.device, kernel.pipeline, device.allocator);
+    device.vk.vkDestroyPipelineLayout(device.device, kernel.layout, device.allocator);
+    device.vk.vkDestroyDescriptorSetLayout(device.device, kernel.set_layout, device.allocator);
+  }
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,174 @@
+// Heaps of the plan as device memory, and the images and buffers that the plan placed in them.
+#include "framegraph/vulkan/create_infos.hpp"
+#include "framegraph/vulkan/executor/state.hpp"
+
+#include <fmt/core.h>
+
+namespace dermis::vulkan {
+namespace {
+
+// Types that must not be chosen for ordinary memory, whatever their other properties.
+constexpr VkMemoryPropertyFlags special_memory =
+    VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
+    VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
+
+Error allocate_type(const Device& device, uint64_t bytes, uint32_t type, const std::string& thing,
+                    VkDeviceMemory& memory) {
+  VkMemoryAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  info.allocationSize = bytes;
+  info.memoryTypeIndex = type;
+  const VkResult result = device.vk.vkAllocateMemory(device.device, &info, device.allocator, &memory);
+  if (result == VK_SUCCESS) return {};
+  memory = VK_NULL_HANDLE;
+  return call_error(result, "vkAllocateMemory",
+                    fmt::format("{}, {} bytes of memory type {}", thing, bytes, type));
+}
+
+Error create_heaps(State& state) {
+  const Device& device = *state.device;
+  state.heaps.assign(state.plan.heaps.size(), VK_NULL_HANDLE);
+  for (size_t h = 0; h < state.heaps.size(); ++h) {
+    const Heap& heap = state.plan.heaps[h];
+    const auto type =
+        choose_memory_type(device, heap.memory_type_bits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    const std::string thing = fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
+    if (!type)
+      return {ErrorKind::unsupported, VK_SUCCESS,
+              fmt::format("{}: the device has no memory type among {:#x}", thing, heap.memory_type_bits)};
+    if (Error error = allocate_type(device, heap.size, *type, thing, state.heaps[h])) return error;
+    name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(state.heaps[h]),
+                thing.c_str());
+  }
+  return {};
+}
+
+// The plan was packed from what the driver said; that it says the same now is checked, not trusted.
+Error check_needs(const State& state, const Placement& placement, const VkMemoryRequirements& needs,
+                  const std::string& name) {
+  const Heap& heap = state.plan.heaps[placement.heap];
+  const bool fits = needs.size <= placement.size && placement.offset % needs.alignment == 0 &&
+                    placement.offset + placement.size <= heap.size &&
+                    (heap.memory_type_bits & ~needs.memoryTypeBits) == 0;
+  if (fits) return {};
+  return {
+      ErrorKind::argument, VK_SUCCESS,
+      fmt::format(
+          "'{}' needs {} bytes aligned to {} of memory types {:#x}; the plan gives {} bytes at {} of types "
+          "{:#x}: compile it with the profile of this device",
+          name, needs.size, needs.alignment, needs.memoryTypeBits, placement.size, placement.offset,
+          heap.memory_type_bits)};
+}
+
+Error create_view(const Device& device, const PlanResource& resource, VkImage image, uint32_t mips,
+                  const std::string& name, VkImageView& view) {
+  VkImageViewCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  info.image = image;
+  info.viewType = resource.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  info.format = vk_format(resource.format);
+  const VkImageAspectFlags aspect =
+      format_info(resource.format).depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+  info.subresourceRange = {aspect, 0, mips, 0, resource.layers};
+  const VkResult result = device.vk.vkCreateImageView(device.device, &info, device.allocator, &view);
+  if (result != VK_SUCCESS) view = VK_NULL_HANDLE;
+  return call_error(result, "vkCreateImageView", name);
+}
+
+Error create_image(State& state, const PlanResource& resource, const Placement& placement,
+                   const std::string& name, Instance& instance) {
+  const Device& device = *state.device;
+  const VkImageCreateInfo info = image_create_info(
+      {resource.format, resource.width, resource.height, resource.mips, resource.layers, resource.vk_usage});
+  VkResult result = device.vk.vkCreateImage(device.device, &info, device.allocator, &instance.image);
+  if (result != VK_SUCCESS) {
+    instance.image = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateImage", name);
+  }
+  name_object(device, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(instance.image), name.c_str());
+  VkMemoryRequirements needs{};
+  device.vk.vkGetImageMemoryRequirements(device.device, instance.image, &needs);
+  if (Error error = check_needs(state, placement, needs, name)) return error;
+  const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, instance.image,
+                                   state.heaps[placement.heap], placement.offset};
+  result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
+  if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", name);
+  constexpr uint32_t viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+  if ((resource.vk_usage & viewable) == 0) return {}; // only cleared: a view would be invalid
+  if (Error error = create_view(device, resource, instance.image, resource.mips, name, instance.all_mips))
+    return error;
+  return create_view(device, resource, instance.image, 1, name, instance.first_mip);
+}
+
+Error create_buffer(State& state, const PlanResource& resource, const Placement& placement,
+                    const std::string& name, Instance& instance) {
+  const Device& device = *state.device;
+  const VkBufferCreateInfo info = buffer_create_info({resource.bytes, resource.vk_usage});
+  VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &instance.buffer);
+  if (result != VK_SUCCESS) {
+    instance.buffer = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateBuffer", name);
+  }
+  name_object(device, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(instance.buffer), name.c_str());
+  VkMemoryRequirements needs{};
+  device.vk.vkGetBufferMemoryRequirements(device.device, instance.buffer, &needs);
+  if (Error error = check_needs(state, placement, needs, name)) return error;
+  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, instance.buffer,
+                                    state.heaps[placement.heap], placement.offset};
+  result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
+  return call_error(result, "vkBindBufferMemory2", name);
+}
+
+} // namespace
+
+std::optional<uint32_t> choose_memory_type(const Device& device, uint32_t allowed,
+                                           VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred) {
+  std::optional<uint32_t> fallback;
+  for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
+    const VkMemoryPropertyFlags flags = device.memory.memoryTypes[i].propertyFlags;
+    if ((allowed >> i & 1u) == 0 || (flags & required) != required || (flags & special_memory) != 0) continue;
+    if ((flags & preferred) == preferred) return i;
+    if (!fallback) fallback = i;
+  }
+  return fallback;
+}
+
+Error allocate(const Device& device, const VkMemoryRequirements& needs, VkMemoryPropertyFlags required,
+               VkMemoryPropertyFlags preferred, const std::string& thing, VkDeviceMemory& memory) {
+  const auto type = choose_memory_type(device, needs.memoryTypeBits, required, preferred);
+  if (!type) return {ErrorKind::unsupported, VK_SUCCESS, thing + ": the device has no memory type for it"};
+  return allocate_type(device, needs.size, *type, thing, memory);
+}
+
+Error create_memory(State& state, const Graph& graph) {
+  if (Error error = create_heaps(state)) return error;
+  state.instances.assign(state.plan.placements.size(), {});
+  for (const PlanResource& resource : state.plan.resources) {
+    if (resource.first_instance == no_instance) continue;
+    const std::string& name = graph.resources[resource.declared.value].name;
+    for (uint32_t i = 0; i < resource.instance_count; ++i) {
+      const uint32_t index = resource.first_instance + i;
+      const std::string full_name = resource.instance_count > 1 ? fmt::format("{}#{}", name, i) : name;
+      const Placement& placement = state.plan.placements[index];
+      Error error = resource.type == ResourceType::image
+                        ? create_image(state, resource, placement, full_name, state.instances[index])
+                        : create_buffer(state, resource, placement, full_name, state.instances[index]);
+      if (error) return error;
+    }
+  }
+  return {};
+}
+
+void destroy_memory(State& state) {
+  const Device& device = *state.device;
+  for (const Instance& instance : state.instances) {
+    device.vk.vkDestroyImageView(device.device, instance.all_mips, device.allocator);
+    device.vk.vkDestroyImageView(device.device, instance.first_mip, device.allocator);
+    device.vk.vkDestroyImage(device.device, instance.image, device.allocator);
+    device.vk.vkDestroyBuffer(device.device, instance.buffer, device.allocator);
+  }
+  for (const VkDeviceMemory heap : state.heaps)
+    device.vk.vkFreeMemory(device.device, heap, device.allocator);
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,208 @@
+// One frame of the plan into the host's command buffer.
+#include "framegraph/vulkan/executor/state.hpp"
+
+#include <bit>
+
+namespace dermis::vulkan {
+namespace {
+
+constexpr uint32_t tile_side = 8;        // pixels; kernels over the view run 8x8 groups
+constexpr uint64_t tiles_per_group = 64; // DispatchShape::over_tile_grid
+
+constexpr uint32_t tiles_along(uint32_t pixels) {
+  return (pixels + tile_side - 1) / tile_side;
+}
+
+RecordResult refuse(const char* text, int32_t slot = -1) {
+  return {ErrorKind::argument, VK_SUCCESS, text, slot};
+}
+
+RecordResult check_slots(const State& state, const FrameInput& frame) {
+  for (size_t slot = 0; slot < state.slot_resource.size(); ++slot) {
+    if (state.slot_resource[slot] == no_index) continue;
+    const auto number = static_cast<int32_t>(slot);
+    if (slot >= frame.images.size() || frame.images[slot].image == VK_NULL_HANDLE)
+      return refuse("the slot is not bound", number);
+    if (frame.images[slot].view == VK_NULL_HANDLE) return refuse("the binding has no view", number);
+    const VkImageLayout after = frame.images[slot].after.layout;
+    if (after == VK_IMAGE_LAYOUT_UNDEFINED || after == VK_IMAGE_LAYOUT_PREINITIALIZED)
+      return refuse("after.layout must be a layout an image can be brought to", number);
+  }
+  return {};
+}
+
+RecordResult check_frame(const State& state, const FrameInput& frame, const Rectangle& rectangle) {
+  if (frame.command_buffer == VK_NULL_HANDLE) return refuse("the command buffer is null");
+  if (frame.frame_index <= state.last_frame_index) return refuse("frame_index must grow from frame to frame");
+  const uint64_t right = uint64_t{rectangle.x} + rectangle.width,
+                 bottom = uint64_t{rectangle.y} + rectangle.height;
+  if (rectangle.width == 0 || rectangle.height == 0 || right > state.plan.view_width ||
+      bottom > state.plan.view_height)
+    return refuse("the render rectangle is empty or not inside the allocated size");
+  if (frame.frame_constants.size() > state.environment.constants_bytes)
+    return refuse("frame_constants has more bytes than environment binding 0");
+  if (!frame.settings.empty() && frame.settings.size() < state.plan.setting_values.size())
+    return refuse("settings has fewer values than the graph has settings");
+  return check_slots(state, frame);
+}
+
+void invalidate_for_cut(State& state) {
+  for (size_t h = 0; h < state.histories.size(); ++h) {
+    const PlanHistory& history = state.plan.histories[h];
+    if (history.declaration.on_cut != HistoryDeclaration::OnCut::invalidate) continue;
+    state.histories[h].age = 0;
+    state.histories[h].reason = HistoryReason::cut;
+    const PlanResource& resource = state.plan.resources[history.resource];
+    for (uint32_t i = 0; i < resource.instance_count; ++i)
+      state.instances[resource.first_instance + i].ready = false;
+  }
+  // A host may cut because it threw a recorded frame away: then what that frame initialised never was.
+  state.stand_ins_ready = false;
+}
+
+void push_settings(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
+                   const Kernel& kernel) {
+  const uint32_t words = kernel.push_bytes / static_cast<uint32_t>(sizeof(uint32_t));
+  state.push_constants[0] = pass.port_mask;
+  for (uint32_t i = 1; i < words; ++i) {
+    const PlanSetting& setting = state.plan.settings[planned.first_setting + i - 1];
+    const bool live = setting.from.valid() && setting.from.value < frame.settings.size();
+    const SettingValue& value = live ? frame.settings[setting.from.value] : setting.value;
+    state.push_constants[i] = setting.value.type == SettingType::real
+                                  ? std::bit_cast<uint32_t>(static_cast<float>(value.real))
+                                  : static_cast<uint32_t>(static_cast<int32_t>(value.integer));
+  }
+  state.device->vk.vkCmdPushConstants(frame.command_buffer, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                                      kernel.push_bytes, state.push_constants.data());
+}
+
+VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& kernel) {
+  const PlanAccess& access = state.plan.accesses[pass.access_of_port[kernel.indirect_port]];
+  return state.instances[instance_of(state, state.plan.resources[access.resource], access.frames_back)]
+      .buffer;
+}
+
+void dispatch(State& state, VkCommandBuffer commands, const Pass& pass, const Kernel& kernel,
+              const Rectangle& r) {
+  const FunctionTable& vk = state.device->vk;
+  const uint32_t across = tiles_along(r.width), down = tiles_along(r.height);
+  switch (kernel.dispatch) {
+  case DispatchShape::over_view:
+    vk.vkCmdDispatch(commands, across, down, 1);
+    break;
+  case DispatchShape::over_tiles:
+    vk.vkCmdDispatchIndirect(commands, indirect_buffer(state, pass, kernel), 0);
+    break;
+  case DispatchShape::over_tile_grid: {
+    const uint64_t tiles = uint64_t{across} * down;
+    vk.vkCmdDispatch(commands, static_cast<uint32_t>((tiles + tiles_per_group - 1) / tiles_per_group), 1, 1);
+    break;
+  }
+  case DispatchShape::single_group:
+    vk.vkCmdDispatch(commands, 1, 1, 1);
+    break;
+  case DispatchShape::none:
+    break;
+  }
+}
+
+void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size_t p,
+                const Rectangle& rectangle) {
+  const FunctionTable& vk = state.device->vk;
+  const Pass& pass = state.passes[p];
+  const Kernel& kernel = state.kernels[pass.kernel];
+  vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+  const bool environment = state.environment.set_layout != VK_NULL_HANDLE;
+  const VkDescriptorSet sets[] = {state.descriptors.sets[frame_slot * state.passes.size() + p],
+                                  environment ? state.environment.sets[frame_slot] : VK_NULL_HANDLE};
+  vk.vkCmdBindDescriptorSets(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout, 0,
+                             environment ? 2 : 1, sets, 0, nullptr);
+  push_settings(state, frame, state.plan.passes[p], pass, kernel);
+  dispatch(state, frame.command_buffer, pass, kernel, rectangle);
+}
+
+void run_clear(State& state, const FrameInput& frame, size_t p) {
+  const FunctionTable& vk = state.device->vk;
+  const PlanPass& planned = state.plan.passes[p];
+  const VkClearColorValue zero{};
+  const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                                      VK_REMAINING_ARRAY_LAYERS};
+  for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
+    const PlanAccess& access = state.plan.accesses[a];
+    const PlanResource& resource = state.plan.resources[access.resource];
+    const bool host_owned = resource.first_instance == no_instance;
+    const Instance none;
+    const Instance& instance =
+        host_owned ? none : state.instances[instance_of(state, resource, access.frames_back)];
+    if (resource.type == ResourceType::buffer) {
+      vk.vkCmdFillBuffer(frame.command_buffer, instance.buffer, 0, VK_WHOLE_SIZE, 0);
+      continue;
+    }
+    const VkImage image =
+        host_owned ? frame.images[static_cast<size_t>(resource.slot)].image : instance.image;
+    vk.vkCmdClearColorImage(frame.command_buffer, image, static_cast<VkImageLayout>(access.layout), &zero, 1,
+                            &whole);
+  }
+}
+
+void begin_label(const Device& device, VkCommandBuffer commands, const char* name) {
+  if (!device.labels) return;
+  const VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name, {0, 0, 0, 0}};
+  device.vk.vkCmdBeginDebugUtilsLabelEXT(commands, &label);
+}
+
+void end_label(const Device& device, VkCommandBuffer commands) {
+  if (device.labels) device.vk.vkCmdEndDebugUtilsLabelEXT(commands);
+}
+
+void finish_frame(State& state, const FrameInput& frame, uint32_t frame_slot, const Rectangle& rectangle) {
+  for (size_t h = 0; h < state.histories.size(); ++h) {
+    HistoryRecord& history = state.histories[h];
+    const PlanResource& resource = state.plan.resources[state.plan.histories[h].resource];
+    if (resource.first_instance != no_instance)
+      state.instances[instance_of(state, resource, 0)].ready = history.written;
+    history.age = history.written ? history.age + (history.age == UINT32_MAX ? 0 : 1) : 0;
+    if (history.age > 0) history.reason = HistoryReason::valid;
+  }
+  if (state.timestamps.pool != VK_NULL_HANDLE) state.timestamps.frame_of_slot[frame_slot] = frame.frame_index;
+  state.previous_rectangle = rectangle;
+  state.last_frame_index = frame.frame_index;
+  ++state.frame_counter;
+}
+
+} // namespace
+
+RecordResult Executor::record(const FrameInput& frame) noexcept {
+  State& state = *state_;
+  const Rectangle rectangle = frame.rectangle.width == 0
+                                  ? Rectangle{0, 0, state.plan.view_width, state.plan.view_height}
+                                  : frame.rectangle;
+  if (const RecordResult refused = check_frame(state, frame, rectangle)) return refused;
+  const Device& device = *state.device;
+  const VkCommandBuffer commands = frame.command_buffer;
+  const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);
+  if (frame.reset_history) invalidate_for_cut(state);
+
+  write_frame_constants(state, frame_slot, frame.frame_constants);
+  write_descriptors(state, frame_slot, frame.images);
+  begin_timestamps(state, commands, frame_slot);
+  record_acquires(state, frame);
+  record_initialisation(state, commands);
+  for (size_t p = 0; p < state.passes.size(); ++p) {
+    const PlanPass& planned = state.plan.passes[p];
+    begin_label(device, commands, state.passes[p].name.c_str());
+    record_barriers(state, frame, planned.first_barrier, planned.barrier_count);
+    if (state.passes[p].kernel == no_index)
+      run_clear(state, frame, p);
+    else
+      run_kernel(state, frame, frame_slot, p, rectangle);
+    end_label(device, commands);
+    write_timestamp(state, commands, frame_slot, static_cast<uint32_t>(p) + 1);
+  }
+  record_barriers(state, frame, state.plan.first_final_barrier, state.plan.final_barrier_count);
+  record_releases(state, frame);
+  finish_frame(state, frame, frame_slot, rectangle);
+  return {};
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,94 @@
+// What unbound optional ports see: images of one texel and a small buffer, all zero. The shader learns from
+// its port mask that the port is not bound; the stand-in only keeps the descriptor legal.
+#include "framegraph/vulkan/create_infos.hpp"
+#include "framegraph/vulkan/executor/state.hpp"
+
+namespace dermis::vulkan {
+namespace {
+
+constexpr uint64_t stand_in_buffer_bytes = 16; // the largest element a buffer block can start with
+
+Error create_image(const Device& device, StandIn& stand_in) {
+  VkImageCreateInfo info = image_create_info({});
+  info.format = stand_in.format;
+  info.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+               (stand_in.storage ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT);
+  VkResult result = device.vk.vkCreateImage(device.device, &info, device.allocator, &stand_in.image);
+  if (result != VK_SUCCESS) {
+    stand_in.image = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateImage", "stand-in of an unbound port");
+  }
+  name_object(device, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(stand_in.image), "stand-in image");
+  VkMemoryRequirements needs{};
+  device.vk.vkGetImageMemoryRequirements(device.device, stand_in.image, &needs);
+  if (Error error =
+          allocate(device, needs, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "stand-in image", stand_in.memory))
+    return error;
+  const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, stand_in.image,
+                                   stand_in.memory, 0};
+  result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
+  if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", "stand-in image");
+  VkImageViewCreateInfo view{};
+  view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  view.image = stand_in.image;
+  view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view.format = stand_in.format;
+  view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  result = device.vk.vkCreateImageView(device.device, &view, device.allocator, &stand_in.view);
+  if (result != VK_SUCCESS) stand_in.view = VK_NULL_HANDLE;
+  return call_error(result, "vkCreateImageView", "stand-in image");
+}
+
+Error create_buffer(const Device& device, StandIn& stand_in) {
+  const VkBufferCreateInfo info = buffer_create_info(
+      {stand_in_buffer_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT});
+  VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &stand_in.buffer);
+  if (result != VK_SUCCESS) {
+    stand_in.buffer = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateBuffer", "stand-in of an unbound port");
+  }
+  VkMemoryRequirements needs{};
+  device.vk.vkGetBufferMemoryRequirements(device.device, stand_in.buffer, &needs);
+  if (Error error =
+          allocate(device, needs, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "stand-in buffer", stand_in.memory))
+    return error;
+  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, stand_in.buffer,
+                                    stand_in.memory, 0};
+  result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
+  return call_error(result, "vkBindBufferMemory2", "stand-in buffer");
+}
+
+} // namespace
+
+uint32_t stand_in_for(State& state, const KernelPort& port) {
+  const bool buffer = *port.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  const VkFormat format = buffer ? VK_FORMAT_UNDEFINED : port.stand_in;
+  const bool storage = *port.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  for (uint32_t i = 0; i < state.stand_ins.size(); ++i)
+    if (state.stand_ins[i].format == format && state.stand_ins[i].storage == storage) return i;
+  StandIn& added = state.stand_ins.emplace_back();
+  added.format = format;
+  added.storage = storage;
+  return static_cast<uint32_t>(state.stand_ins.size() - 1);
+}
+
+Error create_stand_ins(State& state) {
+  for (StandIn& stand_in : state.stand_ins) {
+    Error error = stand_in.format == VK_FORMAT_UNDEFINED ? create_buffer(*state.device, stand_in)
+                                                         : create_image(*state.device, stand_in);
+    if (error) return error;
+  }
+  return {};
+}
+
+void destroy_stand_ins(State& state) {
+  const Device& device = *state.device;
+  for (const StandIn& stand_in : state.stand_ins) {
+    device.vk.vkDestroyImageView(device.device, stand_in.view, device.allocator);
+    device.vk.vkDestroyImage(device.device, stand_in.image, device.allocator);
+    device.vk.vkDestroyBuffer(device.device, stand_in.buffer, device.allocator);
+    device.vk.vkFreeMemory(device.device, stand_in.memory, device.allocator);
+  }
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,172 @@
+#pragma once
+// What an Executor keeps, part by part, and the functions that make and use the parts. Internal to
+// vulkan/executor/. Each part frees itself from its destroy function, whatever of it exists.
+
+#include "framegraph/vulkan/executor.hpp"
+
+#include <optional>
+
+namespace dermis::vulkan {
+
+inline constexpr uint32_t no_index = 0xffffffffu;
+
+struct Instance { // of a plan resource, one per Plan::placements
+  VkImage image = VK_NULL_HANDLE;
+  VkImageView all_mips = VK_NULL_HANDLE, first_mip = VK_NULL_HANDLE;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  bool ready = false; // histories: holds defined contents in the layout that the plan expects
+};
+
+struct StandIn {                         // what an unbound optional port sees: zero
+  VkFormat format = VK_FORMAT_UNDEFINED; // undefined: the buffer
+  bool storage = false;
+  VkImage image = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+};
+
+struct KernelPort {
+  std::optional<VkDescriptorType> type;
+  VkFormat stand_in = VK_FORMAT_UNDEFINED; // format of the image an unbound port would see
+};
+
+struct Kernel { // one per pass kind of the plan that dispatches
+  KindId kind;
+  DispatchShape dispatch = DispatchShape::none;
+  uint32_t indirect_port = no_index;
+  std::vector<KernelPort> ports;
+  uint32_t push_bytes = 0;
+  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+};
+
+struct Environment {             // descriptor set 1
+  uint64_t constants_bytes = 0;  // 0: binding 0 is no uniform buffer
+  uint64_t constants_stride = 0; // from one frame in flight to the next
+  uint64_t total_bytes = 0;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  std::byte* mapped = nullptr; // the constants of frame slot 0 come first
+  VkSampler sampler = VK_NULL_HANDLE;
+  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE; // null: no environment
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  std::vector<VkDescriptorSet> sets; // by frame slot
+};
+
+struct PortWrite { // one descriptor that every frame writes
+  uint32_t pass = 0, port = 0;
+  uint32_t resource = no_index; // into Plan::resources; none: a stand-in
+  uint32_t frames_back = 0;
+  uint32_t stand_in = no_index; // into State::stand_ins
+};
+
+struct Descriptors { // sets 0, by frame slot and pass
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  std::vector<VkDescriptorSet> sets; // [frame slot * passes + pass]; null for passes without kernel
+  std::vector<PortWrite> ports;
+  std::vector<VkWriteDescriptorSet> writes; // parallel to ports, pointing into the next two
+  std::vector<VkDescriptorImageInfo> images;
+  std::vector<VkDescriptorBufferInfo> buffers;
+};
+
+struct Pass {
+  std::string name;
+  uint32_t kernel = no_index;           // into State::kernels; none: clear
+  std::vector<uint32_t> access_of_port; // into Plan::accesses, no_index where the port is not bound
+  uint32_t port_mask = 0;
+};
+
+struct HistoryRecord {
+  std::string name;
+  bool written = false; // the plan writes the current instance
+  uint32_t age = 0;
+  HistoryReason reason = HistoryReason::first_frame;
+};
+
+struct Timestamps {
+  VkQueryPool pool = VK_NULL_HANDLE;
+  uint32_t per_frame = 0;              // passes + 1
+  std::vector<uint64_t> frame_of_slot; // 0: nothing recorded there
+  std::vector<uint64_t> ticks;         // room for reading one frame
+};
+
+struct Executor::State {
+  const Device* device = nullptr;
+  Plan plan;
+  uint32_t frames_in_flight = 1;
+  std::vector<VkDeviceMemory> heaps;
+  std::vector<Instance> instances;
+  std::vector<StandIn> stand_ins;
+  bool stand_ins_ready = false;
+  std::vector<Kernel> kernels;
+  Environment environment;
+  Descriptors descriptors;
+  std::vector<Pass> passes;
+  std::vector<HistoryRecord> histories;
+  std::vector<uint32_t>
+      slot_resource; // by slot: into Plan::resources, no_index when the host does not bind it
+  Timestamps timestamps;
+  std::vector<VkImageMemoryBarrier2> image_barriers; // room for the largest batch
+  std::vector<VkBufferMemoryBarrier2> buffer_barriers;
+  std::vector<uint32_t> push_constants;
+  uint64_t frame_counter = 0; // frames recorded
+  uint64_t last_frame_index = 0;
+  Rectangle previous_rectangle;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State();
+};
+
+using State = Executor::State;
+
+// ---- memory.cpp
+// Index of the best type among `allowed`: all of `required`, and of those the first with `preferred`;
+// nullopt: none.
+std::optional<uint32_t> choose_memory_type(const Device& device, uint32_t allowed,
+                                           VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred);
+// Allocates what `needs` says, of a type with `required` and if possible `preferred`.
+Error allocate(const Device& device, const VkMemoryRequirements& needs, VkMemoryPropertyFlags required,
+               VkMemoryPropertyFlags preferred, const std::string& thing, VkDeviceMemory& memory);
+Error create_memory(State& state, const Graph& graph); // heaps, images, buffers, views
+void destroy_memory(State& state);
+
+// ---- stand_ins.cpp
+uint32_t stand_in_for(State& state, const KernelPort& port); // index; declares it if it is new
+Error create_stand_ins(State& state);
+void destroy_stand_ins(State& state);
+
+// ---- environment.cpp
+Error create_environment(State& state, std::span<const EnvironmentBinding> bindings);
+void destroy_environment(State& state);
+void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept;
+
+// ---- kernels.cpp
+Error create_kernels(State& state, const ExecutorInput& input);
+void destroy_kernels(State& state);
+
+// ---- descriptors.cpp
+Error create_descriptors(State& state);
+void destroy_descriptors(State& state);
+void write_descriptors(State& state, uint32_t frame_slot, std::span<const HostImage> images) noexcept;
+
+// ---- barriers.cpp
+// Which instance holds resource `r` of `frames_back` frames ago, in the frame that is being recorded.
+uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t frames_back) noexcept;
+void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count) noexcept;
+void record_acquires(State& state, const FrameInput& frame) noexcept; // queue family transfers to us
+void record_releases(State& state, const FrameInput& frame) noexcept; // and from us
+
+// ---- initialise.cpp
+// Brings stand-ins and new or invalid history instances to zero and to the layout that the plan expects.
+void record_initialisation(State& state, VkCommandBuffer commands) noexcept;
+
+// ---- timestamps.cpp
+Error create_timestamps(State& state);
+void begin_timestamps(State& state, VkCommandBuffer commands, uint32_t frame_slot) noexcept;
+void write_timestamp(State& state, VkCommandBuffer commands, uint32_t frame_slot, uint32_t index) noexcept;
+
+} // namespace dermis::vulkan

@@ -1,0 +1,167 @@
+#include "framegraph/vulkan/shader/signature_check.hpp"
+
+#include <fmt/core.h>
+
+namespace dermis::vulkan {
+namespace {
+
+constexpr uint32_t tile_side = 8; // kernels over the view or its tiles: one invocation per pixel of a tile
+constexpr uint32_t tile_invocations = 64;
+
+struct Checker {
+  const PassKind& kind;
+  std::vector<std::string> found;
+
+  template <class... Arguments>
+  void mismatch(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+    found.push_back(fmt::format("kernel '{}' of kind '{}': ", kind.shader, kind.name) +
+                    fmt::format(text, std::forward<Arguments>(arguments)...));
+  }
+
+  void check_type(const ShaderBinding& binding, const std::string& place, BindingType wanted) {
+    if (binding.array)
+      mismatch("{} is an array of descriptors in the shader ('{}'), the signature binds one", place,
+               binding.name);
+    else if (binding.type != wanted)
+      mismatch("{} is a {} in the signature and a {} ('{}') in the shader", place, binding_type_name(wanted),
+               binding_type_name(binding.type), binding.name);
+  }
+
+  void check_port(const ShaderBinding& binding) {
+    if (binding.binding >= kind.ports.size())
+      return mismatch("the shader has '{}' at set 0 binding {}, the signature has {} ports", binding.name,
+                      binding.binding, kind.ports.size());
+    const Port& port = kind.ports[binding.binding];
+    const std::string place = fmt::format("port '{}' (set 0 binding {})", port.name, binding.binding);
+    const auto type = descriptor_type(port.usage);
+    if (!type)
+      return mismatch("{} has usage {} and so no descriptor, the shader binds '{}' there", place,
+                      usage_info(port.usage).name, binding.name);
+    const BindingType wanted = *type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
+                               : *type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? BindingType::storage_image
+                                                                           : BindingType::storage_buffer;
+    check_type(binding, place, wanted);
+    if (wanted == BindingType::storage_buffer || binding.type != wanted || port.glsl_type.empty()) return;
+    const char first = port.glsl_type.front(); // utexture2D, itexture2D, texture2D
+    const Numeric numeric = first == 'u'                          ? Numeric::unsigned_integer
+                            : port.glsl_type.substr(0, 2) == "im" ? Numeric::real
+                            : first == 'i'                        ? Numeric::signed_integer
+                                                                  : Numeric::real;
+    if (numeric != binding.numeric)
+      mismatch("{} reads as {} by its type {} and as {} in the shader", place, numeric_name(numeric),
+               port.glsl_type, numeric_name(binding.numeric));
+  }
+
+  void check_environment(const ShaderBinding& binding, std::span<const EnvironmentBinding> environment) {
+    if (binding.binding >= environment.size())
+      return mismatch("the shader has '{}' at set 1 binding {}, the environment has {} bindings",
+                      binding.name, binding.binding, environment.size());
+    const EnvironmentBinding& given = environment[binding.binding];
+    const std::string place = fmt::format("environment binding {}", binding.binding);
+    check_type(binding, place,
+               given.type == EnvironmentType::uniform_buffer   ? BindingType::uniform_buffer
+               : given.type == EnvironmentType::storage_buffer ? BindingType::storage_buffer
+                                                               : BindingType::sampler);
+    if (given.type != EnvironmentType::linear_sampler && binding.bytes > given.bytes)
+      mismatch("{} has {} bytes, '{}' in the shader needs {}", place, given.bytes, binding.name,
+               binding.bytes);
+  }
+
+  void check_push_constants(const Reflection& reflection) {
+    const auto& members = reflection.push_members;
+    const size_t wanted = 1 + kind.settings.size();
+    if (!reflection.has_push_constants) {
+      if (!kind.settings.empty())
+        mismatch("the shader has no push constants, the signature has {} settings", kind.settings.size());
+      return;
+    }
+    if (members.size() != wanted)
+      return mismatch("the shader pushes {} members, the signature has the port mask and {} settings",
+                      members.size(), kind.settings.size());
+    for (size_t i = 0; i < members.size(); ++i) {
+      const std::string name = i == 0 ? "port mask" : fmt::format("setting '{}'", kind.settings[i - 1].name);
+      if (members[i].offset != 4 * i)
+        mismatch("{} lies at byte {} of the push constants, '{}' of the shader at {}", name, 4 * i,
+                 members[i].name, members[i].offset);
+      const bool real = i > 0 && kind.settings[i - 1].type == SettingType::real;
+      const bool fits = real ? members[i].numeric == Numeric::real
+                             : members[i].numeric == Numeric::signed_integer ||
+                                   members[i].numeric == Numeric::unsigned_integer;
+      if (!fits)
+        mismatch("{} is {} in the signature, '{}' is {} in the shader", name, real ? "float" : "int or uint",
+                 members[i].name, numeric_name(members[i].numeric));
+    }
+  }
+
+  void check_local_size(const std::array<uint32_t, 3>& size) {
+    const uint64_t invocations = uint64_t{size[0]} * size[1] * size[2];
+    const auto refuse = [&](const char* wanted) {
+      mismatch("its workgroup is {}x{}x{}, this dispatch needs {}", size[0], size[1], size[2], wanted);
+    };
+    switch (kind.dispatch) {
+    case DispatchShape::over_view:
+      if (size[0] != tile_side || size[1] != tile_side || size[2] != 1) refuse("8x8x1");
+      break;
+    case DispatchShape::over_tiles:
+    case DispatchShape::over_tile_grid:
+      if (invocations != tile_invocations) refuse("64 invocations");
+      break;
+    case DispatchShape::single_group:
+    case DispatchShape::none:
+      break;
+    }
+  }
+};
+
+} // namespace
+
+std::optional<VkDescriptorType> descriptor_type(Usage usage) {
+  switch (usage) {
+  case Usage::sampled_image:
+    return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+  case Usage::storage_image_write:
+  case Usage::storage_image_update:
+    return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  case Usage::storage_buffer_read:
+  case Usage::storage_buffer_write:
+  case Usage::storage_buffer_update:
+    return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  case Usage::indirect_arguments:
+  case Usage::clear:
+  case Usage::count:
+    break;
+  }
+  return std::nullopt;
+}
+
+VkDescriptorType descriptor_type(EnvironmentType type) {
+  switch (type) {
+  case EnvironmentType::storage_buffer:
+    return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  case EnvironmentType::linear_sampler:
+    return VK_DESCRIPTOR_TYPE_SAMPLER;
+  case EnvironmentType::uniform_buffer:
+    break;
+  }
+  return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+}
+
+std::vector<std::string> check_signature(const PassKind& kind,
+                                         std::span<const EnvironmentBinding> environment,
+                                         const Reflection& reflection) {
+  Checker checker{kind, {}};
+  for (const ShaderBinding& binding : reflection.bindings) {
+    if (binding.set == 0)
+      checker.check_port(binding);
+    else if (binding.set == 1)
+      checker.check_environment(binding, environment);
+    else
+      checker.mismatch("the shader has '{}' at set {}, only sets 0 (ports) and 1 (environment) exist",
+                       binding.name, binding.set);
+  }
+  checker.check_push_constants(reflection);
+  checker.check_local_size(reflection.local_size);
+  return std::move(checker.found);
+}
+
+} // namespace dermis::vulkan
