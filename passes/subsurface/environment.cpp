@@ -1,5 +1,6 @@
 #include "passes/subsurface/environment.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dermis::subsurface {
@@ -44,19 +45,37 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   return true;
 }
 
-std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles) {
-  std::vector<ProfileEntry> table(profile_capacity, ProfileEntry{});
-  for (const NumberedProfile& numbered : profiles) {
+std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles, bool with_separable) {
+  ProfileEntry none{};
+  none.separable_row = no_separable_row;
+  std::vector<ProfileEntry> table(profile_capacity, none);
+  for (size_t i = 0; i < profiles.size(); ++i) {
+    const NumberedProfile& numbered = profiles[i];
     if (numbered.id == 0 || numbered.id >= profile_capacity) continue;
     ProfileEntry& entry = table[numbered.id];
     entry.widest = static_cast<uint32_t>(numbered.profile.widest);
-    for (int c = 0; c < 3; ++c) {
+    for (size_t c = 0; c < 3; ++c)
       entry.d_mm[c] = static_cast<float>(numbered.profile.d_mm[c]);
-      entry.albedo[c] = static_cast<float>(numbered.profile.albedo[c]);
-    }
     entry.d_max_mm = entry.d_mm[entry.widest];
+    if (with_separable) entry.separable_row = static_cast<uint32_t>(i) * separable_rows_per_profile;
   }
   return table;
+}
+
+std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles) {
+  std::vector<SeparableRow> table;
+  for (const NumberedProfile& numbered : profiles) {
+    const std::vector<SeparableRow> rows = make_separable_rows(numbered.profile.d_mm);
+    table.insert(table.end(), rows.begin(), rows.end());
+  }
+  if (table.empty()) table.emplace_back();
+  return table;
+}
+
+bool uses_separable(const Graph& graph, const KindRegistry& kinds) {
+  const KindId separable = kinds.find("subsurface.separable");
+  return std::any_of(graph.passes.begin(), graph.passes.end(),
+                     [&](const PassDeclaration& pass) { return pass.kind == separable; });
 }
 
 } // namespace dermis::subsurface

@@ -2,8 +2,10 @@
 // What every kernel sees beside its ports (descriptor set 1): frame constants, profiles, kernel tables.
 // Layouts mirror shaders/include/environment.glsl; tests compare them with SPIR-V reflection.
 
+#include "framegraph/model/graph.hpp"
 #include "passes/subsurface/camera.hpp"
 #include "passes/subsurface/profile.hpp"
+#include "passes/subsurface/separable_kernel.hpp"
 
 #include <array>
 #include <cstdint>
@@ -43,11 +45,13 @@ static_assert(sizeof(FrameConstants) == 80);
 struct ProfileEntry {
   float d_mm[3];   // shape parameter per channel
   float d_max_mm;  // of the widest channel
-  float albedo[3]; // of the profile, not of the texture
   uint32_t widest; // channel index
+  uint32_t separable_row; // first row of its separable kernels; 0xffffffff: none were made
+  uint32_t unused[2];     // rounds the entry to 32 bytes
 };
 static_assert(sizeof(ProfileEntry) == 32);
 inline constexpr uint32_t profile_capacity = 256;
+inline constexpr uint32_t no_separable_row = 0xffffffffu;
 
 struct FrameInput {
   uint32_t rect_x = 0, rect_y = 0, rect_width = 0, rect_height = 0;
@@ -69,7 +73,12 @@ struct NumberedProfile {
   Profile profile;
 };
 
-// The table's bytes: profile_capacity entries. Ids outside 1..255 are ignored.
-std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles);
+// profile_capacity entries. Ids outside 1..255 are ignored. Kernels of the i-th profile are expected at row
+// i * separable_rows_per_profile of the separable table.
+std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles, bool with_separable);
+// Rows for all profiles in order; one row of zeros if there are none. About .1 s a profile.
+std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles);
+// Does the graph have a pass that reads the separable table?
+bool uses_separable(const Graph& graph, const KindRegistry& kinds);
 
 } // namespace dermis::subsurface

@@ -34,7 +34,6 @@ constexpr std::string_view axis_options[] = {"horizontal", "vertical"};
 constexpr std::string_view taps_options[] = {"11", "17", "25"};
 constexpr Port separable_ports[] = {
     light,
-    slope,
     {"blurred",
      Usage::sampled_image,
      true,

@@ -17,10 +17,12 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
 
 struct profile_entry {
   vec4 d_mm;   // rgb: shape parameter per channel, a: of the widest
-  vec3 albedo; // of the profile
   uint widest; // channel
+  uint separable_row;
+  uint unused_0, unused_1;
 };
 layout(std430, set = 1, binding = 1) readonly buffer profile_block { profile_entry profiles[]; };
+layout(std430, set = 1, binding = 2) readonly buffer separable_block { vec4 separable_rows[]; };
 
 const float largest_depth_mm = 1e9; // a thousand kilometres: sky and infinite far planes are beyond
 

@@ -91,7 +91,7 @@ TEST(Environment, UndeclaredProfilesLetLightPass) {
   skin.profile.dmfp_mm = {3.5, 1, 1};
   skin.profile.albedo = {0.33, 0.33, 0.33};
   derive(skin.profile);
-  const auto table = make_profile_table(std::span(&skin, 1));
+  const auto table = make_profile_table(std::span(&skin, 1), false);
   ASSERT_EQ(table.size(), profile_capacity);
   EXPECT_EQ(table[0].d_max_mm, 0.0f);
   EXPECT_FLOAT_EQ(table[7].d_max_mm, 1.0f);
