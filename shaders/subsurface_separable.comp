@@ -8,15 +8,12 @@
 #include "environment.glsl"
 #include "tiles.glsl"
 #include "radius.glsl"
+#include "constants.glsl"
 #include "half.glsl"
 
 const int side_taps[3] = int[3](5, 8, 12); // of 11, 17, 25 taps
-// Where the rows of each choice of taps begin, and how many a node has: mirrors separable_kernel.hpp.
-const int nodes = 24;
-const float first_log2_d = -4.0;
-const float log2_d_step = 0.5;
-const int rows_per_node[3] = int[3](7, 10, 14);
-const int first_row[3] = int[3](0, nodes * 7, nodes * 17);
+const int rows_per_node[3] = int[3](5 + 2, 8 + 2, 12 + 2);
+const int first_row[3] = int[3](0, separable_nodes * rows_per_node[0], separable_nodes * (rows_per_node[0] + rows_per_node[1]));
 
 struct kernel_place {
   int low;       // row 0 of the node below
@@ -26,14 +23,14 @@ struct kernel_place {
 };
 
 kernel_place find_kernel(uint separable_row_start, int choice, float d_px) {
-  float position = (log2(d_px) - first_log2_d) / log2_d_step;
-  float clamped = clamp(position, 0.0, float(nodes - 1));
-  int node = min(int(clamped), nodes - 2);
+  float position = (log2(d_px) - separable_first_log2_d) / separable_log2_d_step;
+  float clamped = clamp(position, 0.0, float(separable_nodes - 1));
+  int node = min(int(clamped), separable_nodes - 2);
   kernel_place place;
   place.step = rows_per_node[choice];
   place.low = int(separable_row_start) + first_row[choice] + node * place.step;
   place.part = clamped - float(node);
-  place.stretch = exp2(max(0.0, position - float(nodes - 1)) * log2_d_step);
+  place.stretch = exp2(max(0.0, position - float(separable_nodes - 1)) * separable_log2_d_step);
   return place;
 }
 

@@ -33,5 +33,6 @@ void main() {
     }
   }
   imageStore(light_image, texel, round_to_half(light));
-  imageStore(slope_image, texel, vec4(round_to_half(vec3(slope, 0.0)), 0.0));
+  if (has_slope())
+    imageStore(slope_image, texel, vec4(round_to_half(vec3(slope, 0.0)), 0.0));
 }

@@ -1,6 +1,7 @@
 // Build tool: writes one GLSL header a kernel from its signature, so that bindings and push constants are
 // written once. Usage: write_bindings <output folder>
 #include "passes/subsurface/kinds.hpp"
+#include "passes/subsurface/separable_kernel.hpp"
 #include "passes/subsurface/truth/surface.hpp"
 
 #include <fmt/format.h>
@@ -69,10 +70,15 @@ std::string header_of(const PassKind& kind) {
 
 // Numbers that C++ and GLSL must agree on.
 std::string shared_constants() {
-  return fmt::format("// Generated from the constants of passes/subsurface/.\n\n"
+  return fmt::format("// Generated from the constants of passes/subsurface/.\n"
+                     "#ifndef DERMIS_CONSTANTS_GLSL\n#define DERMIS_CONSTANTS_GLSL\n\n"
                      "const float copy_below_d_px = {}; // kinds.hpp\n"
-                     "const float min_patch_cosine = {}; // truth/surface.hpp\n",
-                     subsurface::copy_below_d_px, subsurface::min_patch_cosine);
+                     "const float min_patch_cosine = {}; // truth/surface.hpp\n"
+                     "const int separable_nodes = {}; // separable_kernel.hpp\n"
+                     "const float separable_first_log2_d = {:.1f};\n"
+                     "const float separable_log2_d_step = {:.1f};\n\n#endif\n",
+                     subsurface::copy_below_d_px, subsurface::min_patch_cosine, subsurface::separable_nodes,
+                     subsurface::separable_first_log2_d, subsurface::separable_log2_d_step);
 }
 
 bool write(const std::string& path, const std::string& text) {

@@ -43,9 +43,9 @@ static_assert(sizeof(FrameConstants) == 80);
 
 // std430, one per profile id 0..255; entry 0 and undeclared ids have d = 0: light passes through.
 struct ProfileEntry {
-  float d_mm[3];   // shape parameter per channel
-  float d_max_mm;  // of the widest channel
-  uint32_t widest; // channel index
+  float d_mm[3];          // shape parameter per channel
+  float d_max_mm;         // of the widest channel
+  uint32_t widest;        // channel index
   uint32_t separable_row; // first row of its separable kernels; 0xffffffff: none were made
   uint32_t unused[2];     // rounds the entry to 32 bytes
 };

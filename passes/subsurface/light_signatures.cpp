@@ -34,7 +34,7 @@ constexpr Port setup_ports[] = {
      {}},
     {"slope",
      Usage::storage_image_write,
-     false,
+     true,
      "image2D",
      "change of depth from pixel to pixel over the pixel's size, x and y",
      {}},

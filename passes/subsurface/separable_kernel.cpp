@@ -13,14 +13,14 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr size_t unknowns = separable_max_side + 2; // taps at 0 and at each side, then the delta
 
-// Frequencies of the fit: log-spaced radii from wavelengths of some hundred d to the pixel grid's corner, over the
-// first quadrant. A pair (fx, fy) stands for its area of the log-polar grid.
+// Frequencies of the fit: log-spaced radii from wavelengths of some hundred d to the pixel grid's corner,
+// over the first quadrant. A pair (fx, fy) stands for its area of the log-polar grid.
 constexpr double lowest_frequency = 1.0 / 2048;
 constexpr double highest_frequency = 0.70710678;
 constexpr int radii = 30;
 constexpr int angles = 5;
-// Power spectrum of natural images: amplitude 1/f, power f^-2 per unit area (Field 1987); on a log-polar grid the area
-// grows as f^2, which leaves equal weights.
+// Power spectrum of natural images: amplitude 1/f, power f^-2 per unit area (Field 1987); on a log-polar grid
+// the area grows as f^2, which leaves equal weights.
 
 struct Frequency {
   double x, y, weight, target = 0; // target: transfer of the truth's kernel
@@ -77,8 +77,8 @@ SeparableFit fit_to(const std::vector<Frequency>& frequencies, double d_px, std:
   for (const Frequency& f : frequencies)
     samples.push_back({axis_row(offsets, f.x), axis_row(offsets, f.y), f.target, f.weight});
 
-  // Unknown here: a unnormalised (its square carries 1 - centre) and the centre. Gauss-Newton on the product, each
-  // step a non-negative least-squares problem; the sum of the kernel, 1, is a row of large weight.
+  // Unknown here: a unnormalised (its square carries 1 - centre) and the centre. Gauss-Newton on the product,
+  // each step a non-negative least-squares problem; the sum of the kernel, 1, is a row of large weight.
   constexpr int steps = 12;
   constexpr double sum_weight = 1e6;
   Row a{};
@@ -135,7 +135,8 @@ SeparableFit fit_to(const std::vector<Frequency>& frequencies, double d_px, std:
 } // namespace
 
 double pixel_kernel_transfer(double d_px, double fx, double fy) {
-  // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum settles to 1e-4 within 8 periods for d >= 1/16 px.
+  // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum settles to 1e-4 within 8 periods for d >=
+  // 1/16 px.
   const int reach = std::clamp(static_cast<int>(2 + 2 / d_px), 2, 8);
   double sum = 0;
   for (int my = -reach; my <= reach; ++my)
@@ -148,14 +149,16 @@ double pixel_kernel_transfer(double d_px, double fx, double fy) {
 }
 
 std::vector<double> separable_offsets(double d_px, uint32_t taps) {
-  // Reach and spacing with the smallest error of fit over d = 1 .. 32 px, found by scanning (docs/techniques.md).
+  // Reach and spacing with the smallest error of fit over d = 1 .. 32 px, found by scanning
+  // (docs/techniques.md).
   const size_t side = (taps - 1) / 2;
   const double reach = (taps >= 25 ? 10.0 : taps >= 17 ? 7.0 : 5.0) * d_px;
   const double power = taps >= 25 ? 3.5 : taps >= 17 ? 2.5 : 2.0;
   std::vector<double> offsets(side);
   double last = 0;
   for (size_t i = 0; i < side; ++i) {
-    last = std::max(last + 1, reach * std::pow(static_cast<double>(i + 1) / static_cast<double>(side), power));
+    last =
+        std::max(last + 1, reach * std::pow(static_cast<double>(i + 1) / static_cast<double>(side), power));
     offsets[i] = last;
   }
   return offsets;
