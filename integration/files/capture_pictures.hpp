@@ -1,0 +1,26 @@
+#pragma once
+// The pictures of one captured frame: which there are, what their channels are called, how they are read and
+// mended.
+
+#include "framegraph/text/document.hpp"
+#include "integration/files/capture.hpp"
+#include "integration/files/exr.hpp"
+
+namespace dermis::tools {
+
+struct PictureKind {
+  const char* name; // file name without ".exr"
+  Image CapturedFrame::*image;
+  bool required, signed_values;
+  std::vector<ChannelNames> channels; // accepted; the first is written
+};
+
+// All but `profile`, whose values are ids.
+const std::vector<PictureKind>& picture_kinds();
+const std::vector<ChannelNames>& profile_channels();
+
+// Reads all pictures of `frame.description` from the folder. Errors are located in frame.json.
+void read_pictures(const std::filesystem::path& folder, const Document& document, CapturedFrame& frame,
+                   Diagnostics& diagnostics);
+
+} // namespace dermis::tools

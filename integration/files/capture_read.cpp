@@ -1,0 +1,213 @@
+#include "integration/files/capture.hpp"
+
+#include "framegraph/text/limits.hpp"
+#include "framegraph/text/reader.hpp"
+#include "integration/files/capture_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double largest_number = 1e30;
+constexpr double far_plane_m =
+    1000; // of the matrix made from a pixel pitch; no picture's depth depends on it
+constexpr subsurface::Matrix4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+SourceLocation place_of(Diagnostics& diagnostics, const fs::path& path) {
+  diagnostics.files.push_back({path.string(), {}});
+  SourceLocation place;
+  place.file = FileId{static_cast<uint32_t>(diagnostics.files.size() - 1)};
+  return place;
+}
+
+void read_rectangle(const Document& document, ObjectReader& reader, FrameDescription& frame,
+                    Diagnostics& diagnostics) {
+  frame.render = {0, 0, frame.width, frame.height};
+  if (!reader.has("render_rectangle")) return;
+  std::array<double, 4> r{};
+  if (!reader.numbers("render_rectangle", r, 0, limits::image_side)) return;
+  const bool whole = std::all_of(r.begin(), r.end(), [](double v) { return v == std::floor(v); });
+  if (!whole || r[2] < 1 || r[3] < 1 || r[0] + r[2] > frame.width || r[1] + r[3] > frame.height) {
+    diagnostics.add(DiagnosticId::capture_rectangle,
+                    document.where(document.find(reader.node(), "render_rectangle")),
+                    fmt::format("[{}, {}, {}, {}] is not a rectangle of whole pixels inside {} x {}", r[0],
+                                r[1], r[2], r[3], frame.width, frame.height));
+    return;
+  }
+  frame.render = {uint32_t(r[0]), uint32_t(r[1]), uint32_t(r[2]), uint32_t(r[3])};
+}
+
+void read_matrices(ObjectReader& reader, FrameDescription& frame) {
+  reader.numbers("clip_from_view", frame.clip_from_view, -largest_number, largest_number,
+                 frame.pixel_pitch_m ? Need::optional : Need::required);
+  frame.view_from_world = identity;
+  reader.numbers("view_from_world", frame.view_from_world, -largest_number, largest_number, Need::optional);
+  frame.previous_view_from_world = frame.view_from_world;
+  reader.numbers("previous_view_from_world", frame.previous_view_from_world, -largest_number, largest_number,
+                 Need::optional);
+}
+
+void read_projection(const Document& document, ObjectReader& reader, FrameDescription& frame,
+                     subsurface::PixelRays& rays, Diagnostics& diagnostics) {
+  constexpr std::string_view kinds[] = {"perspective", "orthographic"};
+  frame.perspective = reader.word("projection", kinds).value_or(0) == 0;
+  constexpr double least = 1e-12, greatest = 1e12; // lengths, metres
+  frame.pixel_pitch_m = reader.number("pixel_pitch_m", least, greatest, Need::optional);
+  frame.metres_per_unit = reader.number("metres_per_unit", least, greatest, Need::optional).value_or(1);
+  reader.numbers("jitter_px", frame.jitter_px, -1, 1, Need::optional);
+  read_matrices(reader, frame);
+  const auto refuse = [&](std::string_view key, std::string text) {
+    diagnostics.add(DiagnosticId::capture_projection, document.where(document.find(reader.node(), key)),
+                    std::move(text));
+  };
+  if (frame.pixel_pitch_m && frame.perspective)
+    return refuse("pixel_pitch_m", "'pixel_pitch_m' is for orthographic captures; this one is perspective");
+  if (frame.pixel_pitch_m && document.find(reader.node(), "clip_from_view").valid())
+    return refuse("pixel_pitch_m",
+                  "'pixel_pitch_m' and 'clip_from_view' both describe the projection; give one");
+  if (!reader.ok()) return;
+  if (!complete_projection(frame, rays) || rays.perspective != frame.perspective)
+    return refuse(
+        "clip_from_view",
+        fmt::format("'clip_from_view' is no axis-aligned {} projection (row-major, clip = M * view, looking "
+                    "down -z, Vulkan clip space)",
+                    frame.perspective ? "perspective" : "orthographic"));
+  frame.previous_clip_from_view = frame.clip_from_view;
+  reader.numbers("previous_clip_from_view", frame.previous_clip_from_view, -largest_number, largest_number,
+                 Need::optional);
+}
+
+std::optional<subsurface::Profile> read_profile_file(const Document& document, NodeId key,
+                                                     const fs::path& folder, const fs::path& profile_folder,
+                                                     Diagnostics& diagnostics) {
+  const fs::path name{std::string(document.text(key))};
+  const bool plain = !name.has_parent_path() && name.extension().empty();
+  const fs::path path = plain ? profile_folder / (name.string() + ".json") : folder / name;
+  std::error_code code;
+  if (!fs::is_regular_file(path, code)) {
+    diagnostics.add(DiagnosticId::capture_profile, document.where(key),
+                    fmt::format("profile '{}' is not there: no file '{}'", name.string(), path.string()));
+    return std::nullopt;
+  }
+  const auto profile = read_document(path.string(), diagnostics);
+  return profile ? subsurface::read_profile(*profile, diagnostics) : std::nullopt;
+}
+
+void read_profiles(const Document& document, ObjectReader& reader, const fs::path& folder,
+                   const fs::path& profile_folder, FrameDescription& frame, Diagnostics& diagnostics) {
+  const NodeId list = reader.array("profiles", 0, 255);
+  if (!list.valid()) return;
+  std::array<NodeId, 256> taken{};
+  for (const NodeId node : children(document, list)) {
+    const std::string what = fmt::format("profile {}", document[node].index);
+    if (!expect_kind(document, node, what, NodeKind::object, diagnostics)) continue;
+    const NodeId id_node = document.find(node, "id");
+    const NodeId file = document.find(node, "file");
+    std::optional<subsurface::Profile> profile;
+    if (file.valid()) {
+      ObjectReader object(document, node, what, diagnostics);
+      object.has("id");
+      if (object.string("file") && object.finish())
+        profile = read_profile_file(document, file, folder, profile_folder, diagnostics);
+    } else {
+      profile = subsurface::read_inline_profile(document, node, what, diagnostics);
+    }
+    if (!id_node.valid()) {
+      diagnostics.add(DiagnosticId::missing_key, document.where(node), fmt::format("{} needs an 'id'", what));
+      continue;
+    }
+    const auto id = read_integer(document, id_node, fmt::format("'id' of {}", what), 1, 255, diagnostics);
+    if (!id) continue;
+    NodeId& first = taken[static_cast<size_t>(*id)];
+    if (first.valid()) {
+      diagnostics
+          .add(DiagnosticId::capture_profile, document.where(id_node),
+               fmt::format("id {} is given twice", *id))
+          .related.emplace_back(document.where(first), "first here");
+    }
+    first = id_node;
+    if (profile) frame.profiles.push_back({static_cast<uint32_t>(*id), *profile});
+  }
+}
+
+} // namespace
+
+std::vector<fs::path> find_frames(const fs::path& folder, Diagnostics& diagnostics) {
+  std::vector<fs::path> frames;
+  std::error_code code;
+  if (fs::is_regular_file(folder / "frame.json", code)) return {folder};
+  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
+    std::error_code ignored;
+    if (it->path().filename().string()[0] != '.' && fs::is_regular_file(it->path() / "frame.json", ignored))
+      frames.push_back(it->path());
+  }
+  std::sort(frames.begin(), frames.end());
+  if (frames.empty())
+    diagnostics.add(DiagnosticId::capture_empty, place_of(diagnostics, folder),
+                    fmt::format("'{}' holds no frame: neither frame.json nor folders with one{}",
+                                folder.string(), code ? " (" + code.message() + ")" : ""));
+  return frames;
+}
+
+bool complete_projection(FrameDescription& frame, subsurface::PixelRays& rays) {
+  if (frame.pixel_pitch_m) {
+    const double pitch = *frame.pixel_pitch_m;
+    frame.metres_per_unit = 1;
+    frame.clip_from_view = {2 / (frame.render.width * pitch),
+                            0,
+                            0,
+                            0,
+                            0,
+                            -2 / (frame.render.height * pitch),
+                            0,
+                            0,
+                            0,
+                            0,
+                            -1 / far_plane_m,
+                            0,
+                            0,
+                            0,
+                            0,
+                            1};
+  }
+  const auto found = subsurface::pixel_rays(frame.clip_from_view, frame.render.width, frame.render.height,
+                                            frame.metres_per_unit, frame.jitter_px);
+  if (!found) return false;
+  rays = *found;
+  return true;
+}
+
+std::optional<CapturedFrame> read_frame(const fs::path& folder, const fs::path& profile_folder,
+                                        Diagnostics& diagnostics) {
+  const uint32_t errors = diagnostics.count(Severity::error);
+  const auto document = read_document((folder / "frame.json").string(), diagnostics);
+  if (!document || !check_version(*document, "dermis_capture", capture_format_version, diagnostics))
+    return std::nullopt;
+  CapturedFrame frame;
+  FrameDescription& description = frame.description;
+  ObjectReader reader(*document, document->root(), "frame", diagnostics);
+  reader.has("dermis_capture");
+  description.width = static_cast<uint32_t>(reader.integer("width", 1, limits::image_side).value_or(0));
+  description.height = static_cast<uint32_t>(reader.integer("height", 1, limits::image_side).value_or(0));
+  if (reader.ok()) read_rectangle(*document, reader, description, diagnostics);
+  read_projection(*document, reader, description, frame.rays, diagnostics);
+  const int64_t index = reader.integer("frame_index", 0, INT64_MAX, Need::optional).value_or(0);
+  description.frame_index = static_cast<uint64_t>(index);
+  description.exposure = reader.number("exposure", 1e-12, 1e12, Need::optional).value_or(1);
+  read_profiles(*document, reader, folder, profile_folder, description, diagnostics);
+  reader.has("previous_clip_from_view"); // not read where the projection itself is wrong
+  reader.finish();
+  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  read_pictures(folder, *document, frame, diagnostics);
+  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  return frame;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,22 @@
+#pragma once
+// A captured frame as the CPU truth takes it: the render rectangle alone, d by profile id.
+
+#include "integration/files/capture.hpp"
+#include "passes/subsurface/truth/truth.hpp"
+
+namespace dermis::tools {
+
+struct TruthFrame {
+  uint32_t width = 0, height = 0; // of the render rectangle
+  subsurface::PixelRays rays;
+  std::vector<float> light, depth, scatter_scale;
+  std::vector<uint8_t> profile;
+  std::vector<subsurface::PerChannel> d_m;
+
+  // Refers to this object's arrays.
+  subsurface::TruthInput input() const;
+};
+
+TruthFrame make_truth_frame(const CapturedFrame& frame);
+
+} // namespace dermis::tools
