@@ -14,7 +14,9 @@ struct Vertex {
   glm::vec3 normal{0.0f, 1.0f, 0.0f};        // unit
   glm::vec2 uv{0.0f};                        // v down, as images are stored
   glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f}; // unit xyz along u; w = sign of the bitangent
-  glm::vec4 tint{1.0f};                      // rgb multiplies the albedo (linear), a the reflectance
+  glm::vec3 tint{1.0f};                      // multiplies the albedo (linear)
+  float openness = 1.0f;                     // share of the ambient light that arrives, 0..1
+  float gloss = 1.0f;                        // multiplies the reflectance
 };
 
 struct Mesh {

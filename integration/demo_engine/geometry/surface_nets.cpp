@@ -107,6 +107,19 @@ glm::vec3 gradient(const Field& field, const glm::vec3& p, float step) {
          (2.0f * step);
 }
 
+// Ambient occlusion of a distance field from a few steps along the normal (Evans 2006; weights after Quilez).
+float openness_at(const Field& field, const glm::vec3& p, const glm::vec3& normal, float reach) {
+  float hidden = 0.0f, weight = 1.0f, sum = 0.0f;
+  constexpr int steps = 5;
+  for (int i = 1; i <= steps; ++i) {
+    const float distance = reach * static_cast<float>(i * i) / (steps * steps);
+    hidden += weight * std::clamp(1.0f - field(p + normal * distance) / distance, 0.0f, 1.0f);
+    sum += weight;
+    weight *= 0.8f;
+  }
+  return 1.0f - hidden / sum;
+}
+
 } // namespace
 
 std::vector<float> place_planes(float low, float high, const std::function<float(float)>& spacing) {
@@ -116,7 +129,7 @@ std::vector<float> place_planes(float low, float high, const std::function<float
   return planes;
 }
 
-Mesh mesh_field(const Field& field, const GridPlanes& planes) {
+Mesh mesh_field(const Field& field, const GridPlanes& planes, float occlusion_reach) {
   Grid grid{planes,
             static_cast<uint32_t>(planes.x.size()),
             static_cast<uint32_t>(planes.y.size()),
@@ -174,6 +187,7 @@ Mesh mesh_field(const Field& field, const GridPlanes& planes) {
       }
       const float length = glm::length(slope);
       if (length > 0.0f) vertex.normal = slope / length;
+      vertex.openness = openness_at(field, vertex.position, vertex.normal, occlusion_reach);
     }
   });
   return mesh;
