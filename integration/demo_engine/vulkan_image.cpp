@@ -207,7 +207,14 @@ Result<> upload_image(VulkanHost& host, Image& image, std::span<const float> tex
   const PixelFormat* format = find_pixel_format(image.format);
   if (!format || texels.size() != uint64_t{image.width} * image.height * channels)
     return Error{ErrorKind::internal, "the texels do not fit the image they are uploaded to"};
-  const std::vector<std::byte> bytes = encode_texels(*format, texels, channels);
+  return upload_texels(host, image, encode_texels(*format, texels, channels), after);
+}
+
+Result<> upload_texels(VulkanHost& host, Image& image, std::span<const std::byte> bytes,
+                       const ImageState& after) {
+  const PixelFormat* format = find_pixel_format(image.format);
+  if (!format || bytes.size() != uint64_t{image.width} * image.height * format->bytes)
+    return Error{ErrorKind::internal, "the texels do not fit the image they are uploaded to"};
   auto staging = create_buffer(host, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, true);
   if (!staging) return staging.error();
   std::memcpy(staging->mapped, bytes.data(), bytes.size());

@@ -64,9 +64,12 @@ Result<Image> create_image(VulkanHost& host, const ImageDesc& desc);
 void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& image, const ImageState& from,
                 const ImageState& to);
 
-// Fills mip 0 with `channels` floats a texel, row by row from the top, converted to the image's format; other
-// mips are made by halving. Leaves the image in `after`. The image needs TRANSFER_DST (and SRC for mips > 1).
-// Waits for the device. Errors: internal (size or format does not fit), environment.
+// Fills mip 0 with texels in the image's own format, row by row from the top; other mips are made by halving.
+// Leaves the image in `after`. The image needs TRANSFER_DST (and TRANSFER_SRC for mips > 1). Waits for the
+// device. Errors: internal (the size does not fit), environment.
+Result<> upload_texels(VulkanHost& host, Image& image, std::span<const std::byte> texels,
+                       const ImageState& after);
+// The same from `channels` floats a texel, converted to the image's format.
 Result<> upload_image(VulkanHost& host, Image& image, std::span<const float> texels, uint32_t channels,
                       const ImageState& after);
 // Mip 0 of `layer` as floats; find_pixel_format(image.format)->channels of them a texel. The image must be in

@@ -13,7 +13,7 @@ struct Vertex {
   glm::vec3 position{0.0f};
   glm::vec3 normal{0.0f, 1.0f, 0.0f};        // unit
   glm::vec2 uv{0.0f};                        // v down, as images are stored
-  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f}; // unit xyz along u; w = sign of the bitangent
+  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f}; // unit, along u; w * cross(normal, tangent) is against v
   glm::vec3 tint{1.0f};                      // multiplies the albedo (linear)
   float openness = 1.0f;                     // share of the ambient light that arrives, 0..1
   float gloss = 1.0f;                        // multiplies the reflectance

@@ -17,8 +17,8 @@ struct GridPlanes {
 // Planes from `low` to `high` whose distance at position p is about spacing(p).
 std::vector<float> place_planes(float low, float high, const std::function<float(float)>& spacing);
 
-// Positions and normals (gradient of the field); the rest of the vertices is default. `field` is called from
-// two threads at once. Deterministic.
-Mesh mesh_field(const Field& field, const GridPlanes& planes);
+// Positions, normals (gradient of the field) and openness (surface within `occlusion_reach` darkens); the rest
+// of the vertices is default. `field` is called from two threads at once. Deterministic.
+Mesh mesh_field(const Field& field, const GridPlanes& planes, float occlusion_reach);
 
 } // namespace demo

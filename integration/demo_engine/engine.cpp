@@ -1,0 +1,225 @@
+#include "integration/demo_engine/engine.hpp"
+
+#include "integration/demo_engine/model/load_model.hpp"
+#include "integration/demo_engine/render/dermis_host.hpp"
+#include "integration/demo_engine/render/renderer.hpp"
+#include "integration/demo_engine/scene/read_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace demo {
+namespace {
+
+constexpr uint32_t most_pixels_a_side = 16384;
+constexpr uint32_t most_frames = 1000000;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Result<> check(const RenderOptions& options) {
+  if (options.width < 1 || options.height < 1 || options.width > most_pixels_a_side ||
+      options.height > most_pixels_a_side)
+    return Error{ErrorKind::usage,
+                 fmt::format("the size is {}x{}; expected 1x1 to {}x{} pixels", options.width, options.height,
+                             most_pixels_a_side, most_pixels_a_side)};
+  if (options.frames < 1 || options.frames > most_frames || options.first_frame > most_frames)
+    return Error{ErrorKind::usage,
+                 fmt::format("{} frames from frame {} were asked for; expected 1 to {}, from 0 to {}",
+                             options.frames, options.first_frame, most_frames, most_frames)};
+  return success();
+}
+
+Result<Scene> load(const std::string& path) {
+  dermis::Diagnostics diagnostics;
+  auto scene = read_scene(path, diagnostics);
+  if (scene) return *scene;
+  std::string text;
+  for (const dermis::Diagnostic& one : diagnostics.list) {
+    if (!text.empty()) text += '\n';
+    text += dermis::format_for_people(diagnostics, one);
+  }
+  return Error{ErrorKind::input, text};
+}
+
+// A model takes the place of the bust in scenes that were not made for one.
+void put_in_place(Scene& scene) {
+  const auto is = [](Shape shape) { return [shape](const Object& object) { return object.shape == shape; }; };
+  if (std::any_of(scene.objects.begin(), scene.objects.end(), is(Shape::model))) return;
+  const auto bust = std::find_if(scene.objects.begin(), scene.objects.end(), is(Shape::bust));
+  if (bust == scene.objects.end()) return;
+  bust->shape = Shape::model;
+  bust->pattern = Pattern::plain;
+  bust->albedo = glm::dvec3(1.0); // the map has it
+}
+
+std::array<float, 16> rows_of(const glm::dmat4& m) {
+  std::array<float, 16> rows{};
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c)
+      rows[static_cast<size_t>(r * 4 + c)] = static_cast<float>(m[c][r]);
+  return rows;
+}
+
+FrameCamera camera_of(const Scene& scene, const SceneState& state) {
+  FrameCamera camera;
+  camera.orthographic = scene.camera.orthographic;
+  camera.clip_from_view = rows_of(state.now.clip_from_view);
+  camera.view_from_world = rows_of(state.now.view_from_world);
+  camera.previous_clip_from_view = rows_of(state.previous.clip_from_view);
+  camera.previous_view_from_world = rows_of(state.previous.view_from_world);
+  camera.jitter_pixels = {static_cast<float>(state.now.jitter.x), static_cast<float>(state.now.jitter.y)};
+  return camera;
+}
+
+// Reads a target and keeps its first `channels`.
+Result<> read(VulkanHost& host, const Renderer& renderer, Target target, uint32_t channels, FloatImage& out) {
+  const Image& image = renderer[target];
+  auto texels = read_image(host, image, resting);
+  if (!texels) return texels.error();
+  const uint32_t stored = find_pixel_format(image.format)->channels;
+  out = {image.width, image.height, channels, {}};
+  const size_t pixels = size_t{image.width} * image.height;
+  out.texels.resize(pixels * channels);
+  for (size_t i = 0; i < pixels; ++i)
+    for (uint32_t c = 0; c < channels; ++c)
+      out.texels[i * channels + c] = (*texels)[i * stored + c];
+  return success();
+}
+
+Result<> read_inputs(VulkanHost& host, const Renderer& renderer, const SceneState& state,
+                     GraphInputs& inputs) {
+  struct Wanted {
+    Target target;
+    uint32_t channels;
+    FloatImage* out;
+  };
+  for (const Wanted& one :
+       {Wanted{Target::lighting, 3, &inputs.lighting}, Wanted{Target::depth, 1, &inputs.depth},
+        Wanted{Target::normal, 3, &inputs.normal}, Wanted{Target::albedo, 3, &inputs.albedo},
+        Wanted{Target::material, 1, &inputs.profile}, Wanted{Target::velocity, 2, &inputs.velocity},
+        Wanted{Target::specular, 3, &inputs.specular}})
+    if (auto done = read(host, renderer, one.target, one.channels, *one.out); !done) return done;
+  const float nothing = renderer.view.reversed_depth ? 0.0f : 1.0f;
+  for (float& depth : inputs.depth.texels) {
+    const double metres = view_depth(state.now.clip_from_view, static_cast<double>(depth));
+    depth = depth == nothing ? 0.0f : static_cast<float>(metres);
+  }
+  return success();
+}
+
+struct Session {
+  VulkanHost& host;
+  Renderer& renderer;
+  DermisHost* dermis; // may be null
+  const Scene& scene;
+};
+
+Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t frame_index) {
+  VulkanHost& host = session.host;
+  Renderer& renderer = session.renderer;
+  const SceneState state = state_at(session.scene, frame, renderer.view);
+  set_frame(renderer, state, session.dermis ? scattering_of(*session.dermis) : Scattering::none);
+  FrameOutputs out;
+  out.frame = frame;
+  out.seconds = state.seconds;
+  out.exposure = static_cast<float>(session.scene.exposure);
+  out.camera = camera_of(session.scene, state);
+  auto done = run_commands(host, [&](VkCommandBuffer commands) {
+    record_scene(renderer, commands, state);
+    return success();
+  });
+  if (!done) return done.error();
+  done = read_inputs(host, renderer, state, out.inputs); // before the graph updates the lighting in place
+  if (!done) return done.error();
+  done = run_commands(host, [&](VkCommandBuffer commands) -> Result<> {
+    if (session.dermis) {
+      auto recorded = record_graph(*session.dermis, renderer, state, commands, frame_index);
+      if (!recorded) return recorded;
+    }
+    record_composite(renderer, commands);
+    return success();
+  });
+  if (!done) return done.error();
+  if (session.dermis && hands_out_light(*session.dermis)) {
+    done = read(host, renderer, Target::scattered, 3, out.scattered);
+    if (!done) return done.error();
+  }
+  done = read(host, renderer, Target::color, 3, out.color);
+  if (!done) return done.error();
+  out.display = tonemap(out.color);
+  if (renderer.queries.host)
+    out.host_times = {{"shadows", elapsed_ms(renderer, at_start, after_shadows)},
+                      {"gbuffer", elapsed_ms(renderer, after_shadows, after_gbuffer)},
+                      {"lighting", elapsed_ms(renderer, after_gbuffer, after_lighting)},
+                      {"composite", elapsed_ms(renderer, at_composite, at_end)}};
+  if (session.dermis) out.dermis_times = graph_times(*session.dermis, frame_index);
+  return out;
+}
+
+} // namespace
+
+Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks) {
+  const Clock::time_point start = Clock::now();
+  if (auto done = check(options); !done) return done.error();
+  auto scene = load(options.scene);
+  if (!scene) return scene.error();
+  Model model;
+  if (!options.model.mesh.empty()) {
+    auto loaded = load_model(options.model);
+    if (!loaded) return loaded.error();
+    model = loaded.take();
+    put_in_place(*scene);
+  }
+  HostOptions host_options;
+  host_options.validation = options.validation;
+  host_options.device = options.device;
+  auto host = create_vulkan_host(host_options);
+  if (!host) return host.error();
+
+  RenderInfo info;
+  info.scene = scene->name;
+  info.device = (*host)->properties.deviceName;
+  info.credits = model.credits;
+  info.warnings = model.warnings;
+  for (const SceneProfile& profile : scene->profiles)
+    info.profiles.push_back({static_cast<uint32_t>(info.profiles.size()) + 1, profile.name, profile.file});
+  RendererDesc desc;
+  desc.view = {options.width, options.height, options.reversed_depth, options.jitter};
+  DermisHandle dermis;
+  if (!options.graph.empty()) {
+    auto made = create_dermis_host(
+        **host, {options.graph, info.profiles, options.settings, options.width, options.height});
+    if (!made) return made.error();
+    dermis = made.take();
+    desc.more_usage = usage_for_graph(*dermis);
+    for (const std::string& warning : warnings_of(*dermis))
+      info.warnings.push_back(warning);
+  }
+  auto renderer = create_renderer(**host, *scene, model, desc);
+  if (!renderer) return renderer.error();
+  info.triangles = (*renderer)->gpu.triangles;
+  info.load_seconds = seconds_since(start);
+  if (callbacks.on_start)
+    if (auto done = callbacks.on_start(info); !done) return done.error();
+
+  RenderSummary summary;
+  Session session{**host, **renderer, dermis.get(), *scene};
+  for (uint32_t i = 0; i < options.frames; ++i) {
+    auto frame = render_frame(session, options.first_frame + i, uint64_t{i} + 1);
+    if (!frame) return frame.error();
+    ++summary.frames;
+    if (callbacks.on_frame)
+      if (auto done = callbacks.on_frame(*frame); !done) return done.error();
+  }
+  const std::lock_guard lock((*host)->log.mutex);
+  summary.validation_messages = (*host)->log.messages;
+  return summary;
+}
+
+} // namespace demo

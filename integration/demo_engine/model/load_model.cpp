@@ -1,0 +1,263 @@
+#include "integration/demo_engine/model/load_model.hpp"
+
+#include "integration/demo_engine/files.hpp"
+#include "integration/demo_engine/model/load_texture.hpp"
+#include "integration/demo_engine/model/read_accessor.hpp"
+
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+
+namespace demo {
+namespace {
+
+constexpr uint64_t most_file_bytes = uint64_t{1} << 30;
+constexpr size_t most_vertices = size_t{1} << 25;
+constexpr uint32_t deepest_node = 256;
+constexpr std::string_view head_scan = "LeePerrySmith";
+constexpr const char* head_scan_credit =
+    "\"Infinite, 3D Head Scan\" by Lee Perry-Smith (www.triplegangers.com), licensed under CC BY 3.0";
+
+// Images are decoded by decode_texture, when they are wanted.
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  image->image.assign(bytes, bytes + size);
+  image->as_is = true;
+  return true;
+}
+
+Result<tinygltf::Model> parse(const std::string& path) {
+  auto bytes = read_binary_file(path, most_file_bytes);
+  if (!bytes) return bytes.error();
+  const auto refuse = [&](std::string_view why) {
+    return Error{ErrorKind::input, fmt::format("{}: {}", path, why)};
+  };
+  const bool binary = bytes->size() >= 4 && std::memcmp(bytes->data(), "glTF", 4) == 0;
+  size_t first = 0;
+  while (first < bytes->size() && std::isspace(static_cast<unsigned char>((*bytes)[first])) != 0)
+    ++first;
+  if (!binary && (first == bytes->size() || static_cast<char>((*bytes)[first]) != '{'))
+    return refuse("this is not a glTF file: it starts neither with 'glTF' (binary) nor with '{' (JSON)");
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(keep_encoded, nullptr);
+  tinygltf::Model model;
+  std::string error, warning;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const auto size = static_cast<unsigned int>(bytes->size());
+  bool loaded = false;
+  try {
+    loaded = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                                  reinterpret_cast<const unsigned char*>(bytes->data()), size,
+                                                  folder)
+                    : loader.LoadASCIIFromString(&model, &error, &warning,
+                                                 reinterpret_cast<const char*>(bytes->data()), size, folder);
+  } catch (const std::exception& problem) {
+    error = problem.what();
+  }
+  while (!error.empty() && error.back() == '\n')
+    error.pop_back();
+  if (!loaded)
+    return refuse(fmt::format("the glTF file is damaged: {}", error.empty() ? "no reason given" : error));
+  return model;
+}
+
+glm::dmat4 local_matrix(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
+  glm::dmat4 m(1.0);
+  if (node.translation.size() == 3) m = glm::translate(m, glm::make_vec3(node.translation.data()));
+  if (node.rotation.size() == 4)
+    m *= glm::mat4_cast(glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
+  if (node.scale.size() == 3) m = glm::scale(m, glm::make_vec3(node.scale.data()));
+  return m;
+}
+
+struct Gathering {
+  const tinygltf::Model& file;
+  std::string path;
+  Model model;
+  int material = -1;
+  bool has_normals = true, has_tangents = true, is_head_scan = false;
+  uint32_t skipped = 0;
+
+  Result<> add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& place) {
+    if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1) {
+      ++skipped;
+      return success();
+    }
+    const auto attribute = [&](const char* name) {
+      const auto found = primitive.attributes.find(name);
+      return found == primitive.attributes.end() ? -1 : found->second;
+    };
+    if (attribute("POSITION") < 0)
+      return Error{ErrorKind::input, fmt::format("{}: a mesh has no positions", path)};
+    auto positions = read_floats(file, path, attribute("POSITION"), TINYGLTF_TYPE_VEC3, 3);
+    if (!positions) return positions.error();
+    const size_t count = positions->size() / 3, first = model.mesh.vertices.size();
+    if (first + count > most_vertices)
+      return Error{ErrorKind::input, fmt::format("{}: more than {} vertices", path, most_vertices)};
+    const auto optional_floats = [&](const char* name, int type, uint32_t width,
+                                     std::vector<float>& out) -> Result<> {
+      if (attribute(name) < 0) return success();
+      auto values = read_floats(file, path, attribute(name), type, width);
+      if (!values) return values.error();
+      if (values->size() != count * width)
+        return Error{ErrorKind::input, fmt::format("{}: a mesh has {} positions and {} of {}", path, count,
+                                                   values->size() / width, name)};
+      out = values.take();
+      return success();
+    };
+    std::vector<float> normals, uvs, tangents;
+    if (auto done = optional_floats("NORMAL", TINYGLTF_TYPE_VEC3, 3, normals); !done) return done;
+    if (auto done = optional_floats("TEXCOORD_0", TINYGLTF_TYPE_VEC2, 2, uvs); !done) return done;
+    if (auto done = optional_floats("TANGENT", TINYGLTF_TYPE_VEC4, 4, tangents); !done) return done;
+    has_normals = has_normals && !normals.empty();
+    has_tangents = has_tangents && !tangents.empty();
+    const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(place)));
+    for (size_t i = 0; i < count; ++i) {
+      Vertex vertex;
+      vertex.position = glm::vec3(place * glm::dvec4(glm::make_vec3(&(*positions)[3 * i]), 1.0));
+      if (!normals.empty()) {
+        const glm::dvec3 normal = turn * glm::dvec3(glm::make_vec3(&normals[3 * i]));
+        if (glm::length(normal) > 0.0) vertex.normal = glm::vec3(glm::normalize(normal));
+      }
+      if (!uvs.empty()) vertex.uv = glm::make_vec2(&uvs[2 * i]);
+      if (!tangents.empty()) {
+        const glm::dvec3 tangent = glm::dmat3(place) * glm::dvec3(glm::make_vec3(&tangents[4 * i]));
+        if (glm::length(tangent) > 0.0)
+          vertex.tangent =
+              glm::vec4(glm::vec3(glm::normalize(tangent)), tangents[4 * i + 3] < 0.0f ? -1.0f : 1.0f);
+      }
+      model.mesh.vertices.push_back(vertex);
+    }
+    if (material < 0) material = primitive.material;
+    return add_indices(primitive, static_cast<uint32_t>(first), static_cast<uint32_t>(count));
+  }
+
+  Result<> add_indices(const tinygltf::Primitive& primitive, uint32_t first, uint32_t count) {
+    std::vector<uint32_t> indices(count);
+    for (uint32_t i = 0; i < count; ++i)
+      indices[i] = i;
+    if (primitive.indices >= 0) {
+      auto read = read_indices(file, path, primitive.indices, count);
+      if (!read) return read.error();
+      indices = read.take();
+    }
+    indices.resize(indices.size() - indices.size() % 3);
+    for (const uint32_t index : indices)
+      model.mesh.indices.push_back(first + index);
+    return success();
+  }
+
+  Result<> add_node(int index, const glm::dmat4& parent, uint32_t depth) {
+    if (index < 0 || static_cast<size_t>(index) >= file.nodes.size())
+      return Error{ErrorKind::input, fmt::format("{}: node {} does not exist", path, index)};
+    if (depth > deepest_node)
+      return Error{ErrorKind::input,
+                   fmt::format("{}: nodes are nested deeper than {}, or in a circle", path, deepest_node)};
+    const tinygltf::Node& node = file.nodes[static_cast<size_t>(index)];
+    const glm::dmat4 place = parent * local_matrix(node);
+    if (node.mesh >= 0) {
+      if (static_cast<size_t>(node.mesh) >= file.meshes.size())
+        return Error{ErrorKind::input, fmt::format("{}: mesh {} does not exist", path, node.mesh)};
+      const tinygltf::Mesh& mesh = file.meshes[static_cast<size_t>(node.mesh)];
+      is_head_scan = is_head_scan || mesh.name == head_scan;
+      for (const tinygltf::Primitive& primitive : mesh.primitives)
+        if (auto done = add_primitive(primitive, place); !done) return done;
+    }
+    for (const int child : node.children)
+      if (auto done = add_node(child, place, depth + 1); !done) return done;
+    return success();
+  }
+};
+
+// The file's own map, if it can be read; a map that cannot is a warning, since the shape is there.
+Texture own_map(Gathering& gathering, int texture) {
+  const tinygltf::Model& file = gathering.file;
+  if (texture < 0 || static_cast<size_t>(texture) >= file.textures.size()) return {};
+  const int source = file.textures[static_cast<size_t>(texture)].source;
+  if (source < 0 || static_cast<size_t>(source) >= file.images.size()) return {};
+  auto decoded = decode_texture(fmt::format("{}: image {}", gathering.path, source),
+                                std::as_bytes(std::span(file.images[static_cast<size_t>(source)].image)));
+  if (decoded) return decoded.take();
+  gathering.model.warnings.push_back(decoded.error().text);
+  return {};
+}
+
+Result<> read_maps(Gathering& gathering, const ModelOptions& options) {
+  Model& model = gathering.model;
+  if (gathering.material >= 0 && static_cast<size_t>(gathering.material) < gathering.file.materials.size()) {
+    const tinygltf::Material& material = gathering.file.materials[static_cast<size_t>(gathering.material)];
+    const std::vector<double>& factor = material.pbrMetallicRoughness.baseColorFactor;
+    if (factor.size() >= 3) model.albedo_factor = glm::clamp(glm::make_vec3(factor.data()), 0.0, 1.0);
+    if (options.albedo.empty())
+      model.albedo = own_map(gathering, material.pbrMetallicRoughness.baseColorTexture.index);
+    if (options.normal.empty()) model.normal = own_map(gathering, material.normalTexture.index);
+  }
+  struct Beside {
+    const std::string& path;
+    Texture& texture;
+  };
+  for (const Beside& one : {Beside{options.albedo, model.albedo}, Beside{options.normal, model.normal},
+                            Beside{options.specular, model.specular}}) {
+    if (one.path.empty()) continue;
+    auto texture = load_texture(one.path);
+    if (!texture) return texture.error();
+    one.texture = texture.take();
+    flip_rows(one.texture);
+  }
+  if (!options.albedo.empty()) model.albedo_factor = glm::dvec3(1.0);
+  if (!options.normal.empty()) // upside down, "up" is the other way
+    for (size_t i = 1; i < model.normal.texels.size(); i += 4)
+      model.normal.texels[i] =
+          std::byte{static_cast<uint8_t>(255 - static_cast<int>(model.normal.texels[i]))};
+  return success();
+}
+
+Result<> place_in_middle(Mesh& mesh, const ModelOptions& options) {
+  const Bounds bounds = bounds_of(mesh);
+  const float height = bounds.high.y - bounds.low.y;
+  if (!(height > 0.0f) || !std::isfinite(height))
+    return Error{ErrorKind::input, fmt::format("{}: the model has no height", options.mesh)};
+  const float scale = options.height_metres > 0.0 ? static_cast<float>(options.height_metres) / height : 1.0f;
+  const glm::vec3 middle = 0.5f * (bounds.low + bounds.high);
+  for (Vertex& vertex : mesh.vertices)
+    vertex.position = (vertex.position - middle) * scale;
+  return success();
+}
+
+} // namespace
+
+Result<Model> load_model(const ModelOptions& options) {
+  constexpr double tallest = 1000.0;
+  if (!std::isfinite(options.height_metres) || options.height_metres < 0.0 || options.height_metres > tallest)
+    return Error{ErrorKind::usage,
+                 fmt::format("the model's height is {}; expected more than 0 and at most {} metres",
+                             options.height_metres, tallest)};
+  auto file = parse(options.mesh);
+  if (!file) return file.error();
+  Gathering gathering{*file, options.mesh, {}, -1, true, true, false, 0};
+  const auto scene = static_cast<size_t>(std::max(file->defaultScene, 0));
+  if (scene < file->scenes.size())
+    for (const int node : file->scenes[scene].nodes)
+      if (auto done = gathering.add_node(node, glm::dmat4(1.0), 0); !done) return done.error();
+  if (gathering.model.mesh.indices.empty())
+    return Error{ErrorKind::input, fmt::format("{}: the default scene has no triangles", options.mesh)};
+  if (auto done = read_maps(gathering, options); !done) return done.error();
+  if (auto done = place_in_middle(gathering.model.mesh, options); !done) return done.error();
+  if (!gathering.has_normals) compute_normals(gathering.model.mesh);
+  if (!gathering.has_tangents) compute_tangents(gathering.model.mesh);
+  if (gathering.skipped > 0)
+    gathering.model.warnings.push_back(
+        fmt::format("{}: {} meshes of points or lines were left out", options.mesh, gathering.skipped));
+  if (!file->asset.copyright.empty()) gathering.model.credits.push_back(file->asset.copyright);
+  if (gathering.is_head_scan) gathering.model.credits.emplace_back(head_scan_credit);
+  return std::move(gathering.model);
+}
+
+} // namespace demo

@@ -1,0 +1,14 @@
+#pragma once
+// glTF files and their maps, as things to draw. Files are hostile until checked.
+
+#include "integration/demo_engine/engine.hpp"
+#include "integration/demo_engine/render/scene_gpu.hpp"
+
+namespace demo {
+
+// All triangles of the file's default scene in one mesh, moved so that the middle of its bounds is the origin
+// and scaled to the wanted height. Maps given in `options` take the place of those of the first material.
+// Errors: input, with file, what is wrong and what was expected; usage (a height that is no length).
+Result<Model> load_model(const ModelOptions& options);
+
+} // namespace demo

@@ -1,0 +1,277 @@
+#include "integration/demo_engine/render/dermis_host.hpp"
+
+#include "integration/demo_engine/files.hpp"
+#include "integration/include/dermis/dermis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace demo {
+
+struct DermisHost {
+  dermis_context context = nullptr;
+  dermis_graph graph = nullptr;
+  std::vector<dermis_slot> slots;
+  std::vector<std::string> slot_names; // slots' own strings end with the graph that is replaced
+  std::vector<std::string> warnings;
+};
+
+namespace {
+
+constexpr uint32_t frames_in_flight = 2;
+
+struct Report {
+  dermis_report handle = nullptr;
+  ~Report() { dermis_report_destroy(handle); }
+};
+
+ErrorKind kind_of(dermis_result result) {
+  switch (result) {
+  case DERMIS_ERROR_CONFIG:
+    return ErrorKind::input;
+  case DERMIS_ERROR_UNSUPPORTED:
+  case DERMIS_ERROR_MEMORY:
+  case DERMIS_ERROR_DEVICE_MEMORY:
+  case DERMIS_ERROR_VULKAN:
+  case DERMIS_ERROR_DEVICE_LOST:
+    return ErrorKind::environment;
+  default:
+    return ErrorKind::internal;
+  }
+}
+
+Error dermis_error(const char* call, dermis_result result, dermis_report report = nullptr) {
+  if (dermis_report_count(report) > 0) return {kind_of(result), dermis_report_text(report)};
+  const char* detail = dermis_last_error();
+  return {kind_of(result), fmt::format("{}: {}{}{}", call, dermis_result_name(result), detail ? ": " : "",
+                                       detail ? detail : "")};
+}
+
+std::optional<Target> target_of(std::string_view slot) {
+  for (size_t i = 0; i < target_count; ++i)
+    if (!slot.empty() && target_info(static_cast<Target>(i)).slot == slot) return static_cast<Target>(i);
+  return std::nullopt;
+}
+
+// Texts that a dermis_graph_desc points into.
+struct Sources {
+  std::string graph;
+  std::vector<std::string> profiles;
+};
+
+dermis_source source_of(const std::string& name, const std::string& text) {
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = name.c_str();
+  source.text = text.data();
+  source.length = text.size();
+  return source;
+}
+
+Result<Sources> read_sources(const DermisDesc& desc) {
+  Sources sources;
+  auto graph = read_text_file(desc.graph_file);
+  if (!graph) return graph.error();
+  sources.graph = graph.take();
+  for (const ScatteringProfile& profile : desc.profiles) {
+    auto text = read_text_file(profile.file);
+    if (!text) return text.error();
+    sources.profiles.push_back(text.take());
+  }
+  return sources;
+}
+
+Result<> query_slots(DermisHost& host) {
+  uint32_t count = 0;
+  dermis_result result = dermis_graph_slots(host.graph, &count, nullptr);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_slots", result);
+  host.slots.assign(count, dermis_slot DERMIS_SLOT_INIT);
+  if (count > 0) result = dermis_graph_slots(host.graph, &count, host.slots.data());
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_slots", result);
+  host.slot_names.clear();
+  for (const dermis_slot& slot : host.slots)
+    host.slot_names.emplace_back(slot.name);
+  return success();
+}
+
+// Builds the graph; `unbound` and the formats may only name slots that it has.
+Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& sources,
+                     const std::vector<std::string>& unbound) {
+  std::vector<dermis_profile> profiles;
+  for (size_t i = 0; i < desc.profiles.size(); ++i) {
+    dermis_profile profile = DERMIS_PROFILE_INIT;
+    profile.id = desc.profiles[i].id;
+    profile.source = source_of(desc.profiles[i].file, sources.profiles[i]);
+    profiles.push_back(profile);
+  }
+  std::vector<dermis_slot_format> formats;
+  for (const std::string& name : host.slot_names) {
+    const auto target = target_of(name);
+    if (!target) continue;
+    dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
+    format.name = name.c_str();
+    format.format = target_info(*target).format;
+    formats.push_back(format);
+  }
+  std::vector<const char*> unbound_names;
+  for (const std::string& name : unbound)
+    unbound_names.push_back(name.c_str());
+  dermis_graph_desc info = DERMIS_GRAPH_DESC_INIT;
+  info.source = source_of(desc.graph_file, sources.graph);
+  info.width = desc.width;
+  info.height = desc.height;
+  info.profiles = profiles.data();
+  info.profile_count = static_cast<uint32_t>(profiles.size());
+  info.unbound = unbound_names.data();
+  info.unbound_count = static_cast<uint32_t>(unbound_names.size());
+  info.formats = formats.data();
+  info.format_count = static_cast<uint32_t>(formats.size());
+  Report report;
+  dermis_graph graph = nullptr;
+  const dermis_result result = dermis_graph_create(host.context, &info, &graph, &report.handle);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_create", result, report.handle);
+  host.warnings.clear();
+  for (uint32_t i = 0; i < dermis_report_count(report.handle); ++i) {
+    dermis_message message = DERMIS_MESSAGE_INIT;
+    if (dermis_report_message(report.handle, i, &message) == DERMIS_OK)
+      host.warnings.push_back(
+          fmt::format("{}:{}:{}: {}", message.file, message.line, message.column, message.text));
+  }
+  dermis_graph_destroy(host.graph);
+  host.graph = graph;
+  return query_slots(host);
+}
+
+} // namespace
+
+void DermisHostDeleter::operator()(DermisHost* host) const {
+  dermis_graph_destroy(host->graph);
+  dermis_context_destroy(host->context);
+  delete host;
+}
+
+Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc) {
+  auto sources = read_sources(desc);
+  if (!sources) return sources.error();
+  DermisHandle host(new DermisHost);
+  dermis_context_desc context = DERMIS_CONTEXT_DESC_INIT;
+  context.flags = DERMIS_CONTEXT_TIMINGS;
+  context.frames_in_flight = frames_in_flight;
+  context.queue_family = vulkan.queue_family;
+  context.instance = vulkan.instance;
+  context.physical_device = vulkan.physical_device;
+  context.device = vulkan.device;
+  context.get_instance_proc_addr = vkGetInstanceProcAddr;
+  const dermis_result made = dermis_context_create(&context, &host->context);
+  if (made != DERMIS_OK) return dermis_error("dermis_context_create", made);
+
+  // The slots are known only when the graph is there: a first one tells their names, a second one is built
+  // for the formats of this engine and without what it cannot bind.
+  if (auto done = build_graph(*host, desc, *sources, {}); !done) return done.error();
+  std::vector<std::string> unbound;
+  for (const dermis_slot& slot : host->slots) {
+    if (target_of(slot.name)) continue;
+    if (slot.required)
+      return Error{ErrorKind::input,
+                   fmt::format("graph '{}' wants '{}' bound, which the demo engine does not make; it offers "
+                               "lighting, depth, normal, material, albedo, velocity and scattered_light",
+                               desc.graph_file, slot.name)};
+    unbound.emplace_back(slot.name);
+  }
+  if (auto done = build_graph(*host, desc, *sources, unbound); !done) return done.error();
+  for (const auto& [name, json] : desc.settings) {
+    Report report;
+    const dermis_result set =
+        dermis_graph_set_setting(host->graph, name.c_str(), json.c_str(), &report.handle);
+    if (set != DERMIS_OK) return dermis_error("dermis_graph_set_setting", set, report.handle);
+  }
+  return host;
+}
+
+std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& host) {
+  std::array<VkImageUsageFlags, target_count> usage{};
+  for (const dermis_slot& slot : host.slots)
+    if (const auto target = target_of(slot.name)) usage[static_cast<size_t>(*target)] |= slot.usage;
+  return usage;
+}
+
+bool hands_out_light(const DermisHost& host) {
+  return std::any_of(host.slots.begin(), host.slots.end(), [](const dermis_slot& slot) {
+    return slot.written && slot.bound && target_of(slot.name) == Target::scattered;
+  });
+}
+
+Scattering scattering_of(const DermisHost& host) {
+  const bool in_place = std::any_of(host.slots.begin(), host.slots.end(), [](const dermis_slot& slot) {
+    return slot.written && slot.bound && target_of(slot.name) == Target::lighting;
+  });
+  if (in_place) return Scattering::in_place;
+  return hands_out_light(host) ? Scattering::apart : Scattering::none;
+}
+
+const std::vector<std::string>& warnings_of(const DermisHost& host) {
+  return host.warnings;
+}
+
+Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,
+                      VkCommandBuffer commands, uint64_t frame_index) {
+  dermis_image_state rests{};
+  rests.layout = resting.layout;
+  rests.queue_family = VK_QUEUE_FAMILY_IGNORED;
+  rests.stages = resting.stages;
+  rests.access = resting.access;
+  std::vector<dermis_image_binding> bindings;
+  for (const dermis_slot& slot : host.slots) {
+    const auto target = target_of(slot.name);
+    if (!target || !slot.bound) continue;
+    const Image& image = renderer[*target];
+    dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
+    binding.slot = slot.id;
+    binding.format = image.format;
+    binding.image = image.image;
+    binding.view = image.view;
+    binding.width = image.width;
+    binding.height = image.height;
+    binding.before = rests;
+    binding.after = rests;
+    bindings.push_back(binding);
+  }
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  frame.command_buffer = commands;
+  frame.bindings = bindings.data();
+  frame.binding_count = static_cast<uint32_t>(bindings.size());
+  frame.frame_index = frame_index;
+  frame.completed_frame_index = frame_index - 1; // this engine waits for every frame
+  const auto put = [](const glm::dmat4& m, float(&rows)[16]) {
+    for (int r = 0; r < 4; ++r)
+      for (int c = 0; c < 4; ++c)
+        rows[r * 4 + c] = static_cast<float>(m[c][r]);
+  };
+  put(state.now.clip_from_view, frame.clip_from_view);
+  put(state.now.view_from_world, frame.view_from_world);
+  put(state.previous.clip_from_view, frame.previous_clip_from_view);
+  put(state.previous.view_from_world, frame.previous_view_from_world);
+  frame.jitter_x = static_cast<float>(state.now.jitter.x);
+  frame.jitter_y = static_cast<float>(state.now.jitter.y);
+  frame.metres_per_unit = 1.0f;
+  frame.exposure = static_cast<float>(renderer.scene->exposure);
+  frame.delta_seconds = static_cast<float>(1.0 / renderer.scene->frames_per_second);
+  frame.depth_kind = DERMIS_DEPTH_DEVICE;
+  const dermis_result result = dermis_graph_record(host.graph, &frame);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_record", result);
+  return success();
+}
+
+std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index) {
+  uint32_t count = 0;
+  if (dermis_graph_timings(host.graph, frame_index, &count, nullptr) != DERMIS_OK || count == 0) return {};
+  std::vector<dermis_pass_timing> timings(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
+  if (dermis_graph_timings(host.graph, frame_index, &count, timings.data()) != DERMIS_OK) return {};
+  std::vector<PassTime> times;
+  for (const dermis_pass_timing& one : timings)
+    times.push_back({one.pass, static_cast<double>(one.nanoseconds) * 1e-6});
+  return times;
+}
+
+} // namespace demo

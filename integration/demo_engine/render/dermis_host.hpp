@@ -1,0 +1,45 @@
+#pragma once
+// The engine's only acquaintance with Dermis: a context, a graph, and the targets it is given.
+
+#include "integration/demo_engine/engine.hpp"
+#include "integration/demo_engine/render/renderer.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace demo {
+
+struct DermisDesc {
+  std::string graph_file;
+  std::vector<ScatteringProfile> profiles;
+  std::vector<std::pair<std::string, std::string>> settings;
+  uint32_t width = 1, height = 1;
+};
+
+struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h
+struct DermisHostDeleter {
+  void operator()(DermisHost* host) const;
+};
+using DermisHandle = std::unique_ptr<DermisHost, DermisHostDeleter>;
+
+// Reads graph and profile files, builds the graph, names the slots that this engine cannot fill as unbound.
+// Errors: input (with all messages of the report), environment (the device lacks something), internal.
+Result<DermisHandle> create_dermis_host(VulkanHost& host, const DermisDesc& desc);
+
+// What the graph adds to each target's usage.
+std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& host);
+// In place if the graph writes `lighting`, else apart if it writes `scattered_light`, else none.
+Scattering scattering_of(const DermisHost& host);
+bool hands_out_light(const DermisHost& host);
+const std::vector<std::string>& warnings_of(const DermisHost& host);
+
+// Records the graph between lighting and composite. All targets rest before and after. frame_index from 1.
+// Errors: environment, internal.
+Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,
+                      VkCommandBuffer commands, uint64_t frame_index);
+// Device times of the frame; the device must have finished it. Empty where the device has no timestamps.
+std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index);
+
+} // namespace demo
