@@ -44,10 +44,10 @@ constexpr std::array<UsageInfo, usage_count> usages{{
      false, true, true, true},
     {"indirect_arguments", stage::draw_indirect, access::indirect_command_read, Layout::undefined,
      indirect_buffer_usage, false, true, true, false},
-    // vkCmdFillBuffer and vkCmdClearColorImage are both "clear commands"; a buffer has no layout, so readers
-    // of this table ignore the layout for buffers.
-    {"clear", stage::clear, access::transfer_write, Layout::transfer_destination, transfer_destination_usage,
-     true, true, false, true},
+    // All transfer stages: vkCmdClearColorImage is a clear command, vkCmdFillBuffer a copy to some validation
+    // layers. A buffer has no layout, so readers of this table ignore the layout for buffers.
+    {"clear", stage::all_transfer, access::transfer_write, Layout::transfer_destination,
+     transfer_destination_usage, true, true, false, true},
 }};
 
 } // namespace

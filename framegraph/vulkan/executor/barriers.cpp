@@ -6,6 +6,9 @@ namespace dermis::vulkan {
 namespace {
 
 constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkAccessFlags2 shader_write =
+    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
 constexpr VkAccessFlags2 all_memory = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
 bool foreign(const Device& device, uint32_t queue_family) {
@@ -50,7 +53,7 @@ bool nothing_to_do(const PlanBarrier& barrier, const Scopes& s) {
   return false;
 }
 
-VkImageMemoryBarrier2 image_barrier(VkImage image, Format format, const Scopes& s) {
+VkImageMemoryBarrier2 image_barrier(VkImage image, VkImageAspectFlags aspects, const Scopes& s) {
   VkImageMemoryBarrier2 out{};
   out.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   out.srcStageMask = s.source_stages;
@@ -61,7 +64,20 @@ VkImageMemoryBarrier2 image_barrier(VkImage image, Format format, const Scopes& 
   out.newLayout = s.new_layout;
   out.srcQueueFamilyIndex = out.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   out.image = image;
-  out.subresourceRange = {barrier_aspects(format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  out.subresourceRange = {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  return out;
+}
+
+VkBufferMemoryBarrier2 buffer_barrier(VkBuffer buffer, const Scopes& s) {
+  VkBufferMemoryBarrier2 out{};
+  out.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
+  out.srcStageMask = s.source_stages;
+  out.srcAccessMask = s.source_access;
+  out.dstStageMask = s.destination_stages;
+  out.dstAccessMask = s.destination_access;
+  out.srcQueueFamilyIndex = out.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  out.buffer = buffer;
+  out.size = VK_WHOLE_SIZE;
   return out;
 }
 
@@ -76,6 +92,10 @@ void submit_batch(const State& state, VkCommandBuffer commands, uint32_t images,
   state.device->vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
+VkImageAspectFlags aspects_of_slot(const State& state, size_t slot) {
+  return barrier_aspects(state.plan.resources[state.slot_resource[slot]].format);
+}
+
 } // namespace
 
 uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t frames_back) noexcept {
@@ -84,7 +104,8 @@ uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t 
   return resource.first_instance + (phase + count - frames_back % count) % count;
 }
 
-void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count) noexcept {
+void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
+                     std::span<const uint32_t> writable_stand_ins) noexcept {
   uint32_t images = 0, buffers = 0;
   for (uint32_t i = first; i < first + count; ++i) {
     const PlanBarrier& barrier = state.plan.barriers[i];
@@ -94,24 +115,25 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     const Scopes s = scopes_of(*state.device, barrier, host);
     if (nothing_to_do(barrier, s)) continue;
     if (host_owned) {
-      state.image_barriers[images++] = image_barrier(host->image, resource.format, s);
+      state.image_barriers[images++] = image_barrier(host->image, barrier_aspects(resource.format), s);
       continue;
     }
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
     if (resource.type == ResourceType::image) {
-      state.image_barriers[images++] = image_barrier(instance.image, resource.format, s);
+      state.image_barriers[images++] = image_barrier(instance.image, barrier_aspects(resource.format), s);
       continue;
     }
-    VkBufferMemoryBarrier2& out = state.buffer_barriers[buffers++];
-    out = {};
-    out.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
-    out.srcStageMask = s.source_stages;
-    out.srcAccessMask = s.source_access;
-    out.dstStageMask = s.destination_stages;
-    out.dstAccessMask = s.destination_access;
-    out.srcQueueFamilyIndex = out.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    out.buffer = instance.buffer;
-    out.size = VK_WHOLE_SIZE;
+    state.buffer_barriers[buffers++] = buffer_barrier(instance.buffer, s);
+  }
+  // A shader does not write to a port that is not bound, but only it knows that.
+  constexpr Scopes in_order{
+      compute, compute, shader_write, shader_write, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL};
+  for (const uint32_t index : writable_stand_ins) {
+    const StandIn& stand_in = state.stand_ins[index];
+    if (stand_in.image != VK_NULL_HANDLE)
+      state.image_barriers[images++] = image_barrier(stand_in.image, VK_IMAGE_ASPECT_COLOR_BIT, in_order);
+    else
+      state.buffer_barriers[buffers++] = buffer_barrier(stand_in.buffer, in_order);
   }
   submit_batch(state, frame.command_buffer, images, buffers);
 }
@@ -124,7 +146,7 @@ void record_acquires(State& state, const FrameInput& frame) noexcept {
     if (!foreign(*state.device, host.before.queue_family)) continue;
     const Scopes s{0, all_commands, 0, all_memory, host.before.layout, host.before.layout};
     VkImageMemoryBarrier2& out = state.image_barriers[images++];
-    out = image_barrier(host.image, state.plan.resources[state.slot_resource[slot]].format, s);
+    out = image_barrier(host.image, aspects_of_slot(state, slot), s);
     out.srcQueueFamilyIndex = host.before.queue_family;
     out.dstQueueFamilyIndex = state.device->queue_family;
   }
@@ -139,7 +161,7 @@ void record_releases(State& state, const FrameInput& frame) noexcept {
     if (!foreign(*state.device, host.after.queue_family)) continue;
     const Scopes s{all_commands, 0, VK_ACCESS_2_MEMORY_WRITE_BIT, 0, host.after.layout, host.after.layout};
     VkImageMemoryBarrier2& out = state.image_barriers[images++];
-    out = image_barrier(host.image, state.plan.resources[state.slot_resource[slot]].format, s);
+    out = image_barrier(host.image, aspects_of_slot(state, slot), s);
     out.srcQueueFamilyIndex = state.device->queue_family;
     out.dstQueueFamilyIndex = host.after.queue_family;
   }

@@ -99,8 +99,9 @@ void make_histories(State& state, const ExecutorInput& input) {
 void reserve_for_recording(State& state) {
   size_t largest = std::max<size_t>(state.plan.final_barrier_count, state.slot_resource.size());
   size_t most_settings = 0;
-  for (const PlanPass& planned : state.plan.passes)
-    largest = std::max<size_t>(largest, planned.barrier_count);
+  for (size_t p = 0; p < state.passes.size(); ++p)
+    largest =
+        std::max(largest, state.plan.passes[p].barrier_count + state.passes[p].writable_stand_ins.size());
   for (const Kernel& kernel : state.kernels)
     most_settings = std::max<size_t>(most_settings, kernel.push_bytes / sizeof(uint32_t));
   state.image_barriers.resize(largest);
@@ -133,7 +134,7 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   if (Error error = create_kernels(*state, input)) return error;
   if (Error error = check_passes(*state, *input.kinds)) return error;
   if (Error error = create_memory(*state, *input.graph)) return error;
-  if (Error error = create_descriptors(*state)) return error;
+  if (Error error = create_descriptors(*state, *input.kinds)) return error;
   if (Error error = create_stand_ins(*state)) return error;
   if (Error error = create_timestamps(*state)) return error;
   reserve_for_recording(*state);

@@ -2,14 +2,15 @@
 // to is written each frame, because the host's images and the current instance of a history change.
 #include "framegraph/vulkan/executor/state.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace dermis::vulkan {
 namespace {
 
-void list_ports(State& state) {
+void list_ports(State& state, const KindRegistry& kinds) {
   for (uint32_t p = 0; p < state.passes.size(); ++p) {
-    const Pass& pass = state.passes[p];
+    Pass& pass = state.passes[p];
     if (pass.kernel == no_index) continue;
     const Kernel& kernel = state.kernels[pass.kernel];
     for (uint32_t port = 0; port < kernel.ports.size(); ++port) {
@@ -18,9 +19,13 @@ void list_ports(State& state) {
       write.pass = p;
       write.port = port;
       const uint32_t access = pass.access_of_port[port];
-      if (access == no_index)
+      if (access == no_index) {
         write.stand_in = stand_in_for(state, kernel.ports[port]);
-      else {
+        const bool writes = usage_info(kinds[kernel.kind].ports[port].usage).writes;
+        if (writes && std::find(pass.writable_stand_ins.begin(), pass.writable_stand_ins.end(),
+                                write.stand_in) == pass.writable_stand_ins.end())
+          pass.writable_stand_ins.push_back(write.stand_in);
+      } else {
         write.resource = state.plan.accesses[access].resource;
         write.frames_back = state.plan.accesses[access].frames_back;
       }
@@ -97,8 +102,8 @@ Error create_sets(State& state) {
 
 } // namespace
 
-Error create_descriptors(State& state) {
-  list_ports(state);
+Error create_descriptors(State& state, const KindRegistry& kinds) {
+  list_ports(state, kinds);
   prepare_writes(state);
   return create_sets(state);
 }

@@ -21,10 +21,11 @@ struct Target {
 void record_barrier(const Device& device, VkCommandBuffer commands, const Target& target, bool before_clear) {
   VkImageMemoryBarrier2 image{};
   image.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-  image.srcStageMask = before_clear ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_CLEAR_BIT;
+  image.srcStageMask =
+      before_clear ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
   image.srcAccessMask = before_clear ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  image.dstStageMask =
-      before_clear && target.clear ? VK_PIPELINE_STAGE_2_CLEAR_BIT : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  image.dstStageMask = before_clear && target.clear ? VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT
+                                                    : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   image.dstAccessMask = before_clear && target.clear
                             ? VK_ACCESS_2_TRANSFER_WRITE_BIT
                             : VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;

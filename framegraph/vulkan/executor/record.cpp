@@ -191,7 +191,8 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   for (size_t p = 0; p < state.passes.size(); ++p) {
     const PlanPass& planned = state.plan.passes[p];
     begin_label(device, commands, state.passes[p].name.c_str());
-    record_barriers(state, frame, planned.first_barrier, planned.barrier_count);
+    record_barriers(state, frame, planned.first_barrier, planned.barrier_count,
+                    state.passes[p].writable_stand_ins);
     if (state.passes[p].kernel == no_index)
       run_clear(state, frame, p);
     else
@@ -199,7 +200,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
     end_label(device, commands);
     write_timestamp(state, commands, frame_slot, static_cast<uint32_t>(p) + 1);
   }
-  record_barriers(state, frame, state.plan.first_final_barrier, state.plan.final_barrier_count);
+  record_barriers(state, frame, state.plan.first_final_barrier, state.plan.final_barrier_count, {});
   record_releases(state, frame);
   finish_frame(state, frame, frame_slot, rectangle);
   return {};

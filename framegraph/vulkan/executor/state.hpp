@@ -76,6 +76,7 @@ struct Pass {
   uint32_t kernel = no_index;           // into State::kernels; none: clear
   std::vector<uint32_t> access_of_port; // into Plan::accesses, no_index where the port is not bound
   uint32_t port_mask = 0;
+  std::vector<uint32_t> writable_stand_ins; // into State::stand_ins
 };
 
 struct HistoryRecord {
@@ -149,14 +150,16 @@ Error create_kernels(State& state, const ExecutorInput& input);
 void destroy_kernels(State& state);
 
 // ---- descriptors.cpp
-Error create_descriptors(State& state);
+Error create_descriptors(State& state, const KindRegistry& kinds);
 void destroy_descriptors(State& state);
 void write_descriptors(State& state, uint32_t frame_slot, std::span<const HostImage> images) noexcept;
 
 // ---- barriers.cpp
 // Which instance holds resource `r` of `frames_back` frames ago, in the frame that is being recorded.
 uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t frames_back) noexcept;
-void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count) noexcept;
+// One batch: the plan's barriers first .. first + count, and those that keep writes to stand-ins in order.
+void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
+                     std::span<const uint32_t> writable_stand_ins) noexcept;
 void record_acquires(State& state, const FrameInput& frame) noexcept; // queue family transfers to us
 void record_releases(State& state, const FrameInput& frame) noexcept; // and from us
 

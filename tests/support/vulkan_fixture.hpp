@@ -1,0 +1,73 @@
+#pragma once
+// A headless Vulkan device for tests, always under Khronos validation with core and synchronization checks,
+// also across submissions. Every message fails the test. Skips, saying why, where there is no driver or no
+// layer.
+
+#include <cstddef>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+#include <vulkan/vulkan_core.h>
+
+namespace dermis::testing {
+
+struct TestImage {
+  VkImage image = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE; // of mip 0; of the depth aspect for depth formats
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  uint32_t width = 0, height = 0;
+  uint32_t texel_bytes = 0;
+};
+
+class VulkanTest : public ::testing::Test {
+public:
+  VulkanTest();
+  ~VulkanTest() override;
+
+protected:
+  void SetUp() override;
+  void TearDown() override; // waits, frees, and expects that validation had nothing to say
+
+  // With transfer usage added; freed in TearDown. Contents and layout undefined.
+  TestImage make_image(VkFormat format, uint32_t width, uint32_t height, VkImageUsageFlags usage);
+  // Fills mip 0 with texels, row by row, and leaves it in `layout`. Waits.
+  void upload(const TestImage& image, std::span<const std::byte> texels, VkImageLayout layout);
+  // Brings it to `layout`, contents undefined. Waits.
+  void transition(const TestImage& image, VkImageLayout layout);
+  // Texels of mip 0; the image is in `layout` before and after. Waits for the device.
+  std::vector<std::byte> download(const TestImage& image, VkImageLayout layout);
+
+  VkCommandBuffer begin_commands();      // a fresh one, recording
+  void submit(VkCommandBuffer commands); // ends and submits without waiting
+  void wait();                           // for the device to be idle
+
+  // What validation said since the last call, and forgets it: for tests that provoke.
+  std::vector<std::string> take_messages();
+
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  uint32_t queue_family = 0;
+
+private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+  return std::as_bytes(std::span<const T>(values));
+}
+template <class T> std::vector<T> values_of(const std::vector<std::byte>& bytes) {
+  std::vector<T> values(bytes.size() / sizeof(T));
+  const auto* first = reinterpret_cast<const T*>(bytes.data());
+  values.assign(first, first + values.size());
+  return values;
+}
+
+} // namespace dermis::testing
