@@ -23,7 +23,7 @@ enum class Rounding : uint8_t { ceil, floor };
 struct SizeExpression {
   enum class Base : uint8_t { view, resource, fixed } base = Base::view;
   ResourceId resource;
-  Rational x, y;                 // factors; for fixed the sizes themselves over 1
+  Rational x, y; // factors; for fixed the sizes themselves over 1
   Rounding rounding = Rounding::ceil;
   uint32_t align = 1;
 };
@@ -42,14 +42,14 @@ struct ResourceDeclaration {
   std::string name;
   ResourceType type = ResourceType::image;
   Origin origin = Origin::transient;
-  bool exported = false;        // its last version is handed to the host
-  bool optional = false;        // import or export that the host may leave unbound
-  std::vector<Format> formats;  // in order of preference
-  SizeExpression size;          // images; buffers: element count = ceil-size x*y + extra_elements
-  uint32_t mips = 1;            // 0 = full chain
+  bool exported = false;       // its last version is handed to the host
+  bool optional = false;       // import or export that the host may leave unbound
+  std::vector<Format> formats; // in order of preference
+  SizeExpression size;         // images; buffers: element count = ceil-size x*y + extra_elements
+  uint32_t mips = 1;           // 0 = full chain
   uint32_t layers = 1;
-  uint32_t stride = 0;          // buffers: bytes an element
-  uint64_t extra_elements = 0;  // buffers
+  uint32_t stride = 0;         // buffers: bytes an element
+  uint64_t extra_elements = 0; // buffers
   HistoryDeclaration history;
   std::string note;
   SourceLocation where;
@@ -69,7 +69,18 @@ struct SettingDeclaration {
 // `when`: a total, typed expression over settings. Nodes in a pool; leaves refer to settings or literals.
 struct Expression {
   enum class Op : uint8_t {
-    literal, setting, logical_not, logical_and, logical_or, equal, not_equal, less, less_equal, greater, greater_equal, in
+    literal,
+    setting,
+    logical_not,
+    logical_and,
+    logical_or,
+    equal,
+    not_equal,
+    less,
+    less_equal,
+    greater,
+    greater_equal,
+    in
   } op = Op::literal;
   SettingValue literal;
   SettingId setting;
@@ -78,15 +89,15 @@ struct Expression {
 };
 
 struct PortBinding {
-  uint32_t port = 0;           // index into PassKind::ports
+  uint32_t port = 0; // index into PassKind::ports
   ResourceId resource;
-  uint32_t frames_back = 0;    // 0: this frame; 1: `name@-1`
+  uint32_t frames_back = 0; // 0: this frame; 1: `name@-1`
   SourceLocation where;
 };
 
 struct SettingBinding {
-  uint32_t setting = 0;        // index into PassKind::settings
-  SettingId from;              // valid: "$name" of the graph's settings; else the literal
+  uint32_t setting = 0; // index into PassKind::settings
+  SettingId from;       // valid: "$name" of the graph's settings; else the literal
   SettingValue literal;
   SourceLocation where;
 };
@@ -120,7 +131,7 @@ struct Graph {
   std::vector<SettingDeclaration> settings;
   std::vector<ResourceDeclaration> resources; // imports first, in file order, then resources
   std::vector<Expression> expressions;
-  std::vector<PassDeclaration> passes;        // in file order: versions of a resource follow it
+  std::vector<PassDeclaration> passes; // in file order: versions of a resource follow it
 };
 
 } // namespace dermis

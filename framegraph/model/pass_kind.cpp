@@ -27,6 +27,16 @@ int find_port(const PassKind& kind, std::string_view name) {
   return index_of(kind.ports, name);
 }
 
+PortSide side_of(const Port& port) {
+  return usage_info(port.usage).writes ? PortSide::write : PortSide::read;
+}
+
+int find_port(const PassKind& kind, std::string_view name, PortSide side) {
+  for (size_t i = 0; i < kind.ports.size(); ++i)
+    if (kind.ports[i].name == name && side_of(kind.ports[i]) == side) return static_cast<int>(i);
+  return -1;
+}
+
 int find_setting(const PassKind& kind, std::string_view name) {
   return index_of(kind.settings, name);
 }

@@ -16,7 +16,8 @@ struct Port {
   std::string_view name;
   Usage usage = Usage::sampled_image;
   bool optional = false;
-  std::string_view glsl_type; // images: "texture2D", "utexture2D", "image2D", "uimage2D"; buffers: the element type
+  std::string_view
+      glsl_type; // images: "texture2D", "utexture2D", "image2D", "uimage2D"; buffers: the element type
   std::string_view doc;
   std::span<const Format> formats = {}; // formats the shader can work with; empty = any the resource declares
 };
@@ -34,9 +35,9 @@ struct KindSetting {
   std::string_view name;
   SettingType type = SettingType::integer;
   SettingValue default_value;
-  double minimum = 0.0, maximum = 0.0; // inclusive; for integer and real
+  double minimum = 0.0, maximum = 0.0;            // inclusive; for integer and real
   std::span<const std::string_view> options = {}; // for enumeration
-  std::string_view unit; // "px", "mm", "taps", or "" when dimensionless
+  std::string_view unit;                          // "px", "mm", "taps", or "" when dimensionless
   std::string_view doc;
 };
 
@@ -52,7 +53,7 @@ struct PassKind {
   std::string_view name;   // "subsurface.burley"
   std::string_view shader; // file stem in shaders/, "" for kinds without one
   std::string_view doc;
-  std::span<const Port> ports; // read and written, in binding order: port i is binding i of set 0
+  std::span<const Port> ports;           // read and written, in binding order: port i is binding i of set 0
   std::span<const KindSetting> settings; // push constants: uint port_mask, then 4 bytes each in this order
   DispatchShape dispatch = DispatchShape::over_view;
   bool side_effects = false; // never culled
@@ -70,8 +71,14 @@ private:
   std::vector<PassKind> kinds_;
 };
 
-// Index of a port or setting by name; -1 when the kind has none of that name.
+// A kind may have a port to read and one to write under the same name (`guide@-1` in, `guide` out). Ports
+// that update stand on the writing side.
+enum class PortSide : uint8_t { read, write };
+PortSide side_of(const Port& port);
+
+// Index of a port or setting by name; -1 when the kind has none of that name. Without a side: the first.
 int find_port(const PassKind& kind, std::string_view name);
+int find_port(const PassKind& kind, std::string_view name, PortSide side);
 int find_setting(const PassKind& kind, std::string_view name);
 
 } // namespace dermis

@@ -1,7 +1,8 @@
 #pragma once
 // The words a graph is written in: formats, usages, and the synchronisation scopes that follow from a usage.
 // The numbers of stages, access flags and layouts are those of Vulkan 1.3 (VkPipelineStageFlagBits2,
-// VkAccessFlagBits2, VkImageLayout), kept here without including it; framegraph/vulkan/ asserts that they agree.
+// VkAccessFlagBits2, VkImageLayout), kept here without including it; framegraph/vulkan/ asserts that they
+// agree.
 
 #include <cstdint>
 #include <optional>
@@ -11,18 +12,35 @@ namespace dermis {
 
 enum class Format : uint8_t {
   undefined,
-  r8_unorm, r8_uint, r16_uint, r32_uint, r16f, r32f,
-  rg8_unorm, rg16f, rg32f, rg32_uint,
-  rgba8_unorm, rgba8_srgb, rgba16f, rgba32f, rgba32_uint, b10g11r11f,
-  d16, d24, d32f, d24s8, d32fs8,
+  r8_unorm,
+  r8_uint,
+  r16_uint,
+  r32_uint,
+  r16f,
+  r32f,
+  rg8_unorm,
+  rg16f,
+  rg32f,
+  rg32_uint,
+  rgba8_unorm,
+  rgba8_srgb,
+  rgba16f,
+  rgba32f,
+  rgba32_uint,
+  b10g11r11f,
+  d16,
+  d24,
+  d32f,
+  d24s8,
+  d32fs8,
   count
 };
 
 struct FormatInfo {
-  std::string_view name;  // as written in a graph file
-  uint32_t vulkan;        // VkFormat
+  std::string_view name;    // as written in a graph file
+  uint32_t vulkan;          // VkFormat
   uint32_t bytes_per_texel; // packed size; the driver's VkMemoryRequirements decide, never this
-  bool depth;             // has a depth aspect
+  bool depth;               // has a depth aspect
 };
 
 const FormatInfo& format_info(Format format);
@@ -58,18 +76,25 @@ inline constexpr Access shader_storage_write = 0x400000000ull;
 } // namespace access
 
 enum class Layout : uint32_t { // VkImageLayout
-  undefined = 0, general = 1, depth_stencil_attachment = 3, depth_stencil_read_only = 4,
-  shader_read_only = 5, transfer_source = 6, transfer_destination = 7
+  undefined = 0,
+  general = 1,
+  depth_stencil_attachment = 3,
+  depth_stencil_read_only = 4,
+  shader_read_only = 5,
+  transfer_source = 6,
+  transfer_destination = 7
 };
 
 // What a port does with what is bound to it. Stages, access masks and layouts follow; no file writes them.
 enum class Usage : uint8_t {
-  sampled_image,         // compute shader, texelFetch or texture(); read only
-  storage_image_write,   // compute shader, imageStore of every texel it owns; previous contents may be kept
-  storage_image_update,  // compute shader, imageLoad and imageStore of the same texels
-  storage_buffer_read, storage_buffer_write, storage_buffer_update,
-  indirect_arguments,    // read by vkCmdDispatchIndirect
-  clear,                 // vkCmdFillBuffer / vkCmdClearColorImage
+  sampled_image,        // compute shader, texelFetch or texture(); read only
+  storage_image_write,  // compute shader, imageStore of every texel it owns; previous contents may be kept
+  storage_image_update, // compute shader, imageLoad and imageStore of the same texels
+  storage_buffer_read,
+  storage_buffer_write,
+  storage_buffer_update,
+  indirect_arguments, // read by vkCmdDispatchIndirect
+  clear,              // vkCmdFillBuffer / vkCmdClearColorImage
   count
 };
 

@@ -1,0 +1,87 @@
+#include "framegraph/model/expression_lexer.hpp"
+
+#include "framegraph/text/utf8.hpp"
+
+#include <charconv>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+constexpr size_t shown_bytes = 40;
+
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+} // namespace
+
+bool is_reserved_word(std::string_view word) {
+  return word == "and" || word == "or" || word == "not" || word == "in" || word == "true" || word == "false";
+}
+
+std::string describe(const Token& token) {
+  if (token.sort == Token::Sort::end) return "the end";
+  std::string out = "'";
+  append_printable(out, token.text, shown_bytes);
+  return out + "'";
+}
+
+Token ExpressionLexer::number(size_t begin) {
+  while (at_ < text_.size() &&
+         (is_digit(text_[at_]) || is_letter(text_[at_]) || text_[at_] == '.' ||
+          ((text_[at_] == '+' || text_[at_] == '-') && (text_[at_ - 1] | 0x20) == 'e'))) {
+    ++at_;
+  }
+  Token token{Token::Sort::malformed, text_.substr(begin, at_ - begin), 0, 0.0, begin};
+  const char* first = token.text.data();
+  const char* last = first + token.text.size();
+  if (token.text.find_first_of(".eE") == std::string_view::npos) {
+    const auto result = std::from_chars(first, last, token.integer);
+    if (result.ec == std::errc() && result.ptr == last) token.sort = Token::Sort::integer;
+  } else {
+    const auto result = std::from_chars(first, last, token.real);
+    if (result.ec == std::errc() && result.ptr == last) token.sort = Token::Sort::real;
+  }
+  return token;
+}
+
+Token ExpressionLexer::next() {
+  while (at_ < text_.size() &&
+         (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n' || text_[at_] == '\r')) {
+    ++at_;
+  }
+  const size_t begin = at_;
+  if (at_ == text_.size()) return {Token::Sort::end, {}, 0, 0.0, begin};
+  const char c = text_[at_++];
+  if (is_letter(c)) {
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_])))
+      ++at_;
+    return {Token::Sort::word, text_.substr(begin, at_ - begin), 0, 0.0, begin};
+  }
+  if (is_digit(c) || (c == '-' && at_ < text_.size() && is_digit(text_[at_]))) return number(begin);
+  if (c == '\'') {
+    const size_t end = text_.find('\'', at_);
+    if (end == std::string_view::npos) {
+      at_ = text_.size();
+      return {Token::Sort::malformed, text_.substr(begin), 0, 0.0, begin};
+    }
+    const std::string_view text = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    return {Token::Sort::text, text, 0, 0.0, begin};
+  }
+  const std::string_view two = text_.substr(begin, 2);
+  if (two == "==" || two == "!=" || two == "<=" || two == ">=") {
+    ++at_;
+    return {Token::Sort::symbol, two, 0, 0.0, begin};
+  }
+  const std::string_view one = text_.substr(begin, 1);
+  const bool known = std::string_view("<>()[],").find(c) != std::string_view::npos;
+  return {known ? Token::Sort::symbol : Token::Sort::malformed, one, 0, 0.0, begin};
+}
+
+} // namespace dermis

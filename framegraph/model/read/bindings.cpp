@@ -1,0 +1,206 @@
+// "read" and "write" of a pass: which resource, of which frame, stands at which port.
+
+#include "framegraph/model/read/graph_reader.hpp"
+#include "framegraph/text/limits.hpp"
+#include "framegraph/text/suggest.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+bool is_unsigned(Format format) {
+  return format_info(format).name.find("_uint") != std::string_view::npos;
+}
+
+bool works_with(const Port& port, Format format) {
+  if (!port.formats.empty())
+    return std::find(port.formats.begin(), port.formats.end(), format) != port.formats.end();
+  const UsageInfo& usage = usage_info(port.usage);
+  if (usage.writes && format_info(format).depth) return false;
+  if (port.glsl_type.empty()) return true;
+  return is_unsigned(format) == (port.glsl_type.front() == 'u');
+}
+
+std::string format_list(std::span<const Format> formats) {
+  std::vector<std::string_view> names;
+  for (Format format : formats)
+    names.push_back(format_info(format).name);
+  return list_words(names);
+}
+
+class Bindings {
+public:
+  Bindings(GraphReader& reader, ObjectReader& object, PassDeclaration& pass)
+      : reader_(reader), object_(object), pass_(pass),
+        kind_(pass.kind.valid() ? &reader.kinds[pass.kind] : nullptr),
+        bound_(kind_ ? kind_->ports.size() : 0) {}
+
+  void read_side(PortSide side) {
+    const std::string_view key = side == PortSide::read ? "read" : "write";
+    const NodeId list = object_.object(key, Need::optional);
+    if (!list.valid()) {
+      const bool mistyped = object_.has(key); // reported; nothing is known about its ports
+      complete_ &= !mistyped;
+      if (side == PortSide::write) writes_known_ &= !mistyped;
+      return;
+    }
+    for (NodeId node : children(reader_.document, list)) {
+      if (!read_one(side, node) && side == PortSide::write) writes_known_ = false;
+    }
+  }
+
+  void report_missing() {
+    if (kind_ == nullptr || !complete_) return;
+    for (size_t i = 0; i < kind_->ports.size(); ++i) {
+      const Port& port = kind_->ports[i];
+      if (bound_[i] || port.optional) continue;
+      if (side_of(port) == PortSide::write) writes_known_ = false;
+      reader_.error(DiagnosticId::missing_port, pass_.where,
+                    fmt::format("{} of kind '{}' needs something at the port '{}' under \"{}\" ({})",
+                                object_.what(), kind_->name, port.name,
+                                side_of(port) == PortSide::read ? "read" : "write", port.doc));
+    }
+  }
+
+  bool writes_known() const { return writes_known_; }
+
+private:
+  // False when what is bound could not be read.
+  bool read_one(PortSide side, NodeId node) {
+    const SourceLocation where = reader_.document.where(node);
+    const int port = find(side, node);
+    const std::string what = fmt::format("port '{}' of {}", reader_.document.key(node), object_.what());
+    const auto text = read_string(reader_.document, node, what, reader_.diagnostics);
+    if (!text) return false;
+    PortBinding binding;
+    binding.where = where;
+    if (!parse_reference(*text, what, side, where, binding)) return false;
+    // Kept even where the port is unknown: who writes what must be known to judge the readers.
+    binding.port = port < 0 ? unknown_port : static_cast<uint32_t>(port);
+    (side == PortSide::read ? pass_.reads : pass_.writes).push_back(binding);
+    if (port >= 0 && !reader_.broken_resources[binding.resource.value])
+      check(kind_->ports[binding.port], what, binding);
+    return true;
+  }
+
+  int find(PortSide side, NodeId node) {
+    if (kind_ == nullptr) return -1;
+    const std::string_view name = reader_.document.key(node);
+    if (const int port = find_port(*kind_, name, side); port >= 0) {
+      bound_[static_cast<size_t>(port)] = true;
+      return port;
+    }
+    if (const int other = find_port(*kind_, name); other >= 0) {
+      bound_[static_cast<size_t>(other)] = true; // one error is enough
+      reader_.error(DiagnosticId::port_direction, reader_.document.where_key(node),
+                    fmt::format("the port '{}' of kind '{}' {}; list it under \"{}\"", name, kind_->name,
+                                usage_info(kind_->ports[static_cast<size_t>(other)].usage).writes
+                                    ? "writes"
+                                    : "only reads",
+                                side == PortSide::read ? "write" : "read"));
+      return -1;
+    }
+    std::vector<std::string_view> names;
+    for (const Port& port : kind_->ports) {
+      if (side_of(port) == side) names.push_back(port.name);
+    }
+    Diagnostic& one = reader_.error(
+        DiagnosticId::unknown_port, reader_.document.where_key(node),
+        fmt::format("{} is of kind '{}', which has no port '{}' under \"{}\"{}", object_.what(), kind_->name,
+                    name, side == PortSide::read ? "read" : "write",
+                    names.empty() ? std::string() : fmt::format(", but {}", list_words(names))));
+    one.suggestion = did_you_mean(name, names);
+    // A misspelt port is not missing as well.
+    const std::string_view meant = nearest(name, names);
+    if (!meant.empty()) bound_[static_cast<size_t>(find_port(*kind_, meant, side))] = true;
+    return -1;
+  }
+
+  // "name" or "name@-N".
+  bool parse_reference(std::string_view text, const std::string& what, PortSide side,
+                       const SourceLocation& where, PortBinding& out) {
+    const size_t at = text.find('@');
+    if (at != std::string_view::npos) {
+      int64_t frame = 0;
+      const std::string_view digits = text.substr(at + 1);
+      const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), frame);
+      if (result.ec != std::errc() || result.ptr != digits.data() + digits.size() || frame >= 0 ||
+          frame < INT32_MIN) {
+        reader_.error(DiagnosticId::bad_reference, where,
+                      fmt::format("{} names '{}'; earlier frames are @-1, @-2 ...", what, text));
+        return false;
+      }
+      out.frames_back = static_cast<uint32_t>(-frame);
+    }
+    out.resource = find_resource(reader_, text.substr(0, at), what, where);
+    if (!out.resource.valid()) return false;
+    const ResourceDeclaration& resource = reader_.graph.resources[out.resource.value];
+    if (out.frames_back > 0 && side == PortSide::write) {
+      reader_.error(DiagnosticId::history_write, where,
+                    fmt::format("{} writes '{}', an earlier frame", what, text));
+      return false;
+    }
+    if (out.frames_back > resource.history.frames && !reader_.broken_resources[out.resource.value]) {
+      reader_
+          .error(DiagnosticId::history_range, where,
+                 resource.origin == Origin::imported
+                     ? fmt::format("{} reads '{}', but an import has no history", what, text)
+                     : fmt::format("{} reads '{}', but '{}' keeps {} earlier frames", what, text,
+                                   resource.name, resource.history.frames))
+          .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+      return false;
+    }
+    return true;
+  }
+
+  void check(const Port& port, const std::string& what, const PortBinding& binding) {
+    const ResourceDeclaration& resource = reader_.graph.resources[binding.resource.value];
+    const UsageInfo& usage = usage_info(port.usage);
+    const bool image = resource.type == ResourceType::image;
+    const auto declared_here = [&](Diagnostic& one) {
+      one.related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+    };
+    if (image ? !usage.image : !usage.buffer) {
+      declared_here(
+          reader_.error(DiagnosticId::usage_mismatch, binding.where,
+                        fmt::format("{} takes {}; '{}' is {}", what, image ? "a buffer" : "an image",
+                                    resource.name, image ? "an image" : "a buffer")));
+      return;
+    }
+    if (!image || std::any_of(resource.formats.begin(), resource.formats.end(),
+                              [&](Format format) { return works_with(port, format); })) {
+      return;
+    }
+    std::vector<Format> accepted;
+    for (size_t i = 1; i < static_cast<size_t>(Format::count); ++i) {
+      if (works_with(port, static_cast<Format>(i))) accepted.push_back(static_cast<Format>(i));
+    }
+    declared_here(reader_.error(DiagnosticId::format_mismatch, binding.where,
+                                fmt::format("{} works with {}; '{}' declares {}", what, format_list(accepted),
+                                            resource.name, format_list(resource.formats))));
+  }
+
+  GraphReader& reader_;
+  ObjectReader& object_;
+  PassDeclaration& pass_;
+  const PassKind* kind_;
+  std::vector<bool> bound_; // by port: named by the file, rightly or not
+  bool complete_ = true;    // all bindings were seen
+  bool writes_known_ = true;
+};
+
+} // namespace
+
+bool read_bindings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out) {
+  Bindings bindings(reader, pass, out);
+  bindings.read_side(PortSide::read);
+  bindings.read_side(PortSide::write);
+  bindings.report_missing();
+  return bindings.writes_known();
+}
+
+} // namespace dermis

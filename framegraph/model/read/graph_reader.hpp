@@ -1,0 +1,76 @@
+#pragma once
+// What the parts of read_graph share: the graph as far as it is read, and the names declared in it.
+
+#include "framegraph/model/graph.hpp"
+#include "framegraph/text/document.hpp"
+#include "framegraph/text/reader.hpp"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis {
+
+struct GraphReader {
+  GraphReader(const Document& from, const KindRegistry& registry, Diagnostics& errors)
+      : document(from), kinds(registry), diagnostics(errors) {}
+
+  const Document& document;
+  const KindRegistry& kinds;
+  Diagnostics& diagnostics;
+  Graph graph;
+
+  // All names are declared before anything that refers to them is read.
+  std::map<std::string, SettingId, std::less<>> setting_names;
+  std::map<std::string, ResourceId, std::less<>> resource_names;
+  std::map<std::string, PassId, std::less<>> pass_names;
+  // Declared, but with errors: whatever depends on them is not checked.
+  std::vector<bool> broken_settings, broken_resources;
+  // Some names could not be read at all: one that is not found may be among them, and is no error.
+  bool unknown_settings = false, unknown_resources = false;
+  bool unknown_writes = false; // some pass writes something that could not be read
+  // Where each resource and pass is read from, by id.
+  std::vector<NodeId> resource_nodes, pass_nodes;
+
+  Diagnostic& error(DiagnosticId id, SourceLocation where, std::string text) {
+    return diagnostics.add(id, std::move(where), std::move(text));
+  }
+};
+
+// PortBinding::port while reading, where the kind or its port is unknown. Never in a graph that is handed
+// out.
+inline constexpr uint32_t unknown_port = 0xffffffffu;
+
+// In the order in which read_graph calls them. Invalid nodes (a key that is absent or mistyped) read as
+// empty.
+void read_settings(GraphReader& reader, NodeId settings);
+void declare_resources(GraphReader& reader, NodeId list, Origin origin);
+void read_resources(GraphReader& reader);
+void read_exports(GraphReader& reader, NodeId exports);
+void declare_passes(GraphReader& reader, NodeId passes);
+void read_passes(GraphReader& reader);
+void check_producers(GraphReader& reader);
+
+// Parts of passes. `pass` is the object at /passes/N; `what` names it in messages.
+// read_bindings: false when something that the pass writes is not known.
+bool read_bindings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out);
+void read_kind_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out);
+
+// A resource by name; invalid after an error at `where`, or silently when some names are unknown.
+ResourceId find_resource(GraphReader& reader, std::string_view name, std::string_view what,
+                         const SourceLocation& where);
+
+// Names of a map in order, for suggestions.
+template <class Id>
+std::vector<std::string_view> names_of(const std::map<std::string, Id, std::less<>>& map) {
+  std::vector<std::string_view> out;
+  for (const auto& [name, id] : map)
+    out.push_back(name);
+  return out;
+}
+
+// "note" of an object, "" where there is none or it is no string (which the object's reader reports).
+std::string note_of(const Document& document, NodeId object);
+
+} // namespace dermis

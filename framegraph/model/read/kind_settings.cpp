@@ -1,0 +1,143 @@
+// "set" of a pass: literals and "$name"s for the settings of its kind.
+
+#include "framegraph/model/read/graph_reader.hpp"
+#include "framegraph/text/suggest.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+std::string_view type_name(SettingType type) {
+  switch (type) {
+  case SettingType::boolean:
+    return "a boolean";
+  case SettingType::integer:
+    return "an integer";
+  case SettingType::real:
+    return "a real number";
+  case SettingType::enumeration:
+    return "an enumeration";
+  case SettingType::choice:
+    return "a choice";
+  }
+  return "";
+}
+
+// Why the graph's setting cannot drive the kind's; empty when it can.
+std::string mismatch(const SettingDeclaration& from, const KindSetting& to) {
+  const SettingType type = from.type == SettingType::choice ? SettingType::enumeration : from.type;
+  if (type != to.type)
+    return fmt::format("it is {}, the kind's is {}", type_name(from.type), type_name(to.type));
+  if (type == SettingType::integer || type == SettingType::real) {
+    if (from.minimum >= to.minimum && from.maximum <= to.maximum) return {};
+    return fmt::format("its range {} .. {} reaches beyond the kind's {} .. {}", from.minimum, from.maximum,
+                       to.minimum, to.maximum);
+  }
+  // Both hold the index of the option.
+  const auto same = [](const std::string& a, std::string_view b) { return a == b; };
+  if (type != SettingType::enumeration ||
+      std::equal(from.options.begin(), from.options.end(), to.options.begin(), to.options.end(), same)) {
+    return {};
+  }
+  return fmt::format("its options are not the kind's {}, in that order", list_words(to.options));
+}
+
+bool read_reference(GraphReader& reader, NodeId node, const std::string& what, const KindSetting& setting,
+                    SettingBinding& out) {
+  const std::string_view name = reader.document.text(node).substr(1);
+  const SourceLocation where = reader.document.where(node);
+  const auto found = reader.setting_names.find(name);
+  if (found == reader.setting_names.end() && reader.unknown_settings) return false;
+  if (found == reader.setting_names.end()) {
+    reader
+        .error(DiagnosticId::unknown_setting, where,
+               fmt::format("{} follows '${}', but the graph has no such setting", what, name))
+        .suggestion = did_you_mean(name, names_of(reader.setting_names));
+    return false;
+  }
+  out.from = found->second;
+  if (reader.broken_settings[out.from.value]) return false;
+  const SettingDeclaration& declared = reader.graph.settings[out.from.value];
+  const std::string why = mismatch(declared, setting);
+  if (why.empty()) return true;
+  reader
+      .error(DiagnosticId::setting_mismatch, where,
+             fmt::format("{} cannot follow '${}': {}", what, name, why))
+      .related.emplace_back(declared.where, fmt::format("'{}' is declared here", name));
+  return false;
+}
+
+bool read_literal(GraphReader& reader, NodeId node, const std::string& what, const KindSetting& setting,
+                  SettingValue& out) {
+  out.type = setting.type;
+  switch (setting.type) {
+  case SettingType::boolean:
+    if (const auto value = read_boolean(reader.document, node, what, reader.diagnostics)) {
+      out.integer = *value ? 1 : 0;
+      return true;
+    }
+    return false;
+  case SettingType::integer:
+    if (const auto value = read_integer(reader.document, node, what, static_cast<int64_t>(setting.minimum),
+                                        static_cast<int64_t>(setting.maximum), reader.diagnostics)) {
+      out.integer = *value;
+      return true;
+    }
+    return false;
+  case SettingType::real:
+    if (const auto value =
+            read_number(reader.document, node, what, setting.minimum, setting.maximum, reader.diagnostics)) {
+      out.real = *value;
+      return true;
+    }
+    return false;
+  case SettingType::enumeration:
+  case SettingType::choice:
+    if (const auto value = read_word(reader.document, node, what, setting.options, reader.diagnostics)) {
+      out.integer = *value;
+      return true;
+    }
+    return false;
+  }
+  return false;
+}
+
+} // namespace
+
+void read_kind_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out) {
+  const NodeId list = pass.object("set", Need::optional);
+  if (!list.valid() || !out.kind.valid()) return;
+  const PassKind& kind = reader.kinds[out.kind];
+  for (NodeId node : children(reader.document, list)) {
+    const std::string_view name = reader.document.key(node);
+    const int index = find_setting(kind, name);
+    if (index < 0) {
+      std::vector<std::string_view> names;
+      for (const KindSetting& setting : kind.settings)
+        names.push_back(setting.name);
+      reader
+          .error(DiagnosticId::unknown_kind_setting, reader.document.where_key(node),
+                 fmt::format("{} is of kind '{}', which has {}", pass.what(), kind.name,
+                             names.empty() ? fmt::format("no settings, so none called '{}'", name)
+                                           : fmt::format("no setting '{}', but {}", name, list_words(names))))
+          .suggestion = did_you_mean(name, names);
+      continue;
+    }
+    const KindSetting& setting = kind.settings[static_cast<size_t>(index)];
+    const std::string what = fmt::format("setting '{}' of {}", name, pass.what());
+    SettingBinding binding;
+    binding.setting = static_cast<uint32_t>(index);
+    binding.where = reader.document.where(node);
+    const bool reference =
+        reader.document[node].kind == NodeKind::string && reader.document.text(node).substr(0, 1) == "$";
+    if (reference ? read_reference(reader, node, what, setting, binding)
+                  : read_literal(reader, node, what, setting, binding.literal)) {
+      out.settings.push_back(binding);
+    }
+  }
+}
+
+} // namespace dermis

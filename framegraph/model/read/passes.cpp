@@ -1,0 +1,154 @@
+// "passes": kind, condition, ordering and pass-through of each. Ports are in bindings.cpp, settings in
+// kind_settings.cpp.
+
+#include "framegraph/model/expression.hpp"
+#include "framegraph/model/read/graph_reader.hpp"
+#include "framegraph/text/suggest.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+void read_kind(GraphReader& reader, ObjectReader& object, PassDeclaration& pass) {
+  const auto name = object.string("kind");
+  if (!name) return;
+  pass.kind = reader.kinds.find(*name);
+  if (pass.kind.valid()) return;
+  std::vector<std::string_view> names;
+  for (uint32_t i = 0; i < reader.kinds.size(); ++i)
+    names.push_back(reader.kinds[{i}].name);
+  reader
+      .error(DiagnosticId::unknown_kind, reader.document.where(reader.document.find(object.node(), "kind")),
+             fmt::format("{} is of the kind '{}', which is not registered", object.what(), *name))
+      .suggestion = did_you_mean(*name, names);
+}
+
+void read_when(GraphReader& reader, ObjectReader& object, PassDeclaration& pass) {
+  if (!object.string("when", Need::optional)) return;
+  if (reader.unknown_settings) return;
+  const NodeId node = reader.document.find(object.node(), "when");
+  const std::string what = fmt::format("'when' of {}", object.what());
+  pass.when =
+      parse_expression(reader.document, node, what, reader.graph, reader.broken_settings, reader.diagnostics);
+}
+
+void read_otherwise(GraphReader& reader, ObjectReader& object, PassDeclaration& pass, bool writes_known) {
+  const NodeId list = object.object("otherwise", Need::optional);
+  if (!list.valid()) return;
+  if (!object.has("when")) {
+    reader.error(
+        DiagnosticId::bad_otherwise, reader.document.where_key(list),
+        fmt::format("{} has no 'when', so it is never off and 'otherwise' never applies", object.what()));
+    return;
+  }
+  for (NodeId node : children(reader.document, list)) {
+    const SourceLocation key = reader.document.where_key(node), value = reader.document.where(node);
+    const std::string what = fmt::format("'otherwise' of {}", object.what());
+    const auto name =
+        read_string(reader.document, node, fmt::format("the replacement in {}", what), reader.diagnostics);
+    const ResourceId output = find_resource(reader, reader.document.key(node), what, key);
+    const ResourceId instead = name ? find_resource(reader, *name, what, value) : ResourceId();
+    if (!output.valid() || !instead.valid()) continue;
+    const ResourceDeclaration& from = reader.graph.resources[output.value];
+    const ResourceDeclaration& to = reader.graph.resources[instead.value];
+    const bool written = std::any_of(pass.writes.begin(), pass.writes.end(),
+                                     [&](const PortBinding& one) { return one.resource == output; });
+    if (!written && !writes_known) continue;
+    if (!written) {
+      reader.error(DiagnosticId::bad_otherwise, key,
+                   fmt::format("{} replaces '{}', which it does not write", what, from.name));
+    } else if (output == instead) {
+      reader.error(DiagnosticId::bad_otherwise, value,
+                   fmt::format("{} replaces '{}' by itself", what, from.name));
+    } else if (from.type != to.type) {
+      reader
+          .error(DiagnosticId::bad_otherwise, value,
+                 fmt::format("{} replaces '{}' by '{}': one is an image, the other a buffer", what, from.name,
+                             to.name))
+          .related.emplace_back(to.where, fmt::format("'{}' is declared here", to.name));
+    } else {
+      pass.otherwise.push_back({output, instead, value});
+    }
+  }
+}
+
+void read_after(GraphReader& reader, ObjectReader& object, PassDeclaration& pass, PassId self) {
+  const NodeId list = object.array("after", 0, reader.pass_nodes.size(), Need::optional);
+  if (!list.valid()) return;
+  for (NodeId node : children(reader.document, list)) {
+    ObjectReader entry(reader.document, node, fmt::format("an entry of 'after' of {}", object.what()),
+                       reader.diagnostics);
+    const auto name = entry.string("pass");
+    const auto reason = entry.string("reason");
+    if (!entry.finish() || !name || !reason) continue;
+    const SourceLocation where = reader.document.where(reader.document.find(node, "pass"));
+    const auto found = reader.pass_names.find(*name);
+    if (reason->empty()) {
+      reader.error(DiagnosticId::invalid_value, reader.document.where(reader.document.find(node, "reason")),
+                   fmt::format("{} gives no reason: an order that no data asks for needs one", entry.what()));
+    } else if (found == reader.pass_names.end()) {
+      reader
+          .error(DiagnosticId::unknown_pass, where,
+                 fmt::format("{} names the pass '{}', which does not exist", entry.what(), *name))
+          .suggestion = did_you_mean(*name, names_of(reader.pass_names));
+    } else if (found->second == self) {
+      reader.error(DiagnosticId::unknown_pass, where, fmt::format("{} names the pass itself", entry.what()));
+    } else {
+      pass.after.push_back({found->second, std::string(*reason), where});
+    }
+  }
+}
+
+} // namespace
+
+void declare_passes(GraphReader& reader, NodeId passes) {
+  if (!passes.valid()) return;
+  for (NodeId node : children(reader.document, passes)) {
+    PassDeclaration pass;
+    pass.where = reader.document.where(node);
+    const NodeId name = reader.document.find(node, "pass");
+    if (name.valid() && reader.document[name].kind == NodeKind::string) {
+      pass.name = reader.document.text(name);
+      pass.where = reader.document.where(name);
+      const auto [entry, added] =
+          reader.pass_names.emplace(pass.name, PassId{static_cast<uint32_t>(reader.graph.passes.size())});
+      if (!added) {
+        reader
+            .error(DiagnosticId::duplicate_name, pass.where,
+                   fmt::format("two passes are called '{}'", pass.name))
+            .related.emplace_back(reader.graph.passes[entry->second.value].where, "first declared here");
+      }
+    }
+    reader.graph.passes.push_back(std::move(pass));
+    reader.pass_nodes.push_back(node);
+  }
+}
+
+void read_passes(GraphReader& reader) {
+  for (uint32_t i = 0; i < reader.graph.passes.size(); ++i) {
+    PassDeclaration& pass = reader.graph.passes[i];
+    const NodeId node = reader.pass_nodes[i];
+    const std::string what =
+        pass.name.empty() ? fmt::format("pass number {}", i + 1) : fmt::format("pass '{}'", pass.name);
+    ObjectReader object(reader.document, node, what, reader.diagnostics);
+    if (reader.document[node].kind != NodeKind::object) {
+      reader.unknown_writes = true;
+      continue;
+    }
+    object.name("pass");
+    pass.note = note_of(reader.document, node);
+    read_kind(reader, object, pass);
+    read_when(reader, object, pass);
+    const bool writes_known = read_bindings(reader, object, pass);
+    if (!writes_known) reader.unknown_writes = true;
+    read_kind_settings(reader, object, pass);
+    read_otherwise(reader, object, pass, writes_known);
+    read_after(reader, object, pass, {i});
+    object.finish();
+  }
+}
+
+} // namespace dermis

@@ -1,0 +1,113 @@
+// Who writes what: what can be said before any `when` is decided. The rest is the compiler's.
+
+#include "framegraph/model/read/graph_reader.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+struct Producer {
+  PassId pass;
+  SourceLocation where;
+};
+
+// Of a resource: a pass that is always on and gives it its first version.
+struct Producers {
+  bool any = false;   // some pass writes it, perhaps only sometimes, perhaps only updating
+  bool fresh = false; // some pass writes it without needing earlier contents
+  Producer first;
+};
+
+bool updates(const GraphReader& reader, const PassDeclaration& pass, const PortBinding& binding) {
+  return binding.port != unknown_port && usage_info(reader.kinds[pass.kind].ports[binding.port].usage).reads;
+}
+
+bool reads_now(const PassDeclaration& pass, ResourceId id) {
+  return std::any_of(pass.reads.begin(), pass.reads.end(),
+                     [&](const PortBinding& one) { return one.resource == id && one.frames_back == 0; });
+}
+
+// Two ports of one pass cannot write the same memory.
+void check_written_once(GraphReader& reader, const PassDeclaration& pass) {
+  for (size_t i = 0; i < pass.writes.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      if (pass.writes[i].resource != pass.writes[j].resource) continue;
+      reader
+          .error(DiagnosticId::two_producers, pass.writes[i].where,
+                 fmt::format("pass '{}' writes '{}' through two ports", pass.name,
+                             reader.graph.resources[pass.writes[i].resource.value].name))
+          .related.emplace_back(pass.writes[j].where, "the other port is bound here");
+      break;
+    }
+  }
+}
+
+void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
+  const PassDeclaration& pass = reader.graph.passes[id.value];
+  for (const PortBinding& binding : pass.writes) {
+    Producers& producers = all[binding.resource.value];
+    const ResourceDeclaration& resource = reader.graph.resources[binding.resource.value];
+    const bool continues = updates(reader, pass, binding) || reads_now(pass, binding.resource);
+    producers.any = true;
+    if (continues) continue;
+    producers.fresh = true;
+    // Passes with a `when` may exclude each other, and an unknown port may update.
+    const bool sometimes = reader.document.find(reader.pass_nodes[id.value], "when").valid();
+    if (sometimes || binding.port == unknown_port || resource.origin == Origin::imported) continue;
+    if (!producers.first.pass.valid()) {
+      producers.first = {id, binding.where};
+    } else if (producers.first.pass != id) {
+      const std::string& earlier = reader.graph.passes[producers.first.pass.value].name;
+      reader
+          .error(DiagnosticId::two_producers, binding.where,
+                 fmt::format("passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
+                             earlier, pass.name, resource.name, pass.name, earlier))
+          .related.emplace_back(producers.first.where, fmt::format("'{}' writes it here", earlier));
+    }
+  }
+}
+
+void require_producer(GraphReader& reader, std::vector<Producers>& all, ResourceId id,
+                      const SourceLocation& where, const std::string& who) {
+  const ResourceDeclaration& resource = reader.graph.resources[id.value];
+  Producers& producers = all[id.value];
+  if (resource.origin == Origin::imported || producers.fresh || reader.broken_resources[id.value]) return;
+  reader
+      .error(DiagnosticId::no_producer, where,
+             fmt::format("{} '{}', which {}", who, resource.name,
+                         producers.any ? "passes only update: none of them gives it its first contents"
+                                       : "no pass writes"))
+      .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+  producers.fresh = true; // one error for each resource
+}
+
+} // namespace
+
+void check_producers(GraphReader& reader) {
+  std::vector<Producers> all(reader.graph.resources.size());
+  for (uint32_t i = 0; i < reader.graph.passes.size(); ++i) {
+    check_written_once(reader, reader.graph.passes[i]);
+    collect(reader, {i}, all);
+  }
+  if (reader.unknown_writes) return; // the producer that seems to be missing may be among them
+  for (const PassDeclaration& pass : reader.graph.passes) {
+    for (const PortBinding& binding : pass.reads) {
+      require_producer(reader, all, binding.resource, binding.where,
+                       fmt::format("pass '{}' reads", pass.name));
+    }
+    for (const PortBinding& binding : pass.writes) {
+      if (!updates(reader, pass, binding)) continue;
+      require_producer(reader, all, binding.resource, binding.where,
+                       fmt::format("pass '{}' updates", pass.name));
+    }
+  }
+  for (uint32_t i = 0; i < all.size(); ++i) {
+    const ResourceDeclaration& resource = reader.graph.resources[i];
+    if (resource.exported) require_producer(reader, all, {i}, resource.where, "the graph exports");
+  }
+}
+
+} // namespace dermis

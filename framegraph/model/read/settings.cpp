@@ -1,0 +1,142 @@
+// "settings": typed values that the host may change at run time.
+
+#include "framegraph/model/expression_lexer.hpp"
+#include "framegraph/model/read/graph_reader.hpp"
+#include "framegraph/text/limits.hpp"
+#include "framegraph/text/suggest.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+namespace dermis {
+
+namespace {
+
+constexpr std::string_view type_keys[] = {"bool", "int", "real", "enum", "choice"};
+constexpr SettingType types[] = {SettingType::boolean, SettingType::integer, SettingType::real,
+                                 SettingType::enumeration, SettingType::choice};
+
+// Settings reach kernels as 32-bit push constants.
+constexpr int64_t least_integer = std::numeric_limits<int32_t>::min();
+constexpr int64_t greatest_integer = std::numeric_limits<int32_t>::max();
+constexpr double greatest_real = std::numeric_limits<float>::max();
+
+void read_integer_setting(ObjectReader& object, SettingDeclaration& out) {
+  const auto least = object.integer("min", least_integer, greatest_integer);
+  const auto greatest = object.integer("max", least.value_or(least_integer), greatest_integer);
+  if (!least || !greatest) return;
+  const auto value = object.integer("int", *least, *greatest);
+  out.minimum = static_cast<double>(*least);
+  out.maximum = static_cast<double>(*greatest);
+  out.default_value = {SettingType::integer, value.value_or(*least), 0.0};
+}
+
+void read_real_setting(ObjectReader& object, SettingDeclaration& out) {
+  const auto least = object.number("min", -greatest_real, greatest_real);
+  const auto greatest = object.number("max", least.value_or(-greatest_real), greatest_real);
+  if (!least || !greatest) return;
+  const auto value = object.number("real", *least, *greatest);
+  out.minimum = *least;
+  out.maximum = *greatest;
+  out.default_value = {SettingType::real, 0, value.value_or(*least)};
+}
+
+void read_options(GraphReader& reader, ObjectReader& object, std::string_view key, SettingDeclaration& out,
+                  bool& ok) {
+  object.any("default"); // asked for, whatever goes wrong below
+  const NodeId list = object.array(key, 1, limits::options);
+  if (!list.valid()) return;
+  for (NodeId node : children(reader.document, list)) {
+    const auto option =
+        read_name(reader.document, node, fmt::format("an option of {}", object.what()), reader.diagnostics);
+    ok &= option.has_value();
+    if (!option) continue;
+    if (std::find(out.options.begin(), out.options.end(), *option) != out.options.end()) {
+      ok = false;
+      reader.error(DiagnosticId::duplicate_name, reader.document.where(node),
+                   fmt::format("{} lists the option '{}' twice", object.what(), *option));
+      continue;
+    }
+    out.options.emplace_back(*option);
+  }
+  const std::vector<std::string_view> words(out.options.begin(), out.options.end());
+  if (!ok) return;
+  out.default_value = {out.type, object.word("default", words, Need::optional).value_or(0), 0.0};
+}
+
+bool read_setting(GraphReader& reader, NodeId node, SettingDeclaration& out) {
+  ObjectReader object(reader.document, node, fmt::format("setting '{}'", out.name), reader.diagnostics);
+  if (!object.ok()) return false;
+  size_t found = std::size(type_keys);
+  for (size_t i = 0; i < std::size(type_keys); ++i) {
+    if (!reader.document.find(node, type_keys[i]).valid()) continue;
+    found = i;
+    break;
+  }
+  if (found == std::size(type_keys)) {
+    reader.error(
+        DiagnosticId::missing_key, reader.document.where(node),
+        fmt::format("{} needs its type and value: one of the keys {}", object.what(), list_words(type_keys)));
+    return false;
+  }
+  bool ok = true;
+  object.any(type_keys[found], Need::optional); // asked for, whatever goes wrong below
+  out.type = types[found];
+  out.note = note_of(reader.document, node);
+  out.unit = object.string("unit", Need::optional).value_or("");
+  switch (out.type) {
+  case SettingType::boolean:
+    out.default_value = {SettingType::boolean, object.boolean("bool").value_or(false) ? 1 : 0, 0.0};
+    out.maximum = 1.0;
+    break;
+  case SettingType::integer:
+    read_integer_setting(object, out);
+    break;
+  case SettingType::real:
+    read_real_setting(object, out);
+    break;
+  case SettingType::choice: {
+    constexpr std::string_view who[] = {"host", "budget"};
+    out.by_budget = object.word("by", who, Need::optional).value_or(0) == 1;
+    read_options(reader, object, "choice", out, ok);
+    break;
+  }
+  case SettingType::enumeration:
+    read_options(reader, object, "enum", out, ok);
+    break;
+  }
+  return object.finish() && ok;
+}
+
+} // namespace
+
+void read_settings(GraphReader& reader, NodeId settings) {
+  if (!settings.valid()) return;
+  const std::vector<NodeId> nodes = children(reader.document, settings);
+  if (nodes.size() > limits::settings) {
+    reader.error(
+        DiagnosticId::limit_exceeded, reader.document.where(settings),
+        fmt::format("the graph has {} settings; at most {} are allowed", nodes.size(), limits::settings));
+    reader.unknown_settings = true;
+    return;
+  }
+  for (NodeId node : nodes) {
+    const std::string_view name = reader.document.key(node);
+    SettingDeclaration declared;
+    declared.name = name;
+    declared.where = reader.document.where_key(node);
+    bool ok = check_name(name, "the name of a setting", declared.where, reader.diagnostics);
+    if (ok && is_reserved_word(name)) {
+      ok = false;
+      reader.error(DiagnosticId::bad_name, declared.where,
+                   fmt::format("'{}' is a word of \"when\" expressions", name));
+    }
+    ok &= read_setting(reader, node, declared);
+    reader.setting_names.emplace(name, SettingId{static_cast<uint32_t>(reader.graph.settings.size())});
+    reader.graph.settings.push_back(std::move(declared));
+    reader.broken_settings.push_back(!ok);
+  }
+}
+
+} // namespace dermis

@@ -1,0 +1,54 @@
+#include "framegraph/model/read_graph.hpp"
+
+#include "framegraph/model/read/graph_reader.hpp"
+#include "framegraph/text/limits.hpp"
+
+namespace dermis {
+
+std::string note_of(const Document& document, NodeId object) {
+  const NodeId note = document.find(object, "note");
+  return note.valid() && document[note].kind == NodeKind::string ? std::string(document.text(note))
+                                                                 : std::string();
+}
+
+std::optional<Graph> read_graph(const Document& document, const KindRegistry& kinds,
+                                Diagnostics& diagnostics) {
+  constexpr int64_t format_version = 1;
+  if (!check_version(document, "dermis", format_version, diagnostics)) return std::nullopt;
+  const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
+  const uint64_t errors_before = errors();
+
+  GraphReader reader(document, kinds, diagnostics);
+  ObjectReader root(document, document.root(), "the graph", diagnostics);
+  root.any("dermis");
+  if (const auto name = root.name("name")) reader.graph.name = *name;
+  const NodeId settings = root.object("settings", Need::optional);
+  const NodeId imports = root.object("imports", Need::optional);
+  const NodeId resources = root.object("resources", Need::optional);
+  const NodeId passes = root.array("passes", 0, limits::passes);
+  const NodeId exports = root.array("exports", 0, limits::resources);
+  const uint64_t errors_so_far = errors();
+  root.finish();
+  // A section is unread when it has the wrong type, and perhaps when it is absent while an unknown key stands
+  // there.
+  const bool misspelt = errors() != errors_so_far;
+  const auto unread = [&](std::string_view key, NodeId section) {
+    return !section.valid() && (misspelt || root.has(key));
+  };
+  reader.unknown_settings = unread("settings", settings);
+  reader.unknown_resources = unread("imports", imports) || unread("resources", resources);
+  reader.unknown_writes = !passes.valid();
+
+  read_settings(reader, settings);
+  declare_resources(reader, imports, Origin::imported);
+  declare_resources(reader, resources, Origin::transient);
+  read_resources(reader);
+  read_exports(reader, exports);
+  declare_passes(reader, passes);
+  read_passes(reader);
+  check_producers(reader);
+  if (errors() != errors_before) return std::nullopt;
+  return std::move(reader.graph);
+}
+
+} // namespace dermis
