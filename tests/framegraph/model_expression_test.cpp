@@ -1,0 +1,186 @@
+#include "framegraph/model/expression.hpp"
+#include "framegraph/text/limits.hpp"
+#include "tests/framegraph/text_support.hpp"
+
+namespace dermis {
+namespace {
+
+using testing::all_messages;
+using testing::expect_only;
+
+// Settings: flag (true), count (16), scale (1.5), mode (enum a b c: b), other (enum x y: x).
+struct Fixture {
+  Graph graph;
+  Diagnostics diagnostics;
+  std::vector<SettingValue> values;
+
+  Fixture() {
+    add("flag", {SettingType::boolean, 1, 0.0});
+    add("count", {SettingType::integer, 16, 0.0});
+    add("scale", {SettingType::real, 0, 1.5});
+    add("mode", {SettingType::choice, 1, 0.0}, {"a", "b", "c"});
+    add("other", {SettingType::enumeration, 0, 0.0}, {"x", "y"});
+  }
+  void add(const char* name, SettingValue value, std::vector<std::string> options = {}) {
+    SettingDeclaration declared;
+    declared.name = name;
+    declared.type = value.type;
+    declared.options = std::move(options);
+    graph.settings.push_back(std::move(declared));
+    values.push_back(value);
+  }
+  ExpressionId parse(const std::string& text, std::vector<bool> broken = std::vector<bool>(5)) {
+    const auto document = parse_document("e.json", "[\n\"" + text + "\"]", diagnostics);
+    EXPECT_TRUE(document) << text;
+    return document ? parse_expression(*document, {1}, "'when'", graph, broken, diagnostics) : ExpressionId();
+  }
+};
+
+struct Case {
+  const char* text;
+  bool value;
+};
+
+TEST(Expression, HasTheValueOfItsReading) {
+  for (const Case& one :
+       {Case{"flag", true},
+        Case{"not flag", false},
+        Case{"not not flag", true},
+        Case{"true", true},
+        Case{"false", false},
+        Case{"count == 16", true},
+        Case{"count != 16", false},
+        Case{"count < 16", false},
+        Case{"count <= 16", true},
+        Case{"count > 15.5", true},
+        Case{"16 >= count", true},
+        Case{"count > -1", true},
+        Case{"scale == 1.5", true},
+        Case{"scale < 2", true},
+        Case{"scale > 1e0", true},
+        Case{"mode == 'b'", true},
+        Case{"'b' == mode", true},
+        Case{"mode != 'b'", false},
+        Case{"mode in ['a', 'c']", false},
+        Case{"mode in ['b']", true},
+        Case{"mode not in ['a', 'c']", true},
+        Case{"count in [1, 16]", true},
+        Case{"count in [1, 16.5]", false},
+        Case{"flag in [false]", false},
+        Case{"flag == true", true},
+        Case{"flag == (count == 16)", true},
+        Case{"mode == 'a' and count == 1 or flag", true}, // and binds more tightly than or
+        Case{"mode == 'a' and (count == 1 or flag)", false},
+        Case{"flag or flag and false", true},
+        Case{"not mode == 'a' and flag", true}, // not binds more tightly than and, less than ==
+        Case{"  mode\\tin\\n[ 'a' ,'b']  ", true},
+        Case{"mode == mode", true},
+        Case{"count == 9223372036854775807", false}}) {
+    Fixture fixture;
+    const ExpressionId id = fixture.parse(one.text);
+    ASSERT_TRUE(id.valid()) << one.text << "\n" << all_messages(fixture.diagnostics);
+    EXPECT_EQ(evaluate(fixture.graph, id, fixture.values), one.value) << one.text;
+    for (uint32_t i = 0; i < fixture.graph.expressions.size(); ++i) {
+      const Expression& node = fixture.graph.expressions[i];
+      EXPECT_TRUE(!node.left.valid() || node.left.value < i) << "children stand before parents";
+      EXPECT_TRUE(!node.right.valid() || node.right.value < i);
+    }
+  }
+}
+
+struct Wrong {
+  const char* text;
+  DiagnosticId id;
+  uint32_t at; // byte of the expression, from 0
+  const char* word;
+};
+
+TEST(Expression, ErrorsPointIntoTheString) {
+  using Id = DiagnosticId;
+  for (const Wrong& one : {
+           Wrong{"", Id::bad_expression, 0, "the end"},
+           Wrong{"flag and", Id::bad_expression, 8, "the end"},
+           Wrong{"flag flag", Id::bad_expression, 5, "'flag'"},
+           Wrong{"(flag", Id::bad_expression, 5, "expected ')'"},
+           Wrong{"flag)", Id::bad_expression, 4, "')'"},
+           Wrong{"count = 16", Id::bad_expression, 6, "'='"},
+           Wrong{"flag && flag", Id::bad_expression, 5, "'&'"},
+           Wrong{"mode in 'a'", Id::bad_expression, 8, "expected '['"},
+           Wrong{"mode in []", Id::bad_expression, 9, "']'"},
+           Wrong{"mode in ['a' 'b']", Id::bad_expression, 13, "expected ',' or ']'"},
+           Wrong{"mode not ['a']", Id::bad_expression, 9, "expected 'in'"},
+           Wrong{"mode == 'a", Id::bad_expression, 8, "''a'"},
+           Wrong{"count == 12x", Id::bad_expression, 9, "'12x'"},
+           Wrong{"count == 99999999999999999999", Id::bad_expression, 9, "'99999999999999999999'"},
+           Wrong{"count == 1e999", Id::bad_expression, 9, "'1e999'"},
+           Wrong{"cuont == 1", Id::unknown_setting, 0, "did you mean 'count'?"},
+           Wrong{"mode == 'd'", Id::expression_type, 8, "'a', 'b' or 'c'"},
+           Wrong{"mode in ['a', 'd']", Id::expression_type, 14, "'d' is no option of the setting 'mode'"},
+           Wrong{"count == 'a'", Id::expression_type, 9, "a number is compared with a quoted option"},
+           Wrong{"count == flag", Id::expression_type, 9, "a number is compared with a boolean"},
+           Wrong{"'a' == 'a'", Id::expression_type, 7, "a quoted option"},
+           Wrong{"'a' in ['a']", Id::expression_type, 0, "through its setting"},
+           Wrong{"flag < true", Id::expression_type, 5, "no order"},
+           Wrong{"mode < 'b'", Id::expression_type, 5, "no order"},
+           Wrong{"mode == other", Id::expression_type, 8, "different options"},
+           Wrong{"count", Id::expression_type, 0, "a number stands where"},
+           Wrong{"'a'", Id::expression_type, 0, "a quoted option stands where"},
+           Wrong{"flag and count", Id::expression_type, 9, "a number stands where"},
+           Wrong{"not mode", Id::expression_type, 4, "an option stands where"},
+           Wrong{"flag < count < 3", Id::expression_type, 7, "compared"},
+       }) {
+    Fixture fixture;
+    EXPECT_FALSE(fixture.parse(one.text).valid()) << one.text;
+    // Line 2, behind the opening quote in column 1.
+    expect_only(fixture.diagnostics, one.id, 2, one.at + 2, {one.word});
+    EXPECT_TRUE(fixture.graph.expressions.empty()) << "nothing is left behind";
+  }
+}
+
+TEST(Expression, BrokenSettingsGiveNoSecondError) {
+  Fixture fixture;
+  EXPECT_FALSE(fixture.parse("mode == 'd' and flag", {false, false, false, true, false}).valid());
+  EXPECT_TRUE(fixture.diagnostics.list.empty());
+}
+
+TEST(Expression, NestingAndLengthAreBounded) {
+  const size_t most = limits::expression_nesting;
+  Fixture deep;
+  EXPECT_TRUE(deep.parse(std::string(most, '(') + "flag" + std::string(most, ')')).valid())
+      << all_messages(deep.diagnostics);
+  EXPECT_FALSE(deep.parse(std::string(most + 1, '(') + "flag" + std::string(most + 1, ')')).valid());
+  expect_only(deep.diagnostics, DiagnosticId::limit_exceeded, 2, static_cast<uint32_t>(most + 2));
+  Fixture negated;
+  std::string many;
+  for (size_t i = 0; i <= most; ++i)
+    many += "not ";
+  EXPECT_FALSE(negated.parse(many + "flag").valid());
+  expect_only(negated.diagnostics, DiagnosticId::limit_exceeded, 2, static_cast<uint32_t>(4 * most + 2));
+  Fixture long_one;
+  std::string text = "flag";
+  while (text.size() <= limits::expression_bytes)
+    text += " and flag";
+  EXPECT_FALSE(long_one.parse(text).valid());
+  expect_only(long_one.diagnostics, DiagnosticId::limit_exceeded, 2, 1);
+}
+
+// Random strings of the language's own words: parsed and evaluated, or refused with one error, never a crash.
+TEST(Expression, EveryStringIsParsedOrExplained) {
+  const char* words[] = {"flag", "count", "mode", "'a'", "'q'", "1",  "2.5", "and", "or", "not", "in",
+                         "[",    "]",     "(",    ")",   ",",   "==", "<",   ">=",  "!",  "'",   "zzz"};
+  uint32_t state = 1; // linear congruential, numbers of Numerical Recipes
+  const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 16; };
+  for (int round = 0; round < 20000; ++round) {
+    std::string text;
+    for (uint32_t length = next() % 9; length > 0; --length)
+      text += std::string(words[next() % std::size(words)]) + " ";
+    Fixture fixture;
+    const ExpressionId id = fixture.parse(text);
+    EXPECT_EQ(fixture.diagnostics.list.size(), id.valid() ? 0u : 1u) << text << "\n"
+                                                                     << all_messages(fixture.diagnostics);
+    if (id.valid()) evaluate(fixture.graph, id, fixture.values);
+  }
+}
+
+} // namespace
+} // namespace dermis

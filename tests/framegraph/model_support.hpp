@@ -1,0 +1,100 @@
+#pragma once
+// A small registry of pass kinds and a graph to damage.
+
+#include "framegraph/model/read_graph.hpp"
+#include "tests/framegraph/text_support.hpp"
+
+namespace dermis::testing {
+
+inline constexpr std::string_view modes[] = {"fast", "good", "best"};
+inline constexpr Format half4[] = {Format::rgba16f, Format::rgba32f};
+
+inline constexpr Port blur_ports[] = {
+    {"source", Usage::sampled_image, false, "texture2D", "what to blur"},
+    {"mask", Usage::sampled_image, true, "utexture2D", "where"},
+    {"tiles", Usage::storage_buffer_read, true, "uint", "list"},
+    {"history", Usage::sampled_image, true, "texture2D", "the last frame's"},
+    {"target", Usage::storage_image_write, false, "image2D", "the result", half4},
+    {"history", Usage::storage_image_write, true, "image2D", "this frame's"},
+};
+inline constexpr KindSetting blur_settings[] = {
+    {"samples", SettingType::integer, {SettingType::integer, 16, 0.0}, 1, 64, {}, "", "how many"},
+    {"radius", SettingType::real, {SettingType::real, 0, 1.0}, 0, 8, {}, "px", "how far"},
+    {"mode", SettingType::enumeration, {SettingType::enumeration, 0, 0.0}, 0, 0, modes, "", "how"},
+    {"mirror", SettingType::boolean, {SettingType::boolean, 0, 0.0}, 0, 1, {}, "", "whether"},
+};
+inline constexpr Port list_ports[] = {
+    {"mask", Usage::sampled_image, false, "utexture2D", "where"},
+    {"tiles", Usage::storage_buffer_write, false, "uint", "list"},
+};
+inline constexpr Port mix_ports[] = {
+    {"source", Usage::sampled_image, false, "texture2D", "what to add"},
+    {"target", Usage::storage_image_update, false, "image2D", "what to add it to"},
+};
+
+inline const KindRegistry& kinds() {
+  static const KindRegistry registry = [] {
+    KindRegistry out;
+    out.add({"test.blur", "blur", "blurs", blur_ports, blur_settings});
+    out.add({"test.list", "list", "lists tiles", list_ports, {}});
+    out.add({"test.mix", "mix", "adds", mix_ports, {}});
+    return out;
+  }();
+  return registry;
+}
+
+struct Read {
+  Diagnostics diagnostics;
+  std::optional<Graph> graph;
+};
+
+inline Read read(std::string text) {
+  Read out;
+  const auto document = parse_document("graph.json", std::move(text), out.diagnostics);
+  if (document) out.graph = read_graph(*document, kinds(), out.diagnostics);
+  return out;
+}
+
+// Every feature once, one declaration a line.
+inline std::string whole_graph() {
+  return R"({ "$schema": "x", "dermis": 1, "name": "whole", "note": "all of it",
+  "settings": {
+    "quality": { "choice": ["fast", "good", "best"], "by": "budget", "default": "good" },
+    "samples": { "int": 16, "min": 4, "max": 64, "unit": "samples" },
+    "radius": { "real": 1.5, "min": 0, "max": 8, "note": "of the blur" },
+    "mirror": { "bool": true },
+    "style": { "enum": ["plain", "fancy"], "default": "fancy" } },
+  "imports": {
+    "light": { "format": ["rgba16f", "rgba32f"], "size": "view" },
+    "depth": { "format": "depth", "size": "view", "optional": true },
+    "material": { "format": "r8_uint", "size": "view" } },
+  "resources": {
+    "half": { "format": "rgba16f", "size": "view*3/4", "round": "floor", "align": 8, "mips": "full", "layers": 2 },
+    "kept": { "format": "rgba16f", "size": "half/2",
+              "history": { "frames": 2, "first": "clear", "on_cut": "keep", "on_resize": "rescale" } },
+    "fixed": { "format": "rgba16f", "size": [64, 32], "optional": true },
+    "list": { "buffer": { "stride": 4, "count": "view/8", "extra": 4 } } },
+  "passes": [
+    { "pass": "find", "kind": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } },
+    { "pass": "blur", "kind": "test.blur", "when": "quality in ['good', 'best'] and not mirror == false",
+      "read": { "source": "light", "mask": "material", "tiles": "list", "history": "kept@-2" },
+      "write": { "target": "half", "history": "kept" },
+      "set": { "samples": "$samples", "radius": 2, "mode": "$quality", "mirror": true },
+      "otherwise": { "half": "light" } },
+    { "pass": "copy", "kind": "test.blur", "read": { "source": "half" }, "write": { "target": "fixed" },
+      "set": { "mode": "best", "radius": "$radius" },
+      "after": [{ "pass": "find", "reason": "keeps captures in order" }] },
+    { "pass": "mix", "kind": "test.mix", "read": { "source": "half" }, "write": { "target": "light" } } ],
+  "exports": ["light", "fixed"] })";
+}
+
+// `whole_graph` with the only occurrence of `from` replaced.
+inline std::string damaged(std::string_view from, std::string_view to) {
+  std::string text = whole_graph();
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  EXPECT_EQ(text.find(from, at + 1), std::string::npos) << from << " is ambiguous";
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+} // namespace dermis::testing
