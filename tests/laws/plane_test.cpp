@@ -1,0 +1,241 @@
+// What must hold on a plane that faces the viewer, for every technique (closed forms of truth/analytic.hpp).
+#include "tests/laws/plane.hpp"
+
+#include "passes/subsurface/truth/analytic.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace laws;
+
+struct Technique {
+  const char* name;
+  const char* graph;
+  Settings settings;
+};
+
+void PrintTo(const Technique& technique, std::ostream* out) { *out << technique.name; }
+
+const Technique burley_64{"burley_64", "burley", {{"samples", "64"}}};
+const Technique burley_256{"burley_256", "burley", {{"samples", "256"}}};
+const Technique separable_11{"separable_11", "separable", {{"taps", "\"11\""}}};
+const Technique separable_17{"separable_17", "separable", {{"taps", "\"17\""}}};
+const Technique separable_25{"separable_25", "separable", {{"taps", "\"25\""}}};
+
+class EveryTechnique : public DeviceTest, public testing::WithParamInterface<Technique> {
+protected:
+  Picture scatter(const Plane& plane) { return run(GetParam().graph, plane, GetParam().settings); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Laws, EveryTechnique, testing::Values(burley_64, separable_11, separable_17, separable_25),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {
+  for (const double d : {0.3, 1.0, 4.0, 16.0, 1000.0}) {
+    Plane plane;
+    plane.width = plane.height = 96;
+    plane.d_px = {d, 0.38 * d, 0.19 * d};
+    const Picture picture = scatter(plane);
+    for (const float value : picture.rgb)
+      ASSERT_NEAR(value, 1.0f, 1e-3) << "d = " << d << " px"; // fp16 storage: 2^-11 at 1
+  }
+}
+
+TEST_P(EveryTechnique, WithoutScatteringTheInputComesBackBitForBit) {
+  Plane plane;
+  plane.width = 67; // odd on purpose
+  plane.height = 43;
+  plane.d_px = {0, 0, 0};
+  plane.light = [](double x, double y) { return static_cast<float>(0.1 + 0.7 * std::fmod(x * 0.37 + y * 0.91, 1.0)); };
+  const Picture picture = scatter(plane);
+  for (uint32_t y = 0; y < plane.height; ++y)
+    for (uint32_t x = 0; x < plane.width; ++x)
+      for (uint32_t c = 0; c < 3; ++c)
+        ASSERT_EQ(static_cast<float>(picture.at(x, y, c)), plane.light(x, y));
+}
+
+TEST_P(EveryTechnique, ANarrowChannelWithoutScatteringComesBackBitForBitBesideAWideOne) {
+  Plane plane;
+  plane.width = plane.height = 64;
+  plane.d_px = {5, 2, 0};
+  plane.light = [](double x, double) { return x < 31.5 ? 0.123456f : 0.9f; };
+  const Picture picture = scatter(plane);
+  for (uint32_t x = 0; x < plane.width; ++x)
+    ASSERT_EQ(static_cast<float>(picture.at(x, 9, 2)), plane.light(x, 9.0));
+  EXPECT_GT(picture.at(31, 9, 0), 0.2);
+}
+
+TEST_P(EveryTechnique, TwoMaterialsSideBySideDoNotLeakIntoEachOther) {
+  Plane plane;
+  plane.width = plane.height = 64;
+  plane.light = [](double x, double) { return x < 32 ? 1.0f : 0.0f; };
+  plane.profile = [](int x, int) { return static_cast<uint8_t>(x < 32 ? 1 : 2); };
+  const Picture picture = scatter(plane);
+  for (uint32_t y = 0; y < plane.height; ++y)
+    for (uint32_t x = 0; x < plane.width; ++x)
+      ASSERT_NEAR(picture.at(x, y, 0), x < 32 ? 1.0 : 0.0, 1e-3);
+}
+
+TEST_P(EveryTechnique, ADepthStepFarBeyondTheRadiusDoesNotLeak) {
+  Plane plane;
+  plane.width = plane.height = 64;
+  plane.light = [](double x, double) { return x < 32 ? 1.0f : 0.0f; };
+  plane.depth_m = [](int x, int) { return x < 32 ? 1.0f : 1.4f; }; // 100 d of 4 mm
+  const Picture picture = scatter(plane);
+  for (uint32_t y = 0; y < plane.height; ++y)
+    for (uint32_t x = 0; x < plane.width; ++x)
+      ASSERT_NEAR(picture.at(x, y, 0), x < 32 ? 1.0 : 0.0, 1e-3);
+}
+
+TEST_P(EveryTechnique, ALonePixelOfSubsurfaceKeepsItsLight) {
+  Plane plane;
+  plane.width = plane.height = 32;
+  plane.light = [](double x, double y) { return x == 13 && y == 17 ? 0.75f : 0.25f; };
+  plane.profile = [](int x, int y) { return static_cast<uint8_t>(x == 13 && y == 17 ? 1 : 0); };
+  const Picture picture = scatter(plane);
+  EXPECT_EQ(picture.at(13, 17, 0), 0.75);
+  EXPECT_EQ(picture.at(12, 17, 0), 0.25); // no subsurface: untouched
+}
+
+TEST_P(EveryTechnique, ScatterScaleZeroIsDiffuseAndTwoIsTwiceTheRadius) {
+  Plane plane;
+  plane.width = plane.height = 96;
+  plane.light = [](double x, double) { return x < 47.5 ? 0.0f : 1.0f; };
+  plane.scatter_scale = [](int, int) { return 0.0f; };
+  const Picture diffuse = scatter(plane);
+  for (uint32_t x = 0; x < plane.width; ++x)
+    ASSERT_EQ(static_cast<float>(diffuse.at(x, 40, 0)), plane.light(x, 40.0));
+
+  plane.scatter_scale = [](int, int) { return 2.0f; };
+  const Picture doubled = scatter(plane);
+  plane.scatter_scale = nullptr;
+  plane.d_px = {8, 8, 8};
+  const Picture wide = scatter(plane);
+  for (size_t i = 0; i < wide.rgb.size(); ++i)
+    ASSERT_NEAR(doubled.rgb[i], wide.rgb[i], 2e-3); // the same kernel but for fp32 rounding of d
+}
+
+TEST_P(EveryTechnique, LightThatIsNotANumberHasNoFootprint) {
+  Plane plane, clean;
+  plane.width = plane.height = clean.width = clean.height = 64;
+  const auto base = [](double x, double y) { return static_cast<float>(0.5 + 0.4 * std::sin(x * 0.2) * std::cos(y * 0.3)); };
+  clean.light = [&](double x, double y) { return x == 20 && y >= 20 && y <= 22 ? 0.0f : base(x, y); };
+  plane.light = [&](double x, double y) {
+    if (x == 20 && y == 20) return std::nanf("");
+    if (x == 20 && y == 21) return -1.0f;
+    if (x == 20 && y == 22) return -INFINITY;
+    return base(x, y);
+  };
+  const Picture poisoned = scatter(plane), expected = scatter(clean);
+  ASSERT_EQ(poisoned.rgb.size(), expected.rgb.size());
+  for (size_t i = 0; i < expected.rgb.size(); ++i)
+    ASSERT_EQ(poisoned.rgb[i], expected.rgb[i]);
+}
+
+TEST_P(EveryTechnique, ARectangleInsideTheImagesGivesThePictureOfItsOwnSize) {
+  Plane whole;
+  whole.width = 72;
+  whole.height = 56;
+  whole.light = [](double x, double y) { return x + y < 60 ? 0.2f : 0.8f; };
+  const Picture expected = scatter(whole);
+  Plane part = whole;
+  part.width = 128;
+  part.height = 96;
+  part.rectangle = {24, 17, 72, 56};
+  part.light = [&](double x, double y) { return whole.light(x - 24, y - 17); };
+  const Picture picture = scatter(part);
+  for (uint32_t y = 0; y < whole.height; ++y)
+    for (uint32_t x = 0; x < whole.width; ++x)
+      ASSERT_EQ(picture.at(x + 24, y + 17, 0), expected.at(x, y, 0)) << x << " " << y;
+}
+
+TEST_P(EveryTechnique, OddAndTinySizesWork) {
+  for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 7u}, {7u, 1u}, {9u, 17u}, {131u, 3u}}) {
+    Plane plane;
+    plane.width = width;
+    plane.height = height;
+    const Picture picture = scatter(plane);
+    ASSERT_EQ(picture.rgb.size(), size_t{3} * width * height);
+    for (const float value : picture.rgb)
+      ASSERT_NEAR(value, 1.0f, 1e-3) << width << "x" << height;
+  }
+}
+
+// The edge of a half plane of light, over columns: mean error, and the root mean square over pixels.
+struct EdgeError {
+  double worst_column_mean = 0, rms = 0;
+};
+
+EdgeError edge_error(const Technique& technique, double d_px, uint32_t channel_of_ratio = 0) {
+  constexpr uint32_t width = 192, height = 256;
+  constexpr uint32_t margin = 40; // columns near the border see less light than the infinite half plane
+  const std::array<double, 3> ratio = {1, 0.38, 0.19};
+  Plane plane;
+  plane.width = width;
+  plane.height = height;
+  plane.d_px = {d_px, ratio[1] * d_px, ratio[2] * d_px};
+  plane.light = [](double x, double) { return x < width / 2 ? 0.0f : 1.0f; };
+  const Picture picture = run(technique.graph, plane, technique.settings);
+  EdgeError result;
+  double square = 0;
+  for (uint32_t x = margin; x < width - margin; ++x) {
+    const double truth =
+        dermis::subsurface::burley_edge(x + 0.5 - width / 2.0, d_px * ratio[channel_of_ratio]);
+    double mean = 0;
+    for (uint32_t y = 0; y < height; ++y) {
+      const double error = picture.at(x, y, channel_of_ratio) - truth;
+      mean += error / height;
+      square += error * error;
+    }
+    result.worst_column_mean = std::max(result.worst_column_mean, std::abs(mean));
+  }
+  result.rms = std::sqrt(square / (double{height} * (width - 2 * margin)));
+  return result;
+}
+
+class Edge : public DeviceTest {};
+
+TEST_F(Edge, BurleyAt256SamplesFollowsTheClosedForm) {
+  for (const double d : {2.0, 4.0})
+    for (uint32_t channel = 0; channel < 3; ++channel) {
+      const EdgeError error = edge_error(burley_256, d, channel);
+      RecordProperty("rms", std::to_string(error.rms));
+      EXPECT_LE(error.worst_column_mean, 0.005) << d << " px, channel " << channel;
+      EXPECT_LE(error.rms, 0.006) << d << " px, channel " << channel;
+    }
+}
+
+TEST_F(Edge, SeparableStaysWithinItsDocumentedFloor) {
+  // docs/techniques.md, "Floors": rms over 112 columns around an edge, widest channel, 25 taps.
+  for (const double d : {2.0, 4.0})
+    EXPECT_LE(edge_error(separable_25, d).rms, 0.006) << d;
+}
+
+TEST_F(Edge, ASinusoidKeepsTheContrastOfTheModulationTransfer) {
+  // B = 1/2 + 1/2 cos(k x) is constant over a pixel, which takes sinc(f) of the contrast. Whole periods across the
+  // picture, projected on cos(k x) in its inner part.
+  constexpr double d = 6.0;
+  for (const double kd : {0.5, 1.0, 2.0}) {
+    constexpr uint32_t width = 512, height = 64, margin = 120;
+    const double k = kd / d;
+    Plane plane;
+    plane.width = width;
+    plane.height = height;
+    plane.d_px = {d, d, d};
+    plane.light = [&](double x, double) { return static_cast<float>(0.5 + 0.5 * std::cos(k * (x - 256))); };
+    const Picture picture = run("burley", plane, {{"samples", "512"}});
+    // Least squares for a + b cos(k x) over the middle.
+    double n = 0, sc = 0, scc = 0, sy = 0, syc = 0;
+    for (uint32_t x = margin; x < width - margin; ++x)
+      for (uint32_t y = 20; y < height - 20; ++y) {
+        const double c = std::cos(k * (x - 256.0)), value = picture.at(x, y, 0);
+        n += 1, sc += c, scc += c * c, sy += value, syc += value * c;
+      }
+    const double contrast = 2 * (n * syc - sc * sy) / (n * scc - sc * sc);
+    const double expected = dermis::subsurface::burley_mtf(k, d) * std::sin(k / 2) / (k / 2);
+    EXPECT_NEAR(contrast, expected, 0.01) << "k d = " << kd; // the strip is 64 px high: its ends see less of it
+  }
+}
+
+} // namespace
