@@ -10,9 +10,9 @@ namespace demo {
 // to the front. Chin to crown is 24.
 float bust_distance(const glm::vec3& centimetres);
 
-// The surface as a mesh in metres, same axes; tint carries what depends on the place: lips, cheeks, ears,
-// nose. `detail` scales the spacing of the grid (1 = some 80,000 triangles, 2 = a quarter of them). Uses two
-// threads.
-Mesh make_bust(float detail = 1.0f);
+// The surface as a mesh in metres, same axes; tint and gloss carry what depends on the place: lips, cheeks,
+// ears, nose, brows. `spacing` scales the distance of the grid's planes: 1 gives some 80,000 triangles, and
+// every doubling a quarter of them. Uses two threads.
+Mesh make_bust(float spacing = 1.0f);
 
 } // namespace demo

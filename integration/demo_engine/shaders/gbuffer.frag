@@ -46,10 +46,10 @@ void paint(uint pattern, vec3 p, inout vec3 albedo, inout float roughness, inout
   if (pattern == pattern_skin) {
     vec3 broad = noise3(p * 90.0), fine = noise3(p * 420.0 + 7.0);
     albedo *= mix(vec3(0.93, 0.90, 0.88), vec3(1.05, 1.06, 1.07), 0.6 * broad.x + 0.4 * fine.x);
-    vec2 spot = speckle(p * 150.0);
-    float freckle = smoothstep(0.36, 0.12, spot.x) * step(0.55, spot.y) * smoothstep(0.42, 0.62, broad.y);
-    albedo *= mix(vec3(1.0), vec3(0.70, 0.56, 0.46), 0.75 * freckle);
-    bump = (fine - 0.5) * 0.20 + (noise3(p * 900.0) - 0.5) * 0.16;
+    vec2 spot = speckle(p * 230.0);
+    float freckle = smoothstep(0.34, 0.10, spot.x) * step(0.45, spot.y) * smoothstep(0.45, 0.65, broad.y);
+    albedo *= mix(vec3(1.0), vec3(0.78, 0.64, 0.54), 0.7 * freckle);
+    bump = (fine - 0.5) * 0.13 + (noise3(p * 900.0) - 0.5) * 0.12;
     roughness *= 0.9 + 0.25 * fine.z;
   } else if (pattern == pattern_jade) {
     vec3 warp = noise3(p * 28.0);

@@ -1,0 +1,160 @@
+#include "integration/demo_engine/scene/read_scene.hpp"
+#include "integration/demo_engine/scene/scene_state.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace demo {
+namespace {
+
+using testing::HasSubstr;
+
+// A whole scene with one piece exchanged.
+std::string scene_with(const std::string& camera, const std::string& more = "") {
+  return R"({ "dermis_scene": 1, "name": "s",
+  "profiles": [ { "name": "skin", "file": "../profiles/skin.json" } ],
+  "camera": )" +
+         camera + R"(,
+  "objects": [ { "shape": "sphere", "profile": "skin" )" +
+         more + " } ] }";
+}
+const std::string plain_camera = R"({ "position": [0, 0, 2], "target": [0, 0, 0], "vertical_fov": 30 })";
+
+void expect_refused(const std::string& text, dermis::DiagnosticId id, uint32_t line,
+                    const std::string& words) {
+  dermis::Diagnostics diagnostics;
+  EXPECT_FALSE(parse_scene("s.json", text, diagnostics)) << text;
+  ASSERT_FALSE(diagnostics.list.empty());
+  EXPECT_EQ(diagnostics.list[0].id, id) << diagnostics.list[0].text;
+  EXPECT_EQ(diagnostics.list[0].where.line, line);
+  EXPECT_THAT(diagnostics.list[0].text, HasSubstr(words));
+}
+
+TEST(SceneFile, ShippedScenesAreWithoutFault) {
+  for (const char* name : {"bust", "head"}) {
+    dermis::Diagnostics diagnostics;
+    const std::string path = std::string(DERMIS_SOURCE_DIR "/configs/scenes/") + name + ".json";
+    const auto scene = read_scene(path, diagnostics);
+    ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
+    EXPECT_EQ(scene->name, name);
+    EXPECT_GE(scene->lights.size(), 2u);
+  }
+}
+
+TEST(SceneFile, ProfilesAreFoundBesideTheScene) {
+  dermis::Diagnostics diagnostics;
+  const auto scene = parse_scene("a/scenes/s.json", scene_with(plain_camera), diagnostics);
+  ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
+  EXPECT_EQ(scene->profiles[0].file, "a/profiles/skin.json");
+  EXPECT_EQ(scene->objects[0].profile, 1u);
+}
+
+TEST(SceneFile, MistakesAreNamedWithTheirPlace) {
+  using dermis::DiagnosticId;
+  expect_refused("{", DiagnosticId::syntax, 1, "");
+  expect_refused(R"({ "name": "s" })", DiagnosticId::missing_key, 1, "dermis_scene");
+  expect_refused(scene_with(plain_camera, R"(, "colour": [1, 1, 1])"), DiagnosticId::unknown_key, 4,
+                 "colour");
+  expect_refused(scene_with(plain_camera, R"(, "pattern": "wood")"), DiagnosticId::invalid_value, 4, "wood");
+  expect_refused(scene_with(R"({ "position": [0, 0], "target": [0, 0, 0], "vertical_fov": 30 })"),
+                 DiagnosticId::wrong_type, 3, "position");
+  expect_refused(scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 0 })"),
+                 DiagnosticId::out_of_range, 3, "vertical_fov");
+  expect_refused(
+      scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 30, "near": 30 })"),
+      DiagnosticId::out_of_range, 3, "near plane");
+  expect_refused(scene_with(plain_camera, R"(, "profile": "skim")").replace(0, 0, ""),
+                 DiagnosticId::duplicate_key, 4, "profile");
+}
+
+TEST(SceneFile, AnUnknownProfileListsTheKnownOnes) {
+  std::string text = scene_with(plain_camera);
+  text.replace(text.rfind("\"skin\""), 6, "\"wood\"");
+  expect_refused(text, dermis::DiagnosticId::invalid_value, 4, "'skin'");
+}
+
+TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
+  using dermis::DiagnosticId;
+  const auto lit = [](const std::string& intensity) {
+    std::string text = scene_with(plain_camera);
+    text.insert(text.rfind('}'), R"(, "lights": [ { "type": "point", "position": [0, 1, 0], "intensity": )" +
+                                     intensity + " } ]");
+    return text;
+  };
+  dermis::Diagnostics diagnostics;
+  const auto scene = parse_scene("s.json", lit(R"({ "keys": [[0, 1], [2, 3]] })"), diagnostics);
+  ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
+  EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 0.5), 1.5);
+  EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 9.0), 3.0);
+  expect_refused(lit(R"({ "keys": [[1, 1], [1, 3]] })"), DiagnosticId::out_of_range, 4, "ascend");
+  expect_refused(lit(R"({ "keys": [[0, -1]] })"), DiagnosticId::out_of_range, 4, "-1");
+  expect_refused(lit(R"({ "sine": { "mean": 1, "amplitude": 2, "hertz": 5 } })"), DiagnosticId::out_of_range,
+                 4, "swings");
+}
+
+TEST(SceneFile, MoreShadowMapsThanThereIsRoomForAreRefused) {
+  std::string lights;
+  for (int i = 0; i < 5; ++i)
+    lights += std::string(i ? "," : "") + R"({ "type": "point", "position": [0, 1, 0], "intensity": 1 })";
+  std::string text = scene_with(plain_camera);
+  text.insert(text.rfind('}'), ", \"lights\": [" + lights + "]");
+  expect_refused(text, dermis::DiagnosticId::limit_exceeded, 4, "30 shadow maps");
+}
+
+Scene scene_seen_by(bool orthographic) {
+  Scene scene;
+  scene.camera.orthographic = orthographic;
+  scene.camera.position = Curve<glm::dvec3>(glm::dvec3(0.1, 0.2, 2.0));
+  scene.camera.height = Curve<double>(0.5);
+  scene.objects.emplace_back();
+  return scene;
+}
+
+TEST(SceneState, DepthComesBackAsMetresForEveryProjection) {
+  for (const bool orthographic : {false, true}) {
+    for (const bool reversed : {false, true}) {
+      const Scene scene = scene_seen_by(orthographic);
+      const SceneState state = state_at(scene, 0, {320, 180, reversed, true});
+      for (const double metres : {0.06, 0.5, 2.0, 19.0}) {
+        const glm::dvec4 clip = state.now.clip_from_view * glm::dvec4(0.01, 0.02, -metres, 1.0);
+        // fp64; the division by w loses at most far / near of its 53 bits.
+        EXPECT_NEAR(view_depth(state.now.clip_from_view, clip.z / clip.w), metres, 1e-9);
+      }
+      const glm::dvec4 near = state.now.clip_from_view * glm::dvec4(0, 0, -scene.camera.near_plane, 1.0);
+      EXPECT_NEAR(near.z / near.w, reversed ? 1.0 : 0.0, 1e-12);
+    }
+  }
+}
+
+TEST(SceneState, UpIsUpOnTheScreenAndJitterIsInPixelsRightAndDown) {
+  for (const bool orthographic : {false, true}) {
+    const Scene scene = scene_seen_by(orthographic);
+    const SceneState state = state_at(scene, 3, {320, 180, false, true});
+    const glm::dvec4 point(0.01, 0.02, -2.0, 1.0);
+    const auto pixel = [&](const glm::dmat4& projection) {
+      const glm::dvec4 clip = projection * point;
+      return (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(320, 180);
+    };
+    const glm::dvec2 steady = pixel(state.now.clip_from_view_steady);
+    EXPECT_GT(steady.x, 160.0);
+    EXPECT_LT(steady.y, 90.0);
+    const glm::dvec2 moved = pixel(state.now.clip_from_view) - steady;
+    EXPECT_NEAR(moved.x, state.now.jitter.x, 1e-9);
+    EXPECT_NEAR(moved.y, state.now.jitter.y, 1e-9);
+    EXPECT_NE(state.now.jitter.x, 0.0);
+  }
+}
+
+TEST(SceneState, TheFirstFrameHasNoMotion) {
+  Scene scene = scene_seen_by(false);
+  scene.objects[0].position.keys = {{0.0, glm::dvec3(0.0)}, {1.0, glm::dvec3(1.0, 0.0, 0.0)}};
+  const SceneState first = state_at(scene, 0, {320, 180});
+  EXPECT_EQ(first.world, first.previous_world);
+  const SceneState second = state_at(scene, 5, {320, 180});
+  EXPECT_NEAR(second.world[0][3][0] - second.previous_world[0][3][0], 0.04, 1e-12); // 25 frames a second
+}
+
+} // namespace
+} // namespace demo
