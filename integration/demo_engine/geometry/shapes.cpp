@@ -19,9 +19,10 @@ Mesh sweep(uint32_t columns, uint32_t rows, const std::function<glm::vec3(float,
       Vertex vertex;
       vertex.position = place(u, v);
       vertex.uv = {u, v};
-      const glm::vec3 du = place(u + step, v) - place(u - step, v);
-      const glm::vec3 dv = place(u, std::min(v + step, 1.0f)) - place(u, std::max(v - step, 0.0f));
-      const glm::vec3 normal = glm::cross(du, dv);
+      // Where a row shrinks to a point, the normal is that of a little further inside.
+      const float w = std::clamp(v, 2.0f * step, 1.0f - 2.0f * step);
+      const glm::vec3 du = place(u + step, w) - place(u - step, w);
+      const glm::vec3 normal = glm::cross(du, place(u, w + step) - place(u, w - step));
       const float length = glm::length(normal);
       if (length > 0.0f) vertex.normal = normal / length;
       const float along = glm::length(du);

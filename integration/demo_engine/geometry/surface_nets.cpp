@@ -153,20 +153,21 @@ Mesh mesh_field(const Field& field, const GridPlanes& planes, float occlusion_re
         reach.push_back(std::min({size.x, size.y, size.z}));
       }
 
-  for (uint32_t z = 1; z + 1 < grid.nz; ++z)
-    for (uint32_t y = 1; y + 1 < grid.ny; ++y)
-      for (uint32_t x = 1; x + 1 < grid.nx; ++x) {
+  // A quad around each edge of the grid that crosses the surface, from the four cells that share the edge.
+  for (uint32_t z = 0; z + 1 < grid.nz; ++z)
+    for (uint32_t y = 0; y + 1 < grid.ny; ++y)
+      for (uint32_t x = 0; x + 1 < grid.nx; ++x) {
         const bool inside = grid.value[grid.at(x, y, z)] < 0.0f;
         const auto cell = [&](uint32_t cx, uint32_t cy, uint32_t cz) {
           return vertex_of[grid.at(cx, cy, cz)];
         };
-        if (inside != (grid.value[grid.at(x + 1, y, z)] < 0.0f))
+        if (y > 0 && z > 0 && inside != (grid.value[grid.at(x + 1, y, z)] < 0.0f))
           add_quad(mesh, {cell(x, y - 1, z - 1), cell(x, y, z - 1), cell(x, y, z), cell(x, y - 1, z)},
                    !inside);
-        if (inside != (grid.value[grid.at(x, y + 1, z)] < 0.0f))
+        if (x > 0 && z > 0 && inside != (grid.value[grid.at(x, y + 1, z)] < 0.0f))
           add_quad(mesh, {cell(x - 1, y, z - 1), cell(x - 1, y, z), cell(x, y, z), cell(x, y, z - 1)},
                    !inside);
-        if (inside != (grid.value[grid.at(x, y, z + 1)] < 0.0f))
+        if (x > 0 && y > 0 && inside != (grid.value[grid.at(x, y, z + 1)] < 0.0f))
           add_quad(mesh, {cell(x - 1, y - 1, z), cell(x, y - 1, z), cell(x, y, z), cell(x - 1, y, z)},
                    !inside);
       }

@@ -151,6 +151,14 @@ struct SceneReader {
     if (lights.valid())
       for (const NodeId node : dermis::children(document, lights))
         read_light(node);
+    uint32_t layers = 0;
+    for (const Light& light : scene.lights)
+      layers += shadow_layers_of(light);
+    if (layers > most_shadow_layers)
+      diagnostics.add(
+          DiagnosticId::limit_exceeded, document.where(lights),
+          fmt::format("the lights need {} shadow maps (6 a point light, 1 each other); at most {} fit",
+                      layers, most_shadow_layers));
     if (objects.valid())
       for (const NodeId node : dermis::children(document, objects))
         read_object(node);

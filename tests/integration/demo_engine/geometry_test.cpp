@@ -17,7 +17,9 @@ double agreeing_triangles(const Mesh& mesh) {
     const Vertex& b = mesh.vertices[mesh.indices[i + 1]];
     const Vertex& c = mesh.vertices[mesh.indices[i + 2]];
     const glm::vec3 face = glm::cross(b.position - a.position, c.position - a.position);
-    if (glm::dot(face, a.normal + b.normal + c.normal) >= 0.0f) ++agreeing;
+    // Triangles at a pole have no area but the rounding of sin(pi) in fp32, some 1e-7 of the radius.
+    constexpr float rounding = 1e-8f;
+    if (glm::dot(face, a.normal + b.normal + c.normal) >= -rounding) ++agreeing;
   }
   return static_cast<double>(agreeing) / static_cast<double>(mesh.indices.size() / 3);
 }
