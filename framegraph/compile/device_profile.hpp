@@ -30,6 +30,11 @@ struct DeviceProfile {
   std::string name = "generic";
   uint64_t buffer_image_granularity = 1;
   uint32_t max_image_dimension = 16384;
+  uint32_t max_image_layers = 256; // maxImageArrayLayers; the default is the least Vulkan allows
+  uint64_t max_storage_buffer_bytes = 1ull
+                                      << 27; // maxStorageBufferRange; the default is the least Vulkan allows
+  uint32_t device_local_type_bits =
+      0xffffffffu;                      // memory types a heap must keep one of where its occupants can
   uint32_t max_workgroup_count = 65535; // smallest of the three dimensions
   uint32_t max_push_constants_bytes = 128;
   // May the format be used so? vk_usage are VkImageUsageFlags.
@@ -38,6 +43,7 @@ struct DeviceProfile {
   std::function<MemoryNeeds(const BufferDescription&)> buffer_needs;
 };
 
+// Texels times packed size and bytes, rounded to 64 KiB; one memory type; what common devices support.
 DeviceProfile generic_profile();
 
 } // namespace dermis

@@ -1,6 +1,6 @@
 #pragma once
-// What will run: ordered passes with resolved accesses, batched barriers, heaps with placements, history slots.
-// Flat arrays, no pointers; the same inputs give the same bytes. Reasons are a side table.
+// What will run: ordered passes with resolved accesses, batched barriers, heaps with placements, history
+// slots. Flat arrays, no pointers; the same inputs give the same bytes. Reasons are a side table.
 
 #include "framegraph/model/graph.hpp"
 
@@ -14,23 +14,25 @@ namespace dermis {
 inline constexpr uint32_t no_instance = 0xffffffffu;
 
 // A physical image or buffer. Transients have one instance; a history resource of N frames has up to N+1
-// instances of which one is current: in frame f (counted per view from 0), `frames_back` b of history resource r
-// lives in instance first_instance + (f - b) mod instance_count.
+// instances of which one is current: in frame f (counted per view from 0), `frames_back` b of history
+// resource r lives in instance first_instance + (f - b) mod instance_count.
 struct PlanResource {
   ResourceId declared;
   ResourceType type = ResourceType::image;
   Origin origin = Origin::transient;
-  bool exported = false; // bound by the host: the host owns the memory; an unbound export is an ordinary transient
+  bool exported =
+      false; // bound by the host: the host owns the memory; an unbound export is an ordinary transient
   Format format = Format::undefined;
   uint32_t width = 1, height = 1, mips = 1, layers = 1; // images, at the allocated view size
-  uint64_t bytes = 0;                                    // buffers: size asked for
-  uint32_t vk_usage = 0;                                 // union of its ports' usages
-  uint32_t instance_count = 1;                           // > 1: history
-  uint32_t first_instance = no_instance;                 // into Plan::placements; no_instance: the host's memory
-  int32_t slot = -1; // imports and exports, bound or not: running number among them in the order of Graph::resources
+  uint64_t bytes = 0;                                   // buffers: size asked for
+  uint32_t vk_usage = 0;                                // union of its ports' usages
+  uint32_t instance_count = 1;                          // > 1: history
+  uint32_t first_instance = no_instance; // into Plan::placements; no_instance: the host's memory
+  int32_t slot =
+      -1; // imports and exports, bound or not: running number among them in the order of Graph::resources
 };
 
-struct Placement {      // one physical instance in memory
+struct Placement {       // one physical instance in memory
   uint32_t resource = 0; // into Plan::resources
   uint32_t heap = 0;     // into Plan::heaps
   uint64_t offset = 0, size = 0, alignment = 1;
@@ -41,8 +43,8 @@ struct Placement {      // one physical instance in memory
 struct Heap {
   uint32_t memory_type_bits = 0xffffffffu; // allowed memory types, all occupants agreed
   uint64_t size = 0, alignment = 1;
-  uint64_t max_live_bytes = 0;             // lower bound of any packing
-  bool persistent = false;                 // holds history instances only; else transients only
+  uint64_t max_live_bytes = 0; // lower bound of any packing
+  bool persistent = false;     // holds history instances only; else transients only
 };
 
 struct PlanAccess { // one bound port of one pass
@@ -55,9 +57,9 @@ struct PlanAccess { // one bound port of one pass
 };
 
 // One memory dependency on the whole of one resource: an image barrier over all mips and layers, or a buffer
-// barrier over all bytes (layouts undefined). Source masks name accesses of this frame and of the frames before
-// it on the same queue. Every slot the host binds has one barrier with to_host in the final batch; one that no
-// pass touches has from_host and to_host in it.
+// barrier over all bytes (layouts undefined). Source masks name accesses of this frame and of the frames
+// before it on the same queue. Every slot the host binds has one barrier with to_host in the final batch; one
+// that no pass touches has from_host and to_host in it.
 struct PlanBarrier {
   uint32_t resource = 0;
   uint32_t frames_back = 0;
@@ -65,15 +67,22 @@ struct PlanBarrier {
   Access source_access = 0, destination_access = 0;
   Layout old_layout = Layout::undefined, new_layout = Layout::undefined;
   enum class Why : uint8_t {
-    first_use, read_after_write, write_after_read, write_after_write, layout, alias, history, host_before,
+    first_use,
+    read_after_write,
+    write_after_read,
+    write_after_write,
+    layout,
+    alias,
+    history,
+    host_before,
     host_after
   } why = Why::first_use;
   bool from_host = false; // source scope and old layout come from the binding's `before`
   bool to_host = false;   // destination scope and new layout come from the binding's `after`
 };
 
-struct PlanSetting {   // value of one setting of one pass kind, resolved
-  SettingId from;      // valid: follows this run-time setting; `value` is its value at compile time
+struct PlanSetting { // value of one setting of one pass kind, resolved
+  SettingId from;    // valid: follows this run-time setting; `value` is its value at compile time
   SettingValue value;
 };
 
@@ -85,20 +94,20 @@ struct PlanPass {
   uint32_t first_setting = 0;                    // into Plan::settings, one per KindSetting
 };
 
-// History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned with
-// their contents discarded) into layout_at_start before the first frame that reads them.
+// History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned
+// with their contents discarded) into layout_at_start before the first frame that reads them.
 struct PlanHistory {
-  uint32_t resource = 0; // into Plan::resources
+  uint32_t resource = 0;               // into Plan::resources
   uint32_t frames = 1;                 // deepest `@-N` this plan reads; instance_count is frames + 1
-  std::vector<Layout> layout_at_start; // by frames_back 0 .. frames: layout of that instance when a frame starts;
-                                       // [0] is undefined: its old contents are discarded
+  std::vector<Layout> layout_at_start; // by frames_back 0 .. frames: layout of that instance when a frame
+                                       // starts; [0] is undefined: its old contents are discarded
   HistoryDeclaration declaration;
 };
 
 struct Plan {
-  std::string graph;                  // name
+  std::string graph;                        // name
   uint32_t view_width = 0, view_height = 0; // allocated size
-  std::string device_profile;         // name
+  std::string device_profile;               // name
   std::vector<SettingValue> setting_values; // one per Graph::settings: what `when` was folded with
   std::vector<PlanResource> resources;
   std::vector<Heap> heaps;
@@ -108,8 +117,9 @@ struct Plan {
   std::vector<PlanBarrier> barriers;
   std::vector<PlanSetting> settings;
   std::vector<PlanHistory> histories;
-  uint32_t first_final_barrier = 0, final_barrier_count = 0; // batch after the last pass: to the host's `after`
-  uint64_t transient_bytes = 0, history_bytes = 0;           // heap bytes by kind
+  uint32_t first_final_barrier = 0,
+           final_barrier_count = 0;                // batch after the last pass: to the host's `after`
+  uint64_t transient_bytes = 0, history_bytes = 0; // heap bytes by kind
 };
 
 // Why something was decided, outside the canonical bytes.

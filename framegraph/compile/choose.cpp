@@ -1,0 +1,68 @@
+// Values of the settings, and which passes their `when` turns on.
+
+#include "framegraph/compile/phases.hpp"
+#include "framegraph/model/expression.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace dermis {
+namespace {
+
+bool has_options(SettingType type) {
+  return type == SettingType::enumeration || type == SettingType::choice;
+}
+
+bool acceptable(const SettingDeclaration& declared, const SettingValue& value) {
+  if (value.type != declared.type) return false;
+  switch (declared.type) {
+  case SettingType::boolean:
+    return value.integer == 0 || value.integer == 1;
+  case SettingType::integer: {
+    const auto as_real = static_cast<double>(value.integer); // ranges in files are well inside 2^53
+    return as_real >= declared.minimum && as_real <= declared.maximum;
+  }
+  case SettingType::real:
+    return std::isfinite(value.real) && value.real >= declared.minimum && value.real <= declared.maximum;
+  case SettingType::enumeration:
+  case SettingType::choice:
+    return value.integer >= 0 && static_cast<uint64_t>(value.integer) < declared.options.size();
+  }
+  return false;
+}
+
+} // namespace
+
+std::string setting_text(const SettingDeclaration& setting, const SettingValue& value) {
+  if (value.type == SettingType::boolean) return value.integer != 0 ? "true" : "false";
+  if (value.type == SettingType::real) return fmt::format("{}", value.real);
+  if (has_options(value.type) && value.integer >= 0 &&
+      static_cast<size_t>(value.integer) < setting.options.size())
+    return fmt::format("'{}'", setting.options[static_cast<size_t>(value.integer)]);
+  return fmt::format("{}", value.integer);
+}
+
+void choose(CompileContext& c) {
+  for (uint32_t i = 0; i < c.graph.settings.size(); ++i) {
+    const SettingDeclaration& declared = c.graph.settings[i];
+    const bool given = !c.input.settings.empty();
+    const SettingValue value = given ? c.input.settings[i] : declared.default_value;
+    if (!acceptable(declared, value))
+      c.diagnostics.add(
+          DiagnosticId::setting_value, declared.where,
+          fmt::format("setting '{}' cannot be {}", declared.name, setting_text(declared, value)));
+    c.settings.push_back(value);
+    c.because(Reason::About::choice, i,
+              fmt::format("{} = {}: {}", declared.name, setting_text(declared, value),
+                          given ? "asked for by the caller" : "its default"));
+  }
+  c.out.plan.setting_values = c.settings;
+  for (uint32_t i = 0; i < c.graph.passes.size(); ++i) {
+    const ExpressionId when = c.graph.passes[i].when;
+    c.on.push_back(!when.valid() || evaluate(c.graph, when, c.settings));
+    if (!c.on.back()) c.because(Reason::About::pass, i, "off: its 'when' is false with these settings");
+  }
+}
+
+} // namespace dermis

@@ -1,0 +1,76 @@
+#include "framegraph/compile/compile.hpp"
+
+#include "framegraph/compile/phases.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis {
+namespace {
+
+// One entry for each thing asked about, or none at all; and a view that the device can hold.
+bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
+  const uint32_t errors = diagnostics.count(Severity::error);
+  const auto refuse = [&](std::string text) {
+    diagnostics.add(DiagnosticId::compile_input, {}, std::move(text));
+  };
+  const auto check_length = [&](const char* what, size_t given, size_t wanted) {
+    if (given != 0 && given != wanted)
+      refuse(fmt::format("{} {} given, the graph has {}", given, what, wanted));
+  };
+  const uint32_t limit = input.device->max_image_dimension;
+  if (input.view_width < 1 || input.view_height < 1 || input.view_width > limit || input.view_height > limit)
+    refuse(fmt::format("the view is {}x{}; each side must be within 1 .. {}", input.view_width,
+                       input.view_height, limit));
+  check_length("setting values", input.settings.size(), input.graph->settings.size());
+  check_length("bound flags", input.bound.size(), input.graph->resources.size());
+  check_length("host formats", input.host_formats.size(), input.graph->resources.size());
+  return diagnostics.count(Severity::error) == errors;
+}
+
+} // namespace
+
+bool CompileContext::host_owned(ResourceId id) const {
+  const auto& declared = graph.resources[id.value];
+  return declared.origin == Origin::imported || (declared.exported && bound[id.value]);
+}
+
+std::optional<CompiledPlan> compile(const CompileInput& input, Diagnostics& diagnostics) {
+  if (!acceptable(input, diagnostics)) return std::nullopt;
+  CompileContext context{input,
+                         *input.graph,
+                         *input.kinds,
+                         *input.device,
+                         diagnostics,
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {}};
+  const uint32_t errors_before = diagnostics.count(Severity::error);
+  for (auto* phase : {
+           resolve_sizes,    // how large is each resource, and which slots does the host bind?
+           choose,           // what are the settings, and which passes are on?
+           resolve_versions, // which version of which resource does each port see?
+           cull,             // which passes does something bound need?
+           order,            // in which order do they run?
+           lifetimes,        // from which pass to which is each resource alive?
+           resolve_formats,  // which format does each resource get?
+           pack,             // where in memory does each one lie?
+           synchronize,      // what must wait for what?
+       }) {
+    phase(context);
+    if (diagnostics.count(Severity::error) != errors_before) return std::nullopt;
+  }
+  return std::move(context.out);
+}
+
+} // namespace dermis

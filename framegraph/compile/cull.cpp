@@ -1,0 +1,143 @@
+// Which passes run: those with side effects, those that write a bound export, and whatever these read.
+
+#include "framegraph/compile/phases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis {
+namespace {
+
+struct Culler {
+  CompileContext& c;
+  std::vector<PassId> pending;
+  std::vector<uint8_t> reported; // by resource: one root cause, one diagnostic
+
+  void need(PassId pass, std::string why) {
+    if (c.live[pass.value]) return;
+    c.live[pass.value] = 1;
+    pending.push_back(pass);
+    c.because(Reason::About::pass, pass.value, "runs: " + std::move(why));
+  }
+
+  void need_value(uint32_t value, const std::string& why) {
+    if (value != no_value && c.values[value].producer.valid()) need(c.values[value].producer, why);
+  }
+
+  void follow(PassId pass) {
+    for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
+      const Use& use = c.uses[u];
+      if (use.trouble != Use::Trouble::none) {
+        examine(use);
+        continue;
+      }
+      const auto why = [&](const char* verb) {
+        return fmt::format("'{}' {} its '{}'", c.name(pass), verb, c.name(use.resource));
+      };
+      if (use.frames_back > 0) need_value(c.final_value[use.asked.value], why("reads in later frames"));
+      need_value(use.read_value, why("reads"));
+      // What is written in place may keep texels of the version before.
+      if (use.write_value != no_value) need_value(c.values[use.write_value].previous, why("writes over"));
+    }
+  }
+
+  // A port of a pass that runs has nothing behind it: fine for an optional port, except for ambiguity.
+  void examine(const Use& use) {
+    const Port& port = c.kind(use.pass).ports[use.port];
+    const bool missing = use.trouble == Use::Trouble::unbound || use.trouble == Use::Trouble::unwritten ||
+                         use.trouble == Use::Trouble::history_unwritten;
+    if (missing && port.optional) {
+      c.because(Reason::About::pass, use.pass.value,
+                fmt::format("optional port '{}' stays unbound: nothing provides '{}'", port.name,
+                            c.name(use.asked)));
+      return;
+    }
+    if (reported[use.asked.value]) return;
+    reported[use.asked.value] = 1;
+    const auto refuse = [&](DiagnosticId id, std::string text) {
+      auto& diagnostic = c.diagnostics.add(id, use.where, std::move(text));
+      diagnostic.related.emplace_back(c.graph.resources[use.asked.value].where,
+                                      fmt::format("'{}' is declared here", c.name(use.asked)));
+      relate_producers(diagnostic, use.asked);
+    };
+    const std::string reader = fmt::format("pass '{}', port '{}'", c.name(use.pass), port.name);
+    const std::string& resource = c.name(use.asked);
+    switch (use.trouble) {
+    case Use::Trouble::none:
+      break;
+    case Use::Trouble::unbound:
+      return refuse(DiagnosticId::unbound_import,
+                    fmt::format("{} needs '{}', which the host leaves unbound", reader, resource));
+    case Use::Trouble::unwritten:
+      return refuse(
+          DiagnosticId::read_before_write,
+          fmt::format("{} reads '{}', which no pass that is on writes before it", reader, resource));
+    case Use::Trouble::ambiguous:
+      return refuse(DiagnosticId::ambiguous_version,
+                    fmt::format("{} reads '{}' before any pass wrote it, and several write it later", reader,
+                                resource));
+    case Use::Trouble::replaced:
+      return refuse(
+          DiagnosticId::replaced_update,
+          fmt::format("{} updates '{}' in place, but it stands for '{}' because its producer is off", reader,
+                      resource, c.name(use.resource)));
+    case Use::Trouble::history_unwritten:
+      return refuse(DiagnosticId::history_unwritten,
+                    fmt::format("{} reads '{}@-{}', but no pass that is on writes '{}'", reader, resource,
+                                use.frames_back, resource));
+    }
+  }
+
+  // Where the passes stand that would write `resource`, on or off: the likely cause.
+  void relate_producers(Diagnostic& diagnostic, ResourceId resource) {
+    for (uint32_t i = 0; i < c.graph.passes.size(); ++i)
+      for (const PortBinding& binding : c.graph.passes[i].writes)
+        if (binding.resource == resource)
+          diagnostic.related.emplace_back(binding.where,
+                                          fmt::format("'{}' writes it and is {}", c.name(PassId{i}),
+                                                      c.on[i] ? "on" : "off with these settings"));
+  }
+};
+
+std::string names_of_outputs(const CompileContext& c, PassId pass) {
+  std::string names;
+  for (const PortBinding& binding : c.graph.passes[pass.value].writes)
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", c.name(binding.resource));
+  return names;
+}
+
+} // namespace
+
+void cull(CompileContext& c) {
+  c.live.assign(c.graph.passes.size(), 0);
+  Culler culler{c, {}, std::vector<uint8_t>(c.graph.resources.size(), 0)};
+  for (uint32_t i = 0; i < c.graph.resources.size(); ++i) {
+    const ResourceDeclaration& declared = c.graph.resources[i];
+    if (!declared.exported || !c.bound[i]) continue;
+    if (c.final_value[i] != no_value) {
+      culler.need_value(c.final_value[i], fmt::format("it writes the export '{}'", declared.name));
+    } else if (declared.optional) {
+      c.because(Reason::About::resource, i,
+                "left as the host bound it: no pass that is on writes this optional export");
+    } else {
+      auto& diagnostic =
+          c.diagnostics.add(DiagnosticId::export_unwritten, declared.where,
+                            fmt::format("no pass that is on writes the export '{}'", declared.name));
+      culler.relate_producers(diagnostic, ResourceId{i});
+    }
+  }
+  for (uint32_t i = 0; i < c.graph.passes.size(); ++i)
+    if (c.on[i] && c.kind(PassId{i}).side_effects) culler.need(PassId{i}, "its kind has side effects");
+  for (size_t at = 0; at < culler.pending.size(); ++at)
+    culler.follow(culler.pending[at]);
+  for (uint32_t i = 0; i < c.graph.passes.size(); ++i) {
+    if (!c.on[i] || c.live[i]) continue;
+    const std::string outputs = names_of_outputs(c, PassId{i});
+    c.because(Reason::About::pass, i,
+              outputs.empty() ? "culled: it writes nothing"
+                              : fmt::format("culled: nothing that is bound needs {}", outputs));
+  }
+}
+
+} // namespace dermis
