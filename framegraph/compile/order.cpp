@@ -20,7 +20,8 @@ std::vector<Edge> dependencies(const CompileContext& c, const std::vector<uint8_
                                bool with_readers) {
   std::vector<Edge> edges;
   const auto add = [&](PassId before, PassId after, auto&& why) {
-    if (!before.valid() || before == after || !wanted[before.value] || !wanted[after.value]) return;
+    if (!before.valid() || !after.valid() || before == after || !wanted[before.value] || !wanted[after.value])
+      return;
     edges.push_back({before, after, why()});
   };
   std::vector<PassId> overwriter(c.values.size()); // by value: the pass that writes over it

@@ -1,0 +1,120 @@
+#include "framegraph/verify/structure.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis {
+namespace {
+
+struct Checker {
+  const Plan& plan;
+  std::vector<std::string> objections;
+
+  void expect(bool holds, const char* what, size_t index) {
+    if (!holds) objections.push_back(fmt::format("{} (index {})", what, index));
+  }
+
+  static bool range_in(uint64_t first, uint64_t count, size_t size) { return first + count <= size; }
+
+  bool object_exists(uint32_t resource, uint32_t frames_back) const {
+    return resource < plan.resources.size() && frames_back < plan.resources[resource].instance_count;
+  }
+
+  void resources() {
+    for (size_t i = 0; i < plan.resources.size(); ++i) {
+      const PlanResource& resource = plan.resources[i];
+      expect(resource.instance_count >= 1, "a resource has no instance", i);
+      const bool host = resource.origin == Origin::imported || resource.exported;
+      expect(host == (resource.first_instance == no_instance),
+             "memory must be the host's or in a heap, not both", i);
+      expect(!host || resource.instance_count == 1, "the host's memory has one instance", i);
+      if (host) continue;
+      const bool inside = range_in(resource.first_instance, resource.instance_count, plan.placements.size());
+      expect(inside, "a resource refers to placements that do not exist", i);
+      for (uint32_t k = 0; inside && k < resource.instance_count; ++k) {
+        const Placement& placement = plan.placements[resource.first_instance + k];
+        expect(placement.resource == i, "a placement belongs to another resource", i);
+        expect(placement.persistent == (resource.instance_count > 1), "only history outlives a frame", i);
+      }
+    }
+  }
+
+  void placements() {
+    for (size_t i = 0; i < plan.placements.size(); ++i) {
+      const Placement& placement = plan.placements[i];
+      expect(placement.resource < plan.resources.size(), "a placement belongs to no resource", i);
+      expect(placement.heap < plan.heaps.size(), "a placement lies in no heap", i);
+      expect(placement.alignment > 0 && placement.offset % placement.alignment == 0,
+             "a placement is misaligned", i);
+      if (placement.heap < plan.heaps.size())
+        expect(placement.size <= plan.heaps[placement.heap].size &&
+                   placement.offset <= plan.heaps[placement.heap].size - placement.size,
+               "a placement reaches beyond its heap", i);
+      for (size_t k = 0; k < i; ++k) {
+        const Placement& other = plan.placements[k];
+        const bool together =
+            placement.persistent || other.persistent ||
+            (placement.first_use <= other.last_use && other.first_use <= placement.last_use);
+        expect(!together || !share_memory(placement, other), "placements alive at the same time share memory",
+               i);
+      }
+    }
+  }
+
+  void passes() {
+    for (size_t p = 0; p < plan.passes.size(); ++p) {
+      const PlanPass& pass = plan.passes[p];
+      const bool accesses = range_in(pass.first_access, pass.access_count, plan.accesses.size());
+      expect(accesses, "a pass refers to accesses that do not exist", p);
+      expect(range_in(pass.first_barrier, pass.barrier_count, plan.barriers.size()),
+             "a pass refers to barriers that do not exist", p);
+      for (uint32_t a = 0; accesses && a < pass.access_count; ++a) {
+        const PlanAccess& access = plan.accesses[pass.first_access + a];
+        const bool exists = object_exists(access.resource, access.frames_back);
+        expect(exists, "a pass accesses a resource or an earlier frame that does not exist", p);
+        if (!exists || plan.resources[access.resource].first_instance >= plan.placements.size()) continue;
+        const Placement& placement = plan.placements[plan.resources[access.resource].first_instance];
+        expect(placement.first_use <= p && p <= placement.last_use,
+               "a pass accesses memory outside its lifetime", p);
+      }
+    }
+    expect(range_in(plan.first_final_barrier, plan.final_barrier_count, plan.barriers.size()),
+           "the final batch refers to barriers that do not exist", 0);
+    for (size_t b = 0; b < plan.barriers.size(); ++b)
+      expect(object_exists(plan.barriers[b].resource, plan.barriers[b].frames_back),
+             "a barrier names a resource or an earlier frame that does not exist", b);
+  }
+
+  void histories() {
+    std::vector<uint32_t> described(plan.resources.size(), 0);
+    for (size_t h = 0; h < plan.histories.size(); ++h) {
+      const PlanHistory& history = plan.histories[h];
+      const bool exists = history.resource < plan.resources.size();
+      expect(exists, "a history belongs to no resource", h);
+      if (!exists) continue;
+      ++described[history.resource];
+      expect(plan.resources[history.resource].instance_count == history.frames + 1 &&
+                 history.layout_at_start.size() == history.frames + 1,
+             "a history has the wrong number of instances or layouts", h);
+    }
+    for (size_t r = 0; r < plan.resources.size(); ++r)
+      expect(described[r] == (plan.resources[r].instance_count > 1 ? 1u : 0u),
+             "a history is not described once", r);
+  }
+};
+
+} // namespace
+
+bool share_memory(const Placement& a, const Placement& b) {
+  return a.heap == b.heap && a.offset < b.offset + b.size && b.offset < a.offset + a.size;
+}
+
+std::vector<std::string> verify_structure(const Plan& plan) {
+  Checker checker{plan, {}};
+  checker.resources();
+  checker.placements();
+  checker.passes();
+  checker.histories();
+  return std::move(checker.objections);
+}
+
+} // namespace dermis

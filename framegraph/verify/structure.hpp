@@ -1,0 +1,18 @@
+#pragma once
+// What must hold for a plan before it can be run in thought: indices in range, intervals and memory
+// consistent.
+
+#include "framegraph/compile/plan.hpp"
+
+#include <string>
+#include <vector>
+
+namespace dermis {
+
+// What is wrong with the shape of the plan, one sentence each; empty: every index can be followed.
+std::vector<std::string> verify_structure(const Plan& plan);
+
+// Do the two placements have a byte in common?
+bool share_memory(const Placement& a, const Placement& b);
+
+} // namespace dermis

@@ -1,0 +1,259 @@
+// The model. A *thing* is a piece of memory with one layout: a placement, or what the host bound to a slot.
+// Every access leaves an *event* on its thing, which remembers at which stages later work is ordered behind
+// it and where a write is visible. Barriers extend both along execution chains (Vulkan 1.3, "Execution and
+// Memory Dependencies").
+//  read   every earlier write to the same bytes is ordered before it, the last one visible to it, contents
+//  defined write  every earlier access to the same bytes is ordered before it, every earlier write available
+//  layout equals what the access was planned with; transitions are writes; `undefined` discards the contents
+//  host   a slot is taken over before its first access and handed back, ordered and available, at the end
+
+#include "framegraph/verify/verify.hpp"
+
+#include "framegraph/verify/structure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis {
+namespace {
+
+constexpr size_t most_objections = 32; // the first ones tell; the rest follow from them
+
+struct Visible {
+  Stage stages;
+  Access access;
+};
+
+struct Event {
+  Stage stages = 0;  // where it happened; 0 for a layout transition, which only chains
+  Access writes = 0; // 0: a read
+  bool is_write = false;
+  Stage ordered = 0; // later work at these stages happens after it
+  bool available = false;
+  std::vector<Visible> visible;
+};
+
+struct Thing {
+  uint32_t placement = no_instance; // or the host's
+  bool image = false;
+  bool with_host = false;   // not ours to touch now
+  bool handed_back = false; // to the host, in this frame
+  bool defined = false;     // contents mean something
+  Layout layout = Layout::undefined;
+  std::vector<Event> events;
+};
+
+struct Machine {
+  const Plan& plan;
+  std::vector<Thing> things;
+  std::vector<uint32_t> first_thing; // by resource
+  std::vector<std::string> objections;
+  uint32_t frame = 0;
+
+  explicit Machine(const Plan& run) : plan(run) {
+    for (const PlanResource& resource : plan.resources) {
+      first_thing.push_back(static_cast<uint32_t>(things.size()));
+      for (uint32_t i = 0; i < resource.instance_count; ++i) {
+        Thing thing;
+        thing.image = resource.type == ResourceType::image;
+        if (resource.first_instance != no_instance) thing.placement = resource.first_instance + i;
+        thing.with_host = resource.first_instance == no_instance;
+        things.push_back(thing);
+      }
+    }
+    for (const PlanHistory& history : plan.histories) // as if the executor had just made them
+      for (uint32_t back = 1; back <= history.frames; ++back) {
+        Thing& thing = things[thing_of(history.resource, back)];
+        thing.defined = true;
+        thing.layout = history.layout_at_start[back];
+      }
+  }
+
+  uint32_t thing_of(uint32_t resource, uint32_t frames_back) const {
+    const uint32_t count = plan.resources[resource].instance_count;
+    return first_thing[resource] + (frame % count + count - frames_back % count) % count;
+  }
+
+  void object(const std::string& what, uint32_t resource, uint32_t frames_back, const std::string& where) {
+    if (objections.size() < most_objections)
+      objections.push_back(
+          fmt::format("frame {}, {}: resource {}@-{}: {}", frame, where, resource, frames_back, what));
+  }
+
+  template <class Visit> void for_each_overlapping(uint32_t index, Visit visit) {
+    for (uint32_t t = 0; t < things.size(); ++t) {
+      const bool both_placed = things[t].placement != no_instance && things[index].placement != no_instance;
+      if (t == index || (both_placed && share_memory(plan.placements[things[t].placement],
+                                                     plan.placements[things[index].placement])))
+        visit(things[t], t == index);
+    }
+  }
+
+  void begin_frame() {
+    for (Thing& thing : things)
+      thing.handed_back = false;
+    for (uint32_t r = 0; r < plan.resources.size(); ++r) {
+      Thing& current = things[thing_of(r, 0)];
+      current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
+    }
+    for (const PlanHistory& history : plan.histories)
+      for (uint32_t back = 1; back <= history.frames; ++back)
+        if (things[thing_of(history.resource, back)].layout != history.layout_at_start[back])
+          object("is not in the layout the plan promises at the start of a frame", history.resource, back,
+                 "start");
+  }
+
+  static bool starts_from(const Event& event, Stage source) {
+    const bool direct = event.stages != 0 && (event.stages & ~source) == 0;
+    return direct || (event.ordered & source) != 0;
+  }
+
+  static void extend(Event& event, const PlanBarrier& barrier) {
+    if (!starts_from(event, barrier.source_stages)) return;
+    const bool direct = event.stages != 0 && (event.stages & ~barrier.source_stages) == 0;
+    event.ordered |= barrier.destination_stages;
+    if (!event.is_write) return;
+    if (direct && (event.writes & ~barrier.source_access) == 0) event.available = true;
+    if (event.available) event.visible.push_back({barrier.destination_stages, barrier.destination_access});
+  }
+
+  void run(const PlanBarrier& barrier, const std::string& where) {
+    const uint32_t index = thing_of(barrier.resource, barrier.frames_back);
+    Thing& thing = things[index];
+    const auto wrong = [&](const char* what) { object(what, barrier.resource, barrier.frames_back, where); };
+    if (barrier.to_host) {
+      if (thing.placement != no_instance) wrong("is handed to the host, but is not the host's");
+      if (thing.handed_back) wrong("is handed back to the host twice");
+      thing.handed_back = true;
+    }
+    if (barrier.from_host) {
+      if (!thing.with_host) wrong("is taken over from the host twice");
+      thing.with_host = barrier.to_host;
+      thing.layout = barrier.new_layout;
+      thing.events = {{0,
+                       0,
+                       true,
+                       barrier.destination_stages,
+                       true,
+                       {{barrier.destination_stages, barrier.destination_access}}}};
+      return;
+    }
+    if (thing.with_host) wrong("has a barrier while it is the host's");
+    const bool transition = barrier.to_host || (thing.image && barrier.old_layout != barrier.new_layout);
+    if (thing.image && barrier.old_layout != Layout::undefined && barrier.old_layout != thing.layout)
+      wrong("has a barrier from a layout it is not in");
+    if (thing.image && barrier.old_layout == Layout::undefined) {
+      if (!barrier.to_host && barrier.new_layout == Layout::undefined) wrong("is moved to no layout");
+      thing.defined = false;
+    }
+    for_each_overlapping(index, [&](Thing& other, bool own) {
+      for (Event& event : other.events) {
+        extend(event, barrier);
+        if (!transition) continue;
+        if (!starts_from(event, barrier.source_stages))
+          wrong("changes layout before an earlier access is done");
+        if (event.is_write && !event.available) wrong("changes layout before an earlier write is available");
+      }
+      if (transition && !own) other.defined = false;
+    });
+    if (!transition) return;
+    thing.layout = barrier.new_layout;
+    thing.events = {{0,
+                     0,
+                     true,
+                     barrier.destination_stages,
+                     true,
+                     {{barrier.destination_stages, barrier.destination_access}}}};
+    thing.with_host = barrier.to_host;
+  }
+
+  void run(const PlanBarrier* barriers, uint32_t count, const std::string& where) {
+    for (uint32_t b = 0; b < count; ++b)
+      run(barriers[b], where);
+  }
+
+  static bool sees(const Event& write, const PlanAccess& access) {
+    const Access reads = access.access & ~all_write_access;
+    return std::any_of(write.visible.begin(), write.visible.end(), [&](const Visible& to) {
+      return (access.stages & ~to.stages) == 0 && (reads & ~to.access) == 0;
+    });
+  }
+
+  void check(const PlanAccess& access, const std::string& where) {
+    const uint32_t index = thing_of(access.resource, access.frames_back);
+    const Thing& thing = things[index];
+    const auto wrong = [&](const char* what) { object(what, access.resource, access.frames_back, where); };
+    const bool reads = (access.access & ~all_write_access) != 0;
+    const bool writes = (access.access & all_write_access) != 0;
+    if (thing.with_host) return wrong("is touched while it is the host's");
+    if (thing.image && thing.layout != access.layout)
+      wrong("is not in the layout the access was planned with");
+    if (reads && !thing.defined) wrong("is read, but its contents are not defined");
+    for_each_overlapping(index, [&](const Thing& other, bool own) {
+      for (const Event& event : other.events) {
+        const bool ordered = (access.stages & ~event.ordered) == 0;
+        if ((event.is_write || writes) && !ordered) wrong("is touched before an earlier access is done");
+        if (writes && event.is_write && !event.available)
+          wrong("is written before an earlier write is available");
+        if (reads && own && event.is_write && !sees(event, access))
+          wrong("is read where the last write is not visible");
+      }
+    });
+  }
+
+  void leave(const PlanAccess& access, bool first_of_pass) {
+    const uint32_t index = thing_of(access.resource, access.frames_back);
+    const Access writes = access.access & all_write_access;
+    Thing& thing = things[index];
+    if (writes != 0) {
+      for_each_overlapping(index, [&](Thing& other, bool own) {
+        if (!own) other.defined = false;
+      });
+      // Everything before is ordered before this write, so whatever waits for the write waits for it too.
+      if (first_of_pass) thing.events.clear();
+      thing.defined = true;
+    }
+    thing.events.push_back({access.stages, writes, writes != 0, 0, false, {}});
+  }
+
+  void run(const PlanPass& pass, const std::string& where) {
+    const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
+    run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, where);
+    for (uint32_t a = 0; a < pass.access_count; ++a)
+      check(accesses[a], where);
+    for (uint32_t a = 0; a < pass.access_count; ++a) {
+      const bool first = std::none_of(accesses, accesses + a, [&](const PlanAccess& earlier) {
+        return earlier.resource == accesses[a].resource && earlier.frames_back == accesses[a].frames_back;
+      });
+      leave(accesses[a], first);
+    }
+  }
+
+  void run_frame() {
+    begin_frame();
+    for (uint32_t p = 0; p < plan.passes.size(); ++p)
+      run(plan.passes[p], fmt::format("pass {}", p));
+    run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, "final batch");
+    for (uint32_t r = 0; r < plan.resources.size(); ++r)
+      if (plan.resources[r].first_instance == no_instance && !things[first_thing[r]].handed_back)
+        object("is not handed back to the host", r, 0, "end");
+    ++frame;
+  }
+};
+
+} // namespace
+
+std::vector<std::string> verify(const Plan& plan) {
+  auto objections = verify_structure(plan);
+  if (!objections.empty()) return objections;
+  uint32_t frames = 3; // the first, one that follows it, and one that follows a frame like itself
+  for (const PlanResource& resource : plan.resources)
+    frames = std::max(frames, resource.instance_count + 2);
+  Machine machine{plan};
+  for (uint32_t f = 0; f < frames && machine.objections.empty(); ++f)
+    machine.run_frame();
+  return std::move(machine.objections);
+}
+
+} // namespace dermis

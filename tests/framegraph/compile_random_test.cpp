@@ -1,0 +1,74 @@
+// Laws that every plan obeys, tried on graphs drawn from fixed seeds.
+
+#include "tests/framegraph/random_graph.hpp"
+
+#include "framegraph/verify/verify.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dermis::testing {
+namespace {
+
+constexpr uint64_t seeds = 400;
+
+Plan without_barrier(const Plan& plan, uint32_t index) {
+  Plan mutant = plan;
+  mutant.barriers.erase(mutant.barriers.begin() + index);
+  for (PlanPass& pass : mutant.passes) {
+    if (index < pass.first_barrier)
+      --pass.first_barrier;
+    else if (index < pass.first_barrier + pass.barrier_count)
+      --pass.barrier_count;
+  }
+  if (index < mutant.first_final_barrier)
+    --mutant.first_final_barrier;
+  else if (index < mutant.first_final_barrier + mutant.final_barrier_count)
+    --mutant.final_barrier_count;
+  return mutant;
+}
+
+TEST(RandomGraphs, EveryPlanIsAcceptedByTheVerifier) {
+  uint64_t passes = 0, barriers = 0, histories = 0, aliases = 0;
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto plan = compiled(random_graph(seed)).plan;
+    if (HasFailure()) return;
+    passes += plan.passes.size();
+    barriers += plan.barriers.size();
+    histories += plan.histories.size();
+    for (const PlanBarrier& barrier : plan.barriers)
+      aliases += barrier.why == PlanBarrier::Why::alias;
+  }
+  // The generator reaches what the law is about.
+  EXPECT_GT(passes, 5 * seeds);
+  EXPECT_GT(barriers, 10 * seeds);
+  EXPECT_GT(histories, seeds / 4);
+  EXPECT_GT(aliases, seeds / 4);
+}
+
+TEST(RandomGraphs, NoBarrierCanBeDropped) {
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    const auto builder = random_graph(seed);
+    const auto whole = compiled(builder);
+    for (uint32_t b = 0; b < whole.plan.barriers.size(); ++b)
+      EXPECT_FALSE(verify(without_barrier(whole.plan, b)).empty())
+          << "seed " << seed << ", barrier " << b << ": " << reasons(whole, Reason::About::barrier, b);
+    if (HasFailure()) return;
+  }
+}
+
+TEST(RandomGraphs, NoHeapIsSmallerThanWhatLivesInItAtOnce) {
+  uint64_t heaps = 0, optimal = 0;
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    const auto plan = compiled(random_graph(seed)).plan;
+    for (const Heap& heap : plan.heaps) {
+      EXPECT_GE(heap.size, heap.max_live_bytes);
+      ++heaps;
+      optimal += heap.size == heap.max_live_bytes;
+    }
+  }
+  EXPECT_GT(optimal * 10, heaps * 9); // best fit by size meets the bound on nearly all small graphs
+}
+
+} // namespace
+} // namespace dermis::testing

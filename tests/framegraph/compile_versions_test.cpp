@@ -1,0 +1,379 @@
+// Versions, choices, culling and order: which passes run, in which order, and what is refused.
+
+#include "tests/framegraph/graph_builder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+// light (import) -> blur -> result (export)
+GraphBuilder chain() {
+  GraphBuilder b;
+  b.import("light");
+  b.image("blurred");
+  b.exported("result");
+  b.pass("blur", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
+  b.pass("finish", "test.shade", {{"a", "blurred"}}, {{"out", "result"}});
+  return b;
+}
+
+TEST(Culling, APassThatNothingBoundNeedsDoesNotRunNorDoItsProducers) {
+  GraphBuilder b = chain();
+  b.image("x");
+  b.image("y");
+  b.pass("make_x", "test.shade", {{"a", "light"}}, {{"out", "x"}});
+  b.pass("make_y", "test.shade", {{"a", "x"}}, {{"out", "y"}});
+  const auto plan = compiled(b);
+  EXPECT_EQ(pass_names(b, plan.plan), "blur finish");
+  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("make_y").value),
+              HasSubstr("culled: nothing that is bound needs 'y'"));
+  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("make_x").value), HasSubstr("culled"));
+  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("blur").value),
+              HasSubstr("'finish' reads its 'blurred'"));
+}
+
+TEST(Culling, APassWithSideEffectsKeepsWhatItReads) {
+  GraphBuilder b = chain();
+  b.image("x");
+  b.pass("make_x", "test.shade", {{"a", "light"}}, {{"out", "x"}});
+  b.pass("look", "test.probe", {{"a", "x"}}, {});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish make_x look");
+}
+
+TEST(Culling, AnUnboundOptionalExportIsNoReasonToRun) {
+  GraphBuilder b = chain();
+  b.exported("debug").optional = true;
+  b.pass("draw_debug", "test.shade", {{"a", "blurred"}}, {{"out", "debug"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish draw_debug");
+  auto input = b.input();
+  input.bound.assign(b.graph.resources.size(), true);
+  input.bound[b.resource("debug").value] = false;
+  EXPECT_EQ(pass_names(b, compiled(b, input).plan), "blur finish");
+}
+
+TEST(Culling, AnOptionalExportThatIsReadInsideBecomesATransientWhenUnbound) {
+  GraphBuilder b = chain();
+  b.exported("debug").optional = true;
+  b.exported("second");
+  b.pass("draw_debug", "test.shade", {{"a", "blurred"}}, {{"out", "debug"}});
+  b.pass("use", "test.shade", {{"a", "debug"}}, {{"out", "second"}});
+  auto input = b.input();
+  input.bound.assign(b.graph.resources.size(), true);
+  input.bound[b.resource("debug").value] = false;
+  const auto plan = compiled(b, input);
+  for (const PlanResource& resource : plan.plan.resources)
+    if (resource.declared == b.resource("debug")) {
+      EXPECT_FALSE(resource.exported);
+      EXPECT_NE(resource.first_instance, no_instance);
+      EXPECT_EQ(resource.slot, 2); // light, result, debug, second: slots do not move with what is bound
+    }
+}
+
+TEST(Culling, ARequiredPortOfALivePassNeedsItsImport) {
+  GraphBuilder b = chain();
+  b.import("mask").optional = true;
+  b.image("masked");
+  b.exported("other");
+  b.pass("apply_mask", "test.need", {{"a", "mask"}}, {{"out", "other"}});
+  auto input = b.input();
+  input.bound.assign(b.graph.resources.size(), true);
+  compiled(b, input);
+  input.bound[b.resource("mask").value] = false;
+  const auto errors = refused(b, input);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::unbound_import);
+  EXPECT_THAT(errors[0].text, HasSubstr("'apply_mask', port 'a' needs 'mask'"));
+  EXPECT_EQ(errors[0].where.line, b.graph.passes.back().reads[0].where.line);
+}
+
+TEST(Culling, AnOptionalPortOfAnUnboundImportStaysUnbound) {
+  GraphBuilder b = chain();
+  b.import("mask").optional = true;
+  b.exported("other");
+  b.pass("apply_mask", "test.shade", {{"a", "light"}, {"b", "mask"}}, {{"out", "other"}});
+  auto input = b.input();
+  input.bound.assign(b.graph.resources.size(), true);
+  input.bound[b.resource("mask").value] = false;
+  const auto plan = compiled(b, input);
+  EXPECT_EQ(plan.plan.passes.back().access_count, 2u);
+  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("apply_mask").value),
+              HasSubstr("optional port 'b' stays unbound"));
+}
+
+TEST(Choice, ReadersOfAPassThatIsOffGetItsOtherwise) {
+  GraphBuilder b;
+  b.boolean("on", true);
+  b.import("light");
+  b.image("blurred");
+  b.exported("result");
+  auto& blur = b.pass("blur", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
+  blur.when = b.when("on");
+  b.otherwise(blur, "blurred", "light");
+  b.pass("finish", "test.shade", {{"a", "blurred"}}, {{"out", "result"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish");
+  auto input = b.input();
+  input.settings = {{SettingType::boolean, 0, 0.0}};
+  const auto plan = compiled(b, input);
+  EXPECT_EQ(pass_names(b, plan.plan), "finish");
+  const PlanAccess& read = plan.plan.accesses[plan.plan.passes[0].first_access];
+  EXPECT_EQ(plan.plan.resources[read.resource].declared, b.resource("light"));
+  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("blur").value), HasSubstr("off"));
+}
+
+TEST(Choice, OtherwiseSeesTheVersionThatThePassWouldHaveSeen) {
+  // 'light' is updated in place after the pass that is off: its readers get the version before the update.
+  GraphBuilder b;
+  b.boolean("on", false);
+  b.import("light").exported = true;
+  b.image("blurred");
+  b.exported("result");
+  auto& blur = b.pass("blur", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
+  blur.when = b.when("on");
+  b.otherwise(blur, "blurred", "light");
+  b.pass("brighten", "test.update", {}, {{"image", "light"}});
+  b.pass("finish", "test.shade", {{"a", "blurred"}}, {{"out", "result"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "finish brighten");
+}
+
+TEST(Choice, ReadersOfAPassThatIsOffWithoutOtherwiseAreRefusedNamingIt) {
+  GraphBuilder b;
+  b.boolean("on", false);
+  b.import("light");
+  b.image("blurred");
+  b.exported("result");
+  b.pass("blur", "test.shade", {{"a", "light"}}, {{"out", "blurred"}}).when = b.when("on");
+  b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
+  EXPECT_THAT(errors[0].text, HasSubstr("pass 'finish', port 'a' reads 'blurred'"));
+  ASSERT_THAT(errors[0].related, SizeIs(2));
+  EXPECT_THAT(errors[0].related[1].second, HasSubstr("'blur' writes it and is off"));
+}
+
+TEST(Choice, ExclusiveProducersOfOneResourceAreFine) {
+  GraphBuilder b;
+  b.boolean("fast", false);
+  b.import("light");
+  b.image("scattered");
+  b.exported("result");
+  b.pass("fast_way", "test.shade", {{"a", "light"}}, {{"out", "scattered"}}).when = b.when("fast");
+  b.pass("slow_way", "test.shade", {{"a", "light"}}, {{"out", "scattered"}}).when = b.when("fast", false);
+  b.pass("finish", "test.need", {{"a", "scattered"}}, {{"out", "result"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "slow_way finish");
+  auto input = b.input();
+  input.settings = {{SettingType::boolean, 1, 0.0}};
+  EXPECT_EQ(pass_names(b, compiled(b, input).plan), "fast_way finish");
+}
+
+TEST(Choice, TwoProducersThatAreBothOnAreRefusedNamingBoth) {
+  GraphBuilder b = chain();
+  b.pass("blur_again", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::second_producer);
+  EXPECT_THAT(errors[0].text, HasSubstr("'blur' and 'blur_again' both write 'blurred'"));
+  EXPECT_EQ(errors[0].related[0].first.line, b.graph.passes[0].where.line);
+}
+
+TEST(Choice, AReplacedResourceCannotBeUpdatedInPlace) {
+  GraphBuilder b;
+  b.boolean("on", false);
+  b.import("light");
+  b.image("blurred");
+  b.exported("result");
+  auto& blur = b.pass("blur", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
+  blur.when = b.when("on");
+  b.otherwise(blur, "blurred", "light");
+  b.pass("sharpen", "test.update", {}, {{"image", "blurred"}});
+  b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::replaced_update);
+  EXPECT_THAT(errors[0].text,
+              HasSubstr("'sharpen', port 'image' updates 'blurred' in place, but it stands for 'light'"));
+}
+
+TEST(Choice, AnOtherwiseOfAnotherTypeIsRefused) {
+  GraphBuilder b = chain();
+  b.boolean("on", false);
+  b.buffer("tiles");
+  auto& finish = b.graph.passes[1];
+  finish.when = b.when("on");
+  b.otherwise(finish, "result", "tiles");
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::otherwise_mismatch);
+}
+
+TEST(Choice, SettingsOutsideTheirRangeAreRefused) {
+  GraphBuilder b = chain();
+  auto& setting = b.boolean("samples", false);
+  setting.type = SettingType::integer;
+  setting.default_value = {SettingType::integer, 8, 0.0};
+  setting.minimum = 1;
+  setting.maximum = 64;
+  compiled(b);
+  auto input = b.input();
+  input.settings = {{SettingType::integer, 65, 0.0}};
+  EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::setting_value);
+  input.settings = {{SettingType::real, 8, 8.0}};
+  EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::setting_value);
+}
+
+TEST(Exports, ARequiredExportThatNothingWritesIsRefused) {
+  GraphBuilder b = chain();
+  b.boolean("on", false);
+  b.graph.passes[1].when = b.when("on");
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::export_unwritten);
+  EXPECT_THAT(errors[0].related[0].second, HasSubstr("'finish' writes it and is off"));
+}
+
+TEST(Exports, AnImportUpdatedInPlaceIsLeftAloneWhenItsPassesAreOff) {
+  GraphBuilder b;
+  b.boolean("on", false);
+  b.import("light").exported = true;
+  b.pass("brighten", "test.update", {}, {{"image", "light"}}).when = b.when("on");
+  const auto plan = compiled(b);
+  EXPECT_THAT(plan.plan.passes, SizeIs(0));
+  ASSERT_EQ(plan.plan.final_barrier_count, 1u); // still handed back in the state the host wants
+  EXPECT_TRUE(plan.plan.barriers[0].from_host && plan.plan.barriers[0].to_host);
+}
+
+TEST(Versions, AReaderSeesTheLatestVersionWrittenBeforeItInTheFile) {
+  GraphBuilder b;
+  b.import("light").exported = true;
+  b.exported("before");
+  b.exported("after");
+  b.pass("copy_before", "test.need", {{"a", "light"}}, {{"out", "before"}});
+  b.pass("brighten", "test.update", {}, {{"image", "light"}});
+  b.pass("copy_after", "test.need", {{"a", "light"}}, {{"out", "after"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "copy_before brighten copy_after");
+}
+
+TEST(Versions, AReaderMayStandBeforeTheOnlyProducerInTheFile) {
+  GraphBuilder b;
+  b.import("light");
+  b.image("blurred");
+  b.exported("result");
+  b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
+  b.pass("blur", "test.need", {{"a", "light"}}, {{"out", "blurred"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish");
+}
+
+TEST(Versions, AReaderBeforeSeveralProducersIsRefused) {
+  GraphBuilder b;
+  b.import("light");
+  b.image("blurred");
+  b.exported("result");
+  b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
+  b.pass("blur", "test.need", {{"a", "light"}}, {{"out", "blurred"}});
+  b.pass("sharpen", "test.update", {}, {{"image", "blurred"}});
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::ambiguous_version);
+}
+
+TEST(Versions, UpdatingWhatNobodyWroteIsRefused) {
+  GraphBuilder b = chain();
+  b.image("sum");
+  b.exported("total");
+  b.pass("add", "test.update", {{"a", "light"}}, {{"image", "sum"}});
+  b.pass("show", "test.need", {{"a", "sum"}}, {{"out", "total"}});
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
+}
+
+TEST(Versions, WritingTheSameResourceThroughTwoPortsIsRefused) {
+  GraphBuilder b = chain();
+  b.exported("twice");
+  b.pass("double", "test.shade", {{"a", "light"}}, {{"out", "twice"}, {"out2", "twice"}});
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::second_producer);
+}
+
+TEST(Order, ACycleIsRefusedNamingEachPassWithItsPlace) {
+  GraphBuilder b = chain();
+  b.image("x");
+  b.image("y");
+  b.exported("z");
+  b.pass("first", "test.need", {{"a", "y"}}, {{"out", "x"}});
+  b.pass("second", "test.need", {{"a", "x"}}, {{"out", "y"}});
+  b.pass("third", "test.need", {{"a", "y"}}, {{"out", "z"}});
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::pass_cycle);
+  EXPECT_THAT(errors[0].text, HasSubstr("'first' -> 'second' -> 'first'"));
+  EXPECT_EQ(errors[0].where.line, b.graph.passes[2].where.line);
+  ASSERT_THAT(errors[0].related, SizeIs(2));
+  EXPECT_THAT(errors[0].related[0].second, HasSubstr("'second' reads 'x' from 'first'"));
+  EXPECT_EQ(errors[0].related[0].first.line, b.graph.passes[3].where.line);
+  EXPECT_THAT(errors[0].related[1].second, HasSubstr("'first' reads 'y' from 'second'"));
+}
+
+TEST(Order, ACycleIsRefusedEvenAmongPassesThatNothingNeeds) {
+  GraphBuilder b = chain();
+  b.image("x");
+  b.image("y");
+  b.pass("first", "test.need", {{"a", "y"}}, {{"out", "x"}});
+  b.pass("second", "test.need", {{"a", "x"}}, {{"out", "y"}});
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::pass_cycle);
+}
+
+TEST(Order, AfterIsObeyedAndTakesPartInCycles) {
+  GraphBuilder b = chain();
+  b.exported("other");
+  b.pass("late", "test.need", {{"a", "light"}}, {{"out", "other"}});
+  b.graph.passes[0].after.push_back({b.pass_id("late"), "to test it", {}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "late blur finish");
+  b.graph.passes[2].after.push_back({b.pass_id("finish"), "to close the circle", {}});
+  const auto errors = refused(b);
+  EXPECT_EQ(errors[0].id, DiagnosticId::pass_cycle);
+  EXPECT_THAT(errors[0].related.back().second, HasSubstr("to test it"));
+}
+
+TEST(Order, AHistoryReadIsNoCycle) {
+  GraphBuilder b;
+  b.import("light");
+  b.history("sum");
+  b.exported("result");
+  b.pass("accumulate", "test.shade", {{"a", "light"}, {"b", "sum@-1"}}, {{"out", "sum"}});
+  b.pass("show", "test.need", {{"a", "sum"}}, {{"out", "result"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "accumulate show");
+}
+
+TEST(History, ReadingTheHistoryOfWhatIsNoLongerWrittenIsRefused) {
+  GraphBuilder b;
+  b.boolean("on", false);
+  b.import("light");
+  b.history("sum");
+  b.exported("result");
+  b.pass("accumulate", "test.need", {{"a", "light"}}, {{"out", "sum"}}).when = b.when("on");
+  b.pass("show", "test.need", {{"a", "sum@-1"}}, {{"out", "result"}});
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::history_unwritten);
+  EXPECT_THAT(errors[0].text, HasSubstr("reads 'sum@-1'"));
+}
+
+TEST(History, APassWhoseOutputIsOnlyReadInLaterFramesRuns) {
+  GraphBuilder b;
+  b.import("light");
+  b.history("last");
+  b.exported("result");
+  b.pass("show", "test.shade", {{"a", "light"}, {"b", "last@-1"}}, {{"out", "result"}});
+  b.pass("keep", "test.need", {{"a", "light"}}, {{"out", "last"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "show keep");
+}
+
+TEST(History, TheHostsMemoryHasNone) {
+  GraphBuilder b = chain();
+  b.graph.resources[2].history.frames = 1;
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::history_of_host_memory);
+}
+
+} // namespace
+} // namespace dermis::testing

@@ -1,0 +1,225 @@
+#include "tests/framegraph/graph_builder.hpp"
+
+#include "framegraph/verify/verify.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace dermis::testing {
+namespace {
+
+constexpr Format half4[] = {Format::rgba16f};
+
+constexpr Port shade_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
+                                {"b", Usage::sampled_image, true, "texture2D", ""},
+                                {"c", Usage::sampled_image, true, "texture2D", ""},
+                                {"out", Usage::storage_image_write, false, "image2D", ""},
+                                {"out2", Usage::storage_image_write, true, "image2D", ""}};
+constexpr Port need_ports[] = {{"a", Usage::sampled_image, false, "texture2D", ""},
+                               {"out", Usage::storage_image_write, false, "image2D", ""}};
+constexpr Port update_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
+                                 {"image", Usage::storage_image_update, false, "image2D", ""}};
+constexpr Port fill_ports[] = {{"target", Usage::clear, false, "", ""}};
+constexpr Port list_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
+                               {"tiles", Usage::storage_buffer_write, false, "uint", ""}};
+constexpr Port count_ports[] = {{"tiles", Usage::storage_buffer_update, false, "uint", ""}};
+constexpr Port tiles_ports[] = {{"tiles", Usage::storage_buffer_read, true, "uint", ""},
+                                {"arguments", Usage::indirect_arguments, true, "uint", ""},
+                                {"a", Usage::sampled_image, true, "texture2D", ""},
+                                {"out", Usage::storage_image_write, false, "image2D", ""}};
+constexpr Port probe_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""}};
+constexpr Port narrow_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "", half4},
+                                 {"out", Usage::storage_image_write, false, "image2D", "", half4}};
+
+PassKind kind(std::string_view name, std::span<const Port> ports) {
+  PassKind result;
+  result.name = name;
+  result.ports = ports;
+  return result;
+}
+
+std::pair<std::string, uint32_t> split_history(const std::string& name) {
+  const auto at = name.find("@-");
+  if (at == std::string::npos) return {name, 0};
+  return {name.substr(0, at), static_cast<uint32_t>(std::stoul(name.substr(at + 2)))};
+}
+
+} // namespace
+
+KindRegistry test_kinds() {
+  KindRegistry kinds;
+  kinds.add(kind("test.shade", shade_ports));
+  kinds.add(kind("test.need", need_ports));
+  kinds.add(kind("test.update", update_ports));
+  kinds.add(kind("test.fill", fill_ports));
+  kinds.add(kind("test.list", list_ports));
+  kinds.add(kind("test.count", count_ports));
+  kinds.add(kind("test.tiles", tiles_ports));
+  kinds.add(kind("test.narrow", narrow_ports));
+  PassKind probe = kind("test.probe", probe_ports);
+  probe.side_effects = true;
+  kinds.add(probe);
+  return kinds;
+}
+
+SourceLocation GraphBuilder::next_line() {
+  return {FileId{0}, ++line, 1, ""};
+}
+
+ResourceDeclaration& GraphBuilder::image(const std::string& name) {
+  ResourceDeclaration declared;
+  declared.name = name;
+  declared.formats = {Format::rgba16f};
+  declared.where = next_line();
+  graph.resources.push_back(declared);
+  return graph.resources.back();
+}
+
+ResourceDeclaration& GraphBuilder::import(const std::string& name) {
+  auto& declared = image(name);
+  declared.origin = Origin::imported;
+  return declared;
+}
+
+ResourceDeclaration& GraphBuilder::exported(const std::string& name) {
+  auto& declared = image(name);
+  declared.exported = true;
+  return declared;
+}
+
+ResourceDeclaration& GraphBuilder::history(const std::string& name, uint32_t frames) {
+  auto& declared = image(name);
+  declared.history.frames = frames;
+  return declared;
+}
+
+ResourceDeclaration& GraphBuilder::buffer(const std::string& name) {
+  auto& declared = image(name);
+  declared.type = ResourceType::buffer;
+  declared.formats.clear();
+  declared.size.x = declared.size.y = {1, 8};
+  declared.stride = 4;
+  declared.extra_elements = 4;
+  return declared;
+}
+
+SettingDeclaration& GraphBuilder::boolean(const std::string& name, bool value) {
+  SettingDeclaration setting;
+  setting.name = name;
+  setting.type = SettingType::boolean;
+  setting.default_value = {SettingType::boolean, value, 0.0};
+  setting.where = next_line();
+  graph.settings.push_back(setting);
+  return graph.settings.back();
+}
+
+ExpressionId GraphBuilder::when(const std::string& name, bool wanted) {
+  uint32_t setting = 0;
+  while (graph.settings[setting].name != name)
+    ++setting;
+  Expression leaf;
+  leaf.op = Expression::Op::setting;
+  leaf.setting = SettingId{setting};
+  graph.expressions.push_back(leaf);
+  if (!wanted) {
+    Expression negated;
+    negated.op = Expression::Op::logical_not;
+    negated.left = ExpressionId{static_cast<uint32_t>(graph.expressions.size() - 1)};
+    graph.expressions.push_back(negated);
+  }
+  return ExpressionId{static_cast<uint32_t>(graph.expressions.size() - 1)};
+}
+
+ResourceId GraphBuilder::resource(const std::string& name) const {
+  for (uint32_t i = 0; i < graph.resources.size(); ++i)
+    if (graph.resources[i].name == name) return ResourceId{i};
+  ADD_FAILURE() << "no resource " << name;
+  return {};
+}
+
+PassId GraphBuilder::pass_id(const std::string& name) const {
+  for (uint32_t i = 0; i < graph.passes.size(); ++i)
+    if (graph.passes[i].name == name) return PassId{i};
+  ADD_FAILURE() << "no pass " << name;
+  return {};
+}
+
+PassDeclaration& GraphBuilder::pass(const std::string& name, const std::string& kind_name,
+                                    const Bindings& reads, const Bindings& writes) {
+  PassDeclaration declared;
+  declared.name = name;
+  declared.kind = kinds.find(kind_name);
+  EXPECT_TRUE(declared.kind.valid()) << kind_name;
+  declared.where = next_line();
+  const auto bind = [&](const Bindings& from, std::vector<PortBinding>& to) {
+    for (const auto& [port, full_name] : from) {
+      const auto [resource_name, frames_back] = split_history(full_name);
+      const int index = find_port(kinds[declared.kind], port);
+      EXPECT_GE(index, 0) << port;
+      to.push_back({static_cast<uint32_t>(index), resource(resource_name), frames_back, next_line()});
+    }
+  };
+  bind(reads, declared.reads);
+  bind(writes, declared.writes);
+  graph.passes.push_back(declared);
+  return graph.passes.back();
+}
+
+void GraphBuilder::otherwise(PassDeclaration& pass, const std::string& output, const std::string& instead) {
+  pass.otherwise.push_back({resource(output), resource(instead), next_line()});
+}
+
+CompileInput GraphBuilder::input(uint32_t width, uint32_t height) const {
+  CompileInput input;
+  input.graph = &graph;
+  input.kinds = &kinds;
+  input.device = &device;
+  input.view_width = width;
+  input.view_height = height;
+  return input;
+}
+
+CompiledPlan compiled(const GraphBuilder& builder) {
+  return compiled(builder, builder.input());
+}
+
+CompiledPlan compiled(const GraphBuilder& builder, const CompileInput& input) {
+  Diagnostics diagnostics;
+  auto plan = compile(input, diagnostics);
+  for (const Diagnostic& diagnostic : diagnostics.list)
+    ADD_FAILURE() << diagnostic_info(diagnostic.id).name << ": " << diagnostic.text;
+  if (!plan) return {};
+  for (const std::string& objection : verify(plan->plan))
+    ADD_FAILURE() << "verifier: " << objection;
+  EXPECT_EQ(&builder.graph, input.graph);
+  return *std::move(plan);
+}
+
+std::vector<Diagnostic> refused(const GraphBuilder& builder) {
+  return refused(builder, builder.input());
+}
+
+std::vector<Diagnostic> refused(const GraphBuilder& builder, const CompileInput& input) {
+  Diagnostics diagnostics;
+  EXPECT_EQ(&builder.graph, input.graph);
+  EXPECT_FALSE(compile(input, diagnostics).has_value());
+  EXPECT_TRUE(diagnostics.has_errors());
+  return diagnostics.list;
+}
+
+std::string pass_names(const GraphBuilder& builder, const Plan& plan) {
+  std::string names;
+  for (const PlanPass& pass : plan.passes)
+    names += (names.empty() ? "" : " ") + builder.graph.passes[pass.declared.value].name;
+  return names;
+}
+
+std::string reasons(const CompiledPlan& compiled, Reason::About about, uint32_t index) {
+  std::string all;
+  for (const Reason& reason : compiled.reasons)
+    if (reason.about == about && reason.index == index) all += reason.text + "\n";
+  return all;
+}
+
+} // namespace dermis::testing

@@ -1,0 +1,118 @@
+#include "tests/framegraph/random_graph.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis::testing {
+namespace {
+
+// SplitMix64 (Steele, Lea, Flood 2014): the same numbers from every standard library.
+struct Random {
+  uint64_t state;
+  uint64_t next() {
+    state += 0x9e3779b97f4a7c15ull;
+    uint64_t z = state;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return z ^ (z >> 31);
+  }
+  uint32_t below(size_t limit) { return static_cast<uint32_t>(next() % limit); }
+  bool chance(uint32_t percent) { return below(100) < percent; }
+};
+
+struct Draft {
+  GraphBuilder b;
+  Random random;
+  std::vector<std::string> readable; // images with contents at this point of the file
+  std::vector<std::string> buffers;  // likewise
+  std::vector<std::string>
+      histories; // may be read at @-1 .. @-frames from the start, are all written in the end
+  uint32_t count = 0;
+
+  std::string fresh(const char* stem) { return fmt::format("{}{}", stem, count++); }
+  const std::string& any(const std::vector<std::string>& from) { return from[random.below(from.size())]; }
+
+  Bindings reads(uint32_t most) {
+    constexpr const char* ports[] = {"a", "b", "c"};
+    Bindings result;
+    for (uint32_t i = 0; i < most; ++i) {
+      if (!histories.empty() && random.chance(25)) {
+        const auto& history = any(histories);
+        const auto frames = b.graph.resources[b.resource(history).value].history.frames;
+        result.emplace_back(ports[i], fmt::format("{}@-{}", history, 1 + random.below(frames)));
+      } else if (random.chance(80)) {
+        result.emplace_back(ports[i], any(readable));
+      }
+    }
+    return result;
+  }
+
+  std::string new_image() {
+    const auto name = fresh("image");
+    auto& declared = random.chance(15) ? b.exported(name) : b.image(name);
+    const int64_t divisor = 1 + random.below(3);
+    declared.size.x = declared.size.y = {1, divisor};
+    return name;
+  }
+
+  void one_pass() {
+    const auto name = fresh("pass");
+    const uint32_t kind = random.below(10);
+    if (kind == 0) {
+      buffers.push_back(fresh("buffer"));
+      b.buffer(buffers.back());
+      b.pass(name, "test.fill", {}, {{"target", buffers.back()}});
+    } else if (kind == 1 && !buffers.empty()) {
+      b.pass(name, "test.count", {}, {{"tiles", any(buffers)}});
+    } else if (kind == 2 && !buffers.empty()) {
+      const auto out = new_image();
+      const auto& tiles = any(buffers);
+      b.pass(
+          name, "test.tiles",
+          {{"tiles", tiles}, {"arguments", random.chance(70) ? tiles : any(buffers)}, {"a", any(readable)}},
+          {{"out", out}});
+      readable.push_back(out);
+    } else if (kind == 3) {
+      b.pass(name, "test.update", reads(1), {{"image", any(readable)}});
+    } else if (kind == 4) {
+      buffers.push_back(fresh("buffer"));
+      b.buffer(buffers.back());
+      b.pass(name, "test.list", reads(1), {{"tiles", buffers.back()}});
+    } else {
+      const auto first = new_image();
+      Bindings writes{{"out", first}};
+      const auto inputs = reads(3);
+      readable.push_back(first);
+      if (random.chance(30)) {
+        writes.emplace_back("out2", new_image());
+        readable.push_back(writes.back().second);
+      }
+      b.pass(name, "test.shade", inputs, writes);
+    }
+  }
+};
+
+} // namespace
+
+GraphBuilder random_graph(uint64_t seed) {
+  Draft draft{{}, {seed}, {}, {}, {}, 0};
+  const uint32_t imports = 1 + draft.random.below(3);
+  for (uint32_t i = 0; i < imports; ++i) {
+    draft.readable.push_back(draft.fresh("import"));
+    draft.b.import(draft.readable.back()).exported = draft.random.chance(40);
+  }
+  const uint32_t histories = draft.random.below(3);
+  for (uint32_t i = 0; i < histories; ++i) {
+    draft.histories.push_back(draft.fresh("history"));
+    draft.b.history(draft.histories.back(), 1 + draft.random.below(3));
+  }
+  const uint32_t passes = 2 + draft.random.below(20);
+  for (uint32_t i = 0; i < passes; ++i)
+    draft.one_pass();
+  for (const auto& history : draft.histories)
+    draft.b.pass(draft.fresh("keep"), "test.shade", draft.reads(3), {{"out", history}});
+  draft.b.exported("result");
+  draft.b.pass("finish", "test.shade", draft.reads(3), {{"out", "result"}});
+  return std::move(draft.b);
+}
+
+} // namespace dermis::testing
