@@ -369,6 +369,13 @@ TEST(History, APassWhoseOutputIsOnlyReadInLaterFramesRuns) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "show keep");
 }
 
+TEST(History, AHistoryThatOnlyItsOwnWriterReadsKeepsNothingAlive) {
+  GraphBuilder b = chain();
+  b.history("sum");
+  b.pass("accumulate", "test.shade", {{"a", "light"}, {"b", "sum@-1"}}, {{"out", "sum"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish");
+}
+
 TEST(History, TheHostsMemoryHasNone) {
   GraphBuilder b = chain();
   b.graph.resources[2].history.frames = 1;

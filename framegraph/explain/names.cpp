@@ -1,0 +1,122 @@
+#include "framegraph/explain/names.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace dermis {
+namespace {
+
+struct Bit {
+  uint64_t mask;
+  std::string_view name;
+};
+
+constexpr Bit stage_bits[] = {
+    {stage::draw_indirect, "draw_indirect"},
+    {stage::compute_shader, "compute_shader"},
+    {stage::all_transfer, "all_transfer"},
+    {stage::host, "host"},
+    {stage::all_commands, "all_commands"},
+    {stage::copy, "copy"},
+    {stage::clear, "clear"},
+};
+
+constexpr Bit access_bits[] = {
+    {access::indirect_command_read, "indirect_command_read"},
+    {access::uniform_read, "uniform_read"},
+    {access::transfer_read, "transfer_read"},
+    {access::transfer_write, "transfer_write"},
+    {access::memory_read, "memory_read"},
+    {access::memory_write, "memory_write"},
+    {access::shader_sampled_read, "shader_sampled_read"},
+    {access::shader_storage_read, "shader_storage_read"},
+    {access::shader_storage_write, "shader_storage_write"},
+};
+
+template <size_t count> std::vector<std::string> names_of(uint64_t mask, const Bit (&bits)[count]) {
+  std::vector<std::string> names;
+  for (uint64_t bit = 1; bit != 0; bit <<= 1) {
+    if ((mask & bit) == 0) continue;
+    std::string name = fmt::format("{:#x}", bit);
+    for (const Bit& known : bits)
+      if (known.mask == bit) name = known.name;
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, "|"));
+}
+
+} // namespace
+
+std::vector<std::string> stage_names(Stage stages) {
+  return names_of(stages, stage_bits);
+}
+std::vector<std::string> access_names(Access accesses) {
+  return names_of(accesses, access_bits);
+}
+std::string stage_text(Stage stages) {
+  return joined(stage_names(stages));
+}
+std::string access_text(Access accesses) {
+  return joined(access_names(accesses));
+}
+
+std::string_view layout_name(Layout layout) {
+  switch (layout) {
+  case Layout::undefined:
+    return "undefined";
+  case Layout::general:
+    return "general";
+  case Layout::depth_stencil_attachment:
+    return "depth_stencil_attachment";
+  case Layout::depth_stencil_read_only:
+    return "depth_stencil_read_only";
+  case Layout::shader_read_only:
+    return "shader_read_only";
+  case Layout::transfer_source:
+    return "transfer_source";
+  case Layout::transfer_destination:
+    return "transfer_destination";
+  }
+  return "unknown";
+}
+
+std::string_view why_name(PlanBarrier::Why why) {
+  switch (why) {
+  case PlanBarrier::Why::first_use:
+    return "first_use";
+  case PlanBarrier::Why::read_after_write:
+    return "read_after_write";
+  case PlanBarrier::Why::write_after_read:
+    return "write_after_read";
+  case PlanBarrier::Why::write_after_write:
+    return "write_after_write";
+  case PlanBarrier::Why::layout:
+    return "layout";
+  case PlanBarrier::Why::alias:
+    return "alias";
+  case PlanBarrier::Why::history:
+    return "history";
+  case PlanBarrier::Why::host_before:
+    return "host_before";
+  case PlanBarrier::Why::host_after:
+    return "host_after";
+  }
+  return "unknown";
+}
+
+std::string bytes_text(uint64_t bytes) {
+  constexpr std::string_view units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
+  if (bytes < 1024) return fmt::format("{} B", bytes);
+  auto amount = static_cast<double>(bytes);
+  size_t unit = 0;
+  for (; amount >= 1024.0 && unit + 1 < std::size(units); ++unit)
+    amount /= 1024.0;
+  return fmt::format("{:.1f} {}", amount, units[unit]);
+}
+
+} // namespace dermis

@@ -1,0 +1,25 @@
+#pragma once
+// Names of stages, accesses, layouts and reasons, as every export of a plan writes them.
+
+#include "framegraph/compile/plan.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis {
+
+// Names of the bits of a mask, lowest first ("compute_shader"); a bit without a name is written in hex.
+std::vector<std::string> stage_names(Stage stages);
+std::vector<std::string> access_names(Access accesses);
+std::string_view layout_name(Layout layout);
+std::string_view why_name(PlanBarrier::Why why);
+
+// The same joined by '|'; "none" for an empty mask.
+std::string stage_text(Stage stages);
+std::string access_text(Access accesses);
+
+// 1536 -> "1.5 KiB", to one decimal, exact below 1 KiB.
+std::string bytes_text(uint64_t bytes);
+
+} // namespace dermis

@@ -1,0 +1,99 @@
+#include "framegraph/explain/plan_dot.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis {
+namespace {
+
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n')
+      result += "\\n";
+    else
+      result += c;
+  }
+  return result + "\"";
+}
+
+std::string header(const std::string& name) {
+  return fmt::format("digraph {} {{\n  rankdir=LR;\n  node [fontname=\"sans-serif\", fontsize=11];\n",
+                     quoted(name));
+}
+
+std::string pass_node(const Graph& graph, const KindRegistry& kinds, uint32_t pass, const std::string& prefix,
+                      const std::string& style) {
+  const PassDeclaration& declared = graph.passes[pass];
+  const std::string label = fmt::format("{}{}\n{}", prefix, declared.name, kinds[declared.kind].name);
+  return fmt::format("  p{} [shape=box, label={}{}];\n", pass, quoted(label), style);
+}
+
+std::string resource_node(const ResourceDeclaration& declared, uint32_t index, const std::string& detail) {
+  const bool slot = declared.origin == Origin::imported || declared.exported;
+  return fmt::format("  r{} [shape=ellipse, peripheries={}, label={}];\n", index, slot ? 2 : 1,
+                     quoted(declared.name + detail));
+}
+
+// A port that both reads and writes gets an arrow each way.
+std::string arrows(uint32_t pass, uint32_t resource, uint32_t frames_back, const Port& port) {
+  const UsageInfo& usage = usage_info(port.usage);
+  const std::string label =
+      quoted(frames_back > 0 ? fmt::format("{} @-{}", port.name, frames_back) : std::string(port.name)) +
+      (frames_back > 0 ? ", style=dashed" : "");
+  std::string result;
+  if (usage.reads) result += fmt::format("  r{} -> p{} [label={}];\n", resource, pass, label);
+  if (usage.writes) result += fmt::format("  p{} -> r{} [label={}];\n", pass, resource, label);
+  return result;
+}
+
+} // namespace
+
+std::string graph_dot(const Graph& graph, const KindRegistry& kinds) {
+  std::string out = header(graph.name);
+  for (uint32_t r = 0; r < graph.resources.size(); ++r)
+    out += resource_node(graph.resources[r], r, "");
+  for (uint32_t p = 0; p < graph.passes.size(); ++p) {
+    const PassDeclaration& declared = graph.passes[p];
+    out += pass_node(graph, kinds, p, "", declared.when.valid() ? ", style=dashed" : "");
+    for (const auto* bindings : {&declared.reads, &declared.writes})
+      for (const PortBinding& binding : *bindings)
+        out +=
+            arrows(p, binding.resource.value, binding.frames_back, kinds[declared.kind].ports[binding.port]);
+  }
+  return out + "}\n";
+}
+
+std::string plan_dot(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled) {
+  const Plan& plan = compiled.plan;
+  std::string out = header(plan.graph);
+  for (const PlanResource& resource : plan.resources) {
+    const bool image = resource.type == ResourceType::image;
+    const std::string detail =
+        image ? fmt::format("\n{} {}x{}", format_info(resource.format).name, resource.width, resource.height)
+              : fmt::format("\n{} bytes", resource.bytes);
+    out += resource_node(graph.resources[resource.declared.value], resource.declared.value, detail);
+  }
+  std::vector<bool> runs(graph.passes.size(), false);
+  for (uint32_t position = 0; position < plan.passes.size(); ++position) {
+    const PlanPass& pass = plan.passes[position];
+    runs[pass.declared.value] = true;
+    out += pass_node(graph, kinds, pass.declared.value, fmt::format("{}. ", position), "");
+    for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+      const PlanAccess& access = plan.accesses[a];
+      out += arrows(pass.declared.value, plan.resources[access.resource].declared.value, access.frames_back,
+                    kinds[pass.kind].ports[access.port]);
+    }
+  }
+  for (uint32_t p = 0; p < graph.passes.size(); ++p) {
+    if (runs[p]) continue;
+    std::string why;
+    for (const Reason& reason : compiled.reasons)
+      if (reason.about == Reason::About::pass && reason.index == p) why = reason.text;
+    out +=
+        pass_node(graph, kinds, p, "", fmt::format(", color=gray, fontcolor=gray, tooltip={}", quoted(why)));
+  }
+  return out + "}\n";
+}
+
+} // namespace dermis

@@ -1,0 +1,137 @@
+#include "framegraph/explain/plan_text.hpp"
+
+#include "framegraph/explain/names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis {
+namespace {
+
+struct TextExporter {
+  const Graph& graph;
+  const KindRegistry& kinds;
+  const CompiledPlan& compiled;
+  const Plan& plan = compiled.plan;
+  std::string out = {};
+
+  void line(const std::string& text) { out += text + '\n'; }
+
+  std::string reason(Reason::About about, uint32_t index) const {
+    std::string all;
+    for (const Reason& one : compiled.reasons)
+      if (one.about == about && one.index == index) all += (all.empty() ? "" : "; ") + one.text;
+    return all;
+  }
+
+  std::string object(uint32_t resource, uint32_t frames_back) const {
+    const std::string& name = graph.resources[plan.resources[resource].declared.value].name;
+    return frames_back == 0 ? name : fmt::format("{}@-{}", name, frames_back);
+  }
+
+  void head() {
+    line(fmt::format("plan of graph '{}' for {}x{}, device profile '{}'", plan.graph, plan.view_width,
+                     plan.view_height, plan.device_profile));
+    line(fmt::format("{} of {} passes run, {} barriers, {} transient, {} history", plan.passes.size(),
+                     graph.passes.size(), plan.barriers.size(), bytes_text(plan.transient_bytes),
+                     bytes_text(plan.history_bytes)));
+    if (!graph.settings.empty()) line("\nsettings");
+    for (uint32_t i = 0; i < graph.settings.size(); ++i)
+      line("  " + reason(Reason::About::choice, i));
+  }
+
+  void barrier(uint32_t index) {
+    const PlanBarrier& one = plan.barriers[index];
+    const std::string from =
+        one.from_host ? "host" : stage_text(one.source_stages) + "/" + access_text(one.source_access);
+    const std::string to =
+        one.to_host ? "host" : stage_text(one.destination_stages) + "/" + access_text(one.destination_access);
+    std::string layouts;
+    if (plan.resources[one.resource].type == ResourceType::image)
+      layouts = fmt::format(", {} -> {}", one.from_host ? "host" : layout_name(one.old_layout),
+                            one.to_host ? "host" : layout_name(one.new_layout));
+    line(fmt::format("     | {}", reason(Reason::About::barrier, index)));
+    line(fmt::format("     |   {}: {} -> {}{}", why_name(one.why), from, to, layouts));
+  }
+
+  void passes() {
+    line("\npasses, each behind its barriers");
+    for (uint32_t position = 0; position < plan.passes.size(); ++position) {
+      const PlanPass& pass = plan.passes[position];
+      const PassKind& kind = kinds[pass.kind];
+      for (uint32_t b = 0; b < pass.barrier_count; ++b)
+        barrier(pass.first_barrier + b);
+      line(fmt::format("{:4} {} ({})", position, graph.passes[pass.declared.value].name, kind.name));
+      for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+        const PlanAccess& access = plan.accesses[a];
+        const UsageInfo& usage = usage_info(kind.ports[access.port].usage);
+        const char* arrow = usage.reads && usage.writes ? "<->" : usage.reads ? "<-" : "->";
+        line(fmt::format("       {} {} {}", kind.ports[access.port].name, arrow,
+                         object(access.resource, access.frames_back)));
+      }
+    }
+    if (plan.final_barrier_count > 0) line("   at the end");
+    for (uint32_t b = 0; b < plan.final_barrier_count; ++b)
+      barrier(plan.first_final_barrier + b);
+  }
+
+  void idle_passes() {
+    std::vector<bool> runs(graph.passes.size(), false);
+    for (const PlanPass& pass : plan.passes)
+      runs[pass.declared.value] = true;
+    if (std::find(runs.begin(), runs.end(), false) == runs.end()) return;
+    line("\npasses that do not run");
+    for (uint32_t p = 0; p < graph.passes.size(); ++p)
+      if (!runs[p]) line(fmt::format("  {}: {}", graph.passes[p].name, reason(Reason::About::pass, p)));
+  }
+
+  void resources() {
+    line("\nresources");
+    for (const PlanResource& resource : plan.resources) {
+      const std::string size = resource.type == ResourceType::image
+                                   ? fmt::format("{}x{}, {} mips, {} layers", resource.width, resource.height,
+                                                 resource.mips, resource.layers)
+                                   : fmt::format("{} bytes", resource.bytes);
+      const std::string why = reason(Reason::About::resource, resource.declared.value);
+      line(fmt::format("  {}: {}{}{}", graph.resources[resource.declared.value].name, size,
+                       why.empty() ? "" : "; ", why));
+    }
+  }
+
+  void heap(uint32_t index) {
+    const Heap& one = plan.heaps[index];
+    line(fmt::format("\nheap {}: {} of {}, at least {} needed{}", index, bytes_text(one.size),
+                     one.persistent ? "history" : "transients", bytes_text(one.max_live_bytes),
+                     one.size == one.max_live_bytes ? ": optimal" : ""));
+    line("        offset         size  passes    what");
+    std::vector<uint32_t> inside;
+    for (uint32_t i = 0; i < plan.placements.size(); ++i)
+      if (plan.placements[i].heap == index) inside.push_back(i);
+    std::stable_sort(inside.begin(), inside.end(), [&](uint32_t a, uint32_t b) {
+      return plan.placements[a].offset < plan.placements[b].offset;
+    });
+    for (const uint32_t i : inside) {
+      const Placement& placement = plan.placements[i];
+      const std::string uses =
+          placement.persistent ? "all" : fmt::format("{}..{}", placement.first_use, placement.last_use);
+      line(fmt::format("  {:>12} {:>12}  {:<9} {}", placement.offset, placement.size, uses,
+                       object(placement.resource, 0)));
+    }
+  }
+};
+
+} // namespace
+
+std::string plan_text(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled) {
+  TextExporter exporter{graph, kinds, compiled};
+  exporter.head();
+  exporter.passes();
+  exporter.idle_passes();
+  exporter.resources();
+  for (uint32_t h = 0; h < compiled.plan.heaps.size(); ++h)
+    exporter.heap(h);
+  return std::move(exporter.out);
+}
+
+} // namespace dermis

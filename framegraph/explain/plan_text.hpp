@@ -1,0 +1,14 @@
+#pragma once
+// The plan as a text for people: what runs, what waits for what and why, where it lies in memory.
+
+#include "framegraph/compile/plan.hpp"
+#include "framegraph/model/graph.hpp"
+
+#include <string>
+
+namespace dermis {
+
+// Several lines, newline at the end.
+std::string plan_text(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled);
+
+} // namespace dermis

@@ -1,0 +1,238 @@
+// Sizes, formats, limits and memory.
+
+#include "framegraph/compile/pack.hpp"
+#include "tests/framegraph/graph_builder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+// light (import) -> middle -> result (export); `middle` is what the tests vary.
+struct Chain : GraphBuilder {
+  Chain() {
+    import("light");
+    image("middle");
+    exported("result");
+    pass("first", "test.shade", {{"a", "light"}}, {{"out", "middle"}});
+    pass("second", "test.shade", {{"a", "middle"}}, {{"out", "result"}});
+  }
+  ResourceDeclaration& middle() { return graph.resources[1]; }
+};
+
+PlanResource resource_of(const GraphBuilder& b, const Plan& plan, const std::string& name) {
+  for (const PlanResource& resource : plan.resources)
+    if (resource.declared == b.resource(name)) return resource;
+  ADD_FAILURE() << name << " is not in the plan";
+  return {};
+}
+
+TEST(Sizes, FollowTheViewWithTheStatedRounding) {
+  Chain b;
+  b.middle().size.x = b.middle().size.y = {3, 4};
+  auto middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
+  EXPECT_EQ(middle.width, 76u); // 75.75
+  EXPECT_EQ(middle.height, 6u); // 5.25
+  b.middle().size.rounding = Rounding::floor;
+  middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
+  EXPECT_EQ(middle.width, 75u);
+  EXPECT_EQ(middle.height, 5u);
+  b.middle().size.align = 8;
+  middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
+  EXPECT_EQ(middle.width, 80u);
+  EXPECT_EQ(middle.height, 8u);
+}
+
+TEST(Sizes, AreNeverBelowOneAndChangeWithTheView) {
+  Chain b;
+  b.middle().size.x = b.middle().size.y = {1, 8};
+  b.middle().size.rounding = Rounding::floor;
+  for (const uint32_t side : {1u, 7u, 16u, 1001u, 16384u}) {
+    const auto plan = compiled(b, b.input(side, 1)).plan;
+    EXPECT_EQ(resource_of(b, plan, "middle").width, std::max(side / 8, 1u));
+    EXPECT_EQ(resource_of(b, plan, "middle").height, 1u);
+    EXPECT_EQ(plan.view_width, side);
+  }
+}
+
+TEST(Sizes, MayFollowAnotherResourceWhereverItIsDeclared) {
+  Chain b;
+  b.middle().size.base = SizeExpression::Base::resource;
+  b.middle().size.resource = b.resource("result");
+  b.middle().size.x = b.middle().size.y = {1, 2};
+  b.graph.resources[2].size.x = b.graph.resources[2].size.y = {1, 2};
+  EXPECT_EQ(resource_of(b, compiled(b).plan, "middle").width, 16u);
+}
+
+TEST(Sizes, ReferringInACircleIsRefusedNamingTheCircle) {
+  Chain b;
+  for (const auto& [from, to] : {std::pair{1u, 2u}, {2u, 1u}}) {
+    b.graph.resources[from].size.base = SizeExpression::Base::resource;
+    b.graph.resources[from].size.resource = ResourceId{to};
+  }
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::size_cycle);
+  EXPECT_THAT(errors[0].text, HasSubstr("'middle' -> 'result' -> 'middle'"));
+  EXPECT_EQ(errors[0].where.line, b.graph.resources[1].where.line);
+  EXPECT_EQ(errors[0].related[0].first.line, b.graph.resources[2].where.line);
+}
+
+TEST(Sizes, BeyondTheDeviceAreRefusedOnceAndNotForWhatFollowsThem) {
+  Chain b;
+  b.middle().size.x = {1000, 1};
+  b.graph.resources[2].size.base = SizeExpression::Base::resource;
+  b.graph.resources[2].size.resource = ResourceId{1};
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::size_out_of_range);
+  EXPECT_THAT(errors[0].text, HasSubstr("'middle' is 64000x64 texels"));
+  b.middle().size.x = {INT64_MAX, 1};
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::size_out_of_range);
+}
+
+TEST(Sizes, BuffersCountTilesAndExtraElements) {
+  GraphBuilder b;
+  b.buffer("tiles");
+  b.exported("result");
+  b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
+  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}}, {{"out", "result"}});
+  // ceil(65 / 8) * ceil(9 / 8) tiles and 4 more elements, of 4 bytes
+  EXPECT_EQ(resource_of(b, compiled(b, b.input(65, 9)).plan, "tiles").bytes, (9u * 2u + 4u) * 4u);
+  b.graph.resources[0].extra_elements = UINT64_MAX;
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::size_out_of_range);
+}
+
+TEST(Sizes, MipChains) {
+  Chain b;
+  b.middle().mips = 0;
+  EXPECT_EQ(resource_of(b, compiled(b, b.input(64, 9)).plan, "middle").mips, 7u);
+  b.middle().mips = 8;
+  EXPECT_THAT(refused(b)[0].text, HasSubstr("asks for 8 mip levels; 64x64 has 7"));
+  b.middle().mips = 1;
+  b.middle().layers = 257;
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::size_out_of_range);
+}
+
+TEST(Formats, TheFirstOneThatEveryPortAndTheDeviceCanUseIsTaken) {
+  Chain b;
+  b.middle().formats = {Format::rgba8_srgb, Format::b10g11r11f, Format::rgba16f};
+  auto whole = compiled(b); // sRGB cannot be stored to
+  EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::b10g11r11f);
+  EXPECT_THAT(reasons(whole, Reason::About::resource, 1),
+              HasSubstr("not rgba8_srgb: the device 'generic' does not support it"));
+  b.graph.passes[1].kind = b.kinds.find("test.narrow"); // reads through the same port number, rgba16f only
+  b.graph.passes[1].reads[0].port = 0;
+  b.graph.passes[1].writes[0].port = 1;
+  whole = compiled(b);
+  EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::rgba16f);
+  EXPECT_THAT(reasons(whole, Reason::About::resource, 1),
+              HasSubstr("port 'a' of pass 'second' cannot work with it"));
+  b.middle().formats = {Format::r8_unorm};
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::no_usable_format);
+}
+
+TEST(Formats, TheHostBindsOneOfTheDeclaredOnes) {
+  Chain b;
+  b.graph.resources[0].formats = {Format::rgba16f, Format::b10g11r11f};
+  auto input = b.input();
+  input.host_formats.assign(3, Format::undefined);
+  EXPECT_EQ(resource_of(b, compiled(b, input).plan, "light").format, Format::rgba16f);
+  input.host_formats[0] = Format::b10g11r11f;
+  EXPECT_EQ(resource_of(b, compiled(b, input).plan, "light").format, Format::b10g11r11f);
+  input.host_formats[0] = Format::r8_unorm;
+  const auto errors = refused(b, input);
+  EXPECT_EQ(errors[0].id, DiagnosticId::host_format);
+  EXPECT_THAT(errors[0].text, HasSubstr("binds 'light' as r8_unorm; declared are rgba16f, b10g11r11f"));
+}
+
+TEST(Limits, AreThoseOfTheDevice) {
+  Chain b;
+  b.device.max_workgroup_count = 7;
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::device_limit); // 64 / 8 = 8 groups across
+  b.device.max_workgroup_count = 8;
+  compiled(b);
+  b.device.max_push_constants_bytes = 3;
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::device_limit);
+}
+
+TEST(Limits, WhatIsAskedOfTheCompilerMustFitTheGraph) {
+  Chain b;
+  EXPECT_EQ(refused(b, b.input(0, 64))[0].id, DiagnosticId::compile_input);
+  EXPECT_EQ(refused(b, b.input(64, 16385))[0].id, DiagnosticId::compile_input);
+  auto input = b.input();
+  input.bound = {true};
+  input.host_formats = {Format::rgba16f};
+  EXPECT_THAT(refused(b, input), SizeIs(2));
+}
+
+TEST(Packing, ItemsAliveTogetherNeverShareAByte) {
+  const std::vector<PackItem> items = {
+      {100, 64, 0, 3}, {50, 64, 1, 2}, {200, 256, 2, 5}, {10, 1, 4, 4}, {0, 1, 0, 5}};
+  const Packing packing = pack_items(items);
+  for (size_t i = 0; i < items.size(); ++i) {
+    EXPECT_EQ(packing.offsets[i] % items[i].alignment, 0u);
+    EXPECT_LE(packing.offsets[i] + items[i].size, packing.size);
+    for (size_t k = 0; k < i; ++k) {
+      const bool together = items[i].first <= items[k].last && items[k].first <= items[i].last;
+      const bool apart = packing.offsets[i] + items[i].size <= packing.offsets[k] ||
+                         packing.offsets[k] + items[k].size <= packing.offsets[i];
+      EXPECT_TRUE(!together || apart || items[i].size == 0 || items[k].size == 0) << i << " and " << k;
+    }
+  }
+  EXPECT_EQ(packing.lower_bound, 350u); // 100 + 50 + 200 in pass 2
+}
+
+TEST(Packing, ItemsThatFollowEachOtherShareTheirMemory) {
+  const Packing packing = pack_items({{64, 64, 0, 1}, {64, 64, 2, 3}, {64, 64, 4, 5}});
+  EXPECT_EQ(packing.size, 64u);
+  EXPECT_EQ(packing.size, packing.lower_bound);
+  EXPECT_EQ(pack_items({}).size, 0u);
+}
+
+TEST(Packing, MemoryTypesThatDoNotAgreeGetHeapsOfTheirOwn) {
+  GraphBuilder b;
+  b.buffer("tiles");
+  b.image("middle");
+  b.exported("result");
+  b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
+  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}}, {{"out", "middle"}});
+  b.pass("finish", "test.need", {{"a", "middle"}}, {{"out", "result"}});
+  b.device.buffer_needs = [](const BufferDescription&) { return MemoryNeeds{100, 4, 0b0110}; };
+  b.device.image_needs = [](const ImageDescription&) { return MemoryNeeds{1000, 16, 0b0011}; };
+  auto plan = compiled(b).plan;
+  ASSERT_THAT(plan.heaps, SizeIs(1));
+  EXPECT_EQ(plan.heaps[0].memory_type_bits, 0b0010u);
+  b.device.device_local_type_bits = 0b0101; // sharing would leave neither of the local types
+  plan = compiled(b).plan;
+  ASSERT_THAT(plan.heaps, SizeIs(2));
+  EXPECT_EQ(plan.heaps[0].memory_type_bits, 0b0110u);
+  EXPECT_EQ(plan.heaps[1].memory_type_bits, 0b0011u);
+}
+
+TEST(Packing, BuffersAndImagesInOneHeapKeepTheGranularity) {
+  GraphBuilder b;
+  b.buffer("tiles");
+  b.image("middle");
+  b.exported("result");
+  b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
+  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}}, {{"out", "middle"}});
+  b.pass("finish", "test.need", {{"a", "middle"}}, {{"out", "result"}});
+  b.device.buffer_needs = [](const BufferDescription&) { return MemoryNeeds{100, 4, 1}; };
+  b.device.image_needs = [](const ImageDescription&) { return MemoryNeeds{1000, 16, 1}; };
+  b.device.buffer_image_granularity = 1024;
+  const auto plan = compiled(b).plan;
+  ASSERT_THAT(plan.placements, SizeIs(2));
+  EXPECT_EQ(plan.placements[0].offset / 1024 == plan.placements[1].offset / 1024, false);
+  EXPECT_EQ(plan.placements[0].offset % 1024, 0u);
+  EXPECT_EQ(plan.placements[1].offset % 1024, 0u);
+}
+
+} // namespace
+} // namespace dermis::testing

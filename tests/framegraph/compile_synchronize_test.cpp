@@ -1,0 +1,258 @@
+// Barriers, layouts and history: what waits for what, and only that.
+
+#include "tests/framegraph/graph_builder.hpp"
+
+#include "framegraph/verify/verify.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using Why = PlanBarrier::Why;
+
+std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan, const std::string& pass) {
+  for (const PlanPass& one : plan.passes)
+    if (one.declared == b.pass_id(pass))
+      return {plan.barriers.begin() + one.first_barrier,
+              plan.barriers.begin() + one.first_barrier + one.barrier_count};
+  ADD_FAILURE() << pass << " does not run";
+  return {};
+}
+
+// The one barrier on `resource` before `pass`; a default one with resource none if there is none.
+PlanBarrier barrier_on(const GraphBuilder& b, const Plan& plan, const std::string& pass,
+                       const std::string& resource, uint32_t frames_back = 0) {
+  PlanBarrier found;
+  found.resource = no_instance;
+  for (const PlanBarrier& barrier : barriers_before(b, plan, pass))
+    if (plan.resources[barrier.resource].declared == b.resource(resource) &&
+        barrier.frames_back == frames_back) {
+      EXPECT_EQ(found.resource, no_instance) << "two barriers on " << resource;
+      found = barrier;
+    }
+  return found;
+}
+
+TEST(Synchronize, AReadWaitsForTheWriteAndChangesTheLayout) {
+  GraphBuilder b;
+  b.import("light");
+  b.image("blurred");
+  b.exported("result");
+  b.pass("blur", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
+  b.pass("finish", "test.shade", {{"a", "blurred"}}, {{"out", "result"}});
+  const auto whole = compiled(b);
+  const auto barrier = barrier_on(b, whole.plan, "finish", "blurred");
+  EXPECT_EQ(barrier.why, Why::read_after_write);
+  EXPECT_EQ(barrier.source_stages, stage::compute_shader);
+  EXPECT_EQ(barrier.source_access, access::shader_storage_write);
+  EXPECT_EQ(barrier.destination_stages, stage::compute_shader);
+  EXPECT_EQ(barrier.destination_access, access::shader_sampled_read);
+  EXPECT_EQ(barrier.old_layout, Layout::general);
+  EXPECT_EQ(barrier.new_layout, Layout::shader_read_only);
+}
+
+TEST(Synchronize, ASecondReadInTheSameLayoutNeedsNoBarrier) {
+  GraphBuilder b;
+  b.import("light");
+  b.exported("first");
+  b.exported("second");
+  b.pass("one", "test.need", {{"a", "light"}}, {{"out", "first"}});
+  b.pass("two", "test.need", {{"a", "light"}}, {{"out", "second"}});
+  const auto whole = compiled(b);
+  EXPECT_EQ(barrier_on(b, whole.plan, "one", "light").why, Why::host_before);
+  EXPECT_EQ(barrier_on(b, whole.plan, "two", "light").resource, no_instance);
+}
+
+TEST(Synchronize, ABufferReadAtTwoStagesGetsOneBarrierForBoth) {
+  GraphBuilder b;
+  b.buffer("tiles");
+  b.exported("result");
+  b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
+  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}}, {{"out", "result"}});
+  const auto whole = compiled(b);
+  const auto barrier = barrier_on(b, whole.plan, "scatter", "tiles");
+  EXPECT_EQ(barrier.destination_stages, stage::compute_shader | stage::draw_indirect);
+  EXPECT_EQ(barrier.destination_access, access::shader_storage_read | access::indirect_command_read);
+  EXPECT_EQ(barrier.old_layout, Layout::undefined);
+  EXPECT_EQ(barrier.new_layout, Layout::undefined);
+}
+
+TEST(Synchronize, AReadAtAStageThatDidNotSeeTheWriteGetsItsOwnBarrier) {
+  GraphBuilder b;
+  b.buffer("tiles");
+  b.exported("first");
+  b.exported("second");
+  b.exported("third");
+  b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
+  b.pass("one", "test.tiles", {{"tiles", "tiles"}}, {{"out", "first"}});
+  b.pass("two", "test.tiles", {{"arguments", "tiles"}}, {{"out", "second"}});
+  b.pass("three", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}}, {{"out", "third"}});
+  const auto whole = compiled(b);
+  EXPECT_EQ(barrier_on(b, whole.plan, "two", "tiles").destination_stages, stage::draw_indirect);
+  EXPECT_EQ(barrier_on(b, whole.plan, "two", "tiles").source_stages, stage::compute_shader);
+  EXPECT_EQ(barrier_on(b, whole.plan, "three", "tiles").resource, no_instance);
+}
+
+TEST(Synchronize, AnUpdateWaitsForReadersAndForTheWriteItReads) {
+  GraphBuilder b;
+  b.buffer("tiles");
+  b.exported("first");
+  b.exported("second");
+  b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
+  b.pass("one", "test.tiles", {{"arguments", "tiles"}}, {{"out", "first"}});
+  b.pass("count", "test.count", {}, {{"tiles", "tiles"}});
+  b.pass("two", "test.tiles", {{"tiles", "tiles"}}, {{"out", "second"}});
+  const auto whole = compiled(b);
+  const auto barrier = barrier_on(b, whole.plan, "count", "tiles");
+  EXPECT_EQ(barrier.source_stages, stage::draw_indirect | stage::compute_shader);
+}
+
+TEST(Synchronize, APureWriteAfterReadIsAnExecutionDependency) {
+  // A host buffer that is read and then overwritten without being read by the writer.
+  GraphBuilder b;
+  auto& tiles = b.buffer("tiles");
+  tiles.origin = Origin::imported;
+  tiles.exported = true;
+  b.exported("first");
+  b.pass("one", "test.tiles", {{"arguments", "tiles"}}, {{"out", "first"}});
+  b.pass("clear", "test.fill", {}, {{"target", "tiles"}});
+  const auto whole = compiled(b);
+  const auto barrier = barrier_on(b, whole.plan, "clear", "tiles");
+  EXPECT_EQ(barrier.why, Why::write_after_read);
+  EXPECT_EQ(barrier.source_stages, stage::draw_indirect);
+  EXPECT_EQ(barrier.source_access, access::none);
+  EXPECT_EQ(barrier.destination_stages, stage::clear);
+  EXPECT_EQ(barrier.destination_access, access::none);
+}
+
+TEST(Synchronize, ReadingAndWritingOneImageInOnePassUsesOneLayout) {
+  GraphBuilder b;
+  b.import("light").exported = true;
+  b.pass("combine", "test.shade", {{"a", "light"}}, {{"out", "light"}});
+  const auto whole = compiled(b);
+  for (const PlanAccess& access : whole.plan.accesses)
+    EXPECT_EQ(access.layout, Layout::general);
+  EXPECT_EQ(barrier_on(b, whole.plan, "combine", "light").new_layout, Layout::general);
+}
+
+TEST(Synchronize, HostSlotsAreTakenOverOnceAndHandedBackOnce) {
+  GraphBuilder b;
+  b.import("light");
+  b.import("unused");
+  b.exported("result");
+  b.pass("finish", "test.need", {{"a", "light"}}, {{"out", "result"}});
+  const auto whole = compiled(b);
+  EXPECT_THAT(barriers_before(b, whole.plan, "finish"), SizeIs(2));
+  for (const PlanBarrier& barrier : barriers_before(b, whole.plan, "finish"))
+    EXPECT_TRUE(barrier.from_host);
+  EXPECT_EQ(whole.plan.final_barrier_count, 3u);
+  for (uint32_t i = 0; i < whole.plan.final_barrier_count; ++i) {
+    const PlanBarrier& barrier = whole.plan.barriers[whole.plan.first_final_barrier + i];
+    EXPECT_TRUE(barrier.to_host);
+    const bool unused = whole.plan.resources[barrier.resource].declared == b.resource("unused");
+    EXPECT_EQ(barrier.from_host, unused);
+  }
+}
+
+TEST(Aliasing, ANewOccupantWaitsForEveryOldOneAndDiscardsItsContents) {
+  GraphBuilder b;
+  b.import("light");
+  for (const char* name : {"one", "two", "three", "four"})
+    b.image(name);
+  b.exported("result");
+  b.pass("p1", "test.need", {{"a", "light"}}, {{"out", "one"}});
+  b.pass("p2", "test.need", {{"a", "one"}}, {{"out", "two"}});
+  b.pass("p3", "test.need", {{"a", "two"}}, {{"out", "three"}});
+  b.pass("p4", "test.need", {{"a", "three"}}, {{"out", "four"}});
+  b.pass("p5", "test.need", {{"a", "four"}}, {{"out", "result"}});
+  const auto whole = compiled(b);
+  ASSERT_THAT(whole.plan.heaps, SizeIs(1));
+  // Two of four are alive at a time.
+  EXPECT_EQ(whole.plan.heaps[0].size, 2 * whole.plan.placements[0].size);
+  const auto barrier = barrier_on(b, whole.plan, "p3", "three");
+  EXPECT_EQ(barrier.why, Why::alias);
+  EXPECT_EQ(barrier.old_layout, Layout::undefined);
+  EXPECT_EQ(barrier.source_stages, stage::compute_shader);
+  // 'one' was last read by p2; across the frame boundary both are last read, so nothing is left to make
+  // available.
+  EXPECT_EQ(barrier.source_access, access::none);
+  uint32_t index = 0;
+  while (whole.plan.barriers[index].why != Why::alias)
+    ++index;
+  EXPECT_THAT(reasons(whole, Reason::About::barrier, index), HasSubstr("takes over memory of"));
+}
+
+TEST(Aliasing, TheFirstOccupantOfAFrameWaitsForTheLastOnesOfTheFrameBefore) {
+  GraphBuilder b;
+  b.import("light");
+  b.buffer("tiles");
+  b.exported("result");
+  b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
+  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}}, {{"out", "result"}});
+  const auto whole = compiled(b);
+  const auto barrier = barrier_on(b, whole.plan, "list", "tiles");
+  EXPECT_EQ(barrier.why, Why::first_use);
+  EXPECT_EQ(barrier.source_stages, stage::compute_shader | stage::draw_indirect);
+}
+
+GraphBuilder accumulation(uint32_t frames, const char* read) {
+  GraphBuilder b;
+  b.import("light");
+  b.history("sum", frames);
+  b.exported("result");
+  b.pass("accumulate", "test.shade", {{"a", "light"}, {"b", read}}, {{"out", "sum"}});
+  b.pass("show", "test.need", {{"a", "sum"}}, {{"out", "result"}});
+  return b;
+}
+
+TEST(History, InstancesTakeTurnsAndKeepTheirContentsOverThreeFrames) {
+  const auto b = accumulation(2, "sum@-2");
+  const auto whole = compiled(b);
+  ASSERT_THAT(whole.plan.histories, SizeIs(1));
+  const PlanResource& sum = whole.plan.resources[whole.plan.histories[0].resource];
+  EXPECT_EQ(sum.instance_count, 3u);
+  EXPECT_EQ(whole.plan.history_bytes, 3 * whole.plan.placements[sum.first_instance].size);
+  EXPECT_EQ(whole.plan.transient_bytes, 0u);
+  // Written in 'general', read by 'show' in 'shader_read_only': it rests there, one frame and two frames
+  // later.
+  EXPECT_THAT(whole.plan.histories[0].layout_at_start,
+              ::testing::ElementsAre(Layout::undefined, Layout::shader_read_only, Layout::shader_read_only));
+  for (uint32_t i = 0; i < 3; ++i)
+    EXPECT_TRUE(whole.plan.placements[sum.first_instance + i].persistent);
+}
+
+TEST(History, OnlyAsManyInstancesAsThisPlanReadsBack) {
+  EXPECT_EQ(compiled(accumulation(3, "sum@-1")).plan.histories[0].frames, 1u);
+  const auto unread = compiled(accumulation(3, "light"));
+  EXPECT_THAT(unread.plan.histories, SizeIs(0));
+  EXPECT_EQ(unread.plan.history_bytes, 0u);
+  EXPECT_GT(unread.plan.transient_bytes, 0u);
+}
+
+TEST(History, TheFirstReadWaitsForTheFrameBeforeAndTheNewestReusesTheOldest) {
+  GraphBuilder b;
+  b.import("light");
+  b.history("sum");
+  b.exported("result");
+  b.pass("accumulate", "test.shade", {{"a", "light"}, {"b", "sum@-1"}}, {{"out", "sum"}});
+  b.pass("show", "test.need", {{"a", "sum@-1"}}, {{"out", "result"}});
+  const auto whole = compiled(b);
+  const auto past = barrier_on(b, whole.plan, "accumulate", "sum", 1);
+  EXPECT_EQ(past.why, Why::history);
+  EXPECT_EQ(past.source_access, access::shader_storage_write);
+  EXPECT_EQ(past.old_layout, Layout::general);
+  EXPECT_EQ(past.new_layout, Layout::shader_read_only);
+  EXPECT_EQ(whole.plan.histories[0].layout_at_start[1], Layout::general);
+  const auto newest = barrier_on(b, whole.plan, "accumulate", "sum", 0);
+  EXPECT_EQ(newest.why, Why::history);
+  EXPECT_EQ(newest.old_layout, Layout::undefined);
+  EXPECT_EQ(newest.source_stages, stage::compute_shader); // last read in the frame before
+  EXPECT_EQ(newest.source_access, access::none);
+}
+
+} // namespace
+} // namespace dermis::testing

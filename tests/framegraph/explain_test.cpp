@@ -1,0 +1,102 @@
+// Exports of a plan: complete, well formed, and the same bytes every time.
+
+#include "framegraph/explain/names.hpp"
+#include "framegraph/explain/plan_dot.hpp"
+#include "framegraph/explain/plan_json.hpp"
+#include "framegraph/explain/plan_text.hpp"
+#include "framegraph/text/document.hpp"
+#include "framegraph/text/json_writer.hpp"
+#include "tests/framegraph/random_graph.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+GraphBuilder sample() {
+  GraphBuilder b;
+  b.boolean("smooth", true);
+  b.import("light");
+  b.history("sum");
+  b.image("unused");
+  b.exported("result");
+  b.pass("accumulate", "test.shade", {{"a", "light"}, {"b", "sum@-1"}}, {{"out", "sum"}}).when =
+      b.when("smooth");
+  b.pass("waste", "test.need", {{"a", "light"}}, {{"out", "unused"}});
+  b.pass("show", "test.need", {{"a", "sum"}}, {{"out", "result"}});
+  return b;
+}
+
+TEST(PlanJson, TheSameInputsGiveTheSameBytes) {
+  for (uint64_t seed = 0; seed < 50; ++seed) {
+    const auto first = random_graph(seed), second = random_graph(seed);
+    const auto one = plan_json(first.graph, first.kinds, compiled(first));
+    EXPECT_EQ(one, plan_json(second.graph, second.kinds, compiled(second)));
+  }
+}
+
+TEST(PlanJson, IsValidJsonForEveryGraph) {
+  for (uint64_t seed = 0; seed < 50; ++seed) {
+    const auto b = random_graph(seed);
+    Diagnostics diagnostics;
+    EXPECT_TRUE(parse_document("plan", plan_json(b.graph, b.kinds, compiled(b)), diagnostics)) << seed;
+  }
+}
+
+TEST(PlanJson, NamesWhatRunsAndWhatDoesNotAndWhy) {
+  const auto b = sample();
+  const auto text = plan_json(b.graph, b.kinds, compiled(b));
+  EXPECT_THAT(text, HasSubstr(R"("dermis_plan": 1)"));
+  EXPECT_THAT(text, HasSubstr(R"({ "name": "smooth", "type": "bool", "value": true })"));
+  EXPECT_THAT(text, HasSubstr(R"("mask": "0x100000000", "names": ["shader_sampled_read"])"));
+  EXPECT_THAT(text, HasSubstr(R"("layout_at_start": ["undefined", "shader_read_only"])"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          R"({ "about": "pass", "index": 1, "name": "waste", "text": "culled: nothing that is bound needs 'unused'" })"));
+}
+
+TEST(PlanText, ShowsEveryPassBarrierAndPlacement) {
+  const auto b = sample();
+  const auto text = plan_text(b.graph, b.kinds, compiled(b));
+  EXPECT_THAT(text, HasSubstr("2 of 3 passes run"));
+  EXPECT_THAT(text, HasSubstr("b <- sum@-1"));
+  EXPECT_THAT(text, HasSubstr("waste: culled"));
+  EXPECT_THAT(text, HasSubstr("of history, at least"));
+  EXPECT_THAT(text, HasSubstr("hands 'result' back to the host"));
+}
+
+TEST(PlanDot, DrawsPassesAndResourcesAndEscapesNames) {
+  auto b = sample();
+  b.graph.passes[0].name = "say \"hi\"";
+  EXPECT_THAT(graph_dot(b.graph, b.kinds), HasSubstr(R"(label="say \"hi\")"));
+  const auto dot = plan_dot(b.graph, b.kinds, compiled(b));
+  EXPECT_THAT(dot, HasSubstr("digraph \"test\" {"));
+  EXPECT_THAT(dot, HasSubstr("style=dashed"));
+  EXPECT_THAT(dot, HasSubstr("color=gray"));
+}
+
+TEST(Names, UnknownBitsAreWrittenAsNumbers) {
+  EXPECT_EQ(stage_text(stage::compute_shader | 0x4), "0x4|compute_shader");
+  EXPECT_EQ(access_text(0), "none");
+  EXPECT_EQ(layout_name(Layout::general), "general");
+  EXPECT_EQ(bytes_text(1023), "1023 B");
+  EXPECT_EQ(bytes_text(1536), "1.5 KiB");
+}
+
+TEST(JsonWriter, EscapesAndNestsAndRefusesNumbersJsonDoesNotHave) {
+  JsonWriter out;
+  out.open_object().member("text", "a\"\\\n\x01").key("list").open_array(true).value(1).value(-2.5);
+  out.value(std::numeric_limits<double>::infinity()).value(UINT64_MAX).close();
+  out.key("empty").open_object().close().close();
+  EXPECT_EQ(std::move(out).finish(), "{\n  \"text\": \"a\\\"\\\\\\n\\u0001\",\n  \"list\": [1, -2.5, null, "
+                                     "18446744073709551615],\n  \"empty\": {}\n}\n");
+}
+
+} // namespace
+} // namespace dermis::testing

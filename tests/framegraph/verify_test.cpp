@@ -1,0 +1,147 @@
+// The verifier refuses what is wrong: each mutation breaks one thing of a plan it accepts.
+
+#include "framegraph/verify/verify.hpp"
+
+#include "tests/framegraph/random_graph.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr uint64_t seeds = 150;
+
+// A history, an alias, a buffer read at two stages, an import updated in place.
+GraphBuilder everything() {
+  GraphBuilder b;
+  b.import("light").exported = true;
+  b.history("sum");
+  b.buffer("tiles");
+  for (const char* name : {"one", "two", "three"})
+    b.image(name);
+  b.exported("result");
+  b.pass("list", "test.list", {{"a", "light"}}, {{"tiles", "tiles"}});
+  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}, {"a", "light"}},
+         {{"out", "one"}});
+  b.pass("blur", "test.need", {{"a", "one"}}, {{"out", "two"}});
+  b.pass("again", "test.need", {{"a", "two"}}, {{"out", "three"}});
+  b.pass("accumulate", "test.shade", {{"a", "three"}, {"b", "sum@-1"}}, {{"out", "sum"}});
+  b.pass("add", "test.update", {{"a", "sum"}}, {{"image", "light"}});
+  b.pass("show", "test.need", {{"a", "sum@-1"}}, {{"out", "result"}});
+  return b;
+}
+
+void expect_refused(const std::function<void(Plan&)>& mutate, const std::string& because) {
+  const auto b = everything();
+  Plan plan = compiled(b).plan;
+  mutate(plan);
+  EXPECT_THAT(verify(plan), Contains(HasSubstr(because)));
+}
+
+TEST(Verify, AcceptsWhatTheCompilerMakes) {
+  const auto b = everything();
+  EXPECT_THAT(verify(compiled(b).plan), IsEmpty());
+}
+
+TEST(Verify, RefusesMemoryThatIsSharedWhileBothAreAlive) {
+  expect_refused(
+      [](Plan& plan) {
+        for (Placement& placement : plan.placements)
+          placement.offset = 0;
+      },
+      "alive at the same time share memory");
+}
+
+TEST(Verify, RefusesPlacementsOutsideTheirHeapOrMisaligned) {
+  expect_refused([](Plan& plan) { plan.heaps[0].size = 1; }, "reaches beyond its heap");
+  expect_refused([](Plan& plan) { plan.placements[0].offset = 1; }, "misaligned");
+}
+
+TEST(Verify, RefusesIndicesOutOfRange) {
+  expect_refused([](Plan& plan) { plan.accesses[0].resource = 1000; }, "does not exist");
+  expect_refused([](Plan& plan) { plan.accesses[0].frames_back = 7; }, "does not exist");
+  expect_refused([](Plan& plan) { plan.barriers[0].resource = 1000; }, "does not exist");
+  expect_refused([](Plan& plan) { plan.passes[0].access_count = 1000; }, "do not exist");
+  expect_refused([](Plan& plan) { plan.passes[0].first_barrier = 0xffffffff; }, "do not exist");
+  expect_refused([](Plan& plan) { plan.histories.clear(); }, "not described once");
+}
+
+TEST(Verify, RefusesAWrongLayout) {
+  expect_refused([](Plan& plan) { plan.accesses.back().layout = Layout::transfer_source; },
+                 "not in the layout the access");
+  expect_refused([](Plan& plan) { plan.histories[0].layout_at_start[1] = Layout::transfer_source; },
+                 "layout");
+}
+
+TEST(Verify, RefusesAReadOutsideItsLifetime) {
+  expect_refused(
+      [](Plan& plan) {
+        for (Placement& placement : plan.placements)
+          if (!placement.persistent) placement.last_use = placement.first_use;
+      },
+      "outside its lifetime");
+}
+
+TEST(Verify, RefusesEveryBarrierThatLosesItsSource) {
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    const auto plan = compiled(random_graph(seed)).plan;
+    for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
+      if (plan.barriers[i].from_host || plan.barriers[i].source_stages == 0) continue;
+      Plan mutant = plan;
+      mutant.barriers[i].source_stages = stage::host;
+      EXPECT_THAT(verify(mutant), Not(IsEmpty())) << "seed " << seed << ", barrier " << i;
+    }
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Verify, RefusesEveryBarrierThatLosesAWriteItMustMakeAvailable) {
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    const auto whole = compiled(random_graph(seed));
+    const Plan& plan = whole.plan;
+    for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
+      // An alias barrier names the writes of every occupant, also those that a later occupant made available.
+      if (plan.barriers[i].source_access == 0 || plan.barriers[i].why == PlanBarrier::Why::alias) continue;
+      Plan mutant = plan;
+      mutant.barriers[i].source_access = 0;
+      EXPECT_THAT(verify(mutant), Not(IsEmpty()))
+          << "seed " << seed << ", barrier " << i << ": " << reasons(whole, Reason::About::barrier, i);
+    }
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Verify, RefusesEveryBarrierThatDoesNotReachItsReader) {
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    const auto plan = compiled(random_graph(seed)).plan;
+    for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
+      if (plan.barriers[i].to_host) continue;
+      Plan mutant = plan;
+      mutant.barriers[i].destination_stages = stage::host;
+      EXPECT_THAT(verify(mutant), Not(IsEmpty())) << "seed " << seed << ", barrier " << i;
+    }
+    if (HasFailure()) return;
+  }
+}
+
+// A pass that consumes what the pass before it made cannot run first.
+TEST(Verify, RefusesSwappedPasses) {
+  const auto b = everything();
+  const Plan plan = compiled(b).plan;
+  for (size_t p = 0; p + 1 < plan.passes.size() - 1; ++p) {
+    Plan mutant = plan;
+    std::swap(mutant.passes[p], mutant.passes[p + 1]);
+    EXPECT_THAT(verify(mutant), Not(IsEmpty())) << p;
+  }
+}
+
+} // namespace
+} // namespace dermis::testing
