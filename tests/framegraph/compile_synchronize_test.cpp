@@ -125,7 +125,7 @@ TEST(Synchronize, APureWriteAfterReadIsAnExecutionDependency) {
   EXPECT_EQ(barrier.why, Why::write_after_read);
   EXPECT_EQ(barrier.source_stages, stage::draw_indirect);
   EXPECT_EQ(barrier.source_access, access::none);
-  EXPECT_EQ(barrier.destination_stages, stage::clear);
+  EXPECT_EQ(barrier.destination_stages, usage_info(Usage::clear).stages);
   EXPECT_EQ(barrier.destination_access, access::none);
 }
 
