@@ -46,6 +46,13 @@ MemoryNeeds buffer_needs(const Device& device, const BufferDescription& buffer) 
   return needs_of(requirements);
 }
 
+uint32_t device_local_types(const Device& device) {
+  uint32_t bits = 0;
+  for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i)
+    if (device.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) bits |= 1u << i;
+  return bits;
+}
+
 } // namespace
 
 DeviceProfile device_profile(const Device& device) {
@@ -54,6 +61,9 @@ DeviceProfile device_profile(const Device& device) {
   profile.name = device.properties.deviceName;
   profile.buffer_image_granularity = limits.bufferImageGranularity;
   profile.max_image_dimension = limits.maxImageDimension2D;
+  profile.max_image_layers = limits.maxImageArrayLayers;
+  profile.max_storage_buffer_bytes = limits.maxStorageBufferRange;
+  profile.device_local_type_bits = device_local_types(device);
   profile.max_workgroup_count =
       std::min({limits.maxComputeWorkGroupCount[0], limits.maxComputeWorkGroupCount[1],
                 limits.maxComputeWorkGroupCount[2]});
