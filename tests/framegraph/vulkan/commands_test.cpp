@@ -1,0 +1,158 @@
+// What is recorded, seen through a function table that records calls instead of making them.
+#include "tests/framegraph/vulkan/count_allocations.hpp"
+#include "tests/framegraph/vulkan/executor_fixture.hpp"
+
+#include <gmock/gmock.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::ElementsAre;
+
+constexpr size_t most_barriers = 64;
+
+struct Recorded { // static: functions of the driver have no user pointer
+  VkImageMemoryBarrier2 barriers[most_barriers];
+  size_t barrier_count = 0, batches = 0, dispatches = 0, labels = 0;
+  uint32_t groups[3];
+};
+Recorded recorded;
+
+void make_recording(vulkan::FunctionTable& table) {
+  table.vkCmdPipelineBarrier2 = [](VkCommandBuffer, const VkDependencyInfo* info) {
+    ++recorded.batches;
+    for (uint32_t i = 0; i < info->imageMemoryBarrierCount && recorded.barrier_count < most_barriers; ++i)
+      recorded.barriers[recorded.barrier_count++] = info->pImageMemoryBarriers[i];
+  };
+  table.vkCmdBindPipeline = [](VkCommandBuffer, VkPipelineBindPoint, VkPipeline) {};
+  table.vkCmdBindDescriptorSets = [](VkCommandBuffer, VkPipelineBindPoint, VkPipelineLayout, uint32_t,
+                                     uint32_t, const VkDescriptorSet*, uint32_t, const uint32_t*) {};
+  table.vkCmdPushConstants = [](VkCommandBuffer, VkPipelineLayout, VkShaderStageFlags, uint32_t, uint32_t,
+                                const void*) {};
+  table.vkCmdDispatch = [](VkCommandBuffer, uint32_t x, uint32_t y, uint32_t z) {
+    ++recorded.dispatches;
+    recorded.groups[0] = x;
+    recorded.groups[1] = y;
+    recorded.groups[2] = z;
+  };
+  table.vkCmdClearColorImage = [](VkCommandBuffer, VkImage, VkImageLayout, const VkClearColorValue*, uint32_t,
+                                  const VkImageSubresourceRange*) {};
+  table.vkCmdFillBuffer = [](VkCommandBuffer, VkBuffer, VkDeviceSize, VkDeviceSize, uint32_t) {};
+  table.vkCmdResetQueryPool = [](VkCommandBuffer, VkQueryPool, uint32_t, uint32_t) {};
+  table.vkCmdWriteTimestamp2 = [](VkCommandBuffer, VkPipelineStageFlags2, VkQueryPool, uint32_t) {};
+  table.vkCmdBeginDebugUtilsLabelEXT = [](VkCommandBuffer, const VkDebugUtilsLabelEXT*) {
+    ++recorded.labels;
+  };
+  table.vkCmdEndDebugUtilsLabelEXT = [](VkCommandBuffer) {};
+  table.vkUpdateDescriptorSets = [](VkDevice, uint32_t, const VkWriteDescriptorSet*, uint32_t,
+                                    const VkCopyDescriptorSet*) {};
+}
+
+class CommandsTest : public ExecutorTest {
+protected:
+  void SetUp() override {
+    ExecutorTest::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    make_recording(dermis_device.vk);
+    recorded = {};
+  }
+  vulkan::RecordResult record(vulkan::Rectangle rectangle = {}) {
+    vulkan::FrameInput input;
+    input.command_buffer = reinterpret_cast<VkCommandBuffer>(this); // never looked at
+    input.images = images;
+    input.rectangle = rectangle;
+    input.frame_index = ++frame_index;
+    return executor->record(input);
+  }
+  SmallGraph update() const {
+    SmallGraph g;
+    g.import("light", Format::r32f).exported = true;
+    g.image("copy");
+    g.pass("add", "test.add", {{"a", "light"}}, {{"target", "copy"}});
+    g.pass("back", "test.add", {{"a", "copy"}}, {{"target", "light"}});
+    return g;
+  }
+};
+
+TEST_F(CommandsTest, AnImageOfAnotherQueueFamilyIsAcquiredFirstAndReleasedLast) {
+  const SmallGraph g = update();
+  make_executor(g, 16, 16);
+  const uint32_t other = queue_family + 1;
+  bind(g, "light", {});
+  images[0].before = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, other, 0, 0};
+  images[0].after = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, other, 0, 0};
+  ASSERT_FALSE(record());
+  ASSERT_GT(recorded.barrier_count, 2u);
+  const VkImageMemoryBarrier2& acquire = recorded.barriers[0];
+  EXPECT_EQ(acquire.image, images[0].image);
+  EXPECT_EQ(acquire.srcQueueFamilyIndex, other);
+  EXPECT_EQ(acquire.dstQueueFamilyIndex, queue_family);
+  EXPECT_EQ(acquire.oldLayout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  EXPECT_EQ(acquire.newLayout, acquire.oldLayout) << "the host's release names the same pair";
+  const VkImageMemoryBarrier2& release = recorded.barriers[recorded.barrier_count - 1];
+  EXPECT_EQ(release.srcQueueFamilyIndex, queue_family);
+  EXPECT_EQ(release.dstQueueFamilyIndex, other);
+  EXPECT_EQ(release.oldLayout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  EXPECT_EQ(release.newLayout, release.oldLayout);
+  for (size_t i = 1; i + 1 < recorded.barrier_count; ++i)
+    EXPECT_EQ(recorded.barriers[i].srcQueueFamilyIndex, VK_QUEUE_FAMILY_IGNORED) << i;
+}
+
+TEST_F(CommandsTest, TheOwnQueueFamilyIsNoTransfer) {
+  const SmallGraph g = update();
+  make_executor(g, 16, 16);
+  bind(g, "light", {});
+  images[0].before.queue_family = images[0].after.queue_family = queue_family;
+  ASSERT_FALSE(record());
+  for (size_t i = 0; i < recorded.barrier_count; ++i)
+    EXPECT_EQ(recorded.barriers[i].srcQueueFamilyIndex, VK_QUEUE_FAMILY_IGNORED) << i;
+}
+
+TEST_F(CommandsTest, NoBarrierWhereTheHostHasNothingToWaitForAndTheLayoutFits) {
+  SmallGraph g;
+  g.import("light", Format::r32f);
+  g.exported("result");
+  g.pass("add", "test.add", {{"a", "light"}}, {{"target", "result"}});
+  make_executor(g, 16, 16);
+  bind(g, "light", {});
+  bind(g, "result", {});
+  const size_t light = static_cast<size_t>(g.slot("light"));
+  images[light].before = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_QUEUE_FAMILY_IGNORED, 0, 0};
+  ASSERT_FALSE(record());
+  size_t before_dispatch = 0;
+  for (size_t i = 0; i < recorded.barrier_count; ++i)
+    before_dispatch += recorded.barriers[i].image == images[light].image &&
+                       recorded.barriers[i].oldLayout == recorded.barriers[i].newLayout;
+  EXPECT_EQ(before_dispatch, 0u);
+}
+
+TEST_F(CommandsTest, GroupsCoverTheRenderRectangleAndEveryPassHasALabel) {
+  const SmallGraph g = update();
+  make_executor(g, 100, 50);
+  bind(g, "light", {});
+  ASSERT_FALSE(record());
+  EXPECT_EQ(recorded.dispatches, 2u);
+  EXPECT_EQ(recorded.labels, 2u);
+  EXPECT_THAT(recorded.groups, ElementsAre(13, 7, 1));
+  ASSERT_FALSE(record({5, 5, 17, 8}));
+  EXPECT_THAT(recorded.groups, ElementsAre(3, 1, 1));
+}
+
+TEST_F(CommandsTest, RecordingAllocatesNothing) {
+  SmallGraph g = update();
+  g.history("count");
+  g.pass("step", "test.add", {{"a", "count@-1"}, {"b", "light"}}, {{"target", "count"}});
+  g.pass("mix", "test.add", {{"a", "count"}}, {{"target", "light"}});
+  make_executor(g, 64, 64);
+  bind(g, "light", {});
+  const uint64_t before = allocations_of_this_thread();
+  for (int i = 0; i < 5; ++i) {
+    const vulkan::RecordResult result = record();
+    if (result) break;
+  }
+  EXPECT_EQ(allocations_of_this_thread(), before);
+  EXPECT_EQ(frame_index, 5u);
+}
+
+} // namespace
+} // namespace dermis::testing

@@ -1,0 +1,31 @@
+// In a file of its own: inlined next to its uses, the replacement looks mismatched to the compiler.
+#include "tests/framegraph/vulkan/count_allocations.hpp"
+
+#include <cstdlib>
+#include <new>
+
+namespace {
+thread_local uint64_t allocations = 0;
+}
+
+void* operator new(std::size_t bytes) {
+  ++allocations;
+  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
+  throw std::bad_alloc();
+}
+
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace dermis::testing {
+
+uint64_t allocations_of_this_thread() {
+  return allocations;
+}
+
+} // namespace dermis::testing

@@ -1,0 +1,42 @@
+#pragma once
+// A device, an executor on it and host images by name: what the device tests of this room share.
+
+#include "framegraph/vulkan/device_profile.hpp"
+#include "tests/framegraph/vulkan/small_graph.hpp"
+#include "tests/support/vulkan_fixture.hpp"
+
+#include <map>
+
+namespace dermis::testing {
+
+class ExecutorTest : public VulkanTest {
+protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  // Compiles `graph` for the device and makes the executor. Fails the test on errors.
+  void make_executor(const SmallGraph& graph, uint32_t width, uint32_t height,
+                     const std::vector<std::string>& unbound = {});
+  vulkan::Error try_executor(const SmallGraph& graph, const Plan& plan, const vulkan::Device& on,
+                             std::unique_ptr<vulkan::Executor>& result);
+  // Makes an r32f image of the size and binds it to the slot: comes and goes in `layout`.
+  TestImage bind(const SmallGraph& graph, const std::string& slot, const std::vector<float>& texels,
+                 VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL);
+  void bind_image(const SmallGraph& graph, const std::string& slot, const TestImage& image,
+                  VkImageLayout before, VkImageLayout after);
+  // Records and submits the next frame, without waiting.
+  vulkan::RecordResult frame(float time = 0.0f, vulkan::Rectangle rectangle = {}, bool reset_history = false);
+  std::vector<float> read(const TestImage& image, VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL);
+
+  vulkan::Device dermis_device;
+  DeviceProfile profile;
+  std::unique_ptr<vulkan::Executor> executor;
+  std::vector<vulkan::HostImage> images; // by slot
+  std::vector<SettingValue> settings;
+  uint64_t frame_index = 0;
+  uint32_t view_width = 0, view_height = 0;
+};
+
+inline constexpr uint32_t test_frames_in_flight = 2;
+
+} // namespace dermis::testing

@@ -1,0 +1,103 @@
+// Laws of histories: what a frame wrote is what the next reads, across submissions, and age and validity tell
+// so.
+#include "tests/framegraph/vulkan/executor_fixture.hpp"
+
+#include <gmock/gmock.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::Each;
+using ::testing::FloatEq;
+
+constexpr uint32_t side = 16;
+
+// count = count@-1 + 1, shown in result.
+SmallGraph counter(uint32_t frames = 1) {
+  SmallGraph g;
+  g.exported("result");
+  g.history("count", frames);
+  g.set(g.pass("step", "test.add", {{"a", "count@-" + std::to_string(frames)}}, {{"target", "count"}}),
+        "bias", 1);
+  g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
+  return g;
+}
+
+class HistoryTest : public ExecutorTest {};
+
+TEST_F(HistoryTest, ANewHistoryIsZeroAndEachFrameSeesTheOneBefore) {
+  const SmallGraph g = counter();
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  for (int i = 1; i <= 5; ++i)
+    ASSERT_FALSE(frame());
+  EXPECT_THAT(read(result), Each(FloatEq(5.0f)));
+}
+
+TEST_F(HistoryTest, TwoFramesBackIsTwoFramesBack) {
+  const SmallGraph g = counter(2); // two interleaved counters
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  const float expected[] = {1, 1, 2, 2, 3, 3, 4};
+  for (const float value : expected) {
+    ASSERT_FALSE(frame());
+    EXPECT_THAT(read(result), Each(FloatEq(value)));
+  }
+}
+
+TEST_F(HistoryTest, AgeGrowsWithEveryFrameAndACutSaysWhy) {
+  const SmallGraph g = counter();
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  ASSERT_EQ(executor->history_count(), 1u);
+  vulkan::HistoryState state = executor->history_state(0);
+  EXPECT_EQ(state.resource, "count");
+  EXPECT_FALSE(state.valid);
+  EXPECT_EQ(state.reason, vulkan::HistoryReason::first_frame);
+  for (uint32_t i = 1; i <= 3; ++i) {
+    ASSERT_FALSE(frame());
+    state = executor->history_state(0);
+    EXPECT_TRUE(state.valid);
+    EXPECT_EQ(state.age, i);
+    EXPECT_EQ(state.reason, vulkan::HistoryReason::valid);
+  }
+  state = executor->history_state(0, true);
+  EXPECT_FALSE(state.valid);
+  EXPECT_EQ(state.reason, vulkan::HistoryReason::cut);
+  EXPECT_TRUE(executor->history_state(0).valid) << "asking changes nothing";
+  ASSERT_FALSE(frame(0.0f, {}, true));
+  EXPECT_THAT(read(result), Each(FloatEq(1.0f))) << "a cut starts from zero";
+  EXPECT_EQ(executor->history_state(0).age, 1u);
+}
+
+TEST_F(HistoryTest, AHistoryThatKeepsSurvivesACut) {
+  SmallGraph g = counter();
+  for (ResourceDeclaration& resource : g.graph.resources)
+    resource.history.on_cut = HistoryDeclaration::OnCut::keep;
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  for (int i = 1; i <= 3; ++i)
+    ASSERT_FALSE(frame());
+  ASSERT_FALSE(frame(0.0f, {}, true));
+  EXPECT_THAT(read(result), Each(FloatEq(4.0f)));
+  EXPECT_EQ(executor->history_state(0).age, 4u);
+}
+
+TEST_F(HistoryTest, AFrameThatWasNeverSubmittedIsForgotten) {
+  const SmallGraph g = counter();
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  vulkan::FrameInput lost;
+  lost.command_buffer = begin_commands(); // never submitted
+  lost.images = images;
+  lost.frame_index = ++frame_index;
+  ASSERT_FALSE(executor->record(lost));
+  executor->discard_frames();
+  EXPECT_EQ(executor->history_state(0).reason, vulkan::HistoryReason::discarded);
+  for (int i = 1; i <= 3; ++i)
+    ASSERT_FALSE(frame());
+  EXPECT_THAT(read(result), Each(FloatEq(3.0f)));
+}
+
+} // namespace
+} // namespace dermis::testing

@@ -1,0 +1,166 @@
+// What reflection reads from a kernel, that no broken module harms it, and that every disagreement is named.
+#include "framegraph/vulkan/shader/signature_check.hpp"
+#include "tests/framegraph/vulkan/small_graph.hpp"
+
+#include <algorithm>
+#include <gmock/gmock.h>
+#include <random>
+
+namespace dermis::testing {
+namespace {
+
+using namespace dermis::vulkan;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::span<const uint32_t> spirv(std::string_view shader) {
+  for (const KernelCode& kernel : small_kernels())
+    if (kernel.shader == shader) return kernel.spirv;
+  ADD_FAILURE() << shader;
+  return {};
+}
+
+Reflection reflected(std::string_view shader) {
+  std::string error;
+  const auto result = reflect(spirv(shader), error);
+  EXPECT_TRUE(result) << error;
+  return result.value_or(Reflection{});
+}
+
+const EnvironmentBinding environment[] = {
+    {EnvironmentType::uniform_buffer, 32, {}},
+    {EnvironmentType::storage_buffer, 8, {}},
+    {EnvironmentType::linear_sampler, 0, {}},
+};
+
+std::string problems(const PassKind& kind, const Reflection& reflection,
+                     std::span<const EnvironmentBinding> bindings = environment) {
+  std::string all;
+  for (const std::string& line : check_signature(kind, bindings, reflection))
+    all += line + "\n";
+  return all;
+}
+
+PassKind kind(const char* name) {
+  return small_kinds()[small_kinds().find(name)];
+}
+
+TEST(Reflection, ReadsBindingsPushConstantsAndLocalSize) {
+  const Reflection add = reflected("test_add");
+  ASSERT_EQ(add.bindings.size(), 9u) << "six ports and three of the environment, used or not";
+  EXPECT_EQ(add.bindings[0].type, BindingType::sampled_image);
+  EXPECT_EQ(add.bindings[0].numeric, Numeric::real);
+  EXPECT_EQ(add.bindings[2].numeric, Numeric::unsigned_integer);
+  EXPECT_EQ(add.bindings[4].type, BindingType::storage_image);
+  EXPECT_EQ(add.bindings[5].type, BindingType::storage_buffer);
+  EXPECT_EQ(add.bindings[6].type, BindingType::uniform_buffer);
+  EXPECT_EQ(add.bindings[6].bytes, 20u) << "ivec4 and float";
+  EXPECT_EQ(add.bindings[8].type, BindingType::sampler);
+  EXPECT_THAT(add.local_size, ElementsAre(8, 8, 1));
+  const Reflection fill = reflected("test_fill");
+  ASSERT_EQ(fill.push_members.size(), 3u);
+  EXPECT_EQ(fill.push_members[1].offset, 4u);
+  EXPECT_EQ(fill.push_members[1].numeric, Numeric::real);
+  EXPECT_EQ(fill.push_members[2].numeric, Numeric::signed_integer);
+  EXPECT_EQ(fill.push_members[2].name, "slope");
+  EXPECT_THAT(reflected("test_classes").local_size, ElementsAre(64, 1, 1));
+}
+
+TEST(Reflection, AModuleCutOffAnywhereIsRefusedOrReadButNeverHarms) {
+  const auto whole = spirv("test_add");
+  for (size_t length = 0; length < whole.size(); ++length) {
+    const std::vector<uint32_t> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
+    std::string error;
+    const auto result = reflect(cut, error);
+    EXPECT_EQ(result.has_value(), error.empty()) << length;
+    constexpr size_t before_entry_point = 20; // header, capabilities, import and memory model come first
+    if (length < before_entry_point) {
+      EXPECT_FALSE(result) << length;
+    }
+  }
+}
+
+TEST(Reflection, AModuleWithRandomWordsNeverHarms) {
+  const auto whole = spirv("test_mark");
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 5000; ++trial) {
+    std::vector<uint32_t> broken(whole.begin(), whole.end());
+    for (int change = 0; change < 4; ++change) {
+      const uint32_t word = random();
+      broken[random() % broken.size()] = change % 2 == 0 ? word : word % 128;
+    }
+    std::string error;
+    const auto result = reflect(broken, error);
+    if (result) problems(kind("test.mark"), *result);
+  }
+}
+
+TEST(Signature, EveryTestKernelFitsItsOwn) {
+  for (uint32_t i = 0; i < small_kinds().size(); ++i) {
+    const PassKind& own = small_kinds()[KindId{i}];
+    if (!own.shader.empty()) {
+      EXPECT_THAT(problems(own, reflected(own.shader)), IsEmpty());
+    }
+  }
+}
+
+TEST(Signature, APortOfAnotherTypeIsNamedWithBothSides) {
+  PassKind changed = kind("test.add");
+  std::vector<Port> ports(changed.ports.begin(), changed.ports.end());
+  ports[1].usage = Usage::storage_buffer_read;
+  ports[2].glsl_type = "texture2D";
+  ports[4].usage = Usage::clear;
+  ports.pop_back();
+  changed.ports = ports;
+  const std::string text = problems(changed, reflected("test_add"));
+  EXPECT_THAT(
+      text, HasSubstr("kernel 'test_add' of kind 'test.add': port 'b' (set 0 binding 1) is a buffer block in "
+                      "the signature and a texture ('b') in the shader"));
+  EXPECT_THAT(text,
+              HasSubstr("port 'ids' (set 0 binding 2) reads as float by its type texture2D and as uint"));
+  EXPECT_THAT(text, HasSubstr("port 'second' (set 0 binding 4) has usage clear and so no descriptor"));
+  EXPECT_THAT(text, HasSubstr("'weights_block' at set 0 binding 5, the signature has 5 ports"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4) << text;
+}
+
+TEST(Signature, PushConstantsMustFollowTheSettings) {
+  PassKind changed = kind("test.fill");
+  std::vector<KindSetting> settings(changed.settings.begin(), changed.settings.end());
+  std::swap(settings[0], settings[1]);
+  changed.settings = settings;
+  std::string text = problems(changed, reflected("test_fill"));
+  EXPECT_THAT(text,
+              HasSubstr("setting 'slope' is int or uint in the signature, 'value' is float in the shader"));
+  EXPECT_THAT(text, HasSubstr("setting 'value' is float in the signature, 'slope' is int in the shader"));
+  settings.pop_back();
+  changed.settings = settings;
+  text = problems(changed, reflected("test_fill"));
+  EXPECT_THAT(text, HasSubstr("the shader pushes 3 members, the signature has the port mask and 1 settings"));
+}
+
+TEST(Signature, TheEnvironmentMustHoldWhatTheShaderReads) {
+  const EnvironmentBinding small[] = {
+      {EnvironmentType::uniform_buffer, 16, {}},
+      {EnvironmentType::uniform_buffer, 8, {}},
+  };
+  const std::string text = problems(kind("test.fill"), reflected("test_fill"), small);
+  EXPECT_THAT(text, HasSubstr("environment binding 0 has 16 bytes, 'frame' in the shader needs 20"));
+  EXPECT_THAT(text,
+              HasSubstr("environment binding 1 is a uniform block in the signature and a buffer block"));
+  EXPECT_THAT(text, HasSubstr("'linear_sampler' at set 1 binding 2, the environment has 2 bindings"));
+}
+
+TEST(Signature, TheWorkgroupMustFitTheDispatch) {
+  PassKind changed = kind("test.classes");
+  changed.dispatch = DispatchShape::over_view;
+  EXPECT_THAT(problems(changed, reflected("test_classes")),
+              HasSubstr("its workgroup is 64x1x1, this dispatch needs 8x8x1"));
+  changed = kind("test.list");
+  changed.dispatch = DispatchShape::over_tile_grid;
+  EXPECT_THAT(problems(changed, reflected("test_list")),
+              HasSubstr("its workgroup is 1x1x1, this dispatch needs 64"));
+}
+
+} // namespace
+} // namespace dermis::testing

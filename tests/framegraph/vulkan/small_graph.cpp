@@ -1,0 +1,199 @@
+#include "tests/framegraph/vulkan/small_graph.hpp"
+
+#include <gtest/gtest.h>
+
+#include "test_add.spv.h"
+#include "test_classes.spv.h"
+#include "test_fill.spv.h"
+#include "test_list.spv.h"
+#include "test_mark.spv.h"
+#include "test_sample.spv.h"
+
+namespace dermis::testing {
+namespace {
+
+constexpr Port target{"target", Usage::storage_image_write, false, "image2D", "", {}};
+constexpr Port fill_ports[] = {target};
+constexpr KindSetting fill_settings[] = {
+    {"value", SettingType::real, {SettingType::real, 0, 1.0}, -1e6, 1e6, {}, "", ""},
+    {"slope", SettingType::integer, {SettingType::integer, 0, 0.0}, -1000, 1000, {}, "", ""},
+};
+constexpr Port add_ports[] = {
+    {"a", Usage::sampled_image, false, "texture2D", "", {}},
+    {"b", Usage::sampled_image, true, "texture2D", "", {}},
+    {"ids", Usage::sampled_image, true, "utexture2D", "", {}},
+    target,
+    {"second", Usage::storage_image_write, true, "image2D", "", {}},
+    {"weights", Usage::storage_buffer_read, true, "float", "", {}},
+};
+constexpr KindSetting add_settings[] = {
+    {"bias", SettingType::real, {SettingType::real, 0, 0.0}, -1e6, 1e6, {}, "", ""},
+};
+constexpr Port sample_ports[] = {{"a", Usage::sampled_image, false, "texture2D", "", {}}, target};
+constexpr Port classes_ports[] = {{"classes", Usage::storage_buffer_write, false, "uint", "", {}}};
+constexpr Port list_ports[] = {
+    {"classes", Usage::storage_buffer_read, false, "uint", "", {}},
+    {"tiles", Usage::storage_buffer_write, false, "uint", "", {}},
+    {"arguments", Usage::storage_buffer_write, false, "uint", "", {}},
+};
+constexpr Port mark_ports[] = {
+    {"tiles", Usage::storage_buffer_read, false, "uint", "", {}},
+    {"arguments", Usage::indirect_arguments, false, "uint", "", {}},
+    {"target", Usage::storage_image_update, false, "image2D", "", {}},
+};
+constexpr Port clear_ports[] = {
+    {"target", Usage::clear, true, "", "", {}},
+    {"buffer", Usage::clear, true, "", "", {}},
+};
+
+KindRegistry make_kinds() {
+  KindRegistry kinds;
+  kinds.add({"test.fill", "test_fill", "", fill_ports, fill_settings, DispatchShape::over_view, false});
+  kinds.add({"test.add", "test_add", "", add_ports, add_settings, DispatchShape::over_view, false});
+  kinds.add({"test.sample", "test_sample", "", sample_ports, {}, DispatchShape::over_view, false});
+  kinds.add({"test.classes", "test_classes", "", classes_ports, {}, DispatchShape::over_tile_grid, false});
+  kinds.add({"test.list", "test_list", "", list_ports, {}, DispatchShape::single_group, false});
+  kinds.add({"test.mark", "test_mark", "", mark_ports, {}, DispatchShape::over_tiles, false});
+  kinds.add({"test.clear", "", "", clear_ports, {}, DispatchShape::none, false});
+  return kinds;
+}
+
+} // namespace
+
+const KindRegistry& small_kinds() {
+  static const KindRegistry kinds = make_kinds();
+  return kinds;
+}
+
+std::span<const vulkan::KernelCode> small_kernels() {
+  static const vulkan::KernelCode kernels[] = {
+      {"test_fill", test_fill_spirv},     {"test_add", test_add_spirv},
+      {"test_sample", test_sample_spirv}, {"test_classes", test_classes_spirv},
+      {"test_list", test_list_spirv},     {"test_mark", test_mark_spirv},
+  };
+  return kernels;
+}
+
+ResourceDeclaration& SmallGraph::resource(const std::string& name, Format format) {
+  ResourceDeclaration& added = graph.resources.emplace_back();
+  added.name = name;
+  added.formats = {format};
+  return added;
+}
+
+ResourceDeclaration& SmallGraph::import(const std::string& name, Format format, bool optional) {
+  ResourceDeclaration& added = resource(name, format);
+  added.origin = Origin::imported;
+  added.optional = optional;
+  return added;
+}
+
+ResourceDeclaration& SmallGraph::exported(const std::string& name, Format format) {
+  ResourceDeclaration& added = resource(name, format);
+  added.exported = true;
+  return added;
+}
+
+ResourceDeclaration& SmallGraph::image(const std::string& name, Format format) {
+  return resource(name, format);
+}
+
+ResourceDeclaration& SmallGraph::history(const std::string& name, uint32_t frames) {
+  ResourceDeclaration& added = resource(name, Format::r32f);
+  added.history.frames = frames;
+  return added;
+}
+
+ResourceDeclaration& SmallGraph::buffer(const std::string& name, uint32_t extra_elements) {
+  ResourceDeclaration& added = graph.resources.emplace_back();
+  added.name = name;
+  added.type = ResourceType::buffer;
+  added.stride = 4;
+  added.size.x.denominator = added.size.y.denominator = 8;
+  added.extra_elements = extra_elements;
+  return added;
+}
+
+std::vector<PortBinding> SmallGraph::bindings(const PassKind& kind, const Ports& ports) const {
+  std::vector<PortBinding> result;
+  for (const auto& [port, text] : ports) {
+    const size_t at = text.find("@-");
+    const std::string name = text.substr(0, at);
+    PortBinding binding;
+    binding.port = static_cast<uint32_t>(find_port(kind, port));
+    binding.frames_back =
+        at == std::string::npos ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
+    for (uint32_t i = 0; i < graph.resources.size(); ++i)
+      if (graph.resources[i].name == name) binding.resource = ResourceId{i};
+    EXPECT_TRUE(binding.resource.valid()) << text;
+    EXPECT_LT(binding.port, kind.ports.size()) << port;
+    result.push_back(binding);
+  }
+  return result;
+}
+
+PassDeclaration& SmallGraph::pass(const std::string& name, const std::string& kind, const Ports& reads,
+                                  const Ports& writes) {
+  PassDeclaration& added = graph.passes.emplace_back();
+  added.name = name;
+  added.kind = small_kinds().find(kind);
+  added.reads = bindings(small_kinds()[added.kind], reads);
+  added.writes = bindings(small_kinds()[added.kind], writes);
+  return added;
+}
+
+void SmallGraph::set(PassDeclaration& pass, const std::string& setting, double value) {
+  const PassKind& kind = small_kinds()[pass.kind];
+  SettingBinding& added = pass.settings.emplace_back();
+  added.setting = static_cast<uint32_t>(find_setting(kind, setting));
+  added.literal = {kind.settings[added.setting].type, static_cast<int64_t>(value), value};
+}
+
+SettingDeclaration& SmallGraph::setting(const std::string& name, double value) {
+  SettingDeclaration& added = graph.settings.emplace_back();
+  added.name = name;
+  added.type = SettingType::real;
+  added.default_value = {SettingType::real, 0, value};
+  added.minimum = -1e6;
+  added.maximum = 1e6;
+  return added;
+}
+
+void SmallGraph::follow(PassDeclaration& pass, const std::string& setting, const std::string& graph_setting) {
+  SettingBinding& added = pass.settings.emplace_back();
+  added.setting = static_cast<uint32_t>(find_setting(small_kinds()[pass.kind], setting));
+  for (uint32_t i = 0; i < graph.settings.size(); ++i)
+    if (graph.settings[i].name == graph_setting) added.from = SettingId{i};
+}
+
+int32_t SmallGraph::slot(const std::string& name) const {
+  int32_t number = 0;
+  for (const ResourceDeclaration& declared : graph.resources) {
+    if (declared.origin != Origin::imported && !declared.exported) continue;
+    if (declared.name == name) return number;
+    ++number;
+  }
+  ADD_FAILURE() << name << " is no slot";
+  return 0;
+}
+
+Plan SmallGraph::compile(const DeviceProfile& device, uint32_t width, uint32_t height,
+                         const std::vector<std::string>& unbound) const {
+  CompileInput input;
+  input.graph = &graph;
+  input.kinds = &small_kinds();
+  input.device = &device;
+  input.view_width = width;
+  input.view_height = height;
+  input.bound.assign(graph.resources.size(), true);
+  for (const std::string& name : unbound)
+    for (size_t i = 0; i < graph.resources.size(); ++i)
+      if (graph.resources[i].name == name) input.bound[i] = false;
+  Diagnostics diagnostics;
+  const auto compiled = dermis::compile(input, diagnostics);
+  for (const Diagnostic& diagnostic : diagnostics.list)
+    ADD_FAILURE() << diagnostic.text;
+  return compiled ? compiled->plan : Plan{};
+}
+
+} // namespace dermis::testing

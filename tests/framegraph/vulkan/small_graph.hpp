@@ -1,0 +1,49 @@
+#pragma once
+// The test kernels' signatures and graphs made of them by hand, for tests that run plans on a device.
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/vulkan/executor.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dermis::testing {
+
+// test.fill, test.add, test.sample, test.classes, test.list, test.mark, test.clear; ports as in
+// kernels/*.comp.
+const KindRegistry& small_kinds();
+std::span<const vulkan::KernelCode> small_kernels();
+
+struct SmallFrame { // std140, kernels/frame.glsl
+  int32_t rect[4];
+  float time;
+  float unused[3];
+};
+
+struct SmallGraph {
+  using Ports = std::vector<std::pair<std::string, std::string>>; // port, "resource" or "resource@-1"
+  Graph graph;
+
+  ResourceDeclaration& import(const std::string& name, Format format, bool optional = false);
+  ResourceDeclaration& exported(const std::string& name, Format format = Format::r32f);
+  ResourceDeclaration& image(const std::string& name, Format format = Format::r32f);
+  ResourceDeclaration& history(const std::string& name, uint32_t frames = 1);
+  ResourceDeclaration& buffer(const std::string& name, uint32_t extra_elements); // 4 bytes a tile and extra
+  PassDeclaration& pass(const std::string& name, const std::string& kind, const Ports& reads,
+                        const Ports& writes);
+  void set(PassDeclaration& pass, const std::string& setting, double value);
+  SettingDeclaration& setting(const std::string& name, double value);
+  void follow(PassDeclaration& pass, const std::string& setting, const std::string& graph_setting);
+
+  int32_t slot(const std::string& name) const; // as PlanResource::slot
+  // Compiles; fails the test and returns an empty plan on diagnostics.
+  Plan compile(const DeviceProfile& device, uint32_t width, uint32_t height,
+               const std::vector<std::string>& unbound = {}) const;
+
+private:
+  ResourceDeclaration& resource(const std::string& name, Format format);
+  std::vector<PortBinding> bindings(const PassKind& kind, const Ports& ports) const;
+};
+
+} // namespace dermis::testing
