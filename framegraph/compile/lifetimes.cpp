@@ -83,10 +83,12 @@ void lifetimes(CompileContext& c) {
     else if (life.deepest_read == 0)
       c.because(Reason::About::resource, i,
                 "kept like a transient: no pass that runs reads its earlier frames");
-    else
+    else {
+      c.lifetimes[i].vk_usage |= usage_info(Usage::clear).vk_usage; // instances start from zero
       c.because(Reason::About::resource, i,
                 fmt::format("{} instances: earlier frames are read down to @-{}", life.deepest_read + 1,
                             life.deepest_read));
+    }
   }
 }
 
