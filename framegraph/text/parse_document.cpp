@@ -318,6 +318,8 @@ std::optional<Document> parse_document(std::string name, std::string text, Diagn
   try {
     parsed = nlohmann::json::sax_parse(CountingIterator(cursor), CountingIterator(), &builder,
                                        nlohmann::json::input_format_t::json, true, true);
+  } catch (const std::bad_alloc&) {
+    throw; // not the text's fault: the caller tells it as what it is
   } catch (const std::exception& exception) {
     diagnostics.add(DiagnosticId::syntax, {document.file, 0, 0, ""},
                     fmt::format("the JSON parser gave up: {}", exception.what()));

@@ -23,7 +23,15 @@
  *
  * STRUCTS
  *   Every struct starts with `struct_size`; use its DERMIS_..._INIT. Zero means default. A struct from a newer
- *   header is accepted when the part unknown to the library is zero, else DERMIS_ERROR_VERSION.
+ *   header is accepted when the part unknown to the library is zero, else DERMIS_ERROR_VERSION. An array is stepped
+ *   by the struct_size of its first element, and the library fills no more than that of each. Structs that are
+ *   members of others (dermis_source, dermis_image_state) never grow.
+ *
+ * ERRORS
+ *   Each goes four ways with the same content: the result (for logic), the report (all messages), the log callback
+ *   (as they happen) and dermis_last_error. A failed call changes nothing. NULL where a pointer is needed and a
+ *   null handle are DERMIS_ERROR_ARGUMENT, never a crash; destroy functions ignore NULL. After
+ *   DERMIS_ERROR_DEVICE_LOST only destroy.
  *
  * THREADS
  *   Stated at each function. "Any" means: from any thread, at any time. "One per graph" means: no two calls with
@@ -124,13 +132,13 @@ typedef enum dermis_requirement_kind {
 typedef struct dermis_requirement {
   size_t struct_size;
   dermis_requirement_kind kind;
-  const char* name;  /* static string */
   uint32_t version;
+  const char* name;  /* static string */
   uint32_t required; /* 1: without it dermis_context_create fails; 0: used if enabled */
   uint32_t present;  /* 1: the physical device has it */
   const char* why;   /* static string */
 } dermis_requirement;
-#define DERMIS_REQUIREMENT_INIT {sizeof(dermis_requirement), DERMIS_REQUIREMENT_API_VERSION, NULL, 0, 0, 0, NULL}
+#define DERMIS_REQUIREMENT_INIT {sizeof(dermis_requirement), DERMIS_REQUIREMENT_API_VERSION, 0, NULL, 0, 0, NULL}
 
 /* What the library needs of a device. Call with items NULL for the count, then with an array whose first
  * element has struct_size set. Thread: any. Errors: ARGUMENT, INCOMPLETE. */
@@ -167,8 +175,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_context_create(const dermis_context_
 /* The device must have finished every frame recorded through the context; its graphs must have been destroyed
  * (those that were not are destroyed here and logged). NULL is ignored. Thread: any, alone. Errors: none. */
 DERMIS_API void DERMIS_CALL dermis_context_destroy(dermis_context context);
-/* The last failure on this thread; NULL for none. The text lives until the next Dermis call on this thread.
- * Thread: any. Errors: none. */
+/* The last failure on this thread; NULL for none. A call that succeeds leaves it alone. The text lives until the
+ * next Dermis call on this thread. Thread: any. Errors: none. */
 DERMIS_API const char* DERMIS_CALL dermis_last_error(void);
 
 /* ---- reports --------------------------------------------------------------------------------------------- */
@@ -251,18 +259,19 @@ typedef struct dermis_slot {
   size_t struct_size;
   uint32_t id;           /* goes into dermis_image_binding */
   uint32_t required;     /* 0: may be left unbound if named so at creation */
-  const char* name;      /* lives until the next reload or destroy */
+  const char* name;      /* lives until the next reload, resize, set_setting or destroy */
   uint32_t written;      /* 1: the graph writes it */
   uint32_t read;         /* 1: the graph reads what is in it */
   VkFormat format;       /* that the plan was compiled for */
   VkImageUsageFlags usage; /* that the image must have been created with */
   VkImageLayout best_layout; /* the layout of its first use: no transition needed if it comes so */
   uint32_t width, height; /* smallest extent of the image */
-  uint32_t bound;        /* 0: named as unbound at creation, or used by no live pass: a binding is ignored */
+  uint32_t bound;        /* 1: every frame must bind it. 0: named as unbound at creation, a binding is ignored */
 } dermis_slot;
 #define DERMIS_SLOT_INIT {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0}
 
-/* Two-call array. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE. */
+/* The slots that the next record expects; ask again after a reload. Two-call array. Thread: one per graph.
+ * Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint32_t* count, dermis_slot* slots);
 
 typedef enum dermis_describe_format {
@@ -291,7 +300,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, der
 
 typedef struct dermis_pass_timing {
   size_t struct_size;
-  const char* pass;      /* lives until the next reload or destroy */
+  const char* pass;      /* lives until the next record or destroy */
   uint64_t frame_index;  /* of the frame that was timed */
   uint64_t nanoseconds;  /* of device time */
 } dermis_pass_timing;

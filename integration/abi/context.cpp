@@ -1,0 +1,161 @@
+#include "integration/abi/context.hpp"
+
+#include "framegraph/vulkan/executor.hpp"
+#include "integration/abi/requirements.hpp"
+#include "passes/subsurface/kinds.hpp"
+
+#include <algorithm>
+#include <memory>
+
+namespace dermis::abi {
+
+dermis_result result_of(vulkan::ErrorKind kind) {
+  switch (kind) {
+  case vulkan::ErrorKind::none:
+    return DERMIS_OK;
+  case vulkan::ErrorKind::argument:
+    return DERMIS_ERROR_ARGUMENT;
+  case vulkan::ErrorKind::unsupported:
+    return DERMIS_ERROR_UNSUPPORTED;
+  case vulkan::ErrorKind::shader:
+    return DERMIS_ERROR_SHADER;
+  case vulkan::ErrorKind::host_memory:
+    return DERMIS_ERROR_MEMORY;
+  case vulkan::ErrorKind::device_memory:
+    return DERMIS_ERROR_DEVICE_MEMORY;
+  case vulkan::ErrorKind::device_lost:
+    return DERMIS_ERROR_DEVICE_LOST;
+  case vulkan::ErrorKind::vulkan:
+    break;
+  }
+  return DERMIS_ERROR_VULKAN;
+}
+
+DiagnosticId diagnostic_of(vulkan::ErrorKind kind) {
+  switch (kind) {
+  case vulkan::ErrorKind::argument:
+    return DiagnosticId::host_argument;
+  case vulkan::ErrorKind::unsupported:
+    return DiagnosticId::device_unsupported;
+  case vulkan::ErrorKind::shader:
+    return DiagnosticId::kernel_mismatch;
+  case vulkan::ErrorKind::host_memory:
+    return DiagnosticId::host_memory;
+  case vulkan::ErrorKind::device_memory:
+    return DiagnosticId::device_memory;
+  case vulkan::ErrorKind::device_lost:
+    return DiagnosticId::device_lost;
+  case vulkan::ErrorKind::none:
+  case vulkan::ErrorKind::vulkan:
+    break;
+  }
+  return DiagnosticId::vulkan_call;
+}
+
+dermis_result check_alive(const dermis_context_t& context, const char* function) {
+  if (!context.lost) return DERMIS_OK;
+  return fail(context.log, DERMIS_ERROR_DEVICE_LOST, DiagnosticId::device_lost,
+              "{}: the device was lost before", function);
+}
+
+namespace {
+
+constexpr uint32_t known_flags = DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS;
+
+dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
+  const auto null = [&](const char* field) {
+    return bad_argument(log, "dermis_context_create: desc.{} is NULL", field);
+  };
+  if (desc.abi_version == 0 || desc.abi_version > DERMIS_ABI_VERSION)
+    return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
+                "dermis_context_create: desc.abi_version is {}, this library speaks 1..{}", desc.abi_version,
+                DERMIS_ABI_VERSION);
+  if ((desc.flags & ~known_flags) != 0)
+    return bad_argument(log, "dermis_context_create: desc.flags is {:#x}, known bits are {:#x}", desc.flags,
+                        known_flags);
+  if (desc.frames_in_flight > vulkan::max_frames_in_flight)
+    return bad_argument(log, "dermis_context_create: desc.frames_in_flight is {}, expected 0 (= {}) or 1..{}",
+                        desc.frames_in_flight, default_frames_in_flight, vulkan::max_frames_in_flight);
+  if (desc.get_instance_proc_addr == nullptr) return null("get_instance_proc_addr");
+  if (desc.instance == VK_NULL_HANDLE) return null("instance");
+  if (desc.physical_device == VK_NULL_HANDLE) return null("physical_device");
+  if (desc.device == VK_NULL_HANDLE) return null("device");
+  return DERMIS_OK;
+}
+
+// All that is missing in one message.
+dermis_result check_requirements(const dermis_context_desc& desc, const Log& log) {
+  std::string missing;
+  for (const dermis_requirement& item :
+       requirements_of(desc.get_instance_proc_addr, desc.instance, desc.physical_device))
+    if (item.required == 1 && item.present == 0)
+      missing += fmt::format("{}{} ({})", missing.empty() ? "" : ", ", item.name, item.why);
+  if (missing.empty()) return DERMIS_OK;
+  return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
+              "dermis_context_create: the physical device lacks {}", missing);
+}
+
+dermis_result create(const dermis_context_desc* given, dermis_context* out) {
+  if (out == nullptr) return bad_argument({}, "dermis_context_create: context is NULL");
+  *out = nullptr;
+  if (given == nullptr) return bad_argument({}, "dermis_context_create: desc is NULL");
+  dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
+  if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
+    return refused_size({}, read, "dermis_context_create: desc", stated_size(given),
+                        first_version_size<dermis_context_desc>);
+  const Log log{desc.log, desc.log_user};
+  if (const dermis_result result = check_desc(desc, log); result != DERMIS_OK) return result;
+  if (const dermis_result result = check_requirements(desc, log); result != DERMIS_OK) return result;
+
+  auto context = std::make_unique<dermis_context_t>();
+  context->log = log;
+  vulkan::DeviceInput input;
+  input.get_instance_proc_addr = desc.get_instance_proc_addr;
+  input.instance = desc.instance;
+  input.physical = desc.physical_device;
+  input.device = desc.device;
+  input.allocator = desc.vk_allocator;
+  input.queue_family = desc.queue_family;
+  input.labels = (desc.flags & DERMIS_CONTEXT_LABELS) != 0;
+  input.timings = (desc.flags & DERMIS_CONTEXT_TIMINGS) != 0;
+  if (const vulkan::Error error = vulkan::make_device(input, context->device))
+    return fail(log, result_of(error.kind), diagnostic_of(error.kind), "dermis_context_create: {}",
+                error.text);
+  context->device.vk.vkGetPhysicalDeviceQueueFamilyProperties(desc.physical_device,
+                                                              &context->queue_family_count, nullptr);
+  context->profile = vulkan::device_profile(context->device);
+  context->kinds = subsurface::make_kinds();
+  context->pipeline_cache = desc.pipeline_cache;
+  context->frames_in_flight = desc.frames_in_flight == 0 ? default_frames_in_flight : desc.frames_in_flight;
+  *out = context.release();
+  return DERMIS_OK;
+}
+
+} // namespace
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_context_create(const dermis_context_desc* desc,
+                                                           dermis_context* context) {
+  return guarded({}, "dermis_context_create", [&] { return create(desc, context); });
+}
+
+extern "C" void DERMIS_CALL dermis_context_destroy(dermis_context context) {
+  if (context == nullptr) return;
+  while (!context->graphs.empty()) {
+    const dermis_graph graph = context->graphs.back();
+    dermis_message message = DERMIS_MESSAGE_INIT;
+    message.severity = DERMIS_SEVERITY_WARNING;
+    const dermis::DiagnosticInfo& info = dermis::diagnostic_info(dermis::DiagnosticId::graph_leaked);
+    message.code = static_cast<uint32_t>(info.id);
+    message.code_name = info.name.data();
+    message.file = "";
+    message.pointer = "";
+    message.text = "dermis_context_destroy: a graph of the context was not destroyed before it";
+    message.hint = info.hint.data();
+    send(context->log, message);
+    dermis_graph_destroy(graph);
+  }
+  delete context;
+}

@@ -1,0 +1,36 @@
+#pragma once
+// What one device shares between its graphs.
+
+#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/vulkan/device.hpp"
+#include "framegraph/vulkan/device_profile.hpp"
+#include "integration/abi/failure.hpp"
+
+#include <atomic>
+#include <mutex>
+#include <vector>
+
+struct dermis_context_t {
+  dermis::abi::Log log;
+  dermis::vulkan::Device device;
+  dermis::DeviceProfile profile; // refers to `device`
+  dermis::KindRegistry kinds;
+  VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
+  uint32_t queue_family_count = 0; // of the physical device
+  uint32_t frames_in_flight = 2;
+  std::atomic<bool> lost = false; // once set every call but destroy returns DEVICE_LOST
+  std::mutex mutex;               // guards `graphs`
+  std::vector<dermis_graph> graphs;
+};
+
+namespace dermis::abi {
+
+inline constexpr uint32_t default_frames_in_flight = 2;
+
+dermis_result result_of(vulkan::ErrorKind kind);
+DiagnosticId diagnostic_of(vulkan::ErrorKind kind);
+
+// DEVICE_LOST when the device is known to be lost, else OK.
+dermis_result check_alive(const dermis_context_t& context, const char* function);
+
+} // namespace dermis::abi

@@ -1,0 +1,85 @@
+#pragma once
+// How a call fails: the result goes back, the text becomes this thread's last error and reaches the log.
+// Nothing here allocates, so that running out of memory can be told too; and no exception leaves `guarded`.
+
+#include "framegraph/text/diagnostic.hpp"
+#include "integration/abi/sized_struct.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+namespace dermis::abi {
+
+struct Log {
+  dermis_log_fn function = nullptr;
+  void* user = nullptr;
+};
+
+inline constexpr size_t failure_text_size = 2048; // longer texts are cut
+
+// Calls the host; an exception of its callback is swallowed. Thread: any.
+void send(const Log& log, const dermis_message& message) noexcept;
+
+// Remembers `text` as the thread's last error; it is cut at failure_text_size.
+void remember_failure(std::string_view text) noexcept;
+
+// Remembers `text` as the thread's last error and logs it. Returns `result`.
+dermis_result fail_with(const Log& log, dermis_result result, DiagnosticId id,
+                        std::string_view text) noexcept;
+
+template <class... Arguments>
+dermis_result fail(const Log& log, dermis_result result, DiagnosticId id,
+                   fmt::format_string<Arguments...> format, Arguments&&... arguments) noexcept {
+  std::array<char, failure_text_size> buffer;
+  try {
+    const auto written =
+        fmt::format_to_n(buffer.data(), buffer.size(), format, std::forward<Arguments>(arguments)...);
+    return fail_with(log, result, id, {buffer.data(), std::min(written.size, buffer.size())});
+  } catch (...) {
+    return fail_with(log, result, id, "the message could not be formatted");
+  }
+}
+
+template <class... Arguments>
+dermis_result bad_argument(const Log& log, fmt::format_string<Arguments...> format,
+                           Arguments&&... arguments) noexcept {
+  return fail(log, DERMIS_ERROR_ARGUMENT, DiagnosticId::host_argument, format,
+              std::forward<Arguments>(arguments)...);
+}
+
+// Turns a refused struct_size into its result. `what` names function and struct.
+inline dermis_result refused_size(const Log& log, SizedRead why, std::string_view what, size_t stated,
+                                  size_t least) noexcept {
+  if (why == SizedRead::unknown_fields)
+    return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
+                "{}: struct_size is {} and fields beyond those this library knows are not zero", what,
+                stated);
+  return bad_argument(log, "{}.struct_size is {}, expected {}..{}: use the struct's INIT macro", what, stated,
+                      least, largest_struct_size);
+}
+
+// Runs the body of an exported function: whatever is thrown inside (by the standard library, by fmt) becomes
+// a result.
+template <class Body> dermis_result guarded(const Log& log, const char* function, Body&& body) noexcept {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory", function);
+  } catch (const std::length_error&) {
+    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: a size is beyond the host's memory",
+                function);
+  } catch (const std::exception& exception) {
+    return fail(log, DERMIS_ERROR_INTERNAL, DiagnosticId::internal_defect, "{}: {}", function,
+                exception.what());
+  } catch (...) {
+    return fail(log, DERMIS_ERROR_INTERNAL, DiagnosticId::internal_defect, "{}: unknown exception", function);
+  }
+}
+
+} // namespace dermis::abi

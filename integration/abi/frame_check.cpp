@@ -1,0 +1,240 @@
+#include "integration/abi/frame_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+
+namespace dermis::abi {
+namespace {
+
+constexpr const char* function = "dermis_graph_record";
+constexpr uint32_t known_flags = DERMIS_FRAME_RESET_HISTORY;
+
+dermis_result check_numbers(const dermis_graph_t& graph, const dermis_frame& frame) {
+  const Log& log = graph.context->log;
+  const uint32_t in_flight = graph.context->frames_in_flight;
+  if (frame.command_buffer == VK_NULL_HANDLE)
+    return bad_argument(log, "{}: command_buffer is NULL", function);
+  if ((frame.flags & ~known_flags) != 0)
+    return bad_argument(log, "{}: flags is {:#x}, known bits are {:#x}", function, frame.flags, known_flags);
+  if (frame.frame_index <= graph.last_frame)
+    return bad_argument(log, "{}: frame_index is {}, expected more than that of the frame before, {}",
+                        function, frame.frame_index, graph.last_frame);
+  if (frame.completed_frame_index >= frame.frame_index)
+    return bad_argument(log, "{}: completed_frame_index is {}, expected less than frame_index, {}", function,
+                        frame.completed_frame_index, frame.frame_index);
+  if (frame.frame_index - frame.completed_frame_index > in_flight)
+    return bad_argument(
+        log,
+        "{}: frame_index is {} and completed_frame_index {}: with {} frames in flight frame {} must "
+        "be complete",
+        function, frame.frame_index, frame.completed_frame_index, in_flight, frame.frame_index - in_flight);
+  if (!std::isfinite(frame.delta_seconds) || frame.delta_seconds < 0)
+    return bad_argument(log, "{}: delta_seconds is {}, expected 0 or more", function, frame.delta_seconds);
+  if (!std::isfinite(frame.metres_per_unit) || frame.metres_per_unit < 0)
+    return bad_argument(log, "{}: metres_per_unit is {}, expected more than 0, or 0 for 1", function,
+                        frame.metres_per_unit);
+  if (!std::isfinite(frame.exposure) || frame.exposure < 0)
+    return bad_argument(log, "{}: exposure is {}, expected more than 0, or 0 for 1", function,
+                        frame.exposure);
+  if (!std::isfinite(frame.jitter_x) || !std::isfinite(frame.jitter_y))
+    return bad_argument(log, "{}: jitter is ({}, {}), expected finite pixels", function, frame.jitter_x,
+                        frame.jitter_y);
+  const int kind = static_cast<int>(frame.depth_kind);
+  if (kind != DERMIS_DEPTH_DEVICE && kind != DERMIS_DEPTH_VIEW_UNITS)
+    return bad_argument(log, "{}: depth_kind is {}, expected 0 or 1", function, kind);
+  const auto finite = [](const float(&matrix)[16]) {
+    return std::all_of(std::begin(matrix), std::end(matrix), [](float x) { return std::isfinite(x); });
+  };
+  if (!finite(frame.view_from_world) || !finite(frame.previous_clip_from_view) ||
+      !finite(frame.previous_view_from_world))
+    return bad_argument(log, "{}: a matrix has an element that is not finite", function);
+  return DERMIS_OK;
+}
+
+dermis_result check_rectangle(const Log& log, const Plan& plan, const dermis_frame& frame,
+                              vulkan::Rectangle& out) {
+  if (frame.rect_width == 0) {
+    if (frame.rect_x != 0 || frame.rect_y != 0 || frame.rect_height != 0)
+      return bad_argument(
+          log, "{}: rect_width is 0 (the allocated size) and the rest of the rectangle is not", function);
+    out = {0, 0, plan.view_width, plan.view_height};
+    return DERMIS_OK;
+  }
+  out = {frame.rect_x, frame.rect_y, frame.rect_width, frame.rect_height};
+  const bool inside = out.height > 0 && uint64_t{out.x} + out.width <= plan.view_width &&
+                      uint64_t{out.y} + out.height <= plan.view_height;
+  if (inside) return DERMIS_OK;
+  return bad_argument(log, "{}: the rectangle {}x{} at ({}, {}) is not inside the allocated size {}x{}",
+                      function, out.width, out.height, out.x, out.y, plan.view_width, plan.view_height);
+}
+
+std::string_view format_name(VkFormat format) {
+  const auto known = format_from_vulkan(static_cast<uint32_t>(format));
+  return known ? format_info(*known).name : "a format unknown to graphs";
+}
+
+dermis_result check_state(const dermis_graph_t& graph, uint32_t index, const Slot& slot, const char* which,
+                          const dermis_image_state& state) {
+  const Log& log = graph.context->log;
+  const uint32_t own = graph.context->device.queue_family;
+  if (state.access != 0 && state.stages == 0)
+    return bad_argument(log, "{}: bindings[{}].{} ('{}') has access {:#x} but no stages", function, index,
+                        which, slot.name, state.access);
+  if (state.layout == VK_IMAGE_LAYOUT_MAX_ENUM)
+    return bad_argument(log, "{}: bindings[{}].{}.layout ('{}') is not a layout", function, index, which,
+                        slot.name);
+  if (state.queue_family != VK_QUEUE_FAMILY_IGNORED && state.queue_family != own &&
+      state.queue_family >= graph.context->queue_family_count)
+    return bad_argument(log, "{}: bindings[{}].{}.queue_family ('{}') is {}, the device has {} families",
+                        function, index, which, slot.name, state.queue_family,
+                        graph.context->queue_family_count);
+  return DERMIS_OK;
+}
+
+dermis_result check_binding(const dermis_graph_t& graph, uint32_t index, const Slot& slot,
+                            const dermis_image_binding& binding) {
+  const Log& log = graph.context->log;
+  if (binding.image == VK_NULL_HANDLE || binding.view == VK_NULL_HANDLE)
+    return bad_argument(log, "{}: bindings[{}].{} ('{}') is null", function, index,
+                        binding.image == VK_NULL_HANDLE ? "image" : "view", slot.name);
+  if (static_cast<uint32_t>(binding.format) != format_info(slot.format).vulkan)
+    return bad_argument(
+        log,
+        "{}: bindings[{}].format ('{}') is {} (VkFormat {}), the graph was compiled for {}; name the "
+        "format in dermis_graph_desc.formats",
+        function, index, slot.name, format_name(binding.format), static_cast<uint32_t>(binding.format),
+        format_info(slot.format).name);
+  if (binding.width < slot.width || binding.height < slot.height)
+    return bad_argument(log, "{}: bindings[{}] ('{}') is {}x{}, the graph needs at least {}x{}", function,
+                        index, slot.name, binding.width, binding.height, slot.width, slot.height);
+  if (slot.read && binding.before.layout == VK_IMAGE_LAYOUT_UNDEFINED)
+    return bad_argument(
+        log, "{}: bindings[{}].before.layout ('{}') is UNDEFINED, which discards what the graph reads",
+        function, index, slot.name);
+  if (binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
+      binding.after.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
+    return bad_argument(log, "{}: bindings[{}].after.layout ('{}') is {}, to which no image can be brought",
+                        function, index, slot.name,
+                        binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ? "UNDEFINED" : "PREINITIALIZED");
+  if (const dermis_result result = check_state(graph, index, slot, "before", binding.before);
+      result != DERMIS_OK)
+    return result;
+  return check_state(graph, index, slot, "after", binding.after);
+}
+
+vulkan::HostState host_state(const dermis_image_state& state) {
+  return {state.layout, state.queue_family, state.stages, state.access};
+}
+
+// Every slot without an image in one message.
+dermis_result check_complete(const Log& log, const Program& program) {
+  std::array<char, failure_text_size> names;
+  size_t used = 0;
+  for (size_t i = 0; i < program.slots.size(); ++i) {
+    if (!program.slots[i].bound || program.images[i].image != VK_NULL_HANDLE) continue;
+    const auto written = fmt::format_to_n(names.data() + used, names.size() - used, "{}'{}' (slot {})",
+                                          used == 0 ? "" : ", ", program.slots[i].name, i);
+    used = std::min(names.size(), used + written.size);
+  }
+  if (used == 0) return DERMIS_OK;
+  return bad_argument(log, "{}: no image is bound to {}", function, std::string_view{names.data(), used});
+}
+
+dermis_result check_bindings(const dermis_graph_t& graph, Program& program, const dermis_frame& frame) {
+  const Log& log = graph.context->log;
+  if (frame.binding_count > 0 && frame.bindings == nullptr)
+    return bad_argument(log, "{}: bindings is NULL and binding_count is {}", function, frame.binding_count);
+  std::fill(program.images.begin(), program.images.end(), vulkan::HostImage{});
+  const auto* at = reinterpret_cast<const std::byte*>(frame.bindings);
+  const size_t step = frame.binding_count > 0 ? stated_size(at) : 0;
+  for (uint32_t i = 0; i < frame.binding_count; ++i) {
+    const std::byte* from = at + i * step;
+    dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
+    const SizedRead read = stated_size(from) == step ? read_sized(from, binding) : SizedRead::too_small;
+    if (read == SizedRead::unknown_fields)
+      return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
+                  "{}: bindings[{}] has fields beyond those this library knows that are not zero", function,
+                  i);
+    if (read != SizedRead::ok)
+      return bad_argument(
+          log,
+          "{}: bindings[{}].struct_size is {}, expected {} as in bindings[0], at least {}: use "
+          "DERMIS_IMAGE_BINDING_INIT",
+          function, i, stated_size(from), step, first_version_size<dermis_image_binding>);
+    if (binding.slot >= program.slots.size())
+      return bad_argument(log, "{}: bindings[{}].slot is {}, the graph has slots 0..{}", function, i,
+                          binding.slot, static_cast<int64_t>(program.slots.size()) - 1);
+    const Slot& slot = program.slots[binding.slot];
+    if (!slot.bound) continue;
+    vulkan::HostImage& image = program.images[binding.slot];
+    if (image.image != VK_NULL_HANDLE)
+      return bad_argument(log, "{}: bindings[{}] binds slot {} ('{}') a second time", function, i,
+                          binding.slot, slot.name);
+    if (const dermis_result result = check_binding(graph, i, slot, binding); result != DERMIS_OK)
+      return result;
+    image = {binding.image, binding.view, host_state(binding.before), host_state(binding.after)};
+  }
+  return check_complete(log, program);
+}
+
+// Clip space without the jitter: a picture shifted by `pixels` of `extent` is shifted by 2 pixels / extent
+// there.
+void remove_jitter(subsurface::Matrix4& clip_from_view, int row, double pixels, double extent) {
+  for (size_t c = 0; c < 4; ++c)
+    clip_from_view[row * 4 + c] -= 2.0 * pixels / extent * clip_from_view[12 + c];
+}
+
+bool fill_constants(const dermis_frame& frame, const vulkan::Rectangle& rectangle, bool history_invalid,
+                    subsurface::FrameConstants& constants) {
+  subsurface::FrameInput input;
+  input.rect_x = rectangle.x;
+  input.rect_y = rectangle.y;
+  input.rect_width = rectangle.width;
+  input.rect_height = rectangle.height;
+  std::copy(std::begin(frame.clip_from_view), std::end(frame.clip_from_view), input.clip_from_view.begin());
+  remove_jitter(input.clip_from_view, 0, frame.jitter_x, rectangle.width);
+  remove_jitter(input.clip_from_view, 1, frame.jitter_y, rectangle.height);
+  input.jitter_px = {frame.jitter_x, frame.jitter_y};
+  input.metres_per_unit = frame.metres_per_unit == 0 ? 1.0 : frame.metres_per_unit;
+  input.exposure = frame.exposure == 0 ? 1.0f : frame.exposure;
+  input.depth_kind = frame.depth_kind == DERMIS_DEPTH_VIEW_UNITS ? subsurface::DepthKind::view_units
+                                                                 : subsurface::DepthKind::device;
+  input.frame_index = frame.frame_index;
+  input.history_invalid = history_invalid;
+  return subsurface::fill_frame_constants(input, constants);
+}
+
+} // namespace
+
+dermis_result check_frame(const dermis_graph_t& graph, Program& program, const dermis_frame& frame,
+                          CheckedFrame& checked) {
+  const Log& log = graph.context->log;
+  if (const dermis_result result = check_numbers(graph, frame); result != DERMIS_OK) return result;
+  if (const dermis_result result =
+          check_rectangle(log, program.compiled.plan, frame, checked.input.rectangle);
+      result != DERMIS_OK)
+    return result;
+  if (const dermis_result result = check_bindings(graph, program, frame); result != DERMIS_OK) return result;
+
+  const bool reset = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
+  bool history_invalid = false;
+  for (uint32_t i = 0; i < program.executor->history_count(); ++i)
+    history_invalid = history_invalid || !program.executor->history_state(i, reset).valid;
+  if (!fill_constants(frame, checked.input.rectangle, history_invalid, checked.constants))
+    return bad_argument(
+        log,
+        "{}: clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic "
+        "projection with finite elements",
+        function);
+  checked.input.command_buffer = frame.command_buffer;
+  checked.input.images = program.images;
+  checked.input.frame_constants = std::as_bytes(std::span(&checked.constants, 1));
+  checked.input.settings = program.settings;
+  checked.input.frame_index = frame.frame_index;
+  checked.input.reset_history = reset;
+  return DERMIS_OK;
+}
+
+} // namespace dermis::abi

@@ -1,0 +1,174 @@
+#include "integration/abi/graph.hpp"
+
+#include "framegraph/model/expression.hpp"
+#include "integration/abi/graph_desc.hpp"
+#include "integration/abi/report.hpp"
+
+#include <algorithm>
+
+dermis_graph_t::dermis_graph_t(dermis_context owner) : context(owner) {
+  const std::lock_guard lock(context->mutex);
+  context->graphs.push_back(this);
+}
+
+dermis_graph_t::~dermis_graph_t() {
+  const std::lock_guard lock(context->mutex);
+  std::erase(context->graphs, this);
+}
+
+namespace dermis::abi {
+namespace {
+
+dermis_result create(dermis_context context, const dermis_graph_desc* given, dermis_graph* out,
+                     dermis_report* report) {
+  const Log& log = context->log;
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
+    return refused_size(log, read, "dermis_graph_create: desc", stated_size(given),
+                        first_version_size<dermis_graph_desc>);
+  auto graph = std::make_unique<dermis_graph_t>(context);
+  Diagnostics diagnostics;
+  if (const dermis_result result = read_graph_desc(log, desc, graph->input, diagnostics); result != DERMIS_OK)
+    return result;
+  dermis_result result =
+      build_program(*context, graph->input, vulkan::HistoryReason::first_frame, diagnostics, graph->next);
+  if (result == DERMIS_OK && diagnostics.has_errors()) result = DERMIS_ERROR_CONFIG; // of a profile
+  result = conclude(log, result, std::move(diagnostics), report);
+  if (result == DERMIS_OK) *out = graph.release();
+  return result;
+}
+
+// Builds a candidate from `input`; it takes over at the next record. On failure nothing has changed.
+dermis_result replace(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
+                      dermis_report* report) {
+  Diagnostics diagnostics;
+  std::unique_ptr<Program> candidate;
+  const vulkan::HistoryReason history = graph.last_frame == 0 ? vulkan::HistoryReason::first_frame : reason;
+  const dermis_result built = build_program(*graph.context, input, history, diagnostics, candidate);
+  const dermis_result result = conclude(graph.context->log, built, std::move(diagnostics), report);
+  if (result != DERMIS_OK) return result;
+  graph.next = std::move(candidate); // one that waited was never recorded
+  graph.input = std::move(input);
+  return result;
+}
+
+// Does a new value change which passes run?
+bool changes_passes(const Program& program, const std::vector<SettingValue>& values) {
+  for (const PassDeclaration& pass : program.graph.passes)
+    if (pass.when.valid() &&
+        evaluate(program.graph, pass.when, program.settings) != evaluate(program.graph, pass.when, values))
+      return true;
+  return false;
+}
+
+dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const std::string& json,
+                          dermis_report* report) {
+  const Log& log = graph.context->log;
+  Program& program = newest(graph);
+  const auto& declared = program.graph.settings;
+  const auto at = std::find_if(declared.begin(), declared.end(),
+                               [&](const SettingDeclaration& setting) { return setting.name == name; });
+  Diagnostics diagnostics;
+  if (at == declared.end()) {
+    std::string known;
+    for (const SettingDeclaration& setting : declared)
+      known += fmt::format("{}'{}'", known.empty() ? "" : ", ", setting.name);
+    diagnostics.add(DiagnosticId::host_argument, {},
+                    fmt::format("dermis_graph_set_setting: graph '{}' has no setting '{}'; it has {}",
+                                program.graph.name, name, known.empty() ? "none" : known));
+    return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
+  }
+  const auto value = read_setting(*at, json, diagnostics);
+  if (!value) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
+
+  std::vector<SettingValue> values = program.settings;
+  values[static_cast<size_t>(at - declared.begin())] = *value;
+  ProgramInput input = graph.input;
+  const auto given = std::find_if(input.settings.begin(), input.settings.end(),
+                                  [&](const HostSetting& setting) { return setting.name == name; });
+  if (given == input.settings.end())
+    input.settings.push_back({name, json});
+  else
+    given->json = json;
+  if (changes_passes(program, values))
+    return replace(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
+  const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
+  program.settings = std::move(values);
+  graph.input = std::move(input);
+  return result;
+}
+
+} // namespace
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
+                                                         const dermis_graph_desc* desc, dermis_graph* graph,
+                                                         dermis_report* report) {
+  if (graph != nullptr) *graph = nullptr;
+  if (report != nullptr) *report = nullptr;
+  if (context == nullptr) return bad_argument({}, "dermis_graph_create: context is NULL");
+  return guarded(context->log, "dermis_graph_create", [&] {
+    if (desc == nullptr) return bad_argument(context->log, "dermis_graph_create: desc is NULL");
+    if (graph == nullptr) return bad_argument(context->log, "dermis_graph_create: graph is NULL");
+    if (const dermis_result alive = check_alive(*context, "dermis_graph_create"); alive != DERMIS_OK)
+      return alive;
+    return create(context, desc, graph, report);
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_source* source,
+                                                         dermis_report* report) {
+  if (report != nullptr) *report = nullptr;
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_reload: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_reload", [&] {
+    if (source == nullptr) return bad_argument(log, "dermis_graph_reload: source is NULL");
+    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_reload"); alive != DERMIS_OK)
+      return alive;
+    ProgramInput input = graph->input;
+    if (const dermis_result result =
+            read_source(log, "dermis_graph_reload: source", *source, input.source_name, input.source_text);
+        result != DERMIS_OK)
+      return result;
+    return replace(*graph, std::move(input), dermis::vulkan::HistoryReason::reloaded, report);
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width, uint32_t height,
+                                                         dermis_report* report) {
+  if (report != nullptr) *report = nullptr;
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_resize: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_resize", [&] {
+    if (const dermis_result result = check_view_size(log, "dermis_graph_resize", width, height);
+        result != DERMIS_OK)
+      return result;
+    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_resize"); alive != DERMIS_OK)
+      return alive;
+    ProgramInput input = graph->input;
+    input.width = width;
+    input.height = height;
+    return replace(*graph, std::move(input), dermis::vulkan::HistoryReason::resized, report);
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name,
+                                                              const char* json, dermis_report* report) {
+  if (report != nullptr) *report = nullptr;
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_set_setting: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_set_setting", [&] {
+    if (name == nullptr) return bad_argument(log, "dermis_graph_set_setting: name is NULL");
+    if (json == nullptr) return bad_argument(log, "dermis_graph_set_setting: json is NULL");
+    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_set_setting");
+        alive != DERMIS_OK)
+      return alive;
+    return set_setting(*graph, name, json, report);
+  });
+}
+
+extern "C" void DERMIS_CALL dermis_graph_destroy(dermis_graph graph) {
+  delete graph;
+}

@@ -1,0 +1,128 @@
+#include "integration/abi/graph_desc.hpp"
+
+#include "framegraph/text/document.hpp"
+#include "framegraph/text/limits.hpp"
+
+#include <algorithm>
+
+namespace dermis::abi {
+namespace {
+
+constexpr const char* function = "dermis_graph_create";
+
+// Calls `use(i, element)` for each element of a caller's array, stepped by the first element's struct_size.
+template <class T, class Use>
+dermis_result for_each(const Log& log, const char* field, const T* items, uint32_t count, const T& defaults,
+                       Use use) {
+  if (count == 0) return DERMIS_OK;
+  if (items == nullptr)
+    return bad_argument(log, "{}: desc.{} is NULL and its count is {}", function, field, count);
+  const size_t step = stated_size(items);
+  const auto* at = reinterpret_cast<const std::byte*>(items);
+  for (uint32_t i = 0; i < count; ++i) {
+    T item = defaults;
+    const std::byte* from = at + i * step;
+    const SizedRead read = stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
+    if (read != SizedRead::ok)
+      return refused_size(log, read, fmt::format("{}: desc.{}[{}]", function, field, i), stated_size(from),
+                          std::max(i == 0 ? 0 : step, first_version_size<T>));
+    if (const dermis_result result = use(i, item); result != DERMIS_OK) return result;
+  }
+  return DERMIS_OK;
+}
+
+dermis_result read_profiles(const Log& log, const dermis_graph_desc& desc, ProgramInput& input,
+                            Diagnostics& diagnostics) {
+  return for_each<dermis_profile>(
+      log, "profiles", desc.profiles, desc.profile_count, DERMIS_PROFILE_INIT,
+      [&](uint32_t i, const dermis_profile& profile) {
+        const std::string field = fmt::format("{}: desc.profiles[{}]", function, i);
+        if (profile.id == 0 || profile.id > largest_profile_id)
+          return bad_argument(log, "{}.id is {}, expected 1..{}", field, profile.id, largest_profile_id);
+        if (profile.reserved != 0)
+          return bad_argument(log, "{}.reserved is {}, expected 0", field, profile.reserved);
+        for (const auto& other : input.profiles)
+          if (other.id == profile.id)
+            return bad_argument(log, "{}.id is {}, which an earlier entry has already", field, profile.id);
+        std::string name, text;
+        if (const dermis_result result =
+                read_source(log, (field + ".source").c_str(), profile.source, name, text);
+            result != DERMIS_OK)
+          return result;
+        const auto document = parse_document(name.empty() ? fmt::format("profile {}", profile.id) : name,
+                                             std::move(text), diagnostics);
+        std::optional<subsurface::Profile> read;
+        if (document) read = subsurface::read_profile(*document, diagnostics);
+        input.profiles.push_back(
+            {profile.id, read.value_or(subsurface::Profile{})}); // errors are in diagnostics
+        return DERMIS_OK;
+      });
+}
+
+dermis_result read_unbound(const Log& log, const dermis_graph_desc& desc, ProgramInput& input) {
+  if (desc.unbound_count > 0 && desc.unbound == nullptr)
+    return bad_argument(log, "{}: desc.unbound is NULL and its count is {}", function, desc.unbound_count);
+  for (uint32_t i = 0; i < desc.unbound_count; ++i) {
+    if (desc.unbound[i] == nullptr) return bad_argument(log, "{}: desc.unbound[{}] is NULL", function, i);
+    input.unbound.emplace_back(desc.unbound[i]);
+  }
+  return DERMIS_OK;
+}
+
+dermis_result read_formats(const Log& log, const dermis_graph_desc& desc, ProgramInput& input) {
+  return for_each<dermis_slot_format>(
+      log, "formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
+      [&](uint32_t i, const dermis_slot_format& given) {
+        if (given.name == nullptr) return bad_argument(log, "{}: desc.formats[{}].name is NULL", function, i);
+        if (given.reserved != 0)
+          return bad_argument(log, "{}: desc.formats[{}].reserved is {}, expected 0", function, i,
+                              given.reserved);
+        const auto format = format_from_vulkan(static_cast<uint32_t>(given.format));
+        if (!format || *format == Format::undefined)
+          return bad_argument(
+              log, "{}: desc.formats[{}].format is VkFormat {}, which no graph can declare (slot '{}')",
+              function, i, static_cast<uint32_t>(given.format), given.name);
+        input.formats.push_back({given.name, *format});
+        return DERMIS_OK;
+      });
+}
+
+} // namespace
+
+dermis_result read_source(const Log& log, const char* what, const dermis_source& source, std::string& name,
+                          std::string& text) {
+  if (source.struct_size != sizeof(dermis_source)) // a member of other structs: never grows
+    return bad_argument(log, "{}.struct_size is {}, expected {}: use DERMIS_SOURCE_INIT", what,
+                        source.struct_size, sizeof(dermis_source));
+  if (source.text == nullptr) return bad_argument(log, "{}.text is NULL", what);
+  if (source.length == 0) return bad_argument(log, "{}.length is 0", what);
+  if (source.length > limits::file_bytes)
+    return bad_argument(log, "{}.length is {}, at most {} bytes are read", what, source.length,
+                        limits::file_bytes);
+  name = source.name == nullptr ? "" : source.name;
+  text.assign(source.text, source.length);
+  return DERMIS_OK;
+}
+
+dermis_result check_view_size(const Log& log, const char* of, uint32_t width, uint32_t height) {
+  if (width >= 1 && width <= largest_view && height >= 1 && height <= largest_view) return DERMIS_OK;
+  return bad_argument(log, "{}: the size is {}x{}, expected 1..{} pixels a side", of, width, height,
+                      largest_view);
+}
+
+dermis_result read_graph_desc(const Log& log, const dermis_graph_desc& desc, ProgramInput& input,
+                              Diagnostics& diagnostics) {
+  if (desc.reserved != 0)
+    return bad_argument(log, "{}: desc.reserved is {}, expected 0", function, desc.reserved);
+  dermis_result result =
+      read_source(log, "dermis_graph_create: desc.source", desc.source, input.source_name, input.source_text);
+  if (result == DERMIS_OK) result = check_view_size(log, function, desc.width, desc.height);
+  input.width = desc.width;
+  input.height = desc.height;
+  if (result == DERMIS_OK) result = read_unbound(log, desc, input);
+  if (result == DERMIS_OK) result = read_formats(log, desc, input);
+  if (result == DERMIS_OK) result = read_profiles(log, desc, input, diagnostics);
+  return result;
+}
+
+} // namespace dermis::abi

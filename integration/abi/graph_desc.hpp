@@ -1,0 +1,20 @@
+#pragma once
+// What the host asks for, checked and copied: nothing of the host's memory is kept.
+
+#include "integration/abi/program.hpp"
+
+namespace dermis::abi {
+
+inline constexpr uint32_t largest_view = 16384; // pixels a side
+inline constexpr uint32_t largest_profile_id = 255;
+
+// Checks name, text and length of a source. `what` names function and field.
+dermis_result read_source(const Log& log, const char* what, const dermis_source& source, std::string& name,
+                          std::string& text);
+dermis_result check_view_size(const Log& log, const char* function, uint32_t width, uint32_t height);
+
+// Fills `input` but its profiles. Profile texts are parsed into it too; their errors go to `diagnostics`.
+dermis_result read_graph_desc(const Log& log, const dermis_graph_desc& desc, ProgramInput& input,
+                              Diagnostics& diagnostics);
+
+} // namespace dermis::abi

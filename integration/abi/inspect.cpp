@@ -1,0 +1,132 @@
+// What a graph tells about itself: slots, plan, memory, times.
+
+#include "framegraph/explain/plan_dot.hpp"
+#include "framegraph/explain/plan_json.hpp"
+#include "framegraph/explain/plan_text.hpp"
+#include "integration/abi/graph.hpp"
+#include "integration/abi/two_call.hpp"
+
+namespace dermis::abi {
+namespace {
+
+dermis_slot describe_slot(const Slot& slot, uint32_t id) {
+  dermis_slot out = DERMIS_SLOT_INIT;
+  out.id = id;
+  out.required = slot.required ? 1 : 0;
+  out.name = slot.name.c_str();
+  out.written = slot.written ? 1 : 0;
+  out.read = slot.read ? 1 : 0;
+  out.format = static_cast<VkFormat>(format_info(slot.format).vulkan);
+  out.usage = slot.vk_usage;
+  out.best_layout = static_cast<VkImageLayout>(slot.first_layout);
+  out.width = slot.width;
+  out.height = slot.height;
+  out.bound = slot.bound ? 1 : 0;
+  return out;
+}
+
+dermis_memory describe_memory(const Program& program) {
+  const Plan& plan = program.compiled.plan;
+  dermis_memory out = DERMIS_MEMORY_INIT;
+  out.transient_bytes = plan.transient_bytes;
+  for (const Placement& placement : plan.placements)
+    if (!placement.persistent) out.transient_unaliased_bytes += placement.size;
+  out.history_bytes = plan.history_bytes;
+  out.constant_bytes = program.executor->constant_bytes();
+  return out;
+}
+
+dermis_result timings(dermis_graph_t& graph, uint64_t completed, uint32_t* count, dermis_pass_timing* out) {
+  const Log& log = graph.context->log;
+  constexpr const char* function = "dermis_graph_timings";
+  if (count == nullptr) return bad_argument(log, "{}: count is NULL", function);
+  if (completed > graph.last_frame)
+    return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
+                        completed, graph.last_frame);
+  Program& program = graph.running ? *graph.running : newest(graph);
+  const auto passes = static_cast<uint32_t>(program.compiled.plan.passes.size());
+  if (out == nullptr) {
+    *count = passes;
+    return DERMIS_OK;
+  }
+  std::vector<vulkan::PassTiming> times(passes);
+  uint64_t frame_index = 0;
+  if (!program.executor->read_timings(completed, frame_index, times)) return DERMIS_NOT_READY;
+  return fill_array(log, function, count, out, passes, [&](uint32_t i) {
+    dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
+    const PassId declared = program.compiled.plan.passes[i].declared;
+    timing.pass = program.graph.passes[declared.value].name.c_str();
+    timing.frame_index = frame_index;
+    timing.nanoseconds = times[i].nanoseconds;
+    return timing;
+  });
+}
+
+} // namespace
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint32_t* count,
+                                                        dermis_slot* slots) {
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_slots: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_slots", [&] {
+    const auto& all = newest(*graph).slots;
+    return fill_array(log, "dermis_graph_slots", count, slots, static_cast<uint32_t>(all.size()),
+                      [&](uint32_t i) { return describe_slot(all[i], i); });
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, dermis_describe_format format,
+                                                           size_t* size, char* text) {
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_describe: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_describe", [&] {
+    if (size == nullptr) return bad_argument(log, "dermis_graph_describe: size is NULL");
+    const Program& program = newest(*graph);
+    const dermis::KindRegistry& kinds = graph->context->kinds;
+    std::string description;
+    switch (static_cast<int>(format)) {
+    case DERMIS_DESCRIBE_JSON:
+      description = dermis::plan_json(program.graph, kinds, program.compiled);
+      break;
+    case DERMIS_DESCRIBE_DOT:
+      description = dermis::plan_dot(program.graph, kinds, program.compiled);
+      break;
+    case DERMIS_DESCRIBE_TEXT:
+      description = dermis::plan_text(program.graph, kinds, program.compiled);
+      break;
+    default:
+      return bad_argument(log, "dermis_graph_describe: format is {}, expected 0..2",
+                          static_cast<int>(format));
+    }
+    const size_t room = *size;
+    *size = description.size() + 1;
+    if (text == nullptr) return DERMIS_OK;
+    if (room < *size) return DERMIS_INCOMPLETE;
+    std::memcpy(text, description.c_str(), *size);
+    return DERMIS_OK;
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory) {
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_memory: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_memory", [&] {
+    if (memory == nullptr) return bad_argument(log, "dermis_graph_memory: memory is NULL");
+    const size_t size = stated_size(memory);
+    if (const SizedRead read = check_size<dermis_memory>(size); read != SizedRead::ok)
+      return refused_size(log, read, "dermis_graph_memory: memory", size, first_version_size<dermis_memory>);
+    write_sized(memory, size, describe_memory(newest(*graph)));
+    return DERMIS_OK;
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, uint64_t completed_frame_index,
+                                                          uint32_t* count, dermis_pass_timing* timings) {
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_timings: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_timings",
+                 [&] { return dermis::abi::timings(*graph, completed_frame_index, count, timings); });
+}

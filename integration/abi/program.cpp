@@ -1,0 +1,125 @@
+#include "integration/abi/program.hpp"
+
+#include "framegraph/model/read_graph.hpp"
+#include "framegraph/text/document.hpp"
+#include "integration/abi/slots.hpp"
+#include "passes/kernels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis::abi {
+namespace {
+
+// Values by setting: the declared default, or what the host set. What no longer fits is told and left at the
+// default.
+std::vector<SettingValue> settings_of(const Graph& graph, const std::vector<HostSetting>& given,
+                                      Diagnostics& diagnostics) {
+  std::vector<SettingValue> values;
+  for (const SettingDeclaration& declared : graph.settings)
+    values.push_back(declared.default_value);
+  for (const HostSetting& setting : given) {
+    const auto at =
+        std::find_if(graph.settings.begin(), graph.settings.end(),
+                     [&](const SettingDeclaration& declared) { return declared.name == setting.name; });
+    Diagnostics scratch; // the host's value was right for the graph before: not an error of this one
+    std::optional<SettingValue> value;
+    if (at != graph.settings.end()) value = read_setting(*at, setting.json, scratch);
+    if (value)
+      values[static_cast<size_t>(at - graph.settings.begin())] = *value;
+    else
+      diagnostics.add(
+          DiagnosticId::setting_not_carried, at != graph.settings.end() ? at->where : SourceLocation{},
+          fmt::format("setting '{}' = {} is not carried over: {}", setting.name, setting.json,
+                      at == graph.settings.end() ? "the new graph declares none of that name"
+                                                 : "the new declaration does not accept the value"));
+  }
+  return values;
+}
+
+void tell_lost_histories(const Program& program, vulkan::HistoryReason reason, Diagnostics& diagnostics) {
+  if (reason == vulkan::HistoryReason::first_frame) return;
+  for (const PlanHistory& history : program.compiled.plan.histories) {
+    const ResourceId declared = program.compiled.plan.resources[history.resource].declared;
+    diagnostics.add(DiagnosticId::history_restarts, program.graph.resources[declared.value].where,
+                    fmt::format("history '{}' starts anew: {}", program.graph.resources[declared.value].name,
+                                vulkan::history_reason_text(reason)));
+  }
+}
+
+template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+  return std::as_bytes(std::span<const T>(values));
+}
+
+vulkan::Error make_executor(dermis_context_t& context, const ProgramInput& input,
+                            vulkan::HistoryReason history, Program& program) {
+  std::vector<vulkan::KernelCode> kernels;
+  for (const Kernel& kernel : embedded_kernels())
+    kernels.push_back({kernel.shader, kernel.spirv});
+  const bool with_separable = subsurface::uses_separable(program.graph, context.kinds);
+  const auto profiles = subsurface::make_profile_table(input.profiles, with_separable);
+  const auto separable = subsurface::make_separable_table(
+      with_separable ? std::span<const subsurface::NumberedProfile>(input.profiles)
+                     : std::span<const subsurface::NumberedProfile>());
+  const std::array<vulkan::EnvironmentBinding, 4> environment{{
+      {vulkan::EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
+      {vulkan::EnvironmentType::storage_buffer, bytes_of(profiles).size(), bytes_of(profiles)},
+      {vulkan::EnvironmentType::storage_buffer, bytes_of(separable).size(), bytes_of(separable)},
+      {vulkan::EnvironmentType::linear_sampler, 0, {}},
+  }};
+  static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 4);
+  vulkan::ExecutorInput executor;
+  executor.device = &context.device;
+  executor.graph = &program.graph;
+  executor.kinds = &context.kinds;
+  executor.plan = &program.compiled.plan;
+  executor.kernels = kernels;
+  executor.environment = environment;
+  executor.frames_in_flight = context.frames_in_flight;
+  executor.pipeline_cache = context.pipeline_cache;
+  executor.history = history;
+  return vulkan::Executor::create(executor, program.executor);
+}
+
+} // namespace
+
+dermis_result build_program(dermis_context_t& context, const ProgramInput& input,
+                            vulkan::HistoryReason history, Diagnostics& diagnostics,
+                            std::unique_ptr<Program>& program) {
+  const auto document = parse_document(input.source_name, input.source_text, diagnostics);
+  if (!document) return DERMIS_ERROR_CONFIG;
+  auto graph = read_graph(*document, context.kinds, diagnostics);
+  if (!graph) return DERMIS_ERROR_CONFIG;
+  auto candidate = std::make_unique<Program>();
+  candidate->graph = std::move(*graph);
+  candidate->settings = settings_of(candidate->graph, input.settings, diagnostics);
+
+  CompileInput compile_input;
+  compile_input.graph = &candidate->graph;
+  compile_input.kinds = &context.kinds;
+  compile_input.device = &context.profile;
+  compile_input.view_width = input.width;
+  compile_input.view_height = input.height;
+  compile_input.settings = candidate->settings;
+  compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);
+  compile_input.host_formats = host_formats(candidate->graph, input.formats, diagnostics);
+  auto compiled = compile(compile_input, diagnostics);
+  if (!compiled || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
+  candidate->compiled = std::move(*compiled);
+  candidate->slots = make_slots(candidate->graph, candidate->compiled.plan);
+  candidate->images.resize(candidate->slots.size());
+
+  if (const vulkan::Error error = make_executor(context, input, history, *candidate)) {
+    diagnostics.add(diagnostic_of(error.kind), {}, error.text);
+    if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
+    // The library built the executor's input: what does not fit there is a defect of the library, not of the
+    // host.
+    return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
+  }
+  tell_lost_histories(*candidate, history, diagnostics);
+  program = std::move(candidate);
+  return DERMIS_OK;
+}
+
+} // namespace dermis::abi

@@ -1,0 +1,68 @@
+#pragma once
+// A graph compiled and ready to record: one candidate of a transaction. Built beside the running one, then
+// swapped.
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/vulkan/executor.hpp"
+#include "integration/abi/context.hpp"
+#include "passes/subsurface/environment.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dermis::abi {
+
+struct HostFormat {
+  std::string slot;
+  Format format = Format::undefined;
+};
+
+struct HostSetting {
+  std::string name;
+  std::string json; // as given by the host, so that it can be carried over a reload
+};
+
+// All that a program is built from; copied from the host, kept for reload and resize.
+struct ProgramInput {
+  std::string source_name, source_text;
+  uint32_t width = 0, height = 0;
+  std::vector<subsurface::NumberedProfile> profiles;
+  std::vector<std::string> unbound;
+  std::vector<HostFormat> formats;
+  std::vector<HostSetting> settings;
+};
+
+// An import or export as the host sees it; `id` is the position in Program::slots.
+struct Slot {
+  std::string name;
+  ResourceId resource;
+  bool required = false, read = false, written = false;
+  bool bound = false; // the plan expects a binding
+  Format format = Format::undefined;
+  uint32_t vk_usage = 0;
+  Layout first_layout = Layout::undefined;
+  uint32_t width = 0, height = 0;
+};
+
+struct Program {
+  Graph graph;
+  CompiledPlan compiled;
+  std::vector<SettingValue> settings; // by Graph::settings: what the next record uses
+  std::vector<Slot> slots;
+  std::vector<vulkan::HostImage>
+      images; // by slot; filled at each record, so that recording allocates nothing
+  std::unique_ptr<vulkan::Executor> executor;
+  uint64_t last_frame = 0; // frame_index it was recorded with last; 0: never
+};
+
+// Parses, compiles and allocates. On failure `diagnostics` tells why and `program` is unchanged. Thread: any.
+dermis_result build_program(dermis_context_t& context, const ProgramInput& input,
+                            vulkan::HistoryReason history, Diagnostics& diagnostics,
+                            std::unique_ptr<Program>& program);
+
+// The value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
+std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,
+                                         Diagnostics& diagnostics);
+
+} // namespace dermis::abi

@@ -1,0 +1,61 @@
+#include "integration/abi/frame_check.hpp"
+
+namespace dermis::abi {
+namespace {
+
+// Destroys replaced programs whose last frame the device has finished.
+void collect(dermis_graph_t& graph, uint64_t completed) {
+  for (auto& old : graph.retired)
+    if (old && old->last_frame <= completed) old.reset();
+}
+
+void take_over(dermis_graph_t& graph) {
+  if (!graph.next) return;
+  if (graph.running && graph.running->last_frame > 0)
+    for (auto& place : graph.retired)
+      if (!place) {
+        place = std::move(graph.running);
+        break;
+      }
+  graph.running = std::move(graph.next);
+}
+
+dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
+  const Log& log = graph.context->log;
+  if (const dermis_result alive = check_alive(*graph.context, "dermis_graph_record"); alive != DERMIS_OK)
+    return alive;
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
+    return refused_size(log, read, "dermis_graph_record: frame", stated_size(given),
+                        first_version_size<dermis_frame>);
+  Program& program = newest(graph);
+  CheckedFrame checked;
+  if (const dermis_result result = check_frame(graph, program, frame, checked); result != DERMIS_OK)
+    return result;
+  collect(graph, frame.completed_frame_index);
+  if (const vulkan::RecordResult error = program.executor->record(checked.input)) {
+    if (error.kind == vulkan::ErrorKind::device_lost) graph.context->lost = true;
+    const bool has_slot = error.slot >= 0 && static_cast<size_t>(error.slot) < program.slots.size();
+    return fail(log, result_of(error.kind), diagnostic_of(error.kind), "dermis_graph_record: {}{}{}{}",
+                error.text, has_slot ? " (slot '" : "",
+                has_slot ? program.slots[static_cast<size_t>(error.slot)].name : "", has_slot ? "')" : "");
+  }
+  program.last_frame = frame.frame_index;
+  graph.last_frame = frame.frame_index;
+  take_over(graph);
+  return DERMIS_OK;
+}
+
+} // namespace
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, const dermis_frame* frame) {
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_record: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_record", [&] {
+    if (frame == nullptr) return bad_argument(log, "dermis_graph_record: frame is NULL");
+    return record(*graph, frame);
+  });
+}

@@ -1,0 +1,17 @@
+#pragma once
+// What the library needs of a physical device, with the reason for each item.
+
+#include "integration/include/dermis/dermis.h"
+
+#include <array>
+
+namespace dermis::abi {
+
+inline constexpr uint32_t requirement_count = 4;
+
+// Every requirement with `present` filled from the device. All absent when the functions to ask are missing.
+std::array<dermis_requirement, requirement_count>
+requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                VkPhysicalDevice physical_device);
+
+} // namespace dermis::abi

@@ -1,0 +1,31 @@
+#pragma once
+// The two-call array: items NULL asks for the count, else as many as fit are written.
+
+#include "integration/abi/failure.hpp"
+#include "integration/abi/sized_struct.hpp"
+
+namespace dermis::abi {
+
+// `at(i)` gives item i. *count in: room in `items`; out: how many there are.
+template <class T, class At>
+dermis_result fill_array(const Log& log, const char* what, uint32_t* count, T* items, uint32_t available,
+                         At at) {
+  if (count == nullptr) return bad_argument(log, "{}: count is NULL", what);
+  if (items == nullptr) {
+    *count = available;
+    return DERMIS_OK;
+  }
+  const uint32_t room = *count;
+  if (room > 0) {
+    const size_t size = stated_size(items);
+    if (const SizedRead read = check_size<T>(size); read != SizedRead::ok)
+      return refused_size(log, read, what, size, first_version_size<T>);
+    auto* to = reinterpret_cast<std::byte*>(items);
+    for (uint32_t i = 0; i < std::min(room, available); ++i)
+      write_sized(to + i * size, size, T(at(i)));
+  }
+  *count = available;
+  return room < available ? DERMIS_INCOMPLETE : DERMIS_OK;
+}
+
+} // namespace dermis::abi

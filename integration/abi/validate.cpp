@@ -1,0 +1,52 @@
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/model/read_graph.hpp"
+#include "framegraph/text/document.hpp"
+#include "integration/abi/graph_desc.hpp"
+#include "integration/abi/report.hpp"
+#include "passes/subsurface/kinds.hpp"
+
+namespace dermis::abi {
+namespace {
+
+// Any view will do to find cycles, missing producers and formats; sizes are judged again at creation.
+constexpr uint32_t validation_width = 1920, validation_height = 1080;
+
+dermis_result validate(const dermis_source* given, dermis_report* report) {
+  dermis_source source = DERMIS_SOURCE_INIT;
+  if (const SizedRead read = read_sized(given, source); read != SizedRead::ok)
+    return refused_size({}, read, "dermis_validate: source", stated_size(given),
+                        first_version_size<dermis_source>);
+  std::string name, text;
+  if (const dermis_result result = read_source({}, "dermis_validate: source", source, name, text);
+      result != DERMIS_OK)
+    return result;
+  Diagnostics diagnostics;
+  const KindRegistry kinds = subsurface::make_kinds();
+  const DeviceProfile device = generic_profile();
+  bool valid = false;
+  if (const auto document = parse_document(std::move(name), std::move(text), diagnostics))
+    if (const auto graph = read_graph(*document, kinds, diagnostics)) {
+      CompileInput input;
+      input.graph = &*graph;
+      input.kinds = &kinds;
+      input.device = &device;
+      input.view_width = validation_width;
+      input.view_height = validation_height;
+      valid = compile(input, diagnostics).has_value();
+    }
+  return conclude({}, valid && !diagnostics.has_errors() ? DERMIS_OK : DERMIS_ERROR_CONFIG,
+                  std::move(diagnostics), report);
+}
+
+} // namespace
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_validate(const dermis_source* source, dermis_report* report) {
+  if (report != nullptr) *report = nullptr;
+  return guarded({}, "dermis_validate", [&] {
+    if (source == nullptr) return bad_argument({}, "dermis_validate: source is NULL");
+    return validate(source, report);
+  });
+}

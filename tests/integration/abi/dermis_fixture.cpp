@@ -1,0 +1,216 @@
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace dermis::abi_test {
+namespace {
+
+const demo::ImageState sampled{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                               VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
+
+void DERMIS_CALL log_message(void* user, const dermis_message* message) {
+  static_cast<DermisTest*>(user)->logged.emplace_back(message->text);
+}
+
+std::vector<float> contents(const std::string& slot, uint32_t width, uint32_t height, uint32_t channels) {
+  std::vector<float> texels(size_t{width} * height * channels, 0.0f);
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x)
+      for (uint32_t c = 0; c < channels; ++c) {
+        float& texel = texels[(size_t{y} * width + x) * channels + c];
+        if (slot == "lighting") texel = c < 3 && x < width / 2 ? 1.0f : 0.0f;
+        if (slot == "material") texel = 1.0f;
+        if (slot == "depth") texel = 0.5f;
+      }
+  return texels;
+}
+
+} // namespace
+
+std::unique_ptr<demo::VulkanHost> DermisTest::host;
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/" + path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+dermis_source source_of(const std::string& text, const char* name) {
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = name;
+  source.text = text.data();
+  source.length = text.size();
+  return source;
+}
+
+Said take(dermis_report report) {
+  Said said;
+  for (uint32_t i = 0; i < dermis_report_count(report); ++i) {
+    dermis_message message = DERMIS_MESSAGE_INIT;
+    EXPECT_EQ(dermis_report_message(report, i, &message), DERMIS_OK);
+    said.names.emplace_back(message.code_name);
+    said.texts.emplace_back(message.text);
+    said.places.emplace_back(message.line, message.column);
+  }
+  said.all = dermis_report_text(report);
+  dermis_report_destroy(report);
+  return said;
+}
+
+void DermisTest::SetUpTestSuite() {
+  auto made = demo::create_vulkan_host({.validation = true, .device = ""});
+  if (made) host = made.take();
+}
+
+void DermisTest::TearDownTestSuite() {
+  host.reset();
+}
+
+void DermisTest::SetUp() {
+  if (!host) GTEST_SKIP() << "no Vulkan device with the validation layer";
+  const dermis_context_desc desc = context_desc();
+  ASSERT_EQ(dermis_context_create(&desc, &context), DERMIS_OK) << dermis_last_error();
+}
+
+void DermisTest::TearDown() {
+  for (const dermis_graph graph : graphs)
+    dermis_graph_destroy(graph);
+  dermis_context_destroy(context);
+  images.clear();
+  if (!host) return;
+  EXPECT_THAT(host->log.messages, testing::IsEmpty());
+  host->log.messages.clear();
+}
+
+dermis_context_desc DermisTest::context_desc() {
+  dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
+  desc.flags = DERMIS_CONTEXT_TIMINGS;
+  desc.queue_family = host->queue_family;
+  desc.instance = host->instance;
+  desc.physical_device = host->physical_device;
+  desc.device = host->device;
+  desc.get_instance_proc_addr = vkGetInstanceProcAddr;
+  desc.log = log_message;
+  desc.log_user = this;
+  return desc;
+}
+
+dermis_result DermisTest::create_graph(const GraphOptions& options, dermis_graph* graph,
+                                       dermis_report* report) {
+  const std::string text = options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
+  const std::string skin = read_text("configs/profiles/skin.json");
+  dermis_profile profile = DERMIS_PROFILE_INIT;
+  profile.id = 1;
+  profile.source = source_of(skin, "skin.json");
+  std::vector<const char*> unbound;
+  for (const std::string& name : options.unbound)
+    unbound.push_back(name.c_str());
+  std::vector<dermis_slot_format> formats;
+  for (const auto& [name, format] : options.formats) {
+    dermis_slot_format item = DERMIS_SLOT_FORMAT_INIT;
+    item.name = name.c_str();
+    item.format = format;
+    formats.push_back(item);
+  }
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(text, "graph.json");
+  desc.width = options.width;
+  desc.height = options.height;
+  desc.profiles = &profile;
+  desc.profile_count = 1;
+  desc.unbound = unbound.data();
+  desc.unbound_count = static_cast<uint32_t>(unbound.size());
+  desc.formats = formats.data();
+  desc.format_count = static_cast<uint32_t>(formats.size());
+  return dermis_graph_create(context, &desc, graph, report);
+}
+
+dermis_graph DermisTest::make_graph(const GraphOptions& options) {
+  dermis_graph graph = nullptr;
+  EXPECT_EQ(create_graph(options, &graph), DERMIS_OK) << dermis_last_error();
+  if (graph != nullptr) graphs.push_back(graph);
+  return graph;
+}
+
+std::vector<dermis_slot> slots_of(dermis_graph graph) {
+  uint32_t count = 0;
+  EXPECT_EQ(dermis_graph_slots(graph, &count, nullptr), DERMIS_OK);
+  std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
+  EXPECT_EQ(dermis_graph_slots(graph, &count, slots.data()), DERMIS_OK);
+  return slots;
+}
+
+void DermisTest::make_images(dermis_graph graph) {
+  images.clear();
+  for (const dermis_slot& slot : slots_of(graph)) {
+    if (slot.bound == 0) continue;
+    demo::ImageDesc desc;
+    desc.format = slot.format;
+    desc.width = slot.width;
+    desc.height = slot.height;
+    desc.usage = slot.usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    auto image = demo::create_image(*host, desc);
+    ASSERT_TRUE(image) << image.error().text;
+    const uint32_t channels = demo::find_pixel_format(slot.format)->channels;
+    const auto uploaded = demo::upload_image(
+        *host, *image, contents(slot.name, slot.width, slot.height, channels), channels, sampled);
+    ASSERT_TRUE(uploaded) << uploaded.error().text;
+    images.emplace(slot.name, image.take());
+  }
+}
+
+std::vector<dermis_image_binding> DermisTest::bindings(dermis_graph graph) {
+  std::vector<dermis_image_binding> bound;
+  for (const dermis_slot& slot : slots_of(graph)) {
+    const auto image = images.find(slot.name);
+    if (image == images.end()) continue;
+    dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
+    binding.slot = slot.id;
+    binding.format = image->second.format;
+    binding.image = image->second.image;
+    binding.view = image->second.view;
+    binding.width = image->second.width;
+    binding.height = image->second.height;
+    binding.before = {sampled.layout, VK_QUEUE_FAMILY_IGNORED, sampled.stages, sampled.access};
+    binding.after = binding.before;
+    bound.push_back(binding);
+  }
+  return bound;
+}
+
+dermis_frame DermisTest::frame(const std::vector<dermis_image_binding>& bound, uint32_t width,
+                               uint32_t height) {
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  frame.bindings = bound.data();
+  frame.binding_count = static_cast<uint32_t>(bound.size());
+  frame.frame_index = last_frame + 1;
+  frame.completed_frame_index = last_frame;
+  frame.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
+  frame.clip_from_view[0] = static_cast<float>(2.0 / (width * pitch_m));
+  frame.clip_from_view[5] = static_cast<float>(-2.0 / (height * pitch_m));
+  frame.clip_from_view[10] = -1.0f;
+  frame.clip_from_view[15] = 1.0f;
+  return frame;
+}
+
+dermis_result DermisTest::record(dermis_graph graph, dermis_frame& frame) {
+  dermis_result result = DERMIS_ERROR_INTERNAL;
+  const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+    frame.command_buffer = commands;
+    result = dermis_graph_record(graph, &frame);
+    return demo::success();
+  });
+  EXPECT_TRUE(ran) << ran.error().text;
+  if (result == DERMIS_OK) last_frame = frame.frame_index;
+  return result;
+}
+
+std::vector<float> DermisTest::texels(const std::string& slot) {
+  auto read = demo::read_image(*host, images.at(slot), sampled);
+  EXPECT_TRUE(read) << read.error().text;
+  return read ? read.take() : std::vector<float>{};
+}
+
+} // namespace dermis::abi_test

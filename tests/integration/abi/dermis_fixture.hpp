@@ -1,0 +1,70 @@
+#pragma once
+// A device under validation, a context and small G-buffers for tests of the C interface. Every test fails on
+// any message of the validation layer.
+
+#include "integration/demo_engine/vulkan_image.hpp"
+
+#include <dermis/dermis.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dermis::abi_test {
+
+std::string read_text(const std::string& path); // from the root of the sources
+dermis_source source_of(const std::string& text, const char* name);
+
+// Owns what a report said, so that tests need not destroy it.
+struct Said {
+  std::vector<std::string> names, texts;
+  std::vector<std::pair<uint32_t, uint32_t>> places; // line, column
+  std::string all;
+};
+Said take(dermis_report report);
+
+std::vector<dermis_slot> slots_of(dermis_graph graph);
+
+struct GraphOptions {
+  std::string text; // empty: configs/graphs/burley.json
+  uint32_t width = 64, height = 64;
+  std::vector<std::string> unbound{"albedo", "scatter_scale", "scattered_light"};
+  std::vector<std::pair<std::string, VkFormat>> formats{{"depth", VK_FORMAT_R32_SFLOAT}};
+};
+
+struct DermisTest : testing::Test {
+  static void SetUpTestSuite();
+  static void TearDownTestSuite();
+  void SetUp() override;
+  void TearDown() override;
+
+  dermis_context_desc context_desc();
+  dermis_result create_graph(const GraphOptions& options, dermis_graph* graph,
+                             dermis_report* report = nullptr);
+  dermis_graph
+  make_graph(const GraphOptions& options = {}); // fails the test on an error; destroyed in TearDown
+
+  // Images for every bound slot: light on the left half, profile 1 everywhere, half a metre away.
+  void make_images(dermis_graph graph);
+  std::vector<dermis_image_binding> bindings(dermis_graph graph);
+  // A frame of an orthographic camera with pixels of `pitch_m` metres; frame_index follows the last frame's.
+  dermis_frame frame(const std::vector<dermis_image_binding>& bound, uint32_t width = 64,
+                     uint32_t height = 64);
+  dermis_result record(dermis_graph graph, dermis_frame& frame); // records, submits and waits
+  std::vector<float> texels(const std::string& slot);
+
+  static std::unique_ptr<demo::VulkanHost> host;
+  dermis_context context = nullptr;
+  std::vector<dermis_graph> graphs;
+  std::map<std::string, demo::Image> images; // by slot
+  std::vector<std::string> logged;           // texts of the log callback
+  uint64_t last_frame = 0;
+};
+
+inline constexpr double pitch_m = 0.0005; // half a millimetre a pixel: skin's red d is about two pixels
+
+} // namespace dermis::abi_test

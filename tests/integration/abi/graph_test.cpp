@@ -1,0 +1,298 @@
+// Life of a graph: creation, its errors, slots, reload, resize, settings.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+struct GraphLife : DermisTest {
+  std::string burley = read_text("configs/graphs/burley.json");
+
+  std::string with(const std::string& from, const std::string& to) const {
+    std::string text = burley;
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+  }
+  std::string described(dermis_graph graph, dermis_describe_format format) {
+    size_t size = 0;
+    EXPECT_EQ(dermis_graph_describe(graph, format, &size, nullptr), DERMIS_OK);
+    std::string text(size, '\0');
+    EXPECT_EQ(dermis_graph_describe(graph, format, &size, text.data()), DERMIS_OK);
+    text.resize(size - 1);
+    return text;
+  }
+};
+
+TEST(Validate, AcceptsTheShippedGraphsWithoutADevice) {
+  for (const char* path : {"configs/graphs/burley.json"}) {
+    const std::string text = read_text(path);
+    const dermis_source source = source_of(text, path);
+    dermis_report report = nullptr;
+    EXPECT_EQ(dermis_validate(&source, &report), DERMIS_OK) << dermis_report_text(report);
+    dermis_report_destroy(report);
+  }
+}
+
+TEST(Validate, NamesFileLineAndColumnOfAnError) {
+  std::string text = read_text("configs/graphs/burley.json");
+  const size_t at = text.find("\"exports\"");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, 9, "\"exprots\"");
+  const auto line =
+      static_cast<uint32_t>(std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(at), '\n') + 1);
+  const auto column = static_cast<uint32_t>(at - text.rfind('\n', at));
+  const dermis_source source = source_of(text, "typo.json");
+  dermis_report report = nullptr;
+  EXPECT_EQ(dermis_validate(&source, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_TRUE(nlohmann::json::accept(dermis_report_json(report)));
+  const Said said = take(report);
+  const auto found = std::find(said.names.begin(), said.names.end(), "unknown_key");
+  ASSERT_NE(found, said.names.end()) << said.all;
+  EXPECT_EQ(said.places[static_cast<size_t>(found - said.names.begin())], std::make_pair(line, column));
+  EXPECT_THAT(said.all,
+              AllOf(HasSubstr(fmt::format("typo.json:{}:{}", line, column)), HasSubstr("'exports'")));
+  EXPECT_THAT(dermis_last_error(), HasSubstr("typo.json:"));
+}
+
+TEST(Validate, RefusesASourceWithoutTextOrLength) {
+  dermis_source source = DERMIS_SOURCE_INIT;
+  EXPECT_EQ(dermis_validate(&source, nullptr), DERMIS_ERROR_ARGUMENT);
+  source.text = "{}";
+  EXPECT_EQ(dermis_validate(&source, nullptr), DERMIS_ERROR_ARGUMENT);
+  source.length = size_t{1} << 30;
+  EXPECT_EQ(dermis_validate(&source, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("length"));
+}
+
+TEST_F(GraphLife, SlotsTellWhatToBind) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  std::map<std::string, dermis_slot> slots;
+  uint32_t id = 0;
+  for (const dermis_slot& slot : slots_of(graph)) {
+    EXPECT_EQ(slot.id, id++);
+    slots[slot.name] = slot;
+  }
+  ASSERT_EQ(slots.size(), 6u);
+  EXPECT_EQ(slots["lighting"].format, VK_FORMAT_R16G16B16A16_SFLOAT);
+  EXPECT_EQ(slots["lighting"].usage, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT);
+  EXPECT_EQ(slots["lighting"].read + slots["lighting"].written + slots["lighting"].required, 3u);
+  EXPECT_EQ(slots["depth"].format, VK_FORMAT_R32_SFLOAT) << "as the host said";
+  EXPECT_EQ(slots["depth"].written, 0u);
+  EXPECT_EQ(slots["depth"].best_layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  EXPECT_EQ(slots["material"].width, 64u);
+  EXPECT_EQ(slots["albedo"].bound, 0u);
+  EXPECT_EQ(slots["albedo"].required, 0u);
+  EXPECT_EQ(slots["scattered_light"].bound, 0u);
+}
+
+TEST_F(GraphLife, ErrorsOfGraphAndProfilesComeBackInOneReport) {
+  GraphOptions options;
+  options.text = with("\"subsurface.burley\"", "\"subsurface.burly\"");
+  dermis_graph graph = nullptr;
+  dermis_report report = nullptr;
+  EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_EQ(graph, nullptr);
+  const Said said = take(report);
+  EXPECT_THAT(said.all, AllOf(HasSubstr("graph.json:"), HasSubstr("subsurface.burley")));
+}
+
+TEST_F(GraphLife, HostsMistakesAboutSlotsAreTold) {
+  GraphOptions options;
+  dermis_graph graph = nullptr;
+  dermis_report report = nullptr;
+  options.unbound.push_back("depth");
+  EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_THAT(take(report).names, Contains("host_required_slot"));
+
+  options = {};
+  options.formats.emplace_back("lighting", VK_FORMAT_R8_UNORM);
+  EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_THAT(take(report).all, AllOf(HasSubstr("lighting"), HasSubstr("r8_unorm")));
+
+  options = {};
+  options.formats.emplace_back("lighting", VK_FORMAT_ASTC_4x4_SRGB_BLOCK);
+  EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_ERROR_ARGUMENT);
+  EXPECT_EQ(report, nullptr);
+
+  options = {};
+  options.unbound.push_back("velocity");
+  EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_OK);
+  EXPECT_THAT(take(report).names, Contains("host_names_no_slot")) << "a warning: hosts list what they have";
+  graphs.push_back(graph);
+}
+
+TEST_F(GraphLife, SizesAndProfilesOutOfRangeAreRefused) {
+  GraphOptions options;
+  dermis_graph graph = nullptr;
+  for (const auto& [width, height] : {std::pair{0u, 64u}, {64u, 0u}, {16385u, 64u}, {64u, ~0u}}) {
+    options.width = width;
+    options.height = height;
+    EXPECT_EQ(create_graph(options, &graph), DERMIS_ERROR_ARGUMENT);
+    EXPECT_THAT(dermis_last_error(), HasSubstr(std::to_string(width) + "x" + std::to_string(height)));
+  }
+  const std::string skin = read_text("configs/profiles/skin.json");
+  std::array<dermis_profile, 2> profiles{dermis_profile DERMIS_PROFILE_INIT,
+                                         dermis_profile DERMIS_PROFILE_INIT};
+  for (dermis_profile& profile : profiles) {
+    profile.id = 3;
+    profile.source = source_of(skin, "skin.json");
+  }
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(burley, "graph.json");
+  desc.width = desc.height = 64;
+  desc.profiles = profiles.data();
+  desc.profile_count = 2;
+  EXPECT_EQ(dermis_graph_create(context, &desc, &graph, nullptr), DERMIS_ERROR_ARGUMENT)
+      << "the same id twice";
+  profiles[1].id = 256;
+  EXPECT_EQ(dermis_graph_create(context, &desc, &graph, nullptr), DERMIS_ERROR_ARGUMENT);
+  profiles[1].id = 4;
+  profiles[1].struct_size += 8;
+  EXPECT_EQ(dermis_graph_create(context, &desc, &graph, nullptr), DERMIS_ERROR_ARGUMENT)
+      << "not the first's size";
+}
+
+TEST_F(GraphLife, DescriptionsAreWholeOrIncomplete) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  EXPECT_TRUE(nlohmann::json::accept(described(graph, DERMIS_DESCRIBE_JSON)));
+  EXPECT_THAT(described(graph, DERMIS_DESCRIBE_DOT), HasSubstr("digraph"));
+  EXPECT_THAT(described(graph, DERMIS_DESCRIBE_TEXT), HasSubstr("scatter"));
+  std::array<char, 4> small{'k', 'e', 'p', 't'};
+  size_t size = small.size();
+  EXPECT_EQ(dermis_graph_describe(graph, DERMIS_DESCRIBE_TEXT, &size, small.data()), DERMIS_INCOMPLETE);
+  EXPECT_GT(size, small.size());
+  EXPECT_EQ(std::string(small.data(), small.size()), "kept");
+  EXPECT_EQ(dermis_graph_describe(graph, static_cast<dermis_describe_format>(3), &size, nullptr),
+            DERMIS_ERROR_ARGUMENT);
+}
+
+TEST_F(GraphLife, MemoryIsThatOfThePlan) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  dermis_memory memory = DERMIS_MEMORY_INIT;
+  ASSERT_EQ(dermis_graph_memory(graph, &memory), DERMIS_OK);
+  EXPECT_GT(memory.transient_bytes, 64u * 64u * 8u) << "at least one rgba16f image";
+  EXPECT_GE(memory.transient_unaliased_bytes, memory.transient_bytes);
+  EXPECT_EQ(memory.history_bytes, 0u);
+  EXPECT_GT(memory.constant_bytes, 256u * 32u) << "at least the profile table";
+  memory.struct_size = 8;
+  EXPECT_EQ(dermis_graph_memory(graph, &memory), DERMIS_ERROR_ARGUMENT);
+}
+
+TEST_F(GraphLife, AFailedReloadLeavesTheRunningGraphBitIdentical) {
+  const auto run = [&](bool reload) {
+    last_frame = 0;
+    const dermis_graph graph = make_graph();
+    make_images(graph);
+    const auto bound = bindings(graph);
+    for (int i = 0; i < 3; ++i) {
+      dermis_frame one = frame(bound);
+      EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+      if (!reload) continue;
+      const std::string broken = with("\"subsurface.burley\"", "\"subsurface.nothing\"");
+      const dermis_source source = source_of(broken, "broken.json");
+      EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_ERROR_CONFIG);
+      const dermis_source half = source_of(burley.substr(0, burley.size() / 2), "half.json");
+      EXPECT_EQ(dermis_graph_reload(graph, &half, nullptr), DERMIS_ERROR_CONFIG);
+      EXPECT_EQ(dermis_graph_resize(graph, 0, 0, nullptr), DERMIS_ERROR_ARGUMENT);
+      EXPECT_EQ(dermis_graph_set_setting(graph, "samples", "1e9", nullptr), DERMIS_ERROR_CONFIG);
+    }
+    return texels("lighting");
+  };
+  EXPECT_EQ(run(false), run(true));
+}
+
+TEST_F(GraphLife, AReloadTakesOverAtTheNextRecordAndKeepsSettings) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  const auto bound = bindings(graph);
+  dermis_frame one = frame(bound);
+  ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_graph_set_setting(graph, "samples", "64", nullptr), DERMIS_OK) << dermis_last_error();
+
+  const std::string renamed = with("\"pass\": \"scatter\"", "\"pass\": \"walk\"");
+  const dermis_source source = source_of(renamed, "renamed.json");
+  dermis_report report = nullptr;
+  ASSERT_EQ(dermis_graph_reload(graph, &source, &report), DERMIS_OK) << dermis_last_error();
+  dermis_report_destroy(report);
+  for (int i = 0; i < 3; ++i) {
+    dermis_frame next = frame(bound);
+    ASSERT_EQ(record(graph, next), DERMIS_OK) << dermis_last_error();
+  }
+  EXPECT_THAT(described(graph, DERMIS_DESCRIBE_TEXT), HasSubstr("walk"));
+
+  const std::string poorer = with("\"min\": 4, \"max\": 4096", "\"min\": 4, \"max\": 32");
+  const dermis_source lower = source_of(poorer, "poorer.json");
+  ASSERT_EQ(dermis_graph_reload(graph, &lower, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(take(report).names, Contains("setting_not_carried")) << "64 is beyond the new range";
+}
+
+TEST_F(GraphLife, AResizeTakesOverAtTheNextRecord) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  auto bound = bindings(graph);
+  dermis_frame one = frame(bound);
+  ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_graph_resize(graph, 96, 40, nullptr), DERMIS_OK) << dermis_last_error();
+  dermis_frame small = frame(bound, 96, 40);
+  EXPECT_EQ(record(graph, small), DERMIS_ERROR_ARGUMENT) << "images of the old size";
+  EXPECT_THAT(dermis_last_error(), HasSubstr("96x40"));
+  make_images(graph);
+  bound = bindings(graph);
+  dermis_frame large = frame(bound, 96, 40);
+  EXPECT_EQ(record(graph, large), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(texels("lighting").size(), 96u * 40u * 4u);
+}
+
+TEST_F(GraphLife, SettingsAreCheckedAndNamed) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  const auto refused = [&](const char* name, const char* json, dermis_result result, const char* said) {
+    dermis_report report = nullptr;
+    EXPECT_EQ(dermis_graph_set_setting(graph, name, json, &report), result) << name << " = " << json;
+    EXPECT_THAT(take(report).all, HasSubstr(said));
+  };
+  refused("sample", "16", DERMIS_ERROR_ARGUMENT, "'samples'");
+  refused("samples", "3", DERMIS_ERROR_CONFIG, "4..4096");
+  refused("samples", "5000", DERMIS_ERROR_CONFIG, "4..4096");
+  refused("samples", "16.5", DERMIS_ERROR_CONFIG, "an integer");
+  refused("samples", "\"16\"", DERMIS_ERROR_CONFIG, "an integer");
+  refused("samples", "", DERMIS_ERROR_CONFIG, "setting samples:1:1");
+  refused("samples", "16,", DERMIS_ERROR_CONFIG, "setting samples:1:3");
+  refused("texturing", "\"after\"", DERMIS_ERROR_CONFIG, "\"pre_post\"");
+  EXPECT_EQ(dermis_graph_set_setting(graph, "texturing", "\"pre\"", nullptr), DERMIS_OK);
+  EXPECT_EQ(dermis_graph_set_setting(graph, nullptr, "1", nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_EQ(dermis_graph_set_setting(graph, "samples", nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
+}
+
+TEST_F(GraphLife, ASettingIsInEffectAtTheNextRecord) {
+  const auto run = [&](const char* samples) {
+    last_frame = 0;
+    const dermis_graph graph = make_graph();
+    make_images(graph);
+    const auto bound = bindings(graph);
+    EXPECT_EQ(dermis_graph_set_setting(graph, "samples", samples, nullptr), DERMIS_OK);
+    dermis_frame one = frame(bound);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    return texels("lighting");
+  };
+  EXPECT_EQ(run("16"), run("16")) << "the same frame gives the same bits";
+  EXPECT_NE(run("16"), run("64"));
+}
+
+} // namespace
+} // namespace dermis::abi_test

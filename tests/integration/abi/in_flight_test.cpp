@@ -1,0 +1,93 @@
+// Frames in flight: what a reload replaces lives until the device has finished with it.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+namespace dermis::abi_test {
+namespace {
+
+// Command buffers and fences of two frames, submitted without waiting.
+struct InFlight : DermisTest {
+  static constexpr uint32_t frames = 2;
+  std::array<VkCommandBuffer, frames> commands{};
+  std::array<VkFence, frames> fences{};
+
+  void SetUp() override {
+    DermisTest::SetUp();
+    if (!host) return;
+    auto allocate =
+        demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    allocate.commandPool = host->pool;
+    allocate.commandBufferCount = frames;
+    ASSERT_EQ(host->vk.vkAllocateCommandBuffers(host->device, &allocate, commands.data()), VK_SUCCESS);
+    const auto fence = demo::vulkan_struct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+    for (VkFence& made : fences)
+      ASSERT_EQ(host->vk.vkCreateFence(host->device, &fence, nullptr, &made), VK_SUCCESS);
+  }
+
+  void TearDown() override {
+    if (host) {
+      host->vk.vkDeviceWaitIdle(host->device);
+      for (const VkFence fence : fences)
+        host->vk.vkDestroyFence(host->device, fence, nullptr);
+      host->vk.vkFreeCommandBuffers(host->device, host->pool, frames, commands.data());
+    }
+    DermisTest::TearDown();
+  }
+
+  // Frame `index` (from 1): waits for the frame before the last, records, submits, does not wait.
+  void run(dermis_graph graph, const std::vector<dermis_image_binding>& bound, uint64_t index) {
+    const size_t ring = index % frames;
+    dermis_frame one = frame(bound);
+    one.frame_index = index;
+    one.completed_frame_index = index > frames ? index - frames : 0;
+    if (index > frames) {
+      ASSERT_EQ(host->vk.vkWaitForFences(host->device, 1, &fences[ring], VK_TRUE, UINT64_MAX), VK_SUCCESS);
+      ASSERT_EQ(host->vk.vkResetFences(host->device, 1, &fences[ring]), VK_SUCCESS);
+    }
+    const auto begin =
+        demo::vulkan_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    ASSERT_EQ(host->vk.vkBeginCommandBuffer(commands[ring], &begin), VK_SUCCESS);
+    one.command_buffer = commands[ring];
+    ASSERT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host->vk.vkEndCommandBuffer(commands[ring]), VK_SUCCESS);
+    auto submit = demo::vulkan_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commands[ring];
+    ASSERT_EQ(host->vk.vkQueueSubmit(host->queue, 1, &submit, fences[ring]), VK_SUCCESS);
+    last_frame = index;
+  }
+};
+
+TEST_F(InFlight, AReplacedProgramLivesUntilTheDeviceHasFinishedItsFrames) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  const auto bound = bindings(graph);
+  const std::string text = read_text("configs/graphs/burley.json");
+  const dermis_source source = source_of(text, "burley.json");
+  for (uint64_t index = 1; index <= 8; ++index) {
+    run(graph, bound, index);
+    ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+  }
+  // TearDown asks the validation layer, which knows when an object in use was destroyed.
+}
+
+TEST_F(InFlight, FramesFollowEachOtherWithoutWaiting) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  const auto bound = bindings(graph);
+  for (uint64_t index = 1; index <= 6; ++index)
+    run(graph, bound, index);
+  host->vk.vkDeviceWaitIdle(host->device);
+  std::array<dermis_pass_timing, 16> times{};
+  times[0].struct_size = sizeof times[0];
+  uint32_t count = 16;
+  ASSERT_EQ(dermis_graph_timings(graph, 6, &count, times.data()), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(times[0].frame_index, 6u);
+  ASSERT_EQ(dermis_graph_timings(graph, 5, &count, times.data()), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(times[0].frame_index, 5u);
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,80 @@
+// struct_size: what a caller may state, and what the library reads and writes for it.
+
+#include "integration/abi/sized_struct.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+namespace {
+
+struct Grown { // version 1 had `first` only
+  size_t struct_size;
+  uint64_t first;
+  uint64_t second;
+};
+
+} // namespace
+
+template <>
+inline constexpr size_t dermis::abi::first_version_size<Grown> = offsetof(Grown, first) + sizeof(uint64_t);
+
+namespace dermis::abi {
+namespace {
+
+// `size` bytes on the heap, no more, so that the address sanitizer sees a read or write beyond them.
+std::unique_ptr<std::byte[]> structure(size_t allocated, size_t stated, std::byte tail = std::byte{0}) {
+  auto bytes = std::make_unique<std::byte[]>(std::max(allocated, sizeof(size_t)));
+  for (size_t i = sizeof(size_t); i < allocated; ++i)
+    bytes[i] = i < sizeof(Grown) ? std::byte{1} : tail;
+  std::memcpy(bytes.get(), &stated, sizeof stated);
+  return bytes;
+}
+
+TEST(SizedStruct, SizesBelowTheFirstVersionAreRefusedAndNotReadBeyondTheSize) {
+  for (size_t size = 0; size < first_version_size<Grown>; ++size) {
+    Grown read{};
+    EXPECT_EQ(read_sized(structure(size, size).get(), read), SizedRead::too_small) << size;
+  }
+}
+
+TEST(SizedStruct, FieldsThatAnOlderCallerDoesNotKnowKeepTheirDefaults) {
+  Grown read{sizeof(Grown), 7, 9};
+  ASSERT_EQ(read_sized(structure(16, 16).get(), read), SizedRead::ok);
+  EXPECT_EQ(read.first, 0x0101010101010101u);
+  EXPECT_EQ(read.second, 9u);
+}
+
+TEST(SizedStruct, ANewerCallersTailIsAcceptedWhenItIsZeroAndRefusedWhenItIsNot) {
+  for (size_t size = sizeof(Grown); size <= sizeof(Grown) + 64; ++size) {
+    Grown read{};
+    EXPECT_EQ(read_sized(structure(size, size).get(), read), SizedRead::ok) << size;
+    EXPECT_EQ(read.second, 0x0101010101010101u);
+    if (size > sizeof(Grown)) {
+      EXPECT_EQ(read_sized(structure(size, size, std::byte{1}).get(), read), SizedRead::unknown_fields)
+          << size;
+    }
+  }
+}
+
+TEST(SizedStruct, AnUninitialisedSizeIsRefusedBeforeTheTailIsRead) {
+  Grown read{};
+  EXPECT_EQ(read_sized(structure(sizeof(Grown), largest_struct_size + 1).get(), read), SizedRead::too_large);
+  EXPECT_EQ(read_sized(structure(sizeof(Grown), ~size_t{0}).get(), read), SizedRead::too_large);
+}
+
+TEST(SizedStruct, WritingFillsWhatTheCallerKnowsAndZeroesWhatTheLibraryDoesNot) {
+  auto old_caller = structure(16, 16);
+  write_sized(old_caller.get(), 16, Grown{0, 3, 4});
+  EXPECT_EQ(stated_size(old_caller.get()), 16u);
+  auto new_caller = structure(40, 40, std::byte{0xff});
+  write_sized(new_caller.get(), 40, Grown{0, 3, 4});
+  EXPECT_EQ(stated_size(new_caller.get()), 40u);
+  for (size_t i = sizeof(Grown); i < 40; ++i)
+    EXPECT_EQ(new_caller[i], std::byte{0});
+}
+
+} // namespace
+} // namespace dermis::abi
