@@ -42,14 +42,23 @@ void read_real_setting(ObjectReader& object, SettingDeclaration& out) {
   out.default_value = {SettingType::real, 0, value.value_or(*least)};
 }
 
+// A name, or a whole number ("25"): options are quoted wherever they stand.
+std::optional<std::string_view> read_option(GraphReader& reader, NodeId node, std::string_view what) {
+  const auto text = read_string(reader.document, node, what, reader.diagnostics);
+  if (!text) return std::nullopt;
+  const bool number = !text->empty() && text->size() <= limits::name_bytes &&
+                      text->find_first_not_of("0123456789") == std::string_view::npos;
+  if (number || check_name(*text, what, reader.document.where(node), reader.diagnostics)) return text;
+  return std::nullopt;
+}
+
 void read_options(GraphReader& reader, ObjectReader& object, std::string_view key, SettingDeclaration& out,
                   bool& ok) {
   object.any("default"); // asked for, whatever goes wrong below
   const NodeId list = object.array(key, 1, limits::options);
   if (!list.valid()) return;
   for (NodeId node : children(reader.document, list)) {
-    const auto option =
-        read_name(reader.document, node, fmt::format("an option of {}", object.what()), reader.diagnostics);
+    const auto option = read_option(reader, node, fmt::format("an option of {}", object.what()));
     ok &= option.has_value();
     if (!option) continue;
     if (std::find(out.options.begin(), out.options.end(), *option) != out.options.end()) {
