@@ -184,7 +184,10 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
     Report report;
     const dermis_result set =
         dermis_graph_set_setting(host->graph, name.c_str(), json.c_str(), &report.handle);
-    if (set != DERMIS_OK) return dermis_error("dermis_graph_set_setting", set, report.handle);
+    if (set == DERMIS_OK) continue;
+    Error error = dermis_error("dermis_graph_set_setting", set, report.handle);
+    error.kind = ErrorKind::usage; // names and values come from whoever starts the rendering
+    return error;
   }
   return host;
 }

@@ -71,7 +71,11 @@ void paint(uint pattern, vec3 p, inout vec3 albedo, inout float roughness, inout
 
 void main() {
   Material material = materials[object.material];
-  vec3 n = normalize(world_normal) * (gl_FrontFacing ? 1.0 : -1.0);
+  mat3 view = mat3(frame.view_from_world);
+  vec3 n = normalize(world_normal);
+  // The back of a sheet shows its other side; at a silhouette interpolated normals may lean away a little.
+  vec3 to_viewer = frame.misc.w > 0.0 ? vec3(0.0, 0.0, 1.0) : -view_position(gl_FragCoord.xy, gl_FragCoord.z);
+  if (dot(view * n, normalize(to_viewer)) < -0.2) n = -n;
   vec3 t = world_tangent.xyz - n * dot(n, world_tangent.xyz);
   t = dot(t, t) > 0.0 ? normalize(t) : vec3(0.0);
   vec3 b = cross(n, t) * world_tangent.w;
@@ -87,7 +91,6 @@ void main() {
   vec3 shading = normalize(t * mapped.x + b * mapped.y + n * max(mapped.z, 0.1));
   bump = normal_to_world(bump) / max(length(normal_to_world(vec3(1.0)) / sqrt(3.0)), 1e-20);
   shading = normalize(shading + bump - n * dot(bump, n));
-  mat3 view = mat3(frame.view_from_world);
   out_normal = vec4(view * n, 0.0);
   out_shading = vec4(view * shading, 0.0);
   out_albedo = vec4(clamp(albedo, 0.0, 1.0), 1.0);
