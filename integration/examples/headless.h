@@ -1,5 +1,5 @@
-/* What an engine has before it embeds Dermis, as small as it can be: a device, a command buffer, cleared images.
- * Errors end the program. C99 and C++. */
+/* What an engine has before it embeds Dermis, as small as it can be: a device, a command buffer, cleared
+ * images. Errors end the program. C99 and C++. */
 #ifndef DERMIS_EXAMPLE_HEADLESS_H
 #define DERMIS_EXAMPLE_HEADLESS_H
 
@@ -21,14 +21,14 @@ static void headless_die(const char* what, const char* which) {
   exit(1);
 }
 
-#define HEADLESS_CHECK(call) \
-  do { \
-    if ((call) != VK_SUCCESS) headless_die("failed: ", #call); \
+#define HEADLESS_CHECK(call)                                                                                 \
+  do {                                                                                                       \
+    if ((call) != VK_SUCCESS) headless_die("failed: ", #call);                                               \
   } while (0)
 /* A Vulkan struct of zeros but for its type; C and C++ agree on no shorter way. */
-#define HEADLESS_STRUCT(type, name, s_type) \
-  type name; \
-  memset(&name, 0, sizeof name); \
+#define HEADLESS_STRUCT(type, name, s_type)                                                                  \
+  type name;                                                                                                 \
+  memset(&name, 0, sizeof name);                                                                             \
   name.sType = VK_STRUCTURE_TYPE_##s_type
 
 /* The device has the features that dermis_query_requirements lists. */

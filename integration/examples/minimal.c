@@ -76,12 +76,11 @@ int main(int argc, char** argv) {
     binding.slot = slots[i].id;
     binding.format = slots[i].format;
     binding.width = binding.height = SIDE;
-    binding.image = headless_image(&host, slots[i].format, SIDE, SIDE, slots[i].usage, contents_of(slots[i].name),
-                                   &binding.view);
+    binding.image = headless_image(&host, slots[i].format, SIDE, SIDE, slots[i].usage,
+                                   contents_of(slots[i].name), &binding.view);
     binding.before = binding.after = general;
     bindings[frame.binding_count++] = binding;
   }
-
   frame.command_buffer = host.commands;
   frame.bindings = bindings;
   frame.frame_index = 1;
@@ -93,7 +92,8 @@ int main(int argc, char** argv) {
   check(dermis_graph_record(graph, &frame), "dermis_graph_record");
   headless_submit_and_wait(&host);
   check(dermis_graph_timings(graph, 1, &pass_count, timings), "dermis_graph_timings");
-  for (i = 0; i < pass_count; ++i) printf("%-12s %8.3f ms\n", timings[i].pass, (double)timings[i].nanoseconds * 1e-6);
+  for (i = 0; i < pass_count; ++i)
+    printf("%-12s %8.3f ms\n", timings[i].pass, (double)timings[i].nanoseconds * 1e-6);
   dermis_graph_destroy(graph);
   dermis_context_destroy(context);
   return 0;

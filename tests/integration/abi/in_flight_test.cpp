@@ -5,15 +5,21 @@
 namespace dermis::abi_test {
 namespace {
 
-// Command buffers and fences of two frames, submitted without waiting.
+// Command buffers and fences of three frames, submitted without waiting. Three, because a program is retired
+// one record after its last frame: with two in flight that frame is complete before anyone could destroy it
+// early.
 struct InFlight : DermisTest {
-  static constexpr uint32_t frames = 2;
+  static constexpr uint32_t frames = 3;
   std::array<VkCommandBuffer, frames> commands{};
   std::array<VkFence, frames> fences{};
 
   void SetUp() override {
     DermisTest::SetUp();
     if (!host) return;
+    dermis_context_destroy(context);
+    dermis_context_desc desc = context_desc();
+    desc.frames_in_flight = frames;
+    ASSERT_EQ(dermis_context_create(&desc, &context), DERMIS_OK) << dermis_last_error();
     auto allocate =
         demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     allocate.commandPool = host->pool;
@@ -34,7 +40,8 @@ struct InFlight : DermisTest {
     DermisTest::TearDown();
   }
 
-  // Frame `index` (from 1): waits for the frame before the last, records, submits, does not wait.
+  // Frame `index` (from 1): waits for the frame whose command buffer it takes, records, submits, does not
+  // wait.
   void run(dermis_graph graph, const std::vector<dermis_image_binding>& bound, uint64_t index) {
     const size_t ring = index % frames;
     dermis_frame one = frame(bound);

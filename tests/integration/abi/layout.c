@@ -129,11 +129,14 @@ AT(dermis_frame, depth_kind, 340)
 #endif
 
 /* Enumerations keep their numbers. */
-_Static_assert(DERMIS_ERROR_ARGUMENT == -1 && DERMIS_ERROR_VERSION == -2 && DERMIS_ERROR_CONFIG == -3, "results");
-_Static_assert(DERMIS_ERROR_SHADER == -4 && DERMIS_ERROR_UNSUPPORTED == -5 && DERMIS_ERROR_MEMORY == -6, "results");
+_Static_assert(DERMIS_ERROR_ARGUMENT == -1 && DERMIS_ERROR_VERSION == -2 && DERMIS_ERROR_CONFIG == -3,
+               "results");
+_Static_assert(DERMIS_ERROR_SHADER == -4 && DERMIS_ERROR_UNSUPPORTED == -5 && DERMIS_ERROR_MEMORY == -6,
+               "results");
 _Static_assert(DERMIS_ERROR_DEVICE_MEMORY == -7 && DERMIS_ERROR_VULKAN == -8, "results");
 _Static_assert(DERMIS_ERROR_DEVICE_LOST == -9 && DERMIS_ERROR_INTERNAL == -10, "results");
 _Static_assert(DERMIS_INCOMPLETE == 1 && DERMIS_NOT_READY == 2 && DERMIS_OK == 0, "results");
-_Static_assert(DERMIS_SEVERITY_NOTE == 0 && DERMIS_SEVERITY_WARNING == 1 && DERMIS_SEVERITY_ERROR == 2, "severities");
+_Static_assert(DERMIS_SEVERITY_NOTE == 0 && DERMIS_SEVERITY_WARNING == 1 && DERMIS_SEVERITY_ERROR == 2,
+               "severities");
 _Static_assert(DERMIS_DEPTH_DEVICE == 0 && DERMIS_DEPTH_VIEW_UNITS == 1, "depth kinds");
 _Static_assert(DERMIS_DESCRIBE_JSON == 0 && DERMIS_DESCRIBE_DOT == 1 && DERMIS_DESCRIBE_TEXT == 2, "formats");
