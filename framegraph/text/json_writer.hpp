@@ -27,6 +27,7 @@ public:
   JsonWriter& value(int32_t number) { return value(static_cast<int64_t>(number)); }
   JsonWriter& value(uint32_t number) { return value(static_cast<uint64_t>(number)); }
   JsonWriter& null() { return raw("null"); }
+  JsonWriter& json(std::string_view text) { return raw(text); } // a whole value that is JSON already
 
   template <class T> JsonWriter& member(std::string_view name, const T& what) {
     return key(name).value(what);

@@ -1,0 +1,261 @@
+#include "integration/command/arguments.hpp"
+
+#include "framegraph/text/suggest.hpp"
+#include "integration/command/verbs.hpp"
+
+#include <CLI/CLI.hpp>
+#include <dermis/dermis.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <memory>
+
+namespace dermis::tools {
+namespace {
+
+constexpr uint32_t max_side = 16384; // pixels; dermis.h, dermis_graph_desc
+constexpr uint32_t max_frames = 100000;
+constexpr uint32_t max_repeat = 10000;
+constexpr uint32_t max_subset = 1u << 24u; // pixels
+
+std::string check_size(const std::string& text) {
+  uint32_t width = 0, height = 0;
+  return parse_size(text, width, height);
+}
+
+std::string check_named_value(const std::string& text) {
+  const size_t equals = text.find('=');
+  return equals == std::string::npos || equals == 0 || equals + 1 == text.size()
+             ? fmt::format("'{}' is not name=value", text)
+             : "";
+}
+
+CLI::Option* add_size(CLI::App& verb, Size& size) {
+  return verb
+      .add_option_function<std::string>(
+          "--size", [&size](const std::string& text) { parse_size(text, size.width, size.height); },
+          fmt::format("Pixels, WIDTHxHEIGHT, each 1..{} [{}x{}]", max_side, size.width, size.height))
+      ->check(CLI::Validator(check_size, "WxH"));
+}
+
+void add_settings(CLI::App& verb, std::vector<NamedValue>& settings) {
+  verb.add_option_function<std::vector<std::string>>(
+          "--set",
+          [&settings](const std::vector<std::string>& all) {
+            for (const std::string& one : all) {
+              const size_t equals = one.find('=');
+              settings.emplace_back(one.substr(0, equals), one.substr(equals + 1));
+            }
+          },
+          "Value of a setting of the graph; may be repeated")
+      ->check(CLI::Validator(check_named_value, "NAME=VALUE"))
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_common(CLI::App& verb, Session& session) {
+  static const std::map<std::string, ColorMode> modes{
+      {"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}};
+  const char* group = "Common options";
+  verb.add_flag("--json", session.json, "One JSON document on standard output, for programs")->group(group);
+  verb.add_flag("--quiet,-q", session.quiet, "Errors only")->group(group);
+  verb.add_option("--color", session.color, "Colour: auto, always or never [auto]")
+      ->transform(CLI::CheckedTransformer(modes).description("MODE"))
+      ->group(group);
+}
+
+// The verb's options live as long as the function that runs it.
+template <class Options, class Declare>
+void add_verb(CLI::App& app, Invocation& invocation, const char* name, const char* what, const char* example,
+              ExitCode (*work)(const Session&, const Options&), Declare declare) {
+  CLI::App& verb = *app.add_subcommand(name, what);
+  verb.footer(fmt::format("Example:\n  {}", example));
+  auto options = std::make_shared<Options>();
+  add_common(verb, invocation.session);
+  declare(verb, *options);
+  verb.callback([&invocation, options, work] {
+    invocation.run = [options, work](const Session& session) { return work(session, *options); };
+  });
+}
+
+void add_text_verbs(CLI::App& app, Invocation& invocation) {
+  add_verb<ValidateOptions>(
+      app, invocation, "validate", "Check graph, profile and scene files",
+      "dermis validate configs/graphs/burley.json", validate, [](CLI::App& verb, ValidateOptions& options) {
+        verb.add_option("files", options.files, "Files to check")->required()->type_name("FILE");
+      });
+  add_verb<ExplainOptions>(
+      app, invocation, "explain", "Show the plan of a graph with the reason for each decision",
+      "dermis explain configs/graphs/burley.json --size 1920x1080\n  dermis explain D0103", explain,
+      [](CLI::App& verb, ExplainOptions& options) {
+        verb.add_option("graph", options.graph, "Graph file, or the code of a message")
+            ->required()
+            ->type_name("FILE");
+        add_size(verb, options.size);
+        add_settings(verb, options.settings);
+        verb.add_option("--unbound", options.unbound, "Optional slots that the host leaves out")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
+            ->type_name("FILE");
+      });
+  add_verb<GraphOptions>(
+      app, invocation, "graph", "Write the graph and its plan as DOT (or JSON with --json)",
+      "dermis graph configs/graphs/burley.json | dot -Tsvg > burley.svg", graph,
+      [](CLI::App& verb, GraphOptions& options) {
+        verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
+        verb.add_flag_callback(
+                "--dot", [] {}, "DOT for Graphviz; the default")
+            ->excludes("--json");
+        add_size(verb, options.size);
+        add_settings(verb, options.settings);
+        verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
+            ->type_name("FILE");
+      });
+}
+
+void add_picture_verbs(CLI::App& app, Invocation& invocation) {
+  add_verb<RenderOptions>(
+      app, invocation, "render", "Render a scene with the demo engine and a graph, and measure the error",
+      "dermis render configs/scenes/bust.json --graph configs/graphs/burley.json --size 640x360 --frames 8 "
+      "--out out/",
+      render, [](CLI::App& verb, RenderOptions& options) {
+        verb.add_option("scene", options.scene, "Scene file")->required()->type_name("FILE");
+        verb.add_option("--graph,-g", options.graph, "Graph file")->required()->type_name("FILE");
+        verb.add_option("--out,-o", options.out, "Folder for pictures")->required()->type_name("DIR");
+        add_size(verb, options.size);
+        verb.add_option("--frames,-n", options.frames, "Frames to render [8]")
+            ->check(CLI::Range(1u, max_frames));
+        verb.add_option("--capture", options.capture, "Folder for what the graph saw")->type_name("DIR");
+        verb.add_option("--subset", options.subset,
+                        "Pixels of the last frame compared with the truth; 0: none [4096]")
+            ->check(CLI::Range(0u, max_subset));
+        add_settings(verb, options.settings);
+        const char* group = "Model, for scenes that show one";
+        verb.add_option("--model", options.model.model, "glTF file")->type_name("FILE")->group(group);
+        verb.add_option("--albedo", options.model.albedo, "Picture, sRGB")->type_name("FILE")->group(group);
+        verb.add_option("--normal", options.model.normal, "Tangent-space normal map")
+            ->type_name("FILE")
+            ->group(group);
+        verb.add_option("--specular", options.model.specular, "Picture, linear")
+            ->type_name("FILE")
+            ->group(group);
+        verb.add_option("--height", options.model.height, "Height in metres that the model is scaled to")
+            ->check(CLI::Range(1e-3, 1e3))
+            ->group(group);
+      });
+  add_verb<ApplyOptions>(
+      app, invocation, "apply", "Run a graph on captured frames",
+      "dermis apply --graph configs/graphs/burley.json --frames capture/ --out out/", apply,
+      [](CLI::App& verb, ApplyOptions& options) {
+        verb.add_option("--graph,-g", options.graph, "Graph file")->required()->type_name("FILE");
+        verb.add_option("--frames", options.frames, "Capture folder")->required()->type_name("DIR");
+        verb.add_option("--out,-o", options.out, "Folder for EXRs")->required()->type_name("DIR");
+        verb.add_option("--profiles", options.profiles,
+                        "Folder of profiles that frames name [configs/profiles]")
+            ->type_name("DIR");
+        verb.add_option("--repeat", options.repeat, "Times each frame is run; times are medians [1]")
+            ->check(CLI::Range(1u, max_repeat));
+        add_settings(verb, options.settings);
+      });
+  add_verb<ReferenceOptions>(
+      app, invocation, "reference", "Compute the exact scattered light of captured frames",
+      "dermis reference --frames capture/ --out truth/", reference,
+      [](CLI::App& verb, ReferenceOptions& options) {
+        verb.add_option("--frames", options.frames, "Capture folder")->required()->type_name("DIR");
+        verb.add_option("--out,-o", options.out, "Folder for EXRs")->required()->type_name("DIR");
+        verb.add_option("--profiles", options.profiles,
+                        "Folder of profiles that frames name [configs/profiles]")
+            ->type_name("DIR");
+        verb.add_option("--subset", options.subset, "Pixels of a frame, chosen evenly; 0: all [0]")
+            ->check(CLI::Range(0u, max_subset));
+      });
+}
+
+std::string_view name_part(std::string_view argument) {
+  return argument.substr(0, argument.find('='));
+}
+
+// A misspelt verb or option, said before CLI11 complains of what else is missing; "" when all are known.
+std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2) return "";
+  const std::string first = argv[1];
+  if (first.starts_with("-")) return "";
+  const std::vector<CLI::App*> verbs = app.get_subcommands([](CLI::App*) { return true; });
+  const auto found =
+      std::find_if(verbs.begin(), verbs.end(), [&](const CLI::App* one) { return one->get_name() == first; });
+  std::vector<std::string> names;
+  if (found == verbs.end()) {
+    for (const CLI::App* one : verbs)
+      names.push_back(one->get_name());
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    const std::string suggestion = did_you_mean(first, words);
+    return fmt::format("there is no verb '{}'; {}", first,
+                       suggestion.empty() ? "verbs: " + list_words(words) : suggestion);
+  }
+  const CLI::App* verb = *found;
+  for (int i = 2; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string name(name_part(argv[i]));
+    if (!name.starts_with("--") || verb->get_option_no_throw(name) != nullptr) continue;
+    for (const CLI::Option* one : verb->get_options())
+      for (const std::string& known : one->get_lnames())
+        names.push_back("--" + known);
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    const std::string suggestion = did_you_mean(name, words);
+    return fmt::format("'{}' has no option '{}'; {}", first, name,
+                       suggestion.empty() ? fmt::format("'dermis {} --help' lists them", first) : suggestion);
+  }
+  return "";
+}
+
+} // namespace
+
+std::string parse_size(const std::string& text, uint32_t& width, uint32_t& height) {
+  const std::string expected =
+      fmt::format("expected WIDTHxHEIGHT such as 640x360, each 1..{}, found '{}'", max_side, text);
+  const char* end = text.data() + text.size();
+  uint32_t sides[2] = {};
+  const auto first = std::from_chars(text.data(), end, sides[0]);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != 'x') return expected;
+  const auto second = std::from_chars(first.ptr + 1, end, sides[1]);
+  if (second.ec != std::errc() || second.ptr != end) return expected;
+  for (const uint32_t side : sides)
+    if (side < 1 || side > max_side) return expected;
+  width = sides[0];
+  height = sides[1];
+  return "";
+}
+
+Invocation read_arguments(int argc, const char* const* argv) {
+  Invocation invocation;
+  CLI::App app("Frame graphs that scatter light under the skin.\n", "dermis");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", fmt::format("dermis {}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR,
+                                                DERMIS_VERSION_PATCH));
+  app.footer("Exit codes: 0 done; 1 the input has problems; 2 bad option or value; 3 no driver, unwritable "
+             "output or\n"
+             "missing package; 4 a defect of the program.");
+  add_text_verbs(app, invocation);
+  add_picture_verbs(app, invocation);
+
+  // Also a line that cannot be read is answered in the way it asks for.
+  invocation.session.json = std::count(argv, argv + argc, std::string_view("--json")) > 0;
+  invocation.message = find_misspelling(app, argc, argv);
+  if (!invocation.message.empty()) return invocation;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    invocation.help = chosen.empty() ? app.help() : chosen.front()->help();
+  } catch (const CLI::CallForVersion& version) {
+    invocation.help = std::string(version.what()) + "\n";
+  } catch (const CLI::ParseError& error) {
+    invocation.message = error.what();
+    invocation.run = nullptr;
+  }
+  return invocation;
+}
+
+} // namespace dermis::tools

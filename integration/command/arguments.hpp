@@ -1,0 +1,24 @@
+#pragma once
+// Command line -> the verb to run. Knows the syntax of every verb, none of their work.
+
+#include "integration/command/session.hpp"
+
+#include <functional>
+#include <string>
+
+namespace dermis::tools {
+
+struct Invocation {
+  Session session;
+  std::function<ExitCode(const Session&)>
+      run;             // empty: nothing to do (help, or a usage error that is in `message`)
+  std::string help;    // asked for: goes to stdout
+  std::string message; // usage error
+};
+
+Invocation read_arguments(int argc, const char* const* argv);
+
+// "640x360" -> 640, 360. Returns what is wrong, "" for nothing. Each side 1..16384.
+std::string parse_size(const std::string& text, uint32_t& width, uint32_t& height);
+
+} // namespace dermis::tools

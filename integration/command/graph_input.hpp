@@ -1,0 +1,45 @@
+#pragma once
+// Graph files for verbs that need no device: read, then compiled with the generic device profile.
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/text/document.hpp"
+#include "integration/command/verbs.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+
+namespace dermis::tools {
+
+struct LoadedGraph {
+  KindRegistry kinds;
+  Graph graph;
+};
+
+inline constexpr Size default_size{1920, 1080}; // where nobody says one
+
+// `path` "-" is standard input. nullopt with errors in `diagnostics`.
+std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics);
+std::optional<LoadedGraph> load_graph(const Document& document, Diagnostics& diagnostics);
+std::optional<LoadedGraph> load_graph(const std::string& path, Diagnostics& diagnostics);
+
+// What --set and --unbound say, in the graph's terms. `problem` not empty: a usage error, nothing else is
+// filled.
+struct CompileChoices {
+  std::vector<SettingValue> settings;
+  std::vector<bool> bound;
+  std::string problem;
+};
+CompileChoices read_choices(const Graph& graph, std::span<const NamedValue> settings = {},
+                            std::span<const std::string> unbound = {});
+// The settings that --set gives as JSON text, for the C interface. Values must have passed read_choices.
+std::vector<NamedValue> settings_as_json(const Graph& graph, std::span<const NamedValue> settings);
+
+// nullopt with errors in `diagnostics`.
+std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Size& size,
+                                            const CompileChoices& choices, Diagnostics& diagnostics);
+
+// Says that the graph `path` cannot be used, after its messages.
+ExitCode fail_graph(const Session& session, const std::string& path, const Diagnostics& diagnostics);
+
+} // namespace dermis::tools

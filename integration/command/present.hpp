@@ -1,0 +1,73 @@
+#pragma once
+// Text for people: tables, units, colour and progress. The one place where the command formats anything.
+
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis::tools {
+
+enum class ColorMode : uint8_t { automatic, always, never };
+
+// Is colour wanted on this file descriptor? Automatic: on a terminal, unless NO_COLOR is set or TERM is
+// "dumb".
+bool color_wanted(ColorMode mode, int file_descriptor);
+
+// Puts colour on the severity and the caret lines of a formatted diagnostic.
+std::string color_diagnostic(std::string_view formatted);
+
+struct Table {
+  struct Column {
+    std::string title;
+    bool right_aligned = false;
+  };
+  std::vector<Column> columns;
+  std::vector<std::vector<std::string>> rows; // each as long as `columns`; an empty row is a rule
+};
+
+// Titles, a rule, rows; two spaces between columns, no trailing spaces; ends in a newline.
+std::string format_table(const Table& table);
+
+std::string format_milliseconds(double milliseconds); // "0.012 ms", "12.3 ms"
+std::string format_duration(double seconds);          // "4.2 s", "3 min 05 s"
+std::string format_bytes(uint64_t bytes);             // "512 B", "3.2 MiB"
+std::string format_decibels(double decibels);         // "41.23 dB"
+
+enum class ProgressStyle : uint8_t {
+  none,
+  bar,   // one line that is redrawn: for terminals
+  lines, // one line every few seconds: for logs
+};
+
+// Bar on a terminal, lines elsewhere, none when quiet or when the output is for programs. Looks at stderr.
+ProgressStyle progress_style(bool quiet, bool json);
+
+// How far a piece of work is, on stderr. Says nothing about work that takes less than two seconds.
+// Thread: update() any; the rest one.
+class Progress {
+public:
+  // `total` steps of `unit` ("frame", "pixel"), named `what`.
+  Progress(ProgressStyle style, std::string what, std::string unit, uint64_t total);
+  ~Progress(); // removes the bar
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void update(uint64_t done); // steps done so far
+
+private:
+  using Clock = std::chrono::steady_clock;
+  void draw(uint64_t done, double elapsed_seconds);
+
+  ProgressStyle style_;
+  std::string what_, unit_;
+  uint64_t total_;
+  Clock::time_point start_ = Clock::now();
+  std::mutex mutex_;
+  Clock::time_point last_drawn_ = start_;
+  bool bar_visible_ = false;
+};
+
+} // namespace dermis::tools

@@ -1,0 +1,70 @@
+#pragma once
+// The verbs of the command, one a file, each a function of its options. arguments.cpp fills the options.
+
+#include "integration/command/session.hpp"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dermis::tools {
+
+struct Size {
+  uint32_t width = 0, height = 0; // pixels, 1..16384
+};
+
+// name=value as given to --set; the value is JSON text, or the bare text of a JSON string.
+using NamedValue = std::pair<std::string, std::string>;
+
+struct ValidateOptions {
+  std::vector<std::string> files; // graphs, profiles, scenes; told apart by their version key
+};
+ExitCode validate(const Session& session, const ValidateOptions& options);
+
+struct ExplainOptions {
+  std::string graph; // or the code of a diagnostic: "D0103"
+  Size size{1920, 1080};
+  std::vector<NamedValue> settings;
+  std::vector<std::string> unbound; // optional imports and exports that the host leaves out
+  std::string out = "-";
+};
+ExitCode explain(const Session& session, const ExplainOptions& options);
+
+struct GraphOptions {
+  std::string graph;
+  Size size{1920, 1080};
+  std::vector<NamedValue> settings;
+  std::string out = "-"; // DOT, or JSON with --json
+};
+ExitCode graph(const Session& session, const GraphOptions& options);
+
+struct ModelOptions { // of a scene with a shape "model"
+  std::string model, albedo, normal, specular;
+  double height = 0.0; // metres; 0: as in the file
+};
+
+struct RenderOptions {
+  std::string scene, graph, out, capture; // capture "": none
+  Size size{640, 360};
+  uint32_t frames = 8;
+  uint32_t subset = 4096; // pixels of a frame that are compared with the truth; 0: no comparison
+  std::vector<NamedValue> settings;
+  ModelOptions model;
+};
+ExitCode render(const Session& session, const RenderOptions& options);
+
+struct ApplyOptions {
+  std::string graph, frames, out, profiles;
+  std::vector<NamedValue> settings;
+  uint32_t repeat = 1; // times each frame is run; times are medians
+};
+ExitCode apply(const Session& session, const ApplyOptions& options);
+
+struct ReferenceOptions {
+  std::string frames, out, profiles;
+  uint32_t subset = 0; // pixels of a frame; 0: all
+};
+ExitCode reference(const Session& session, const ReferenceOptions& options);
+
+} // namespace dermis::tools

@@ -1,0 +1,110 @@
+#include "tests/command/command_fixture.hpp"
+
+#include "framegraph/text/document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
+#include <fstream>
+#include <sstream>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace dermis::test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+std::string read_file(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+fs::path make_folder() {
+  std::string name = (fs::temp_directory_path() / "dermis_command_XXXXXX").string();
+  return mkdtemp(name.data()) != nullptr ? fs::path(name) : fs::path();
+}
+
+void redirect(int target, const fs::path& path, int flags) {
+  const int file = open(path.c_str(), flags, 0600);
+  if (file < 0 || dup2(file, target) < 0) _exit(127);
+}
+
+[[noreturn]] void become_command(const std::vector<std::string>& arguments, const RunOptions& options,
+                                 const fs::path& streams) {
+  redirect(STDIN_FILENO, streams / "in", O_RDONLY);
+  redirect(STDOUT_FILENO, streams / "out", O_WRONLY | O_CREAT);
+  redirect(STDERR_FILENO, streams / "err", O_WRONLY | O_CREAT);
+  for (const std::string& one : options.environment)
+    setenv(one.substr(0, one.find('=')).c_str(), one.substr(one.find('=') + 1).c_str(), 1);
+  std::vector<std::string> words{DERMIS_COMMAND};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words)
+    pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  if (chdir(DERMIS_SOURCE_DIR) == 0) execv(DERMIS_COMMAND, pointers.data());
+  _exit(127);
+}
+
+} // namespace
+
+CommandTest::CommandTest() : folder_(make_folder()) {}
+
+CommandTest::~CommandTest() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+Outcome CommandTest::run(const std::vector<std::string>& arguments, const RunOptions& options) {
+  const fs::path streams = make_folder();
+  std::ofstream(streams / "in", std::ios::binary) << options.input;
+  const pid_t child = fork();
+  if (child == 0) become_command(arguments, options, streams);
+  Outcome outcome;
+  int status = 0;
+  if (!options.interrupt_after.empty()) {
+    while (!fs::exists(options.interrupt_after) && waitpid(child, &status, WNOHANG) == 0)
+      std::this_thread::sleep_for(5ms);
+    kill(child, SIGINT);
+  }
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.out = read_file(streams / "out");
+  outcome.err = read_file(streams / "err");
+  fs::remove_all(streams);
+  return outcome;
+}
+
+std::string CommandTest::write(const std::string& name, const std::string& text) const {
+  fs::create_directories((folder_ / name).parent_path());
+  std::ofstream(folder_ / name, std::ios::binary) << text;
+  return path(name);
+}
+
+std::vector<std::string> CommandTest::files(const std::string& below) const {
+  std::vector<std::string> names;
+  const fs::path root = below.empty() ? folder_ : folder_ / below;
+  if (!fs::exists(root)) return names;
+  for (const auto& entry : fs::recursive_directory_iterator(root))
+    names.push_back(fs::relative(entry.path(), root).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool is_json(const std::string& text) {
+  Diagnostics diagnostics;
+  return parse_document("answer", text, diagnostics).has_value();
+}
+
+} // namespace dermis::test

@@ -1,0 +1,44 @@
+#pragma once
+// Runs the built command in a folder of its own, as a shell would, and keeps what it said.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace dermis::test {
+
+struct Outcome {
+  int exit_code = -1; // 128 + signal if one ended it
+  std::string out, err;
+};
+
+struct RunOptions {
+  std::vector<std::string> environment; // "NAME=value", added
+  std::string input;                    // standard input
+  std::string interrupt_after;          // sends SIGINT as soon as this path exists; "": never
+};
+
+class CommandTest : public testing::Test {
+protected:
+  CommandTest();
+  ~CommandTest() override;
+
+  // Runs `dermis` with these arguments, from the repository's root.
+  static Outcome run(const std::vector<std::string>& arguments, const RunOptions& options = {});
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const; // returns its path
+  // Files and folders inside, relative, sorted; also what is hidden or temporary.
+  std::vector<std::string> files(const std::string& below = "") const;
+
+private:
+  std::filesystem::path folder_;
+};
+
+// True if `text` is one JSON document and nothing else.
+bool is_json(const std::string& text);
+
+} // namespace dermis::test
