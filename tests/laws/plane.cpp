@@ -22,13 +22,16 @@ std::string read_text(const std::string& path) {
 
 // A profile whose shape parameters are the given ones, in metres: at albedo .33 the scaling is 3.5.
 std::string profile_text(const Plane& plane) {
-  auto dmfp = [&](size_t c) { return plane.d_px[c] * plane.pixel_pitch_m * 1000 * dermis::subsurface::burley_scaling_dmfp(0.33); };
+  auto dmfp = [&](size_t c) {
+    return plane.d_px[c] * plane.pixel_pitch_m * 1000 * dermis::subsurface::burley_scaling_dmfp(0.33);
+  };
   return fmt::format(R"({{"dermis_profile": 1, "name": "plane", "source": "test",
                           "dmfp_mm": [{:.12g}, {:.12g}, {:.12g}], "albedo": [0.33, 0.33, 0.33]}})",
                      dmfp(0), dmfp(1), dmfp(2));
 }
 
-// Looking down -z, pixels of one pitch, clip space y down; depth range is of no account: the frame gives view depth.
+// Looking down -z, pixels of one pitch, clip space y down; depth range is of no account: the frame gives view
+// depth.
 std::array<float, 16> orthographic(double width_m, double height_m) {
   std::array<float, 16> m{};
   m[0] = static_cast<float>(2 / width_m);

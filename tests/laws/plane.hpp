@@ -1,5 +1,6 @@
 #pragma once
-// A plane that faces an orthographic camera, run through a shipped graph on the device: where the closed forms hold.
+// A plane that faces an orthographic camera, run through a shipped graph on the device: where the closed
+// forms hold.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,9 @@ struct Plane {
   uint32_t width = 256, height = 256;
   double pixel_pitch_m = 1e-3;
   std::array<double, 3> d_px = {4, 4, 4}; // of profile 1, in pixels; profile 2 has the same
-  std::function<float(double x, double y)> light = [](double, double) { return 1.0f; }; // pixel centres: integers
+  std::function<float(double x, double y)> light = [](double, double) {
+    return 1.0f;
+  }; // pixel centres: integers
   std::function<uint8_t(int x, int y)> profile = [](int, int) { return uint8_t{1}; };
   std::function<float(int x, int y)> depth_m = [](int, int) { return 1.0f; };
   std::function<float(int x, int y)> scatter_scale; // empty: not bound
@@ -35,8 +38,8 @@ struct Picture {
 
 using Settings = std::vector<std::pair<std::string, std::string>>; // name, JSON text
 
-// Runs configs/graphs/<graph>.json under the validation layer and returns `scattered_light`. Fails the test on any
-// error and on any validation message.
+// Runs configs/graphs/<graph>.json under the validation layer and returns `scattered_light`. Fails the test
+// on any error and on any validation message.
 Picture run(const std::string& graph, const Plane& plane, const Settings& settings);
 
 // Why tests of this room cannot run here; "" when they can. The answer is found once.
