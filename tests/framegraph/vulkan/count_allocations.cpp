@@ -8,10 +8,19 @@ namespace {
 thread_local uint64_t allocations = 0;
 }
 
-void* operator new(std::size_t bytes) {
+// The nothrow forms are replaced too: what they gave is freed by the plain delete.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
   ++allocations;
-  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
+  return std::malloc(bytes == 0 ? 1 : bytes);
+}
+
+void* operator new(std::size_t bytes) {
+  if (void* memory = operator new(bytes, std::nothrow)) return memory;
   throw std::bad_alloc();
+}
+
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
 }
 
 void operator delete(void* memory) noexcept {
