@@ -25,7 +25,7 @@ struct PlanResource {
   Format format = Format::undefined;
   uint32_t width = 1, height = 1, mips = 1, layers = 1; // images, at the allocated view size
   uint64_t bytes = 0;                                   // buffers: size asked for
-  uint32_t vk_usage = 0;                                // union of its ports' usages; histories: and to be cleared
+  uint32_t vk_usage = 0;                                // of all its ports; histories: and of a clear
   uint32_t instance_count = 1;                          // > 1: history
   uint32_t first_instance = no_instance; // into Plan::placements; no_instance: the host's memory
   int32_t slot =
