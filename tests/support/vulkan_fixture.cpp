@@ -54,7 +54,7 @@ uint32_t texel_bytes(VkFormat format) {
 } // namespace
 
 struct VulkanTest::Parts {
-  void* library = nullptr;
+  void* loader = nullptr;
 #define TEST_FUNCTION(name) PFN_##name name = nullptr;
   TEST_INSTANCE_FUNCTIONS(TEST_FUNCTION)
   TEST_DEVICE_FUNCTIONS(TEST_FUNCTION)
@@ -88,10 +88,10 @@ VulkanTest::~VulkanTest() = default;
 
 void VulkanTest::SetUp() {
   Parts& p = *parts_;
-  p.library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
-  if (p.library == nullptr) GTEST_SKIP() << "there is no Vulkan loader (libvulkan.so.1)";
+  p.loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+  if (p.loader == nullptr) GTEST_SKIP() << "there is no Vulkan loader (libvulkan.so.1)";
   get_instance_proc_addr =
-      reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(p.library, "vkGetInstanceProcAddr"));
+      reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(p.loader, "vkGetInstanceProcAddr"));
   const auto global = [&](const char* name) { return get_instance_proc_addr(VK_NULL_HANDLE, name); };
 
   const auto enumerate_layers =
