@@ -36,6 +36,9 @@ render() { # scene, graph, folder, more options
 for graph in burley separable; do
   render bust "$graph" "bust_$graph"
 done
+say
+build/release/dermis render configs/scenes/bust.json --graph none --size 640x360 --frames 1 --out out/bust_without --quiet
+say "Without scattering, to compare: out/bust_without"
 
 say
 if [[ -z "$head" ]]; then

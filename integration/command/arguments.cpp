@@ -123,7 +123,9 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       "--out out/",
       render, [](CLI::App& verb, RenderOptions& options) {
         verb.add_option("scene", options.scene, "Scene file")->required()->type_name("FILE");
-        verb.add_option("--graph,-g", options.graph, "Graph file")->required()->type_name("FILE");
+        verb.add_option("--graph,-g", options.graph, "Graph file, or none to render without Dermis")
+            ->required()
+            ->type_name("FILE");
         verb.add_option("--out,-o", options.out, "Folder for pictures")->required()->type_name("DIR");
         add_size(verb, options.size);
         verb.add_option("--frames,-n", options.frames, "Frames to render [8]")

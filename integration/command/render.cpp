@@ -18,6 +18,7 @@
 namespace dermis::tools {
 namespace {
 
+constexpr std::string_view no_graph = "none"; // for --graph: as the engine looks without Dermis
 const ChannelNames rgb_names = {"R", "G", "B"};
 
 demo::Error cannot_write(std::string problem) {
@@ -107,6 +108,7 @@ bool textured_before(const Graph& graph, const CompileChoices& choices) {
 // Nothing to compare with: no scattered light handed out, no subsurface pixel, or not asked for.
 std::string why_no_error(const Run& run) {
   if (run.textured_before) return "'texturing' puts albedo into the light that is scattered";
+  if (run.options.graph == no_graph) return "rendered without a graph";
   if (run.options.subset == 0) return "not asked for (--subset 0)";
   if (run.last_scattered.empty()) return "the graph does not export 'scattered_light'";
   if (subsurface_pixels(run.last.profile) == 0) return "no pixel of the last frame has a profile";
@@ -158,30 +160,36 @@ ExitCode report(Run& run) {
 } // namespace
 
 ExitCode render(const Session& session, const RenderOptions& options) {
-  // Read the graph here first: its messages then come with excerpts and as JSON, and --set is checked.
-  Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, diagnostics);
-  if (!loaded) return fail_graph(session, options.graph, diagnostics);
-  const CompileChoices choices = read_choices(loaded->graph, options.settings);
-  if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
-  if (!compile_generic(*loaded, options.size, choices, diagnostics))
-    return fail_graph(session, options.graph, diagnostics);
-
   demo::RenderOptions engine;
   engine.scene = options.scene;
-  engine.graph = options.graph;
   engine.model = {options.model.model, options.model.albedo, options.model.normal, options.model.specular,
                   options.model.height};
   engine.width = options.size.width;
   engine.height = options.size.height;
   engine.frames = options.frames;
-  engine.settings = settings_as_json(loaded->graph, options.settings);
+
+  // The graph is read here first: its messages then come with excerpts and as JSON, and --set is checked.
+  bool textured = false;
+  if (options.graph != no_graph) {
+    Diagnostics diagnostics;
+    const std::optional<LoadedGraph> loaded = load_graph(options.graph, diagnostics);
+    if (!loaded) return fail_graph(session, options.graph, diagnostics);
+    const CompileChoices choices = read_choices(loaded->graph, options.settings);
+    if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+    if (!compile_generic(*loaded, options.size, choices, diagnostics))
+      return fail_graph(session, options.graph, diagnostics);
+    engine.graph = options.graph;
+    engine.settings = settings_as_json(loaded->graph, options.settings);
+    textured = textured_before(loaded->graph, choices);
+  } else if (!options.settings.empty()) {
+    return fail(session, ExitCode::usage, "--set needs a graph");
+  }
 
   Run run{.session = session,
           .options = options,
           .progress =
               Progress(progress_style(session.quiet, session.json), "render", "frame", options.frames),
-          .textured_before = textured_before(loaded->graph, choices)};
+          .textured_before = textured};
   demo::RenderCallbacks callbacks;
   callbacks.on_start = [&](const demo::RenderInfo& info) { return start(run, info); };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) { return take_frame(run, frame); };

@@ -4,6 +4,7 @@
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "integration/command/graph_input.hpp"
+#include "integration/demo_engine/scene/read_scene.hpp"
 #include "passes/subsurface/profile.hpp"
 
 #include <fmt/format.h>
@@ -29,9 +30,15 @@ bool check_profile(const Document& document, Diagnostics& diagnostics) {
   return subsurface::read_profile(document, diagnostics).has_value();
 }
 
+bool check_scene(const Document& document, Diagnostics& diagnostics) {
+  const SourceFile file = diagnostics.files[document.file.value];
+  return demo::parse_scene(file.name, file.text, diagnostics).has_value();
+}
+
 constexpr FileKind file_kinds[] = {
     {"dermis", "graph", check_graph},
     {"dermis_profile", "profile", check_profile},
+    {"dermis_scene", "scene", check_scene},
 };
 
 // Told apart by the version key that each format has at its root; a file with none is read as a graph, whose

@@ -59,6 +59,22 @@ TEST_F(Captures, EvenLightStaysAsItIs) {
     EXPECT_NEAR(value, 0.5f, 1e-3f);
 }
 
+TEST_F(Captures, TheValidationLayerHasNothingToSay) {
+  write_plane(path("capture/frame_0000"));
+  Plane other;
+  other.width = 48; // another size: another graph
+  write_plane(path("capture/frame_0001"), other);
+  RunOptions options;
+  options.environment = validation_environment();
+  for (const char* graph : {burley, "configs/graphs/separable.json"}) {
+    const Outcome outcome = run({"apply", "--graph", graph, "--frames", path("capture"), "--out", path("out"),
+                                 "--json", "--repeat", "3"},
+                                options);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(is_json(outcome.out)) << outcome.out; // a message of the layer would stand beside it
+  }
+}
+
 TEST_F(Captures, WithoutScatteringTheLightComesBackBitForBit) {
   Plane plane;
   plane.profiles = R"([{ "id": 1, "dmfp_mm": [0, 0, 0], "albedo": [1, 1, 1] }])";

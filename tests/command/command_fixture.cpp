@@ -102,6 +102,12 @@ std::vector<std::string> CommandTest::files(const std::string& below) const {
   return names;
 }
 
+std::vector<std::string> validation_environment() {
+  return {"VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation",
+          "VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT:"
+          "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT"};
+}
+
 bool is_json(const std::string& text) {
   Diagnostics diagnostics;
   return parse_document("answer", text, diagnostics).has_value();

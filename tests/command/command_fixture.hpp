@@ -38,6 +38,10 @@ private:
   std::filesystem::path folder_;
 };
 
+// Variables under which the Khronos layer checks everything that the command asks of the driver,
+// synchronization included; what it finds goes to standard output.
+std::vector<std::string> validation_environment();
+
 // True if `text` is one JSON document and nothing else.
 bool is_json(const std::string& text);
 

@@ -32,7 +32,7 @@ std::string burley_with(const std::string& from, const std::string& to) {
 
 TEST_F(GraphFiles, TheShippedFilesHaveNoProblems) {
   std::vector<std::string> words{"validate"};
-  for (const char* folder : {"graphs", "profiles"})
+  for (const char* folder : {"graphs", "profiles", "scenes"})
     for (const auto& entry :
          std::filesystem::directory_iterator(fmt::format("{}/configs/{}", DERMIS_SOURCE_DIR, folder)))
       words.push_back(entry.path().string());
@@ -40,6 +40,7 @@ TEST_F(GraphFiles, TheShippedFilesHaveNoProblems) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("burley.json: graph, no problems"));
   EXPECT_THAT(outcome.out, HasSubstr("skin.json: profile, no problems"));
+  EXPECT_THAT(outcome.out, HasSubstr("bust.json: scene, no problems"));
 }
 
 TEST_F(GraphFiles, MalformedJsonIsNamedWithFileLineAndColumn) {

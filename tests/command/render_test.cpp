@@ -47,6 +47,14 @@ TEST_F(Render, TheAnswerForProgramsIsOneJsonDocumentAndNothingElse) {
   EXPECT_THAT(outcome.err, IsEmpty());
 }
 
+TEST_F(Render, TheValidationLayerHasNothingToSay) {
+  RunOptions options;
+  options.environment = validation_environment();
+  const Outcome outcome = render(bust, burley, {"--frames", "3", "--subset", "0", "--json"}, options);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(is_json(outcome.out)) << outcome.out; // a message of the layer would stand beside it
+}
+
 TEST_F(Render, WhatTheGraphSawCanBeAppliedAgain) {
   const Outcome captured =
       render(bust, burley, {"--frames", "2", "--subset", "0", "--capture", path("capture")});
@@ -55,6 +63,14 @@ TEST_F(Render, WhatTheGraphSawCanBeAppliedAgain) {
       run({"apply", "--graph", burley, "--frames", path("capture"), "--out", path("again")});
   EXPECT_EQ(applied.exit_code, 0) << applied.err;
   EXPECT_THAT(files("again"), Contains(HasSubstr("scattered.exr")));
+}
+
+TEST_F(Render, WithoutAGraphThePictureIsTheEnginesOwn) {
+  const Outcome outcome = render(bust, "none", {"--frames", "1"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(files("out"), testing::ElementsAre("color_0000.exr", "frame_0000.png"));
+  EXPECT_THAT(outcome.out, HasSubstr("rendered without a graph"));
+  EXPECT_EQ(render(bust, "none", {"--set", "samples=8"}).exit_code, 2);
 }
 
 TEST_F(Render, ASceneThatIsNotThereIsNamedAndNothingIsWritten) {
