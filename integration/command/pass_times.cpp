@@ -42,8 +42,10 @@ std::string format_times(const PassTimes& times, const std::string& title) {
     return fmt::format("{:.1f} %", total > 0.0 ? 100.0 * part / total : 0.0);
   };
   Table table;
-  table.columns = {{title}, {"device time", true}, {"share", true}};
-  for (const PassTimes::Row& row : times.rows())
+  const std::vector<PassTimes::Row> rows = times.rows();
+  const size_t frames = rows.empty() ? 0 : rows.front().frames;
+  table.columns = {{fmt::format("{}, median of {}", title, frames)}, {"device time", true}, {"share", true}};
+  for (const PassTimes::Row& row : rows)
     table.rows.push_back({row.pass, format_milliseconds(row.median), share(row.median)});
   table.rows.push_back({});
   table.rows.push_back({"all", format_milliseconds(total), share(total)});

@@ -31,7 +31,8 @@ private:
   std::vector<Samples> samples_;
 };
 
-// Pass, device time and share, with a sum. `title` heads the first column.
+// Pass, device time and share, with a sum. `title` heads the first column, with how many frames were
+// measured.
 std::string format_times(const PassTimes& times, const std::string& title);
 // [{"pass": .., "milliseconds": .., "frames": ..}, ..]
 void write_times(JsonWriter& writer, const PassTimes& times);
