@@ -114,6 +114,17 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
       });
+  add_verb<TestOptions>(
+      app, invocation, "test", "Compare graphs with the expectations that stand beside them",
+      "dermis test configs/\n  dermis test configs/ --junit results.xml", test,
+      [](CLI::App& verb, TestOptions& options) {
+        verb.add_option("paths", options.paths, "Expectation files (NAME.expect.json), or folders of them")
+            ->required()
+            ->type_name("PATH");
+        verb.add_flag("--update", options.update,
+                      "State what is found now, in the files; review the change before you commit it");
+        verb.add_option("--junit", options.junit, "File for the results as JUnit XML")->type_name("FILE");
+      });
 }
 
 void add_picture_verbs(CLI::App& app, Invocation& invocation) {

@@ -1,8 +1,10 @@
-// dermis validate: reads files as strictly as everything else does, and compiles graphs with the generic
-// device.
+// dermis validate: reads files as strictly as everything else does, compiles graphs with the generic device
+// and lets the verifier check their plans.
 
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/json_writer.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "integration/command/expect/expectation.hpp"
 #include "integration/command/graph_input.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
 #include "passes/subsurface/profile.hpp"
@@ -23,7 +25,13 @@ bool check_graph(const Document& document, Diagnostics& diagnostics) {
   const std::optional<LoadedGraph> loaded = load_graph(document, diagnostics);
   if (!loaded) return false;
   const CompileChoices choices = read_choices(loaded->graph);
-  return compile_generic(*loaded, default_size, choices, diagnostics).has_value();
+  const std::optional<CompiledPlan> compiled = compile_generic(*loaded, default_size, choices, diagnostics);
+  if (!compiled) return false;
+  const std::vector<std::string> objections = verify(compiled->plan);
+  for (const std::string& objection : objections)
+    diagnostics.add(DiagnosticId::internal_defect, document.where(document.root()),
+                    fmt::format("the verifier refuses the plan: {}", objection));
+  return objections.empty();
 }
 
 bool check_profile(const Document& document, Diagnostics& diagnostics) {
@@ -35,10 +43,15 @@ bool check_scene(const Document& document, Diagnostics& diagnostics) {
   return demo::parse_scene(file.name, file.text, diagnostics).has_value();
 }
 
+bool check_expectations(const Document& document, Diagnostics& diagnostics) {
+  return read_expectations(document, diagnostics).has_value();
+}
+
 constexpr FileKind file_kinds[] = {
     {"dermis", "graph", check_graph},
     {"dermis_profile", "profile", check_profile},
     {"dermis_scene", "scene", check_scene},
+    {"dermis_expect", "expectations", check_expectations},
 };
 
 // Told apart by the version key that each format has at its root; a file with none is read as a graph, whose

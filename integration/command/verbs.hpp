@@ -18,7 +18,7 @@ struct Size {
 using NamedValue = std::pair<std::string, std::string>;
 
 struct ValidateOptions {
-  std::vector<std::string> files; // graphs, profiles, scenes; told apart by their version key
+  std::vector<std::string> files; // graphs, profiles, expectations; told apart by their version key
 };
 ExitCode validate(const Session& session, const ValidateOptions& options);
 
@@ -38,6 +38,13 @@ struct GraphOptions {
   std::string out = "-"; // DOT, or JSON with --json
 };
 ExitCode graph(const Session& session, const GraphOptions& options);
+
+struct TestOptions {
+  std::vector<std::string> paths; // expectation files, or folders that hold some at any depth
+  bool update = false;            // state what is observed instead of comparing
+  std::string junit;              // file for results; "": none
+};
+ExitCode test(const Session& session, const TestOptions& options);
 
 struct ModelOptions { // of a scene with a shape "model"
   std::string model, albedo, normal, specular;

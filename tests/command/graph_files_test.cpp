@@ -39,6 +39,7 @@ TEST_F(GraphFiles, TheShippedFilesHaveNoProblems) {
   const Outcome outcome = run(words);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("burley.json: graph, no problems"));
+  EXPECT_THAT(outcome.out, HasSubstr("burley.expect.json: expectations, no problems"));
   EXPECT_THAT(outcome.out, HasSubstr("skin.json: profile, no problems"));
   EXPECT_THAT(outcome.out, HasSubstr("bust.json: scene, no problems"));
 }

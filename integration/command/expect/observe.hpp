@@ -1,0 +1,24 @@
+#pragma once
+// Compiles a graph under the inputs of a case and says what came of it.
+
+#include "integration/command/expect/expectation.hpp"
+#include "integration/command/graph_input.hpp"
+
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+struct Observation {
+  Facts facts;
+  std::vector<std::string> messages;   // of the diagnostics, for people
+  std::string problem;                 // the inputs do not fit the graph: nothing was compiled
+  std::vector<std::string> objections; // of the verifier, to a plan that it should have accepted
+};
+
+Observation observe(const LoadedGraph& loaded, const ExpectedCase& inputs);
+
+// What is observed of a graph that cannot even be read: its messages.
+Observation observe_messages(const Diagnostics& diagnostics);
+
+} // namespace dermis::tools
