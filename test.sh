@@ -6,12 +6,13 @@ cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 source .ci/common.sh
 
 usage="usage: ./test.sh [--full]
-  --full   also builds with address and undefined-behaviour sanitizers and runs the tests there"
+  --full   also builds with address and undefined-behaviour sanitizers and runs the tests there; tries 10,000
+           random graphs where the quick run tries 1,500"
 
 presets=(release)
 for argument in "$@"; do
   case "$argument" in
-    --full) presets+=(asan) ;;
+    --full) presets+=(asan); export DERMIS_TESTS_FULL=1 ;;
     -h | --help) say "$usage"; exit 0 ;;
     *) fail 2 "unknown option '$argument'"$'\n'"$usage" ;;
   esac

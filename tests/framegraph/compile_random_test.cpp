@@ -1,5 +1,6 @@
 // Laws that every plan obeys, tried on graphs drawn from fixed seeds.
 
+#include "tests/framegraph/plan_mutations.hpp"
 #include "tests/framegraph/random_graph.hpp"
 
 #include "framegraph/verify/verify.hpp"
@@ -10,22 +11,6 @@ namespace dermis::testing {
 namespace {
 
 constexpr uint64_t seeds = 400;
-
-Plan without_barrier(const Plan& plan, uint32_t index) {
-  Plan mutant = plan;
-  mutant.barriers.erase(mutant.barriers.begin() + index);
-  for (PlanPass& pass : mutant.passes) {
-    if (index < pass.first_barrier)
-      --pass.first_barrier;
-    else if (index < pass.first_barrier + pass.barrier_count)
-      --pass.barrier_count;
-  }
-  if (index < mutant.first_final_barrier)
-    --mutant.first_final_barrier;
-  else if (index < mutant.first_final_barrier + mutant.final_barrier_count)
-    --mutant.final_barrier_count;
-  return mutant;
-}
 
 TEST(RandomGraphs, EveryPlanIsAcceptedByTheVerifier) {
   uint64_t passes = 0, barriers = 0, histories = 0, aliases = 0;

@@ -1,0 +1,132 @@
+#include "framegraph/interpret/commands.hpp"
+
+#include "framegraph/interpret/stand_in.hpp"
+#include "framegraph/verify/structure.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <queue>
+
+namespace dermis {
+namespace {
+
+// One effect of a command on one piece of memory.
+struct Touch {
+  uint32_t command = 0;
+  bool is_barrier = false;
+  Stage source = 0;      // barriers: what they wait for; passes: where the access happens
+  Stage destination = 0; // barriers: what waits for them
+  bool from_host = false, to_host = false;
+};
+
+bool waits(const Touch& later, const Touch& earlier) {
+  if (later.is_barrier && later.from_host) return earlier.is_barrier && earlier.to_host;
+  if (later.is_barrier && earlier.is_barrier) return (earlier.destination & later.source) != 0;
+  if (later.is_barrier) return (earlier.source & ~later.source) == 0;
+  return earlier.is_barrier && (later.source & earlier.destination) != 0;
+}
+
+// By piece of memory, in the order of the commands.
+std::vector<std::vector<Touch>> touches_of(const Plan& plan, const Memory& memory,
+                                           const std::vector<Command>& commands) {
+  std::vector<std::vector<Touch>> touches(memory.overlap.size());
+  const auto touch = [&](uint32_t resource, uint32_t frames_back, uint32_t frame, const Touch& one) {
+    for (const uint32_t piece : memory.overlap[memory.piece(plan, resource, frames_back, frame)])
+      touches[piece].push_back(one);
+  };
+  for (uint32_t c = 0; c < commands.size(); ++c) {
+    const Command& command = commands[c];
+    if (command.is_pass) {
+      const PlanPass& pass = plan.passes[command.index];
+      for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+        const PlanAccess& access = plan.accesses[a];
+        touch(access.resource, access.frames_back, command.frame, {c, false, access.stages, 0});
+      }
+    } else {
+      const PlanBarrier& barrier = plan.barriers[command.index];
+      touch(barrier.resource, barrier.frames_back, command.frame,
+            {c, true, barrier.source_stages, barrier.destination_stages, barrier.from_host, barrier.to_host});
+    }
+  }
+  return touches;
+}
+
+} // namespace
+
+uint32_t Memory::piece(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame) const {
+  const uint32_t count = plan.resources[resource].instance_count;
+  return first[resource] + (frame % count + count - frames_back % count) % count;
+}
+
+Memory memory_of(const Plan& plan) {
+  Memory memory;
+  std::vector<uint32_t> placement; // by piece
+  for (const PlanResource& resource : plan.resources) {
+    memory.first.push_back(static_cast<uint32_t>(placement.size()));
+    for (uint32_t i = 0; i < resource.instance_count; ++i)
+      placement.push_back(resource.first_instance == no_instance ? no_instance : resource.first_instance + i);
+  }
+  memory.overlap.resize(placement.size());
+  for (uint32_t a = 0; a < placement.size(); ++a)
+    for (uint32_t b = 0; b < placement.size(); ++b) {
+      const bool placed = placement[a] != no_instance && placement[b] != no_instance;
+      if (a == b || (placed && share_memory(plan.placements[placement[a]], plan.placements[placement[b]])))
+        memory.overlap[a].push_back(b);
+    }
+  return memory;
+}
+
+std::vector<Command> record(const Plan& plan, uint32_t frames) {
+  std::vector<Command> commands;
+  uint32_t batch = 0;
+  const auto barriers = [&](uint32_t frame, uint32_t first, uint32_t count) {
+    for (uint32_t b = first; b < first + count; ++b)
+      commands.push_back({frame, false, b, batch});
+    ++batch;
+  };
+  for (uint32_t frame = 0; frame < frames; ++frame) {
+    for (uint32_t p = 0; p < plan.passes.size(); ++p) {
+      barriers(frame, plan.passes[p].first_barrier, plan.passes[p].barrier_count);
+      commands.push_back({frame, true, p, 0});
+    }
+    barriers(frame, plan.first_final_barrier, plan.final_barrier_count);
+  }
+  return commands;
+}
+
+std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
+                                  const std::vector<Command>& commands, uint64_t seed) {
+  std::vector<uint32_t> order(commands.size());
+  std::iota(order.begin(), order.end(), 0u);
+  if (seed == 0) return order;
+  std::vector<std::vector<uint32_t>> followers(commands.size());
+  for (const std::vector<Touch>& on_piece : touches_of(plan, memory, commands))
+    for (size_t later = 0; later < on_piece.size(); ++later)
+      for (size_t earlier = 0; earlier < later; ++earlier) {
+        const uint32_t a = on_piece[earlier].command, b = on_piece[later].command;
+        const bool one_batch =
+            !commands[a].is_pass && !commands[b].is_pass && commands[a].batch == commands[b].batch;
+        if (a != b && !one_batch && waits(on_piece[later], on_piece[earlier])) followers[a].push_back(b);
+      }
+  std::vector<uint32_t> waits_for(commands.size(), 0);
+  for (const auto& all : followers)
+    for (const uint32_t b : all)
+      ++waits_for[b];
+  // Whatever may run next runs by a priority drawn for each command, which moves some of them far.
+  using Ready = std::pair<uint64_t, uint32_t>;
+  std::priority_queue<Ready> ready;
+  const auto release = [&](uint32_t c) { ready.emplace(arbitrary_pixels(seed, c)[0], c); };
+  for (uint32_t c = 0; c < commands.size(); ++c)
+    if (waits_for[c] == 0) release(c);
+  order.clear();
+  while (!ready.empty()) {
+    const uint32_t next = ready.top().second;
+    ready.pop();
+    order.push_back(next);
+    for (const uint32_t b : followers[next])
+      if (--waits_for[b] == 0) release(b);
+  }
+  return order;
+}
+
+} // namespace dermis

@@ -1,0 +1,39 @@
+#pragma once
+// A plan over several frames as one list of commands, and the orders in which a device may run them.
+
+#include "framegraph/compile/plan.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace dermis {
+
+// A piece of memory with contents of its own: a placement, or what the host binds to a resource.
+struct Memory {
+  std::vector<uint32_t> first;                // by resource: number of its first piece
+  std::vector<std::vector<uint32_t>> overlap; // by piece: pieces with a byte in common, itself included
+
+  uint32_t piece(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame) const;
+};
+
+// `plan` must pass verify_structure().
+Memory memory_of(const Plan& plan);
+
+struct Command {
+  uint32_t frame = 0;
+  bool is_pass = false;
+  uint32_t index = 0; // into Plan::passes or Plan::barriers
+  uint32_t batch = 0; // barriers of one batch have the same number and do not wait for each other
+};
+
+// All commands of `frames` frames, in the order in which they are recorded.
+std::vector<Command> record(const Plan& plan, uint32_t frames);
+
+// An order of `commands`, as indices into it, that execution dependencies allow and `seed` picks; seed 0: as
+// recorded. A barrier waits for accesses and barriers before it, in its source scope, on memory that overlaps
+// its own; accesses after it, in its destination scope, on such memory wait for it. What the host gives for
+// one frame waits for what it was given back in the frame before. Nothing else waits.
+std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
+                                  const std::vector<Command>& commands, uint64_t seed);
+
+} // namespace dermis

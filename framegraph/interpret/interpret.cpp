@@ -1,0 +1,84 @@
+#include "framegraph/interpret/interpret.hpp"
+
+#include "framegraph/interpret/commands.hpp"
+
+#include <algorithm>
+
+namespace dermis {
+namespace {
+
+struct Interpreter {
+  const Plan& plan;
+  const InterpretOptions& options;
+  Memory memory;
+  std::vector<Pixels> pieces;
+  uint64_t spoiled = 0; // how often contents were lost: each time to other pixels
+  Interpretation out;
+
+  Pixels poison() { return arbitrary_pixels(~options.poison, spoiled++); }
+
+  void prepare() {
+    memory = memory_of(plan);
+    for (const PlanResource& resource : plan.resources)
+      for (uint32_t i = 0; i < resource.instance_count; ++i)
+        pieces.push_back(resource.instance_count > 1 ? Pixels{} : poison());
+    uint32_t slots = 0;
+    for (const PlanResource& resource : plan.resources)
+      slots = std::max(slots, static_cast<uint32_t>(resource.slot + 1));
+    out.assign(options.frames, std::vector<std::optional<Pixels>>(slots));
+  }
+
+  void write(uint32_t piece, const Pixels& pixels) {
+    for (const uint32_t other : memory.overlap[piece])
+      if (other != piece) pieces[other] = poison();
+    pieces[piece] = pixels;
+  }
+
+  void run(const PlanBarrier& barrier, uint32_t frame) {
+    const PlanResource& resource = plan.resources[barrier.resource];
+    const uint32_t piece = memory.piece(plan, barrier.resource, barrier.frames_back, frame);
+    const auto slot = static_cast<uint32_t>(resource.slot);
+    if (barrier.from_host)
+      pieces[piece] = host_pixels(options.contents, frame, slot);
+    else if (resource.type == ResourceType::image && barrier.old_layout == Layout::undefined)
+      write(piece, poison()); // discarded
+    if (barrier.to_host) out[frame][slot] = pieces[piece];
+  }
+
+  void run(const PlanPass& pass, uint32_t frame) {
+    const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
+    std::vector<StandInInput> inputs;
+    for (uint32_t a = 0; a < pass.access_count; ++a)
+      if ((accesses[a].access & ~all_write_access) != 0)
+        inputs.push_back({accesses[a].port,
+                          pieces[memory.piece(plan, accesses[a].resource, accesses[a].frames_back, frame)]});
+    std::sort(inputs.begin(), inputs.end(),
+              [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
+    for (uint32_t a = 0; a < pass.access_count; ++a)
+      if ((accesses[a].access & all_write_access) != 0)
+        write(memory.piece(plan, accesses[a].resource, accesses[a].frames_back, frame),
+              stand_in(pass.declared.value, accesses[a].port, inputs));
+  }
+};
+
+} // namespace
+
+Pixels host_pixels(uint64_t contents, uint32_t frame, uint32_t slot) {
+  return arbitrary_pixels(contents, (uint64_t{frame} << 32u) + slot);
+}
+
+Interpretation interpret(const Plan& plan, const InterpretOptions& options) {
+  Interpreter machine{plan, options, {}, {}, 0, {}};
+  machine.prepare();
+  const std::vector<Command> commands = record(plan, options.frames);
+  for (const uint32_t c : legal_order(plan, machine.memory, commands, options.order)) {
+    const Command& command = commands[c];
+    if (command.is_pass)
+      machine.run(plan.passes[command.index], command.frame);
+    else
+      machine.run(plan.barriers[command.index], command.frame);
+  }
+  return std::move(machine.out);
+}
+
+} // namespace dermis

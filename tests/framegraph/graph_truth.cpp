@@ -1,0 +1,54 @@
+#include "tests/framegraph/graph_truth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace dermis::testing {
+namespace {
+
+bool is_slot(const ResourceDeclaration& resource) {
+  return resource.origin == Origin::imported || resource.exported;
+}
+
+} // namespace
+
+Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames,
+                           uint64_t contents) {
+  // contents_of[r][f]: of resource r at the end of frame f, or as far as the frame has come.
+  std::vector<std::vector<std::optional<Pixels>>> contents_of(graph.resources.size());
+  Interpretation out(frames);
+  for (uint32_t frame = 0; frame < frames; ++frame) {
+    uint32_t slot = 0;
+    for (size_t r = 0; r < graph.resources.size(); ++r) {
+      const bool import = graph.resources[r].origin == Origin::imported;
+      contents_of[r].push_back(import ? std::optional(host_pixels(contents, frame, slot)) : std::nullopt);
+      slot += is_slot(graph.resources[r]) ? 1 : 0;
+    }
+    const auto read = [&](const PortBinding& binding) {
+      if (binding.frames_back > frame) return Pixels{}; // histories start from zero
+      const auto& found = contents_of[binding.resource.value][frame - binding.frames_back];
+      EXPECT_TRUE(found.has_value()) << graph.resources[binding.resource.value].name;
+      return found.value_or(Pixels{});
+    };
+    for (uint32_t p = 0; p < graph.passes.size(); ++p) {
+      const PassDeclaration& pass = graph.passes[p];
+      std::vector<StandInInput> inputs;
+      for (const PortBinding& binding : pass.reads)
+        inputs.push_back({binding.port, read(binding)});
+      for (const PortBinding& binding : pass.writes)
+        if (usage_info(kinds[pass.kind].ports[binding.port].usage).reads)
+          inputs.push_back({binding.port, read(binding)});
+      std::sort(inputs.begin(), inputs.end(),
+                [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
+      for (const PortBinding& binding : pass.writes)
+        contents_of[binding.resource.value][frame] = stand_in(p, binding.port, inputs);
+    }
+    for (size_t r = 0; r < graph.resources.size(); ++r)
+      if (is_slot(graph.resources[r]))
+        out[frame].push_back(graph.resources[r].exported ? contents_of[r][frame] : std::nullopt);
+  }
+  return out;
+}
+
+} // namespace dermis::testing

@@ -1,0 +1,183 @@
+// Metamorphic laws: whatever a plan is free to choose, the host gets the same pixels, and they are those that
+// the graph's declarations mean.
+
+#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/plan_mutations.hpp"
+#include "tests/framegraph/random_graph.hpp"
+#include "tests/framegraph/test_tier.hpp"
+
+#include "framegraph/verify/verify.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dermis::testing {
+namespace {
+
+constexpr uint32_t frames = 5; // each of up to four history instances is reused
+constexpr uint64_t orders = 3; // tried of each plan
+
+uint64_t random_graphs() {
+  return seeds_of_tier(1500, 10000);
+}
+
+InterpretOptions options(uint64_t contents, uint64_t poison = 1, uint64_t order = 0) {
+  return {frames, contents, poison, order};
+}
+
+// Slots that `truth` says nothing about may hold anything.
+bool agrees(const Interpretation& found, const Interpretation& truth) {
+  for (size_t frame = 0; frame < truth.size(); ++frame)
+    for (size_t slot = 0; slot < truth[frame].size(); ++slot)
+      if (truth[frame][slot] && found[frame][slot] != truth[frame][slot]) return false;
+  return true;
+}
+
+// Exports that nothing reads turned optional and left unbound, where the seed says so: what only they needed
+// is culled.
+std::vector<bool> leave_out_exports(GraphBuilder& builder, uint64_t seed) {
+  std::vector<bool> bound(builder.graph.resources.size(), true);
+  for (uint32_t r = 0; r < builder.graph.resources.size(); ++r) {
+    ResourceDeclaration& resource = builder.graph.resources[r];
+    if (!resource.exported || resource.origin == Origin::imported || r % 2 != seed % 2) continue;
+    resource.optional = true;
+    bound[r] = false;
+  }
+  return bound;
+}
+
+// Side effects that read every image keep every pass that writes one.
+GraphBuilder with_all_images_needed(GraphBuilder builder) {
+  const size_t resources = builder.graph.resources.size();
+  for (size_t r = 0; r < resources; ++r)
+    if (builder.graph.resources[r].type == ResourceType::image) {
+      const std::string name = builder.graph.resources[r].name;
+      builder.pass("needs_" + name, "test.probe", {{"a", name}}, {});
+    }
+  return builder;
+}
+
+TEST(Interpreter, EveryPlanGivesThePixelsThatTheGraphMeans) {
+  uint64_t compared = 0;
+  for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
+    const auto builder = random_graph(seed);
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    ASSERT_TRUE(agrees(interpret(compiled(builder).plan, options(seed)), truth)) << "seed " << seed;
+    for (const auto& slot : truth.back())
+      compared += slot.has_value();
+  }
+  EXPECT_GT(compared, random_graphs()); // at least the export that every graph has
+}
+
+TEST(Interpreter, OrdersThatTheBarriersAllowAndPoisonChangeNothing) {
+  uint64_t moved = 0;
+  for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
+    const auto builder = random_graph(seed);
+    const Plan plan = compiled(builder).plan;
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    for (uint64_t order = 1; order <= orders; ++order)
+      ASSERT_TRUE(agrees(interpret(plan, options(seed, order, order)), truth))
+          << "seed " << seed << ", order " << order;
+    moved += plan.passes.size() > 2;
+  }
+  EXPECT_GT(moved, random_graphs() / 2);
+}
+
+TEST(Interpreter, MemoryOfItsOwnForEveryResourceChangesNothing) {
+  uint64_t shared = 0;
+  for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
+    const auto builder = random_graph(seed);
+    const Plan plan = compiled(builder).plan;
+    const Plan apart = without_aliasing(plan);
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    ASSERT_TRUE(agrees(interpret(apart, options(seed, 2, seed + 1)), truth)) << "seed " << seed;
+    for (size_t h = 0; h < plan.heaps.size(); ++h)
+      shared += apart.heaps[h].size > plan.heaps[h].size;
+  }
+  EXPECT_GT(shared, random_graphs() / 4); // many of the plans do share memory
+}
+
+TEST(Interpreter, WhatIsCulledChangesNothingForTheHost) {
+  uint64_t fewer = 0, more = 0;
+  for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
+    GraphBuilder builder = random_graph(seed);
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    const size_t passes = compiled(builder).plan.passes.size();
+
+    const auto all = with_all_images_needed(builder);
+    const Plan uncut = compiled(all).plan;
+    ASSERT_TRUE(agrees(interpret(uncut, options(seed, 1, seed + 1)), truth)) << "seed " << seed;
+    more += uncut.passes.size() > passes + all.graph.passes.size() - builder.graph.passes.size();
+
+    const std::vector<bool> bound = leave_out_exports(builder, seed);
+    CompileInput input = builder.input();
+    input.bound = bound;
+    const Plan cut = compiled(builder, input).plan;
+    Interpretation wanted = truth;
+    const Interpretation found = interpret(cut, options(seed, 1, seed + 1));
+    for (size_t frame = 0; frame < frames; ++frame)
+      for (size_t slot = 0; slot < wanted[frame].size(); ++slot)
+        if (slot >= found[frame].size() || !found[frame][slot]) wanted[frame][slot].reset();
+    for (size_t r = 0, slot = 0; r < bound.size(); ++r) { // only what was left out is missing
+      const ResourceDeclaration& resource = builder.graph.resources[r];
+      if (resource.origin != Origin::imported && !resource.exported) continue;
+      if (bound[r]) {
+        ASSERT_EQ(wanted[0][slot].has_value(), truth[0][slot].has_value()) << "seed " << seed;
+      }
+      ++slot;
+    }
+    ASSERT_TRUE(agrees(found, wanted)) << "seed " << seed;
+    fewer += cut.passes.size() < passes;
+  }
+  EXPECT_GT(fewer, random_graphs() / 8);
+  EXPECT_GT(more, random_graphs() / 8);
+}
+
+// The laws above could hold of an interpreter that notices nothing. All barriers of a pass go at once, and no
+// memory is shared: one of them alone may hold the pass back from the writers of all its inputs. A few passes
+// still wait for them by way of a third one.
+TEST(Interpreter, PixelsChangeWhereAPassDoesNotWaitForWhatItReads) {
+  constexpr uint64_t tries = 16; // orders of each plan
+  uint64_t dropped = 0, noticed = 0;
+  for (uint64_t seed = 0; seed < seeds_of_tier(60, 300); ++seed) {
+    const auto builder = random_graph(seed);
+    const Plan plan = without_aliasing(compiled(builder).plan);
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    for (const PlanPass& pass : plan.passes) {
+      Plan mutant = plan;
+      bool reads = false;
+      for (uint32_t b = pass.first_barrier; b < pass.first_barrier + pass.barrier_count; ++b) {
+        PlanBarrier& barrier = mutant.barriers[b];
+        if (barrier.why != PlanBarrier::Why::read_after_write) continue;
+        barrier.source_stages = stage::host;
+        barrier.destination_stages = stage::host;
+        reads = true;
+      }
+      bool seen = false;
+      for (uint64_t order = 1; reads && order <= tries && !seen; ++order)
+        seen = !agrees(interpret(mutant, options(seed, order, order)), truth);
+      dropped += reads;
+      noticed += seen;
+    }
+  }
+  EXPECT_GT(dropped, 100u);
+  EXPECT_GT(noticed * 20, dropped * 19);
+}
+
+TEST(Interpreter, PixelsChangeWhereMemoryIsSharedWhileBothAreAlive) {
+  uint64_t moved = 0, noticed = 0;
+  for (uint64_t seed = 0; seed < seeds_of_tier(100, 1000); ++seed) {
+    const auto builder = random_graph(seed);
+    Plan plan = compiled(builder).plan;
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    for (Placement& placement : plan.placements)
+      placement.offset = 0;
+    if (verify(plan).empty()) continue;
+    ++moved;
+    noticed += !agrees(interpret(plan, options(seed)), truth);
+  }
+  EXPECT_GT(moved, 10u);
+  EXPECT_GT(noticed * 10, moved * 9);
+}
+
+} // namespace
+} // namespace dermis::testing

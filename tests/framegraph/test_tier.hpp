@@ -1,0 +1,13 @@
+#pragma once
+// How many random graphs a test tries: a quick number always, a large one in `./test.sh --full`.
+
+#include <cstdint>
+#include <cstdlib>
+
+namespace dermis::testing {
+
+inline uint64_t seeds_of_tier(uint64_t quick, uint64_t full) {
+  return std::getenv("DERMIS_TESTS_FULL") != nullptr ? full : quick;
+}
+
+} // namespace dermis::testing
