@@ -79,8 +79,11 @@ std::optional<SizeExpression> parse_size(const Document& document, NodeId node, 
     return out;
   }
   if (document[node].kind != NodeKind::array || document[node].child_count != 2) {
-    diagnostics.add(DiagnosticId::bad_size, document.where(node),
-                    fmt::format("{} must be a size; found {}", what, kind_name(document[node].kind)));
+    const bool list = document[node].kind == NodeKind::array;
+    diagnostics.add(DiagnosticId::wrong_type, document.where(node),
+                    fmt::format("{} must be a size: a string or [width, height]; found {}{}", what,
+                                kind_name(document[node].kind),
+                                list ? fmt::format(" of {} values", document[node].child_count) : ""));
     return std::nullopt;
   }
   const NodeId first = document[node].first_child;

@@ -1,6 +1,7 @@
 #include "integration/command/arguments.hpp"
 
 #include "framegraph/text/suggest.hpp"
+#include "integration/command/schemas.hpp"
 #include "integration/command/verbs.hpp"
 
 #include <CLI/CLI.hpp>
@@ -124,6 +125,19 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_flag("--update", options.update,
                       "State what is found now, in the files; review the change before you commit it");
         verb.add_option("--junit", options.junit, "File for the results as JUnit XML")->type_name("FILE");
+      });
+}
+
+void add_schema_verb(CLI::App& app, Invocation& invocation) {
+  add_verb<SchemaOptions>(
+      app, invocation, "schema", "Write the JSON Schemas of the file formats, for editors",
+      "dermis schema graph\n  dermis schema --out configs/schema", schema,
+      [](CLI::App& verb, SchemaOptions& options) {
+        verb.add_option("name", options.name, fmt::format("One of {}; without one: all", schema_names()))
+            ->type_name("NAME");
+        verb.add_option("--out,-o", options.out,
+                        "File to write, - for standard output [-]; a folder where all are written")
+            ->type_name("PATH");
       });
 }
 
@@ -251,6 +265,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
              "output or\n"
              "missing package; 4 a defect of the program.");
   add_text_verbs(app, invocation);
+  add_schema_verb(app, invocation);
   add_picture_verbs(app, invocation);
 
   // Also a line that cannot be read is answered in the way it asks for.

@@ -51,6 +51,12 @@ struct ModelOptions { // of a scene with a shape "model"
   double height = 0.0; // metres; 0: as in the file
 };
 
+struct SchemaOptions {
+  std::string name;      // graph, profile, ...; "": all of them
+  std::string out = "-"; // file, or the folder for all
+};
+ExitCode schema(const Session& session, const SchemaOptions& options);
+
 struct RenderOptions {
   std::string scene, graph, out, capture; // capture "": none
   Size size{640, 360};

@@ -2,7 +2,7 @@
 // The capture folder: what a frame graph was given, as a frame.json and EXR pictures a frame. docs/capture.md
 // is the format's full description. Made by `dermis render --capture`, or by anyone's own engine.
 
-#include "framegraph/text/diagnostic.hpp"
+#include "framegraph/text/document.hpp"
 #include "integration/files/image.hpp"
 #include "passes/subsurface/camera.hpp"
 #include "passes/subsurface/profile.hpp"
@@ -73,6 +73,11 @@ std::vector<std::filesystem::path> find_frames(const std::filesystem::path& fold
 std::optional<CapturedFrame> read_frame(const std::filesystem::path& folder,
                                         const std::filesystem::path& profile_folder,
                                         Diagnostics& diagnostics);
+
+// frame.json alone: the pictures stay empty. `folder` is where the document stands.
+std::optional<CapturedFrame> read_description(const Document& document, const std::filesystem::path& folder,
+                                              const std::filesystem::path& profile_folder,
+                                              Diagnostics& diagnostics);
 
 // Fills `rays` from the description, and clip_from_view from pixel_pitch_m where that is given. False: no
 // projection.

@@ -186,26 +186,33 @@ bool complete_projection(FrameDescription& frame, subsurface::PixelRays& rays) {
 
 std::optional<CapturedFrame> read_frame(const fs::path& folder, const fs::path& profile_folder,
                                         Diagnostics& diagnostics) {
-  const uint32_t errors = diagnostics.count(Severity::error);
   const auto document = read_document((folder / "frame.json").string(), diagnostics);
-  if (!document || !check_version(*document, "dermis_capture", capture_format_version, diagnostics))
-    return std::nullopt;
+  if (!document) return std::nullopt;
+  const uint32_t errors = diagnostics.count(Severity::error);
+  std::optional<CapturedFrame> frame = read_description(*document, folder, profile_folder, diagnostics);
+  if (frame) read_pictures(folder, *document, *frame, diagnostics);
+  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  return frame;
+}
+
+std::optional<CapturedFrame> read_description(const Document& document, const fs::path& folder,
+                                              const fs::path& profile_folder, Diagnostics& diagnostics) {
+  const uint32_t errors = diagnostics.count(Severity::error);
+  if (!check_version(document, "dermis_capture", capture_format_version, diagnostics)) return std::nullopt;
   CapturedFrame frame;
   FrameDescription& description = frame.description;
-  ObjectReader reader(*document, document->root(), "frame", diagnostics);
+  ObjectReader reader(document, document.root(), "frame", diagnostics);
   reader.has("dermis_capture");
   description.width = static_cast<uint32_t>(reader.integer("width", 1, limits::image_side).value_or(0));
   description.height = static_cast<uint32_t>(reader.integer("height", 1, limits::image_side).value_or(0));
-  if (reader.ok()) read_rectangle(*document, reader, description, diagnostics);
-  read_projection(*document, reader, description, frame.rays, diagnostics);
+  if (reader.ok()) read_rectangle(document, reader, description, diagnostics);
+  read_projection(document, reader, description, frame.rays, diagnostics);
   const int64_t index = reader.integer("frame_index", 0, INT64_MAX, Need::optional).value_or(0);
   description.frame_index = static_cast<uint64_t>(index);
   description.exposure = reader.number("exposure", 1e-12, 1e12, Need::optional).value_or(1);
-  read_profiles(*document, reader, folder, profile_folder, description, diagnostics);
+  read_profiles(document, reader, folder, profile_folder, description, diagnostics);
   reader.has("previous_clip_from_view"); // not read where the projection itself is wrong
   reader.finish();
-  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
-  read_pictures(folder, *document, frame, diagnostics);
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;
   return frame;
 }

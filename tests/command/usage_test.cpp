@@ -103,5 +103,19 @@ TEST_F(Usage, ColourIsUsedWhenAskedForAndNeverOnAFile) {
   EXPECT_EQ(run({"validate", bad, "--color", "sometimes"}).exit_code, 2);
 }
 
+TEST_F(Usage, SchemasArePrintedOneByOneOrWrittenTogether) {
+  for (const char* name : {"graph", "profile", "scene", "capture"}) {
+    const Outcome outcome = run({"schema", name});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(is_json(outcome.out)) << name;
+  }
+  EXPECT_EQ(run({"schema", "--out", path("schemas")}).exit_code, 0);
+  EXPECT_THAT(files("schemas"), ::testing::Contains(HasSubstr("graph.schema.json")));
+  const Outcome unknown = run({"schema", "grahp"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'graph'?"));
+  EXPECT_EQ(run({"schema"}).exit_code, 2);
+}
+
 } // namespace
 } // namespace dermis::test

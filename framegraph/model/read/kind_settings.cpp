@@ -70,9 +70,26 @@ bool read_reference(GraphReader& reader, NodeId node, const std::string& what, c
   return false;
 }
 
+bool read_text(GraphReader& reader, NodeId node, const std::string& what, const KindSetting& setting,
+               SettingValue& out) {
+  const std::string_view text = reader.document.text(node);
+  const auto found = std::find(setting.options.begin(), setting.options.end(), text);
+  out.integer = found - setting.options.begin();
+  if (found != setting.options.end()) return true;
+  const std::string expected = setting.options.empty()
+                                   ? fmt::format("{} or \"$name\"", type_name(setting.type))
+                                   : list_words(setting.options);
+  reader
+      .error(DiagnosticId::setting_literal, reader.document.where(node),
+             fmt::format("{} is '{}'; it must be {}", what, text, expected))
+      .suggestion = did_you_mean(text, setting.options);
+  return false;
+}
+
 bool read_literal(GraphReader& reader, NodeId node, const std::string& what, const KindSetting& setting,
                   SettingValue& out) {
   out.type = setting.type;
+  if (reader.document[node].kind == NodeKind::string) return read_text(reader, node, what, setting, out);
   switch (setting.type) {
   case SettingType::boolean:
     if (const auto value = read_boolean(reader.document, node, what, reader.diagnostics)) {
@@ -96,10 +113,7 @@ bool read_literal(GraphReader& reader, NodeId node, const std::string& what, con
     return false;
   case SettingType::enumeration:
   case SettingType::choice:
-    if (const auto value = read_word(reader.document, node, what, setting.options, reader.diagnostics)) {
-      out.integer = *value;
-      return true;
-    }
+    expect_kind(reader.document, node, what, NodeKind::string, reader.diagnostics);
     return false;
   }
   return false;

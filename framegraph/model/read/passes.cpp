@@ -3,6 +3,7 @@
 
 #include "framegraph/model/expression.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
+#include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ void read_otherwise(GraphReader& reader, ObjectReader& object, PassDeclaration& 
 }
 
 void read_after(GraphReader& reader, ObjectReader& object, PassDeclaration& pass, PassId self) {
-  const NodeId list = object.array("after", 0, reader.pass_nodes.size(), Need::optional);
+  const NodeId list = object.array("after", 0, limits::passes, Need::optional);
   if (!list.valid()) return;
   for (NodeId node : children(reader.document, list)) {
     ObjectReader entry(reader.document, node, fmt::format("an entry of 'after' of {}", object.what()),

@@ -105,7 +105,7 @@ bool read_history(GraphReader& reader, ObjectReader& object, ResourceType type, 
       history.word("on_resize", on_resize, Need::optional).value_or(0));
   if (!history.finish()) return false;
   if (out.on_resize != HistoryDeclaration::OnResize::rescale || type == ResourceType::image) return true;
-  reader.error(DiagnosticId::invalid_value, reader.document.where(reader.document.find(node, "on_resize")),
+  reader.error(DiagnosticId::bad_history, reader.document.where(reader.document.find(node, "on_resize")),
                fmt::format("{} is to be rescaled, which only images can be", history.what()));
   return false;
 }

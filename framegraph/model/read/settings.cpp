@@ -22,24 +22,67 @@ constexpr int64_t least_integer = std::numeric_limits<int32_t>::min();
 constexpr int64_t greatest_integer = std::numeric_limits<int32_t>::max();
 constexpr double greatest_real = std::numeric_limits<float>::max();
 
-void read_integer_setting(ObjectReader& object, SettingDeclaration& out) {
-  const auto least = object.integer("min", least_integer, greatest_integer);
-  const auto greatest = object.integer("max", least.value_or(least_integer), greatest_integer);
-  if (!least || !greatest) return;
-  const auto value = object.integer("int", *least, *greatest);
-  out.minimum = static_cast<double>(*least);
-  out.maximum = static_cast<double>(*greatest);
-  out.default_value = {SettingType::integer, value.value_or(*least), 0.0};
+// Does least <= value <= greatest hold? Each by itself is good already.
+template <class Number>
+bool check_range(GraphReader& reader, const ObjectReader& object, std::string_view key, Number least,
+                 Number greatest, Number value) {
+  const auto where = [&](std::string_view which) {
+    return reader.document.where(reader.document.find(object.node(), which));
+  };
+  if (least > greatest) {
+    reader
+        .error(DiagnosticId::setting_range, where("max"),
+               fmt::format("{} ends at {}, before it begins at {}", object.what(), greatest, least))
+        .related.emplace_back(where("min"), "it begins here");
+    return false;
+  }
+  if (value >= least && value <= greatest) return true;
+  reader
+      .error(DiagnosticId::setting_range, where(key),
+             fmt::format("the default of {} is {}, outside its own range {} .. {}", object.what(), value,
+                         least, greatest))
+      .related.emplace_back(where(value < least ? "min" : "max"), "the range ends here");
+  return false;
 }
 
-void read_real_setting(ObjectReader& object, SettingDeclaration& out) {
+bool read_integer_setting(GraphReader& reader, ObjectReader& object, SettingDeclaration& out) {
+  const auto least = object.integer("min", least_integer, greatest_integer);
+  const auto greatest = object.integer("max", least_integer, greatest_integer);
+  const auto value = object.integer("int", least_integer, greatest_integer);
+  if (!least || !greatest || !value) return false;
+  out.minimum = static_cast<double>(*least);
+  out.maximum = static_cast<double>(*greatest);
+  out.default_value = {SettingType::integer, *value, 0.0};
+  return check_range(reader, object, "int", *least, *greatest, *value);
+}
+
+bool read_real_setting(GraphReader& reader, ObjectReader& object, SettingDeclaration& out) {
   const auto least = object.number("min", -greatest_real, greatest_real);
-  const auto greatest = object.number("max", least.value_or(-greatest_real), greatest_real);
-  if (!least || !greatest) return;
-  const auto value = object.number("real", *least, *greatest);
+  const auto greatest = object.number("max", -greatest_real, greatest_real);
+  const auto value = object.number("real", -greatest_real, greatest_real);
+  if (!least || !greatest || !value) return false;
   out.minimum = *least;
   out.maximum = *greatest;
-  out.default_value = {SettingType::real, 0, value.value_or(*least)};
+  out.default_value = {SettingType::real, 0, *value};
+  return check_range(reader, object, "real", *least, *greatest, *value);
+}
+
+bool read_default(GraphReader& reader, ObjectReader& object, std::string_view key, SettingDeclaration& out) {
+  const auto word = object.string("default", Need::optional);
+  out.default_value = {out.type, 0, 0.0};
+  if (!word) return object.ok();
+  const auto found = std::find(out.options.begin(), out.options.end(), *word);
+  out.default_value.integer = found - out.options.begin();
+  if (found != out.options.end()) return true;
+  const std::vector<std::string_view> words(out.options.begin(), out.options.end());
+  Diagnostic& one = reader.error(DiagnosticId::setting_range,
+                                 reader.document.where(reader.document.find(object.node(), "default")),
+                                 fmt::format("the default of {} is '{}', which is none of its options {}",
+                                             object.what(), *word, list_words(words)));
+  one.suggestion = did_you_mean(*word, words);
+  one.related.emplace_back(reader.document.where(reader.document.find(object.node(), key)),
+                           "the options are listed here");
+  return false;
 }
 
 // A name, or a whole number ("25"): options are quoted wherever they stand.
@@ -69,9 +112,7 @@ void read_options(GraphReader& reader, ObjectReader& object, std::string_view ke
     }
     out.options.emplace_back(*option);
   }
-  const std::vector<std::string_view> words(out.options.begin(), out.options.end());
-  if (!ok) return;
-  out.default_value = {out.type, object.word("default", words, Need::optional).value_or(0), 0.0};
+  if (ok) ok = read_default(reader, object, key, out);
 }
 
 bool read_setting(GraphReader& reader, NodeId node, SettingDeclaration& out) {
@@ -100,10 +141,10 @@ bool read_setting(GraphReader& reader, NodeId node, SettingDeclaration& out) {
     out.maximum = 1.0;
     break;
   case SettingType::integer:
-    read_integer_setting(object, out);
+    ok &= read_integer_setting(reader, object, out);
     break;
   case SettingType::real:
-    read_real_setting(object, out);
+    ok &= read_real_setting(reader, object, out);
     break;
   case SettingType::choice: {
     constexpr std::string_view who[] = {"host", "budget"};

@@ -51,17 +51,18 @@ template <class T> bool read_keys(const Reading& reading, ObjectReader& object, 
     const std::string what = fmt::format("keyframe {} of {}", keys.size(), reading.what);
     if (!dermis::read_numbers(reading.document, row, what, numbers, least, greatest, reading.diagnostics))
       return false;
-    const auto refuse = [&](std::string text) {
-      reading.diagnostics.add(DiagnosticId::out_of_range, reading.document.where(row), std::move(text));
+    const auto refuse = [&](DiagnosticId id, std::string text) {
+      reading.diagnostics.add(id, reading.document.where(row), std::move(text));
       return false;
     };
-    if (numbers[0] < 0.0 || numbers[0] > longest_seconds ||
-        (!keys.empty() && numbers[0] <= keys.back().seconds))
-      return refuse(
-          fmt::format("{} is at {} s; times ascend from 0 to {} s", what, numbers[0], longest_seconds));
+    const std::string at =
+        fmt::format("{} is at {} s; times ascend from 0 to {} s", what, numbers[0], longest_seconds);
+    if (numbers[0] < 0.0 || numbers[0] > longest_seconds) return refuse(DiagnosticId::out_of_range, at);
+    if (!keys.empty() && numbers[0] <= keys.back().seconds) return refuse(DiagnosticId::scene_range, at);
     for (size_t i = 1; i < numbers.size(); ++i)
       if (numbers[i] < reading.range.least || numbers[i] > reading.range.greatest)
-        return refuse(fmt::format("{} has the value {}; expected {} to {}", what, numbers[i],
+        return refuse(DiagnosticId::out_of_range,
+                      fmt::format("{} has the value {}; expected {} to {}", what, numbers[i],
                                   reading.range.least, reading.range.greatest));
     typename Curve<T>::Key key{numbers[0], T(0.0)};
     put(key.value, &numbers[1]);
@@ -84,7 +85,7 @@ bool read_sine(const Reading& reading, ObjectReader& parent, Curve<double>& curv
   const auto phase = object.number("phase", -1.0, 1.0, Need::optional);
   if (!object.finish()) return false;
   if (*mean - *amplitude < reading.range.least || *mean + *amplitude > reading.range.greatest) {
-    reading.diagnostics.add(DiagnosticId::out_of_range, reading.document.where(node),
+    reading.diagnostics.add(DiagnosticId::scene_range, reading.document.where(node),
                             fmt::format("the sine of {} swings from {} to {}; expected {} to {}",
                                         reading.what, *mean - *amplitude, *mean + *amplitude,
                                         reading.range.least, reading.range.greatest));

@@ -58,7 +58,7 @@ struct SceneReader {
         profile = {std::string(*name), (folder / std::string(*file)).lexically_normal().string()};
       for (const SceneProfile& other : scene.profiles)
         if (!profile.name.empty() && other.name == profile.name)
-          diagnostics.add(DiagnosticId::invalid_value, document.where(node),
+          diagnostics.add(DiagnosticId::scene_profile, document.where(node),
                           fmt::format("two profiles are called '{}'", profile.name));
       scene.profiles.push_back(profile);
     }
@@ -77,7 +77,7 @@ struct SceneReader {
     number(object, "near", 1e-4, 100.0, camera.near_plane);
     number(object, "far", 1e-3, 1e5, camera.far_plane);
     if (object.finish() && camera.near_plane >= camera.far_plane)
-      diagnostics.add(DiagnosticId::out_of_range, document.where(node),
+      diagnostics.add(DiagnosticId::scene_range, document.where(node),
                       fmt::format("the camera's near plane ({} m) must be nearer than its far plane ({} m)",
                                   camera.near_plane, camera.far_plane));
   }
@@ -123,7 +123,7 @@ struct SceneReader {
         std::string known;
         for (const SceneProfile& one : scene.profiles)
           known += fmt::format(" '{}'", one.name);
-        diagnostics.add(DiagnosticId::invalid_value, document.where(document.find(node, "profile")),
+        diagnostics.add(DiagnosticId::scene_profile, document.where(document.find(node, "profile")),
                         fmt::format("there is no profile '{}'; the scene lists{}", *name,
                                     known.empty() ? " none" : known));
       }
@@ -156,7 +156,7 @@ struct SceneReader {
       layers += shadow_layers_of(light);
     if (layers > most_shadow_layers)
       diagnostics.add(
-          DiagnosticId::limit_exceeded, document.where(lights),
+          DiagnosticId::scene_range, document.where(lights),
           fmt::format("the lights need {} shadow maps (6 a point light, 1 each other); at most {} fit",
                       layers, most_shadow_layers));
     if (objects.valid())

@@ -64,7 +64,7 @@ TEST(SceneFile, MistakesAreNamedWithTheirPlace) {
                  DiagnosticId::out_of_range, 3, "vertical_fov");
   expect_refused(
       scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 30, "near": 30 })"),
-      DiagnosticId::out_of_range, 3, "near plane");
+      DiagnosticId::scene_range, 3, "near plane");
   expect_refused(scene_with(plain_camera, R"(, "profile": "skim")").replace(0, 0, ""),
                  DiagnosticId::duplicate_key, 4, "profile");
 }
@@ -72,7 +72,7 @@ TEST(SceneFile, MistakesAreNamedWithTheirPlace) {
 TEST(SceneFile, AnUnknownProfileListsTheKnownOnes) {
   std::string text = scene_with(plain_camera);
   text.replace(text.rfind("\"skin\""), 6, "\"wood\"");
-  expect_refused(text, dermis::DiagnosticId::invalid_value, 4, "'skin'");
+  expect_refused(text, dermis::DiagnosticId::scene_profile, 4, "'skin'");
 }
 
 TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
@@ -88,9 +88,9 @@ TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
   ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
   EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 0.5), 1.5);
   EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 9.0), 3.0);
-  expect_refused(lit(R"({ "keys": [[1, 1], [1, 3]] })"), DiagnosticId::out_of_range, 4, "ascend");
+  expect_refused(lit(R"({ "keys": [[1, 1], [1, 3]] })"), DiagnosticId::scene_range, 4, "ascend");
   expect_refused(lit(R"({ "keys": [[0, -1]] })"), DiagnosticId::out_of_range, 4, "-1");
-  expect_refused(lit(R"({ "sine": { "mean": 1, "amplitude": 2, "hertz": 5 } })"), DiagnosticId::out_of_range,
+  expect_refused(lit(R"({ "sine": { "mean": 1, "amplitude": 2, "hertz": 5 } })"), DiagnosticId::scene_range,
                  4, "swings");
 }
 
@@ -100,7 +100,7 @@ TEST(SceneFile, MoreShadowMapsThanThereIsRoomForAreRefused) {
     lights += std::string(i ? "," : "") + R"({ "type": "point", "position": [0, 1, 0], "intensity": 1 })";
   std::string text = scene_with(plain_camera);
   text.insert(text.rfind('}'), ", \"lights\": [" + lights + "]");
-  expect_refused(text, dermis::DiagnosticId::limit_exceeded, 4, "30 shadow maps");
+  expect_refused(text, dermis::DiagnosticId::scene_range, 4, "30 shadow maps");
 }
 
 Scene scene_seen_by(bool orthographic) {

@@ -1,0 +1,208 @@
+#include "framegraph/schema/definitions.hpp"
+
+#include "framegraph/model/vocabulary.hpp"
+#include "framegraph/text/limits.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace dermis {
+namespace {
+
+std::string format_names() {
+  std::string out = "\"depth\"";
+  for (size_t i = 1; i < static_cast<size_t>(Format::count); ++i)
+    out += fmt::format(", \"{}\"", format_info(static_cast<Format>(i)).name);
+  return out;
+}
+
+// `text` with every <word> replaced: limits by their number, <kinds> and <formats> by their names.
+std::string filled(std::string_view text, std::string_view kinds = {}) {
+  const std::pair<std::string_view, std::string> values[] = {
+      {"<formats>", format_names()},
+      {"<kinds>", std::string(kinds)},
+      {"<name bytes>", fmt::format("{}", limits::name_bytes)},
+      {"<expression bytes>", fmt::format("{}", limits::expression_bytes)},
+      {"<passes>", fmt::format("{}", limits::passes)},
+      {"<resources>", fmt::format("{}", limits::resources)},
+      {"<settings>", fmt::format("{}", limits::settings)},
+      {"<options>", fmt::format("{}", limits::options)},
+      {"<most formats>", fmt::format("{}", limits::formats)},
+      {"<side>", fmt::format("{}", limits::image_side)},
+      {"<mips>", fmt::format("{}", limits::image_mips)},
+      {"<layers>", fmt::format("{}", limits::image_layers)},
+      {"<stride>", fmt::format("{}", limits::buffer_stride)},
+      {"<elements>", fmt::format("{}", limits::buffer_elements)},
+      {"<frames>", fmt::format("{}", limits::history_frames)},
+      {"<least int>", fmt::format("{}", std::numeric_limits<int32_t>::min())},
+      {"<greatest int>", fmt::format("{}", std::numeric_limits<int32_t>::max())},
+      {"<greatest real>", fmt::format("{}", double(std::numeric_limits<float>::max()))},
+  };
+  std::string out(text);
+  for (const auto& [word, value] : values) {
+    for (size_t at = out.find(word); at != std::string::npos; at = out.find(word, at + value.size()))
+      out.replace(at, word.size(), value);
+  }
+  return out;
+}
+
+constexpr std::string_view note = R"("note": { "type": "string", "description": "for people" })";
+
+// Settings hold their default under the name of their type; the first type that is there decides.
+std::string setting_definition() {
+  const std::string common =
+      fmt::format(R"("unit": {{ "type": "string", "description": "for people" }}, {})", note);
+  const auto form = [&](std::string_view required, std::string_view properties) {
+    return fmt::format(R"({{ "required": [{}], "additionalProperties": false,
+        "properties": {{ {}, {} }} }})",
+                       required, properties, common);
+  };
+  const std::string options =
+      R"("type": "array", "minItems": 1, "maxItems": <options>, "items": { "type": "string", "maxLength": <name bytes> })";
+  const std::string boolean =
+      form(R"("bool")", R"("bool": { "type": "boolean", "description": "the default" })");
+  const std::string integer = form(R"("int", "min", "max")",
+                                   R"("int": { "$ref": "#/definitions/int", "description": "the default" },
+        "min": { "$ref": "#/definitions/int" }, "max": { "$ref": "#/definitions/int" })");
+  const std::string real = form(R"("real", "min", "max")",
+                                R"("real": { "$ref": "#/definitions/real", "description": "the default" },
+        "min": { "$ref": "#/definitions/real" }, "max": { "$ref": "#/definitions/real" })");
+  const std::string enumeration =
+      form(R"("enum", "default")", R"("enum": { )" + options + R"( }, "default": { "type": "string" })");
+  const std::string choice =
+      form(R"("choice", "default")", R"("choice": { )" + options + R"( }, "default": { "type": "string" },
+        "by": { "enum": ["host", "budget"], "description": "who picks it; budget: the library" })");
+  const auto branch = [](std::string_view key, const std::string& then, const std::string& otherwise) {
+    return fmt::format(R"({{
+      "if": {{ "required": ["{}"] }},
+      "then": {},
+      "else": {} }})",
+                       key, then, otherwise);
+  };
+  const std::string rest = branch(
+      "bool", boolean, branch("int", integer, branch("real", real, branch("enum", enumeration, choice))));
+  return R"({ "type": "object", "description": "A value that the host may change at run time.", "allOf": [)" +
+         rest + "] }";
+}
+
+std::string resource_definition() {
+  const std::string history = R"("history": { "$ref": "#/definitions/history" })";
+  const std::string optional =
+      R"("optional": { "type": "boolean", "description": "the host may leave it unbound" })";
+  return fmt::format(R"({{ "type": "object",
+      "if": {{ "required": ["buffer"] }},
+      "then": {{ "additionalProperties": false, "properties": {{
+        "buffer": {{ "$ref": "#/definitions/buffer" }}, {0}, {1}, {2} }} }},
+      "else": {{ "required": ["format", "size"], "additionalProperties": false, "properties": {{
+        "format": {{ "$ref": "#/definitions/formats" }}, "size": {{ "$ref": "#/definitions/size" }},
+        "round": {{ "$ref": "#/definitions/round" }}, "align": {{ "$ref": "#/definitions/align" }},
+        "mips": {{ "anyOf": [{{ "type": "integer", "minimum": 1, "maximum": <mips> }}, {{ "enum": ["full"] }}] }},
+        "layers": {{ "type": "integer", "minimum": 1, "maximum": <layers> }}, {0}, {1}, {2} }} }} }})",
+                     history, optional, note);
+}
+
+constexpr std::string_view size_text =
+    R"({ "description": "\"view\", \"view/2\", \"view*3/4\", another image's name with such a factor, or [width, height] in texels",
+      "anyOf": [{ "type": "string" },
+        { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": 1, "maximum": <side> } }] })";
+
+constexpr std::string_view count_text =
+    R"({ "description": "elements: width x height of a size, or one integer",
+      "anyOf": [{ "$ref": "#/definitions/size" }, { "type": "integer", "minimum": 1, "maximum": <elements> }] })";
+
+constexpr std::string_view buffer_text =
+    R"({ "type": "object", "required": ["stride", "count"], "additionalProperties": false, "properties": {
+        "stride": { "type": "integer", "minimum": 4, "maximum": <stride>, "multipleOf": 4, "description": "bytes of an element [bytes]" },
+        "count": { "$ref": "#/definitions/count" },
+        "extra": { "type": "integer", "minimum": 0, "maximum": <elements>, "description": "elements beyond count" },
+        "round": { "$ref": "#/definitions/round" }, "align": { "$ref": "#/definitions/align" }, <note> } })";
+
+constexpr std::string_view history_text =
+    R"({ "type": "object", "required": ["frames"], "additionalProperties": false,
+      "description": "keeps the last contents for reading as name@-1, name@-2 ...", "properties": {
+        "frames": { "type": "integer", "minimum": 1, "maximum": <frames>, "description": "how many are kept [frames]" },
+        "first": { "enum": ["discard", "clear"], "description": "what the first frame finds" },
+        "on_cut": { "enum": ["invalidate", "keep"], "description": "when the camera jumps" },
+        "on_resize": { "enum": ["invalidate", "rescale"], "description": "when the view changes its size" }, <note> } })";
+
+constexpr std::string_view import_text =
+    R"({ "type": "object", "required": ["format", "size"], "additionalProperties": false, "properties": {
+        "format": { "$ref": "#/definitions/formats" }, "size": { "$ref": "#/definitions/size" },
+        "round": { "$ref": "#/definitions/round" }, "align": { "$ref": "#/definitions/align" },
+        "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } })";
+
+constexpr std::string_view pass_text =
+    R"({ "type": "object", "required": ["pass", "kind"], "additionalProperties": false, "properties": {
+        "pass": { "$ref": "#/definitions/name" },
+        "kind": { "enum": [<kinds>] },
+        "when": { "type": "string", "maxLength": <expression bytes>, "description": "the pass is off where this is false: quality in ['good', 'best'] and samples > 4" },
+        "read": { "type": "object", "description": "port: resource, or resource@-N of the frame N before" },
+        "write": { "type": "object", "description": "port: resource" },
+        "set": { "type": "object", "description": "setting of the kind: value, or \"$name\" of the graph's settings" },
+        "otherwise": { "type": "object", "additionalProperties": { "type": "string" }, "description": "what readers of an output get when the pass is off" },
+        "after": { "type": "array", "maxItems": <passes>, "items": { "type": "object", "required": ["pass", "reason"], "additionalProperties": false, "properties": {
+          "pass": { "type": "string" }, "reason": { "type": "string", "minLength": 1 }, <note> } } }, <note> },
+      "allOf": [{ "$ref": "#/definitions/pass_of_a_kind" }] })";
+
+std::string with_note(std::string_view text, std::string_view kinds = {}) {
+  std::string out(text);
+  constexpr std::string_view word = "<note>";
+  for (size_t at = out.find(word); at != std::string::npos; at = out.find(word, at))
+    out.replace(at, word.size(), note);
+  return filled(out, kinds);
+}
+
+} // namespace
+
+SchemaMembers graph_root_members() {
+  return {
+      {"type", R"("object")"},
+      {"required", R"(["dermis", "name", "passes", "exports"])"},
+      {"additionalProperties", "false"},
+      {"properties", with_note(R"({
+    "$schema": { "type": "string" },
+    "dermis": { "type": "integer", "const": 1, "description": "version of the format" },
+    "name": { "$ref": "#/definitions/name" },
+    "settings": { "type": "object", "maxProperties": <settings>, "additionalProperties": { "$ref": "#/definitions/setting" } },
+    "imports": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/import" },
+      "description": "images that the host owns and binds" },
+    "resources": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/resource" },
+      "description": "images and buffers that the graph owns" },
+    "passes": { "type": "array", "maxItems": <passes>, "items": { "$ref": "#/definitions/pass" } },
+    "exports": { "type": "array", "maxItems": <resources>, "items": { "type": "string" }, "description": "what the host gets back" },
+    <note>
+  })")},
+  };
+}
+
+SchemaMembers graph_definitions(std::string_view kind_names) {
+  return {
+      {"name",
+       with_note(
+           R"({ "type": "string", "maxLength": <name bytes>, "description": "a letter or _, then letters, digits or _" })")},
+      {"int", with_note(R"({ "type": "integer", "minimum": <least int>, "maximum": <greatest int> })")},
+      {"real", with_note(R"({ "type": "number", "minimum": -<greatest real>, "maximum": <greatest real> })")},
+      {"format", with_note(R"({ "enum": [<formats>] })")},
+      {"formats",
+       with_note(
+           R"({ "description": "one, or several in order of preference", "anyOf": [{ "$ref": "#/definitions/format" },
+      { "type": "array", "minItems": 1, "maxItems": <most formats>, "items": { "$ref": "#/definitions/format" } }] })")},
+      {"round", R"({ "enum": ["ceil", "floor"], "description": "of fractions of a size" })"},
+      {"align",
+       with_note(
+           R"({ "type": "integer", "minimum": 1, "maximum": <side>, "description": "sizes are rounded up to a multiple" })")},
+      {"size", with_note(size_text)},
+      {"count", with_note(count_text)},
+      {"buffer", with_note(buffer_text)},
+      {"history", with_note(history_text)},
+      {"setting", with_note(setting_definition())},
+      {"import", with_note(import_text)},
+      {"resource", with_note(resource_definition())},
+      {"source", R"({ "type": "string" })"},
+      {"target", R"({ "type": "string" })"},
+      {"pass", with_note(pass_text, kind_names)},
+  };
+}
+
+} // namespace dermis

@@ -1,0 +1,20 @@
+#pragma once
+// The parts of the graph's schema that do not depend on the pass kinds. Inside of graph_schema.hpp.
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace dermis {
+
+inline constexpr std::string_view schema_dialect = "http://json-schema.org/draft-07/schema#";
+
+// Key and JSON text, in the order in which they are written.
+using SchemaMembers = std::vector<std::pair<std::string_view, std::string>>;
+
+SchemaMembers graph_root_members();
+// `kind_names`: the names of all kinds as the inside of a JSON array.
+SchemaMembers graph_definitions(std::string_view kind_names);
+
+} // namespace dermis

@@ -1,0 +1,118 @@
+#include "framegraph/schema/graph_schema.hpp"
+
+#include "framegraph/schema/definitions.hpp"
+#include "framegraph/text/json_writer.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis {
+namespace {
+
+std::string with_unit(std::string_view doc, std::string_view unit) {
+  return unit.empty() ? std::string(doc) : fmt::format("{} [{}]", doc, unit);
+}
+
+void write_setting(JsonWriter& out, const KindSetting& setting) {
+  out.key(setting.name).open_object(true);
+  out.member("description", with_unit(setting.doc, setting.unit));
+  out.key("anyOf").open_array().open_object();
+  switch (setting.type) {
+  case SettingType::boolean:
+    out.member("type", "boolean");
+    break;
+  case SettingType::integer:
+    out.member("type", "integer");
+    out.member("minimum", static_cast<int64_t>(setting.minimum));
+    out.member("maximum", static_cast<int64_t>(setting.maximum));
+    break;
+  case SettingType::real:
+    out.member("type", "number").member("minimum", setting.minimum).member("maximum", setting.maximum);
+    break;
+  case SettingType::enumeration:
+  case SettingType::choice:
+    out.key("enum").open_array();
+    for (const std::string_view option : setting.options)
+      out.value(option);
+    out.close();
+    break;
+  }
+  out.close();
+  out.open_object().member("type", "string");
+  out.member("description", "\"$name\" follows the graph's setting of that name").close();
+  out.close().close();
+}
+
+// True if a port of this side must be bound.
+bool write_ports(JsonWriter& out, const PassKind& kind, PortSide side) {
+  std::vector<std::string_view> required;
+  out.key(side == PortSide::read ? "read" : "write").open_object();
+  out.member("type", "object").member("additionalProperties", false);
+  out.key("properties").open_object();
+  for (const Port& port : kind.ports) {
+    if (side_of(port) != side) continue;
+    if (!port.optional) required.push_back(port.name);
+    out.key(port.name).open_object(true);
+    out.member("$ref", side == PortSide::read ? "#/definitions/source" : "#/definitions/target");
+    out.member("description", fmt::format("{} ({})", port.doc, usage_info(port.usage).name)).close();
+  }
+  out.close();
+  if (!required.empty()) {
+    out.key("required").open_array(true);
+    for (const std::string_view name : required)
+      out.value(name);
+    out.close();
+  }
+  out.close();
+  return !required.empty();
+}
+
+void write_kind(JsonWriter& out, const PassKind& kind) {
+  out.open_object();
+  out.key("if").open_object(true).key("required").open_array().value("kind").close();
+  out.key("properties").open_object().key("kind").open_object().member("const", kind.name);
+  out.close().close().close();
+  out.key("then").open_object();
+  out.member("description", kind.doc);
+  out.key("properties").open_object();
+  const bool reads = write_ports(out, kind, PortSide::read);
+  const bool writes = write_ports(out, kind, PortSide::write);
+  out.key("set").open_object().member("type", "object").member("additionalProperties", false);
+  out.key("properties").open_object();
+  for (const KindSetting& setting : kind.settings)
+    write_setting(out, setting);
+  out.close().close().close();
+  out.key("required").open_array(true);
+  if (reads) out.value("read");
+  if (writes) out.value("write");
+  out.close().close().close();
+}
+
+std::string kind_names(const KindRegistry& kinds) {
+  std::string out;
+  for (uint32_t i = 0; i < kinds.size(); ++i)
+    out += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", kinds[{i}].name);
+  return out;
+}
+
+} // namespace
+
+std::string graph_schema(const KindRegistry& kinds) {
+  JsonWriter out;
+  out.open_object();
+  out.member("$schema", schema_dialect).member("title", "Dermis graph");
+  out.member("description", "What Dermis may run: settings, images and buffers, passes, and what is handed "
+                            "back. docs/format.md describes every key.");
+  for (const auto& [key, text] : graph_root_members())
+    out.key(key).json(text);
+  out.key("definitions").open_object();
+  for (const auto& [name, text] : graph_definitions(kind_names(kinds)))
+    out.key(name).json(text);
+  out.key("pass_of_a_kind").open_object();
+  out.key("allOf").open_array();
+  for (uint32_t i = 0; i < kinds.size(); ++i)
+    write_kind(out, kinds[{i}]);
+  out.close().close().close().close();
+  return std::move(out).finish();
+}
+
+} // namespace dermis

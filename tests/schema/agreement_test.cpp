@@ -1,0 +1,277 @@
+// Schema and parser judge the same of the structure of a file: types, keys, ranges, words. What needs more
+// than one place of the file (names that refer to each other, expressions, sizes in strings) is the parser's
+// alone.
+
+#include "framegraph/model/read_graph.hpp"
+#include "framegraph/schema/graph_schema.hpp"
+#include "integration/demo_engine/scene/read_scene.hpp"
+#include "integration/files/capture.hpp"
+#include "passes/subsurface/kinds.hpp"
+#include "passes/subsurface/profile.hpp"
+#include "tests/schema/validator.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <random>
+#include <sstream>
+
+namespace dermis::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr DiagnosticId structural[] = {
+    DiagnosticId::unknown_key,         DiagnosticId::wrong_type,     DiagnosticId::missing_key,
+    DiagnosticId::out_of_range,        DiagnosticId::limit_exceeded, DiagnosticId::integer_precision,
+    DiagnosticId::unsupported_version, DiagnosticId::invalid_value,  DiagnosticId::unknown_kind,
+    DiagnosticId::unknown_port,        DiagnosticId::missing_port,   DiagnosticId::unknown_kind_setting,
+    DiagnosticId::port_direction,
+};
+
+using Reader = void (*)(const std::string& text, Diagnostics& diagnostics);
+
+void read_graph_text(const std::string& text, Diagnostics& diagnostics) {
+  static const KindRegistry kinds = subsurface::make_kinds();
+  if (const auto document = parse_document("graph.json", text, diagnostics))
+    read_graph(*document, kinds, diagnostics);
+}
+void read_profile_text(const std::string& text, Diagnostics& diagnostics) {
+  if (const auto document = parse_document("profile.json", text, diagnostics))
+    subsurface::read_profile(*document, diagnostics);
+}
+void read_scene_text(const std::string& text, Diagnostics& diagnostics) {
+  demo::parse_scene("scene.json", text, diagnostics);
+}
+void read_capture_text(const std::string& text, Diagnostics& diagnostics) {
+  if (const auto document = parse_document("frame.json", text, diagnostics))
+    tools::read_description(*document, ".", std::string(DERMIS_SOURCE_DIR) + "/configs/profiles",
+                            diagnostics);
+}
+
+std::string structural_errors(Reader reader, const std::string& text) {
+  Diagnostics diagnostics;
+  reader(text, diagnostics);
+  std::string out;
+  for (const Diagnostic& one : diagnostics.list)
+    if (std::find(std::begin(structural), std::end(structural), one.id) != std::end(structural))
+      out += format_for_people(diagnostics, one, false) + "\n";
+  return out;
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream stream(path);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+json parse(const std::string& text) {
+  return json::parse(text, nullptr, true, true);
+}
+
+std::vector<fs::path> files_in(const char* folder) {
+  std::vector<fs::path> out;
+  for (const auto& entry : fs::directory_iterator(fs::path(DERMIS_SOURCE_DIR) / folder)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() == ".json" && name.find(".expect.") == std::string::npos)
+      out.push_back(entry.path());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+void collect(json& value, std::vector<json*>& out) {
+  out.push_back(&value);
+  if (!value.is_structured()) return;
+  for (json& child : value)
+    collect(child, out);
+}
+
+// One change anywhere; deterministic for every seed and library (no distributions of <random>).
+json mutate(json document, uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](size_t count) { return static_cast<size_t>(random() % count); };
+  static const json values[] = {nullptr,
+                                true,
+                                0,
+                                1,
+                                3,
+                                -1,
+                                7.5,
+                                65,
+                                20000,
+                                1e20,
+                                -1e300,
+                                "",
+                                "view",
+                                "none",
+                                json::array(),
+                                json::object(),
+                                json::array({1, 2}),
+                                json::array({0.5, 0.5, 0.5}),
+                                json{{"note", 1}},
+                                json{{"keys", json::array({json::array({0, 1})})}},
+                                5000000000};
+  std::vector<json*> all;
+  collect(document, all);
+  json& at = *all[below(all.size())];
+  const auto some_key = [&](const json& object) {
+    auto it = object.begin();
+    std::advance(it, static_cast<std::ptrdiff_t>(below(object.size())));
+    return it.key();
+  };
+  switch (below(6)) {
+  case 0:
+    if (at.is_object() && !at.empty()) {
+      at.erase(some_key(at));
+      break;
+    }
+    [[fallthrough]];
+  case 1:
+    if (at.is_object() && !at.empty()) {
+      const std::string key = some_key(at);
+      json value = at[key];
+      at.erase(key);
+      at[key + "x"] = std::move(value);
+      break;
+    }
+    [[fallthrough]];
+  case 2:
+    if (at.is_object()) {
+      const char* keys[] = {"note", "buffer", "bool", "sine", "file", "when", "colour"};
+      at[keys[below(std::size(keys))]] = values[below(std::size(values))];
+      break;
+    }
+    [[fallthrough]];
+  case 3:
+    if (at.is_array() && !at.empty()) {
+      at.push_back(at[below(at.size())]);
+      break;
+    }
+    [[fallthrough]];
+  case 4:
+    if (at.is_array() && !at.empty()) {
+      at.erase(below(at.size()));
+      break;
+    }
+    [[fallthrough]];
+  default:
+    at = values[below(std::size(values))];
+  }
+  return document;
+}
+
+void expect_agreement(const char* schema_path, Reader reader, const std::vector<json>& files,
+                      uint32_t mutations) {
+  const SchemaFile schema(schema_path);
+  for (const json& file : files) {
+    EXPECT_EQ(schema.first_problem(file), "");
+    EXPECT_EQ(structural_errors(reader, file.dump()), "");
+  }
+  uint32_t refused = 0, wrong = 0;
+  for (uint32_t i = 0; i < mutations && wrong < 5; ++i) {
+    const json damaged = mutate(files[i % files.size()], i);
+    const std::string errors = structural_errors(reader, damaged.dump());
+    const bool accepted = schema.accepts(damaged);
+    refused += accepted ? 0 : 1;
+    if (accepted == errors.empty()) continue;
+    ++wrong;
+    ADD_FAILURE() << "mutation " << i << ": the schema " << (accepted ? "accepts" : "refuses") << "\n"
+                  << schema.first_problem(damaged) << "the parser says:\n"
+                  << errors << damaged.dump().substr(0, 3000);
+  }
+  EXPECT_GT(refused, mutations / 4) << "hardly any mutation damages anything";
+}
+
+std::vector<json> read_all(const char* folder) {
+  std::vector<json> out;
+  for (const fs::path& path : files_in(folder))
+    out.push_back(parse(text_of(path)));
+  return out;
+}
+
+// Every feature of the language once, with the shipped kinds.
+constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 1, "name": "whole", "note": "all of it",
+  "settings": {
+    "quality": { "choice": ["low", "high"], "by": "budget", "default": "high" },
+    "samples": { "int": 16, "min": 4, "max": 64, "unit": "samples" },
+    "radius": { "real": 1.5, "min": 0, "max": 8, "note": "of the blur" },
+    "mirror": { "bool": true },
+    "texturing": { "enum": ["post", "pre_post", "pre"], "default": "pre" } },
+  "imports": {
+    "material": { "format": "r8_uint", "size": "view" },
+    "depth": { "format": ["depth", "r32f"], "size": "view", "optional": true } },
+  "resources": {
+    "half": { "format": "rgba16f", "size": "view*3/4", "round": "floor", "align": 8, "mips": "full", "layers": 2 },
+    "kept": { "format": "rgba16f", "size": "half/2", "mips": 2,
+              "history": { "frames": 2, "first": "clear", "on_cut": "keep", "on_resize": "rescale", "note": "n" } },
+    "fixed": { "format": "rgba16f", "size": [64, 32], "optional": true },
+    "list": { "buffer": { "stride": 4, "count": 64, "extra": 4, "round": "ceil", "align": 2, "note": "n" },
+              "history": { "frames": 1 } },
+    "classes": { "buffer": { "stride": 4, "count": "view/8" } } },
+  "passes": [
+    { "pass": "classify", "kind": "subsurface.classify", "when": "mirror and samples > 8",
+      "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" }, "set": {},
+      "otherwise": { "classes": "list" }, "after": [{ "pass": "classify", "reason": "r", "note": "n" }] } ],
+  "exports": ["fixed"] })";
+
+TEST(Schema, OfGraphsAgreesWithTheParserOnMutatedFiles) {
+  std::vector<json> files = read_all("configs/graphs");
+  files.push_back(parse(every_feature));
+  expect_agreement("configs/schema/graph.schema.json", read_graph_text, files, 10000);
+}
+
+TEST(Schema, OfProfilesAgreesWithTheParserOnMutatedFiles) {
+  expect_agreement("configs/schema/profile.schema.json", read_profile_text, read_all("configs/profiles"),
+                   3000);
+}
+
+TEST(Schema, OfScenesAgreesWithTheParserOnMutatedFiles) {
+  std::vector<json> files = read_all("configs/scenes");
+  files.push_back(parse(R"({ "dermis_scene": 1, "name": "s", "profiles": [ { "name": "skin", "file": "a" } ],
+    "camera": { "projection": "orthographic", "position": { "keys": [[0, 0, 0, 1], [1, 0, 0, 2]] },
+                "target": [0, 0, 0], "height": { "sine": { "mean": 1, "amplitude": 0.5, "hertz": 2, "phase": 0 } } },
+    "lights": [ { "type": "point", "position": [0, 1, 0], "intensity": { "keys": [[0, 1]] } },
+                { "type": "directional", "position": [0, 1, 0], "target": [0, 0, 0], "intensity": 1, "extent": 2 } ],
+    "objects": [ { "shape": "sphere" } ] })"));
+  expect_agreement("configs/schema/scene.schema.json", read_scene_text, files, 6000);
+}
+
+TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
+  const std::vector<json> files = {
+      parse(R"({ "dermis_capture": 1, "width": 256, "height": 128, "projection": "orthographic",
+        "pixel_pitch_m": 0.0005, "jitter_px": [0.5, 0], "exposure": 2, "frame_index": 7,
+        "render_rectangle": [0, 0, 128, 64],
+        "profiles": [ { "id": 1, "file": "skin", "note": "n" }, { "id": 2, "dmfp_mm": [1, 2, 3], "albedo": [0, 0.5, 1] } ] })"),
+      parse(
+          R"({ "dermis_capture": 1, "width": 16, "height": 16, "projection": "perspective", "metres_per_unit": 0.01,
+        "clip_from_view": [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0],
+        "view_from_world": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+        "previous_clip_from_view": [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0],
+        "profiles": [] })")};
+  expect_agreement("configs/schema/capture.schema.json", read_capture_text, files, 3000);
+}
+
+TEST(Schema, OfGraphsIsTheOneThatTheKindsGive) {
+  EXPECT_EQ(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/schema/graph.schema.json"),
+            graph_schema(subsurface::make_kinds()))
+      << "write it again: dermis schema --out configs/schema";
+}
+
+TEST(Schema, NoneHasAPattern) {
+  for (const fs::path& path : files_in("configs/schema")) {
+    json text = parse(text_of(path));
+    std::vector<json*> all;
+    collect(text, all);
+    for (const json* one : all) {
+      EXPECT_FALSE(one->is_object() && (one->contains("pattern") && !(*one)["pattern"].is_object())) << path;
+      EXPECT_FALSE(one->is_object() && one->contains("patternProperties")) << path;
+    }
+  }
+}
+
+} // namespace
+} // namespace dermis::testing
