@@ -2,10 +2,13 @@
 // Every access leaves an *event* on its thing, which remembers at which stages later work is ordered behind
 // it and where a write is visible. Barriers extend both along execution chains (Vulkan 1.3, "Execution and
 // Memory Dependencies").
-//  read   every earlier write to the same bytes is ordered before it, the last one visible to it, contents
-//  defined write  every earlier access to the same bytes is ordered before it, every earlier write available
-//  layout equals what the access was planned with; transitions are writes; `undefined` discards the contents
-//  host   a slot is taken over before its first access and handed back, ordered and available, at the end
+//
+//  read    every earlier write to the same bytes is ordered before it, the last one to the same thing is
+//          visible to it, and the contents are defined
+//  write   every earlier access to the same bytes is ordered before it, every earlier write is available, and
+//          the last one visible to it unless it was read since: then the wait for the reader is enough
+//  layout  equals what the access was planned with; transitions are writes; `undefined` discards the contents
+//  host    a slot is taken over before its first access and handed back, ordered and available, at the end
 
 #include "framegraph/verify/verify.hpp"
 
@@ -173,10 +176,9 @@ struct Machine {
       run(barriers[b], where);
   }
 
-  static bool sees(const Event& write, const PlanAccess& access) {
-    const Access reads = access.access & ~all_write_access;
+  static bool visible(const Event& write, Stage stages, Access accesses) {
     return std::any_of(write.visible.begin(), write.visible.end(), [&](const Visible& to) {
-      return (access.stages & ~to.stages) == 0 && (reads & ~to.access) == 0;
+      return (stages & ~to.stages) == 0 && (accesses & ~to.access) == 0;
     });
   }
 
@@ -184,8 +186,8 @@ struct Machine {
     const uint32_t index = thing_of(access.resource, access.frames_back);
     const Thing& thing = things[index];
     const auto wrong = [&](const char* what) { object(what, access.resource, access.frames_back, where); };
-    const bool reads = (access.access & ~all_write_access) != 0;
-    const bool writes = (access.access & all_write_access) != 0;
+    const Access as_read = access.access & ~all_write_access, as_write = access.access & all_write_access;
+    const bool reads = as_read != 0, writes = as_write != 0;
     if (thing.with_host) return wrong("is touched while it is the host's");
     if (thing.image && thing.layout != access.layout)
       wrong("is not in the layout the access was planned with");
@@ -196,8 +198,12 @@ struct Machine {
         if ((event.is_write || writes) && !ordered) wrong("is touched before an earlier access is done");
         if (writes && event.is_write && !event.available)
           wrong("is written before an earlier write is available");
-        if (reads && own && event.is_write && !sees(event, access))
+        if (reads && own && event.is_write && !visible(event, access.stages, as_read))
           wrong("is read where the last write is not visible");
+        // Where it was read since, the wait for the reader is enough.
+        if (writes && event.is_write && &event == &other.events.back() &&
+            !visible(event, access.stages, as_write))
+          wrong("is written where the last write is not visible");
       }
     });
   }

@@ -51,4 +51,11 @@ Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32
   return out;
 }
 
+bool agrees(const Interpretation& found, const Interpretation& truth) {
+  for (size_t frame = 0; frame < truth.size(); ++frame)
+    for (size_t slot = 0; slot < truth[frame].size(); ++slot)
+      if (truth[frame][slot] && found[frame][slot] != truth[frame][slot]) return false;
+  return true;
+}
+
 } // namespace dermis::testing

@@ -2,14 +2,16 @@
 // What a graph means, computed from its declarations alone: every pass in the order of the file, every
 // resource with contents of its own. No plan, no memory, no barriers.
 
-#include "tests/framegraph/graph_builder.hpp"
-
 #include "framegraph/interpret/interpret.hpp"
+#include "framegraph/model/graph.hpp"
 
 namespace dermis::testing {
 
 // Like interpret() of its plan, for every slot that is exported. The graph has no `when`, all slots are
 // bound, and passes stand behind the producers of what they read, as in random_graph().
 Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames, uint64_t contents);
+
+// Slots that `truth` says nothing about may hold anything.
+bool agrees(const Interpretation& found, const Interpretation& truth);
 
 } // namespace dermis::testing

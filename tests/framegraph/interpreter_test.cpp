@@ -24,14 +24,6 @@ InterpretOptions options(uint64_t contents, uint64_t poison = 1, uint64_t order 
   return {frames, contents, poison, order};
 }
 
-// Slots that `truth` says nothing about may hold anything.
-bool agrees(const Interpretation& found, const Interpretation& truth) {
-  for (size_t frame = 0; frame < truth.size(); ++frame)
-    for (size_t slot = 0; slot < truth[frame].size(); ++slot)
-      if (truth[frame][slot] && found[frame][slot] != truth[frame][slot]) return false;
-  return true;
-}
-
 // Exports that nothing reads turned optional and left unbound, where the seed says so: what only they needed
 // is culled.
 std::vector<bool> leave_out_exports(GraphBuilder& builder, uint64_t seed) {

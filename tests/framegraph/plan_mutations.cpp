@@ -1,5 +1,10 @@
 #include "tests/framegraph/plan_mutations.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
 namespace dermis::testing {
 
 Plan without_barrier(const Plan& plan, uint32_t index) {
@@ -28,6 +33,74 @@ Plan without_aliasing(const Plan& plan) {
     end = placement.offset + placement.size;
   }
   return apart;
+}
+
+void for_each_weaker_mask(const Plan& plan, const VisitMutant& visit) {
+  constexpr std::pair<const char*, uint64_t PlanBarrier::*> masks[] = {
+      {"source stages", &PlanBarrier::source_stages},
+      {"source access", &PlanBarrier::source_access},
+      {"destination stages", &PlanBarrier::destination_stages},
+      {"destination access", &PlanBarrier::destination_access}};
+  for (size_t b = 0; b < plan.barriers.size(); ++b)
+    for (const auto& [name, mask] : masks)
+      for (uint64_t bit = 1; bit != 0; bit <<= 1u) {
+        if ((plan.barriers[b].*mask & bit) == 0) continue;
+        Plan mutant = plan;
+        mutant.barriers[b].*mask &= ~bit;
+        visit(mutant, fmt::format("barrier {} without {:#x} in its {}", b, bit, name));
+      }
+}
+
+void for_each_shifted_placement(const Plan& plan, const VisitMutant& visit) {
+  for (size_t i = 0; i < plan.placements.size(); ++i)
+    for (size_t k = 0; k < plan.placements.size(); ++k) {
+      const Placement &moved = plan.placements[i], &onto = plan.placements[k];
+      if (i == k || moved.heap != onto.heap || moved.offset == onto.offset) continue;
+      Plan mutant = plan;
+      mutant.placements[i].offset = onto.offset;
+      Heap& heap = mutant.heaps[moved.heap]; // it is not the heap's end that shall be noticed
+      heap.size = std::max(heap.size, onto.offset + moved.size);
+      visit(mutant, fmt::format("placement {} at the offset of {}", i, k));
+    }
+}
+
+void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit) {
+  for (size_t a = 0; a < plan.accesses.size(); ++a)
+    for (uint32_t back = 0; back < plan.resources[plan.accesses[a].resource].instance_count; ++back) {
+      if (back == plan.accesses[a].frames_back) continue;
+      Plan mutant = plan;
+      mutant.accesses[a].frames_back = back;
+      visit(mutant, fmt::format("access {} to the contents of {} frames back", a, back));
+    }
+}
+
+void for_each_swap(const Plan& plan, const VisitMutant& visit) {
+  for (size_t p = 0; p + 1 < plan.passes.size(); ++p) {
+    Plan mutant = plan;
+    std::swap(mutant.passes[p], mutant.passes[p + 1]);
+    visit(mutant, fmt::format("pass {} after the next one", p));
+  }
+}
+
+void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit) {
+  for (size_t p = 0; p + 1 < plan.passes.size(); ++p) {
+    const PlanPass &first = plan.passes[p], &second = plan.passes[p + 1];
+    if (first.first_barrier + first.barrier_count != second.first_barrier) continue;
+    if (first.barrier_count > 0) {
+      Plan mutant = plan;
+      --mutant.passes[p].barrier_count;
+      ++mutant.passes[p + 1].barrier_count;
+      --mutant.passes[p + 1].first_barrier;
+      visit(mutant, fmt::format("the last barrier of pass {} one pass later", p));
+    }
+    if (second.barrier_count > 0) {
+      Plan mutant = plan;
+      ++mutant.passes[p].barrier_count;
+      --mutant.passes[p + 1].barrier_count;
+      ++mutant.passes[p + 1].first_barrier;
+      visit(mutant, fmt::format("the first barrier of pass {} one pass earlier", p + 1));
+    }
+  }
 }
 
 } // namespace dermis::testing

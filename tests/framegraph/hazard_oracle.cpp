@@ -1,0 +1,267 @@
+#include "tests/framegraph/hazard_oracle.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace dermis::testing {
+namespace {
+
+// What one command does to one thing. A thing is an instance of a resource.
+struct Operation {
+  enum class What { access, barrier, frame_begins } what = What::access;
+  uint32_t step = 0; // passes and barriers, counted through all frames; accesses of a pass share one
+  uint32_t frame = 0;
+  uint32_t resource = 0, instance = 0;
+  const PlanAccess* access = nullptr;
+  const PlanBarrier* barrier = nullptr;
+};
+
+struct Oracle {
+  const Plan& plan;
+  std::vector<Operation> all;
+
+  // --- what the operations are
+
+  uint32_t instance(uint32_t resource, uint32_t frames_back, uint32_t frame) const {
+    const uint32_t count = plan.resources[resource].instance_count;
+    return (frame + count - frames_back) % count;
+  }
+
+  void unroll(uint32_t frames) {
+    uint32_t step = 0;
+    for (uint32_t f = 0; f < frames; ++f) {
+      const auto barriers = [&](uint32_t first, uint32_t count) {
+        for (uint32_t b = first; b < first + count; ++b) {
+          const PlanBarrier& one = plan.barriers[b];
+          all.push_back({Operation::What::barrier, step++, f, one.resource,
+                         instance(one.resource, one.frames_back, f), nullptr, &one});
+        }
+      };
+      for (uint32_t r = 0; r < plan.resources.size(); ++r)
+        all.push_back({Operation::What::frame_begins, step++, f, r, instance(r, 0, f), nullptr, nullptr});
+      for (const PlanPass& pass : plan.passes) {
+        barriers(pass.first_barrier, pass.barrier_count);
+        for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+          const PlanAccess& one = plan.accesses[a];
+          all.push_back({Operation::What::access, step, f, one.resource,
+                         instance(one.resource, one.frames_back, f), &one, nullptr});
+        }
+        ++step;
+      }
+      barriers(plan.first_final_barrier, plan.final_barrier_count);
+    }
+  }
+
+  bool host(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
+  bool image(const Operation& o) const { return plan.resources[o.resource].type == ResourceType::image; }
+  static bool same_thing(const Operation& a, const Operation& b) {
+    return a.resource == b.resource && a.instance == b.instance;
+  }
+  bool overlap(const Operation& a, const Operation& b) const {
+    if (same_thing(a, b)) return true;
+    if (host(a.resource) || host(b.resource)) return false;
+    const Placement& m = plan.placements[plan.resources[a.resource].first_instance + a.instance];
+    const Placement& n = plan.placements[plan.resources[b.resource].first_instance + b.instance];
+    return m.heap == n.heap && std::max(m.offset, n.offset) < std::min(m.offset + m.size, n.offset + n.size);
+  }
+  static bool is_barrier(const Operation& o) { return o.what == Operation::What::barrier; }
+  // Barriers that are operations on the contents themselves: changes of layout and of owner.
+  bool transition(const Operation& o) const {
+    return is_barrier(o) && (o.barrier->from_host || o.barrier->to_host ||
+                             (image(o) && o.barrier->old_layout != o.barrier->new_layout));
+  }
+  static bool accesses(const Operation& o) { return o.what == Operation::What::access; }
+  static Access written(const Operation& o) { return accesses(o) ? o.access->access & all_write_access : 0; }
+  static Access read(const Operation& o) { return accesses(o) ? o.access->access & ~all_write_access : 0; }
+  bool acts(const Operation& o) const { return accesses(o) || transition(o); }
+  bool writes(const Operation& o) const { return written(o) != 0 || transition(o); }
+
+  // --- what the barriers between two operations establish
+
+  struct Path {
+    Stage ordered = 0; // stages that wait for the first operation
+    bool available = false;
+    bool visible = false; // to what the second one reads
+    bool visible_to_write = false;
+  };
+
+  static void show(Path& p, const Operation& second, Stage stages, Access access) {
+    if (!p.available || !accesses(second) || (second.access->stages & ~stages) != 0) return;
+    p.visible |= (read(second) & ~access) == 0;
+    p.visible_to_write |= (written(second) & ~access) == 0;
+  }
+
+  Path path(size_t first, size_t second) const {
+    const Operation& a = all[first];
+    Path p;
+    if (is_barrier(a)) {
+      p.ordered = a.barrier->destination_stages;
+      p.available = true;
+      show(p, all[second], p.ordered, a.barrier->destination_access);
+    }
+    for (size_t k = first + 1; k < second; ++k) {
+      if (!is_barrier(all[k]) || all[k].barrier->from_host || !overlap(a, all[k])) continue;
+      const PlanBarrier& b = *all[k].barrier;
+      const bool directly = accesses(a) && (a.access->stages & ~b.source_stages) == 0;
+      if (!directly && (p.ordered & b.source_stages) == 0) continue;
+      p.ordered |= b.destination_stages;
+      p.available |= directly && (written(a) & ~b.source_access) == 0;
+      show(p, all[second], b.destination_stages, b.destination_access);
+    }
+    return p;
+  }
+
+  // Another operation on the thing of `first`, between the two, that replaces what `first` left: it had to
+  // wait for `first`, and `second` has to wait for it.
+  bool replaced(size_t first, size_t second) const {
+    for (size_t k = first + 1; k < second; ++k)
+      if (all[k].step != all[first].step && all[k].step != all[second].step &&
+          same_thing(all[k], all[first]) && writes(all[k]))
+        return true;
+    return false;
+  }
+
+  bool read_since(size_t first, size_t second) const {
+    for (size_t k = first + 1; k < second; ++k)
+      if (accesses(all[k]) && all[k].step != all[second].step && same_thing(all[k], all[first])) return true;
+    return false;
+  }
+
+  // --- the questions
+
+  std::string pair(size_t first, size_t second) const {
+    const Operation &a = all[first], &b = all[second];
+    if (a.step == b.step || !acts(a) || !acts(b) || (!writes(a) && !writes(b)) || !overlap(a, b)) return "";
+    if (is_barrier(b) && b.barrier->from_host) return ""; // the host has seen to that
+    if (replaced(first, second)) return "";
+    const Path p = path(first, second);
+    const bool ordered = accesses(b)
+                             ? (b.access->stages & ~p.ordered) == 0
+                             : (p.ordered & b.barrier->source_stages) != 0 ||
+                                   (accesses(a) && (a.access->stages & ~b.barrier->source_stages) == 0);
+    if (!ordered) return "is not ordered behind an earlier operation";
+    const bool made_available =
+        p.available || (is_barrier(b) && accesses(a) && (a.access->stages & ~b.barrier->source_stages) == 0 &&
+                        (written(a) & ~b.barrier->source_access) == 0);
+    if (writes(a) && writes(b) && !made_available) return "comes before an earlier write is available";
+    if (writes(a) && read(b) != 0 && same_thing(a, b) && !p.visible) return "does not see the last write";
+    if (writes(a) && written(b) != 0 && !p.visible_to_write && !read_since(first, second))
+      return "is written where the last write is not visible";
+    return "";
+  }
+
+  // Do the contents that operation `second` reads mean something?
+  bool defined(size_t second) const {
+    for (size_t k = second; k-- > 0;) {
+      const Operation& o = all[k];
+      if (o.step == all[second].step || !overlap(o, all[second])) continue;
+      const bool own = same_thing(o, all[second]);
+      if (o.what == Operation::What::frame_begins) {
+        if (own) return host(o.resource) && plan.resources[o.resource].origin == Origin::imported;
+      } else if (!own) {
+        if (written(o) != 0 || (transition(o) && !o.barrier->from_host)) return false;
+      } else if (written(o) != 0) {
+        return true;
+      } else if (is_barrier(o) && !o.barrier->from_host && image(o) &&
+                 o.barrier->old_layout == Layout::undefined) {
+        return false;
+      }
+    }
+    return plan.resources[all[second].resource].instance_count > 1; // as the executor starts it
+  }
+
+  // The layout of a thing just before operation `at`.
+  Layout layout(const Operation& thing, size_t at) const {
+    for (size_t k = at; k-- > 0;)
+      if (transition(all[k]) && same_thing(all[k], thing)) return all[k].barrier->new_layout;
+    for (const PlanHistory& history : plan.histories)
+      for (uint32_t back = 1; history.resource == thing.resource && back <= history.frames; ++back)
+        if (instance(thing.resource, back, 0) == thing.instance) return history.layout_at_start[back];
+    return Layout::undefined;
+  }
+
+  bool with_host(size_t at) const {
+    for (size_t k = at; k-- > 0;)
+      if (is_barrier(all[k]) && same_thing(all[k], all[at]) &&
+          (all[k].barrier->from_host || all[k].barrier->to_host))
+        return all[k].barrier->to_host;
+    return true;
+  }
+
+  std::string alone(size_t at) const {
+    const Operation& o = all[at];
+    const bool owned = host(o.resource) && with_host(at);
+    if (accesses(o)) {
+      if (owned) return "is the host's";
+      if (image(o) && layout(o, at) != o.access->layout) return "is in another layout";
+      if (read(o) != 0 && !defined(at)) return "is read undefined";
+      if (host(o.resource)) return "";
+      const Placement& memory = plan.placements[plan.resources[o.resource].first_instance];
+      const auto position = static_cast<uint32_t>(
+          std::find_if(plan.passes.begin(), plan.passes.end(),
+                       [&](const PlanPass& pass) {
+                         const auto index = static_cast<uint32_t>(o.access - plan.accesses.data());
+                         return index >= pass.first_access && index - pass.first_access < pass.access_count;
+                       }) -
+          plan.passes.begin());
+      return position < memory.first_use || position > memory.last_use ? "has no memory at that time" : "";
+    }
+    if (o.what == Operation::What::frame_begins) {
+      for (const PlanHistory& history : plan.histories)
+        for (uint32_t back = 1; history.resource == o.resource && back <= history.frames; ++back) {
+          Operation past = o;
+          past.instance = instance(o.resource, back, o.frame);
+          if (layout(past, at) != history.layout_at_start[back]) return "starts a frame in another layout";
+        }
+      return host(o.resource) && !with_host(at) ? "is not handed back" : "";
+    }
+    if (o.barrier->from_host) return owned ? "" : "is taken over twice";
+    if (o.barrier->to_host && !host(o.resource)) return "is not the host's";
+    if (owned) return "has a barrier while it is the host's";
+    if (!image(o)) return "";
+    if (o.barrier->old_layout != Layout::undefined && o.barrier->old_layout != layout(o, at))
+      return "leaves a layout that it is not in";
+    const bool nowhere =
+        o.barrier->old_layout == Layout::undefined && o.barrier->new_layout == Layout::undefined;
+    return nowhere && !o.barrier->to_host ? "is moved to no layout" : "";
+  }
+
+  std::string live_together() const {
+    for (size_t i = 0; i < plan.placements.size(); ++i)
+      for (size_t k = 0; k < i; ++k) {
+        const Placement &m = plan.placements[i], &n = plan.placements[k];
+        const bool disjoint =
+            !m.persistent && !n.persistent && (m.last_use < n.first_use || n.last_use < m.first_use);
+        const bool bytes =
+            m.heap == n.heap && std::max(m.offset, n.offset) < std::min(m.offset + m.size, n.offset + n.size);
+        if (bytes && !disjoint) return fmt::format("placements {} and {} share live memory", k, i);
+      }
+    return "";
+  }
+};
+
+} // namespace
+
+std::string first_hazard(const Plan& plan) {
+  Oracle oracle{plan, {}};
+  if (const std::string wrong = oracle.live_together(); !wrong.empty()) return wrong;
+  uint32_t frames = 3;
+  for (const PlanResource& resource : plan.resources)
+    frames = std::max(frames, resource.instance_count + 2);
+  oracle.unroll(frames + 1); // the beginning of the last one tells how the one before ended
+  for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {
+    const Operation& o = oracle.all[b];
+    if (o.frame == frames && o.what != Operation::What::frame_begins) break;
+    std::string wrong = oracle.alone(b);
+    for (size_t a = 0; a < b && wrong.empty(); ++a)
+      wrong = oracle.pair(a, b);
+    if (!wrong.empty())
+      return fmt::format("frame {}, step {}: resource {}.{} {}", o.frame, o.step, o.resource, o.instance,
+                         wrong);
+  }
+  return "";
+}
+
+} // namespace dermis::testing

@@ -1,0 +1,116 @@
+// Who notices a plan that was changed by hand? The verifier, in every case in which the exhaustive oracle
+// says that the change matters, and in no other.
+
+#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/hazard_oracle.hpp"
+#include "tests/framegraph/plan_mutations.hpp"
+#include "tests/framegraph/random_graph.hpp"
+#include "tests/framegraph/second_opinion.hpp"
+#include "tests/framegraph/test_tier.hpp"
+
+#include "framegraph/verify/verify.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+namespace dermis::testing {
+namespace {
+
+template <class Visit> void for_random_plans(uint64_t quick, uint64_t full, Visit visit) {
+  for (uint64_t seed = 0; seed < seeds_of_tier(quick, full) && !::testing::Test::HasFailure(); ++seed) {
+    const auto builder = random_graph(seed);
+    const Plan plan = compiled(builder).plan;
+    visit(builder, plan, seed);
+  }
+}
+
+using ForEachMutant = void (*)(const Plan&, const VisitMutant&);
+
+Tally compare_verdicts(uint64_t quick, uint64_t full, ForEachMutant for_each_mutant) {
+  Tally tally;
+  for_random_plans(quick, full, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    for_each_mutant(plan, [&](const Plan& mutant, const std::string& what) {
+      if (!::testing::Test::HasFatalFailure())
+        expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
+    });
+  });
+  return tally;
+}
+
+TEST(Mutation, TheOracleAcceptsWhatTheCompilerMakes) {
+  for_random_plans(300, 3000, [](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    EXPECT_EQ(first_hazard(plan), "") << "seed " << seed;
+  });
+}
+
+TEST(Mutation, NoBarrierOfAThousandPlansCanBeDropped) {
+  uint64_t dropped = 0;
+  for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    for (uint32_t b = 0; b < plan.barriers.size(); ++b, ++dropped)
+      ASSERT_FALSE(verify(without_barrier(plan, b)).empty()) << "seed " << seed << ", barrier " << b;
+  });
+  EXPECT_GT(dropped, 10000u);
+}
+
+// Alias barriers name the accesses of every earlier occupant, also those that a later one waited for; few
+// other masks may be wider than they need to be.
+TEST(Mutation, AWeakerMaskIsRefusedExactlyWhereItMatters) {
+  const Tally tally = compare_verdicts(60, 600, for_each_weaker_mask);
+  EXPECT_GT(tally.refused * 20, tally.tried * 19);
+}
+
+TEST(Mutation, APlacementInOtherMemoryIsRefusedExactlyWhereItMatters) {
+  const Tally tally = compare_verdicts(150, 1500, for_each_shifted_placement);
+  EXPECT_GT(tally.refused * 10, tally.tried * 9);
+}
+
+TEST(Mutation, NoAliasDependencyCanBeLost) {
+  uint64_t lost = 0;
+  for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    for (uint32_t b = 0; b < plan.barriers.size(); ++b) {
+      if (plan.barriers[b].why != PlanBarrier::Why::alias) continue;
+      Plan mutant = plan;
+      mutant.barriers[b].source_stages = stage::none;
+      mutant.barriers[b].source_access = access::none;
+      ASSERT_FALSE(verify(mutant).empty()) << "seed " << seed << ", barrier " << b;
+      ++lost;
+    }
+  });
+  EXPECT_GT(lost, 1000u);
+}
+
+// A flip that is no hazard (both slots hold older frames) still reads the wrong frame, which the pixels tell
+// once the difference has come through all histories on its way to the host.
+TEST(Mutation, AFlippedHistorySlotIsRefusedOrChangesThePixels) {
+  constexpr uint32_t frames = 14;
+  Tally tally;
+  for_random_plans(300, 3000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    for_each_flipped_slot(plan, [&](const Plan& mutant, const std::string& what) {
+      if (HasFatalFailure()) return;
+      expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
+      if (verify(mutant).empty()) {
+        EXPECT_FALSE(agrees(interpret(mutant, {frames, seed, 1, 0}), truth))
+            << "seed " << seed << ": " << what;
+      }
+    });
+  });
+  EXPECT_GT(tally.refused, 100u);
+  EXPECT_GT(tally.tried, tally.refused);
+}
+
+TEST(Mutation, SwappedPassesAreRefusedExactlyWhereItMatters) {
+  const Tally tally = compare_verdicts(150, 1500, for_each_swap);
+  EXPECT_GT(tally.refused, 100u);
+  EXPECT_GT(tally.tried, tally.refused); // some do not depend on each other
+}
+
+TEST(Mutation, ABarrierAtAnotherPassIsRefusedExactlyWhereItMatters) {
+  const Tally tally = compare_verdicts(60, 600, for_each_moved_barrier);
+  EXPECT_GT(tally.refused, 100u);
+  EXPECT_GT(tally.tried, tally.refused); // some wait for what ended long before
+}
+
+} // namespace
+} // namespace dermis::testing

@@ -1,0 +1,109 @@
+// Every shipped graph, in every combination of what a host may leave unbound: the plan is proven, no part of
+// it can be taken away, and it computes what the graph means.
+
+#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/hazard_oracle.hpp"
+#include "tests/framegraph/plan_mutations.hpp"
+#include "tests/framegraph/second_opinion.hpp"
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/model/read_graph.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "passes/subsurface/kinds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::testing;
+
+constexpr uint32_t frames = 5;
+
+struct ShippedPlans : ::testing::Test {
+  KindRegistry kinds = subsurface::make_kinds();
+  DeviceProfile device = generic_profile();
+
+  static std::vector<std::string> files() {
+    std::vector<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/graphs")) {
+      const std::string name = entry.path().string();
+      if (name.ends_with(".json") && !name.ends_with(".expect.json")) out.push_back(name);
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  using Visit = std::function<void(const Graph&, const CompiledPlan&, bool all_bound)>;
+
+  void for_each_plan(const Visit& visit) {
+    const std::vector<std::string> all = files();
+    ASSERT_GE(all.size(), 2u);
+    for (const std::string& name : all) {
+      SCOPED_TRACE(name);
+      Diagnostics diagnostics;
+      const auto document = read_document(name, diagnostics);
+      ASSERT_TRUE(document);
+      const auto graph = read_graph(*document, kinds, diagnostics);
+      ASSERT_TRUE(graph);
+      std::vector<size_t> optional;
+      for (size_t r = 0; r < graph->resources.size(); ++r)
+        if (graph->resources[r].optional) optional.push_back(r);
+      for (uint32_t unbound = 0; unbound < 1u << optional.size(); ++unbound) {
+        SCOPED_TRACE(unbound);
+        CompileInput input{&*graph, &kinds, &device, 640, 360, {}, {}, {}};
+        input.bound.assign(graph->resources.size(), true);
+        for (size_t i = 0; i < optional.size(); ++i)
+          input.bound[optional[i]] = (unbound >> i & 1u) == 0;
+        const auto compiled = compile(input, diagnostics);
+        ASSERT_TRUE(compiled) << format_as_json(diagnostics);
+        visit(*graph, *compiled, unbound == 0);
+      }
+    }
+  }
+};
+
+TEST_F(ShippedPlans, AreAcceptedByVerifierAndOracle) {
+  for_each_plan([](const Graph&, const CompiledPlan& compiled, bool) {
+    EXPECT_EQ(verify(compiled.plan), std::vector<std::string>{});
+    EXPECT_EQ(first_hazard(compiled.plan), "");
+  });
+}
+
+TEST_F(ShippedPlans, HaveNoBarrierThatCanBeDropped) {
+  for_each_plan([](const Graph&, const CompiledPlan& compiled, bool) {
+    for (uint32_t b = 0; b < compiled.plan.barriers.size(); ++b)
+      EXPECT_FALSE(verify(without_barrier(compiled.plan, b)).empty()) << "barrier " << b;
+  });
+}
+
+TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
+  Tally tally;
+  for_each_plan([&](const Graph&, const CompiledPlan& compiled, bool) {
+    for (const auto for_each_mutant : {for_each_weaker_mask, for_each_shifted_placement,
+                                       for_each_flipped_slot, for_each_swap, for_each_moved_barrier})
+      for_each_mutant(compiled.plan, [&](const Plan& mutant, const std::string& what) {
+        if (!HasFatalFailure()) expect_same_verdict(mutant, what, tally);
+      });
+  });
+  EXPECT_GT(tally.refused * 10, tally.tried * 8);
+}
+
+TEST_F(ShippedPlans, ComputeWhatTheGraphMeansInAnyOrderThatTheBarriersAllow) {
+  for_each_plan([&](const Graph& graph, const CompiledPlan& compiled, bool all_bound) {
+    const Interpretation recorded = interpret(compiled.plan, {frames, 1, 1, 0});
+    if (all_bound) {
+      EXPECT_TRUE(agrees(recorded, graph_truth(graph, kinds, frames, 1)));
+    }
+    for (uint64_t seed = 1; seed <= 20; ++seed) {
+      EXPECT_EQ(interpret(compiled.plan, {frames, 1, seed, seed}), recorded);
+      EXPECT_EQ(interpret(without_aliasing(compiled.plan), {frames, 1, seed, seed}), recorded);
+    }
+  });
+}
+
+} // namespace
