@@ -11,8 +11,10 @@ namespace {
 
 constexpr uint64_t largest_side = 0xffffffffull;
 
-// align_up(round(base * factor), align), at least 1; nullopt beyond 32 bits.
-std::optional<uint32_t> scaled(uint64_t base, Rational factor, Rounding rounding, uint32_t align) {
+// align_up(round(base * factor), align), at least 1, and the border on both sides; nullopt beyond 32 bits.
+std::optional<uint32_t> scaled(uint64_t base, Rational factor, const SizeExpression& size) {
+  const Rounding rounding = size.rounding;
+  const uint32_t align = size.align;
   if (factor.numerator < 0 || factor.denominator <= 0) return std::nullopt;
   const auto numerator = static_cast<uint64_t>(factor.numerator);
   const auto denominator = static_cast<uint64_t>(factor.denominator);
@@ -23,7 +25,7 @@ std::optional<uint32_t> scaled(uint64_t base, Rational factor, Rounding rounding
   value = std::max<uint64_t>(value, 1);
   if (value > largest_side) return std::nullopt;
   const uint64_t step = std::max<uint32_t>(align, 1);
-  value = (value + step - 1) / step * step;
+  value = (value + step - 1) / step * step + 2 * uint64_t{size.border};
   if (value > largest_side) return std::nullopt;
   return static_cast<uint32_t>(value);
 }
@@ -91,8 +93,8 @@ struct SizeResolver {
       base_x = c.extents[size.resource.value].width;
       base_y = c.extents[size.resource.value].height;
     }
-    const auto width = scaled(base_x, size.x, size.rounding, size.align);
-    const auto height = scaled(base_y, size.y, size.rounding, size.align);
+    const auto width = scaled(base_x, size.x, size);
+    const auto height = scaled(base_y, size.y, size);
     if (!width || !height) {
       too_large(declared, "has a size beyond 32 bits");
       return false;

@@ -26,6 +26,7 @@ struct SizeExpression {
   Rational x, y; // factors; for fixed the sizes themselves over 1
   Rounding rounding = Rounding::ceil;
   uint32_t align = 1;
+  uint32_t border = 0; // images: texels added on every side, last
 };
 
 enum class ResourceType : uint8_t { image, buffer };

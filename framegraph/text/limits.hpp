@@ -25,6 +25,7 @@ inline constexpr uint32_t expression_nesting = 64; // parentheses and `not`
 inline constexpr uint32_t history_frames = 8;
 inline constexpr uint32_t image_side = 16384;    // absolute sizes and alignments, texels
 inline constexpr int64_t size_factor = 65536;    // numerator and denominator of a size
+inline constexpr uint32_t image_border = 64;    // texels on every side
 inline constexpr uint32_t image_mips = 15;       // full chain of image_side
 inline constexpr uint32_t image_layers = 2048;   // VkPhysicalDeviceLimits::maxImageArrayLayers, usual minimum
 inline constexpr uint32_t buffer_stride = 65536; // bytes an element

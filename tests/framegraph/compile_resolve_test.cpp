@@ -45,6 +45,10 @@ TEST(Sizes, FollowTheViewWithTheStatedRounding) {
   middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
   EXPECT_EQ(middle.width, 80u);
   EXPECT_EQ(middle.height, 8u);
+  b.middle().size.border = 1; // on both sides, after aligning
+  middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
+  EXPECT_EQ(middle.width, 82u);
+  EXPECT_EQ(middle.height, 10u);
 }
 
 TEST(Sizes, AreNeverBelowOneAndChangeWithTheView) {

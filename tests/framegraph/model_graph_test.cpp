@@ -42,6 +42,7 @@ TEST(Graph, EveryDeclarationOfAFileArrivesWithItsNamesResolved) {
   EXPECT_EQ(half.size.y.denominator, 4);
   EXPECT_EQ(half.size.rounding, Rounding::floor);
   EXPECT_EQ(half.size.align, 8u);
+  EXPECT_EQ(half.size.border, 1u);
   EXPECT_EQ(half.mips, 0u);
   EXPECT_EQ(half.layers, 2u);
   const ResourceDeclaration& kept = graph.resources[4];

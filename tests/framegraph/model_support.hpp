@@ -69,7 +69,7 @@ inline std::string whole_graph() {
     "depth": { "format": "depth", "size": "view", "optional": true },
     "material": { "format": "r8_uint", "size": "view" } },
   "resources": {
-    "half": { "format": "rgba16f", "size": "view*3/4", "round": "floor", "align": 8, "mips": "full", "layers": 2 },
+    "half": { "format": "rgba16f", "size": "view*3/4", "round": "floor", "align": 8, "border": 1, "mips": "full", "layers": 2 },
     "kept": { "format": "rgba16f", "size": "half/2",
               "history": { "frames": 2, "first": "clear", "on_cut": "keep", "on_resize": "rescale" } },
     "fixed": { "format": "rgba16f", "size": [64, 32], "optional": true },

@@ -70,6 +70,9 @@ bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, 
   if (!node.valid()) return false;
   const std::string what = fmt::format("'{}' of {}", key, object.what());
   const bool count = key == "count";
+  if (!count)
+    rounding.border = static_cast<uint32_t>(
+        object.integer("border", 0, limits::image_border, Need::optional).value_or(0));
   const auto find = [&](std::string_view name) {
     return find_resource(reader, name, what, reader.document.where(node));
   };
@@ -78,6 +81,7 @@ bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, 
   out = *size;
   out.rounding = rounding.rounding;
   out.align = rounding.align;
+  out.border = rounding.border;
   if (out.base != SizeExpression::Base::resource) return true;
   const ResourceDeclaration& base = reader.graph.resources[out.resource.value];
   if (base.type == ResourceType::image) return true;

@@ -82,6 +82,16 @@ VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& ker
       .buffer;
 }
 
+const PlanResource* first_written_image(const State& state, const Pass& pass) {
+  for (const uint32_t index : pass.access_of_port) {
+    if (index == no_index || (state.plan.accesses[index].access & access::shader_storage_write) == 0)
+      continue;
+    const PlanResource& resource = state.plan.resources[state.plan.accesses[index].resource];
+    if (resource.type == ResourceType::image) return &resource;
+  }
+  return nullptr;
+}
+
 void dispatch(State& state, VkCommandBuffer commands, const Pass& pass, const Kernel& kernel,
               const Rectangle& r) {
   const FunctionTable& vk = state.device->vk;
@@ -96,6 +106,11 @@ void dispatch(State& state, VkCommandBuffer commands, const Pass& pass, const Ke
   case DispatchShape::over_tile_grid: {
     const uint64_t tiles = uint64_t{across} * down;
     vk.vkCmdDispatch(commands, static_cast<uint32_t>((tiles + tiles_per_group - 1) / tiles_per_group), 1, 1);
+    break;
+  }
+  case DispatchShape::over_written: {
+    const PlanResource* image = first_written_image(state, pass);
+    if (image) vk.vkCmdDispatch(commands, tiles_along(image->width), tiles_along(image->height), 1);
     break;
   }
   case DispatchShape::single_group:

@@ -100,6 +100,7 @@ struct Checker {
     };
     switch (kind.dispatch) {
     case DispatchShape::over_view:
+    case DispatchShape::over_written:
       if (size[0] != tile_side || size[1] != tile_side || size[2] != 1) refuse("8x8x1");
       break;
     case DispatchShape::over_tiles:
