@@ -62,13 +62,15 @@ vulkan::Error make_executor(dermis_context_t& context, const ProgramInput& input
   const auto separable = subsurface::make_separable_table(
       with_separable ? std::span<const subsurface::NumberedProfile>(input.profiles)
                      : std::span<const subsurface::NumberedProfile>());
-  const std::array<vulkan::EnvironmentBinding, 4> environment{{
+  const auto sap = subsurface::make_sap_tables(subsurface::uses_sap(program.graph, context.kinds));
+  const std::array<vulkan::EnvironmentBinding, 5> environment{{
       {vulkan::EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(profiles).size(), bytes_of(profiles)},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(separable).size(), bytes_of(separable)},
       {vulkan::EnvironmentType::linear_sampler, 0, {}},
+      {vulkan::EnvironmentType::storage_buffer, bytes_of(sap).size(), bytes_of(sap)},
   }};
-  static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 4);
+  static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 5);
   vulkan::ExecutorInput executor;
   executor.device = &context.device;
   executor.graph = &program.graph;

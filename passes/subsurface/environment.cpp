@@ -1,5 +1,7 @@
 #include "passes/subsurface/environment.hpp"
 
+#include "passes/subsurface/sap_weights.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -76,6 +78,20 @@ bool uses_separable(const Graph& graph, const KindRegistry& kinds) {
   const KindId separable = kinds.find("subsurface.separable");
   return std::any_of(graph.passes.begin(), graph.passes.end(),
                      [&](const PassDeclaration& pass) { return pass.kind == separable; });
+}
+
+bool uses_sap(const Graph& graph, const KindRegistry& kinds) {
+  const KindId gather = kinds.find("subsurface.sap_gather"), up = kinds.find("subsurface.sap_up");
+  return std::any_of(graph.passes.begin(), graph.passes.end(),
+                     [&](const PassDeclaration& pass) { return pass.kind == gather || pass.kind == up; });
+}
+
+std::vector<float> make_sap_tables(bool used) {
+  if (!used) return {0.0f};
+  std::vector<float> tables = make_sap_table(fit_sap_weights(SapVariant::base));
+  const std::vector<float> smooth = make_sap_table(fit_sap_weights(SapVariant::smooth));
+  tables.insert(tables.end(), smooth.begin(), smooth.end());
+  return tables;
 }
 
 } // namespace dermis::subsurface

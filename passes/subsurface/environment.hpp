@@ -20,7 +20,8 @@ enum class EnvironmentSlot : uint32_t {
   profiles = 1,
   separable = 2,
   linear_sampler = 3,
-  count = 4
+  sap = 4,
+  count = 5
 };
 
 enum class DepthKind : uint32_t { device = 0, view_units = 1 };
@@ -80,5 +81,11 @@ std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> pr
 std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles);
 // Does the graph have a pass that reads the separable table?
 bool uses_separable(const Graph& graph, const KindRegistry& kinds);
+
+// Does the graph have a pass of the surface-aware pyramid that reads its table?
+bool uses_sap(const Graph& graph, const KindRegistry& kinds);
+// Both variants' tables (make_sap_table of sap_weights.hpp), base first; a single zero where `used` is false.
+// About .2 s.
+std::vector<float> make_sap_tables(bool used);
 
 } // namespace dermis::subsurface

@@ -9,6 +9,7 @@ namespace dermis::subsurface {
 extern const PassKind classify_kind, tile_list_kind;        // tile_signatures.cpp
 extern const PassKind setup_kind, combine_kind, light_kind; // light_signatures.cpp
 extern const PassKind burley_kind, separable_kind;          // scatter_signatures.cpp
+extern const PassKind sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind; // sap_signatures.cpp
 
 // Ports that several kinds declare with the same meaning.
 namespace port {

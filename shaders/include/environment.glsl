@@ -22,6 +22,7 @@ struct profile_entry {
   uint unused_0, unused_1;
 };
 layout(std430, set = 1, binding = 1) readonly buffer profile_block { profile_entry profiles[]; };
+layout(std430, set = 1, binding = 4) readonly buffer sap_block { float sap_table[]; };
 layout(std430, set = 1, binding = 2) readonly buffer separable_block { vec4 separable_rows[]; };
 
 const float largest_depth_mm = 1e9; // a thousand kilometres: sky and infinite far planes are beyond

@@ -34,7 +34,7 @@ struct GraphLife : DermisTest {
 };
 
 TEST(Validate, AcceptsTheShippedGraphsWithoutADevice) {
-  for (const char* path : {"configs/graphs/burley.json", "configs/graphs/separable.json"}) {
+  for (const char* path : {"configs/graphs/burley.json", "configs/graphs/separable.json", "configs/graphs/sap.json"}) {
     const std::string text = read_text(path);
     const dermis_source source = source_of(text, path);
     dermis_report report = nullptr;

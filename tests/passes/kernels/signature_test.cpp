@@ -17,6 +17,7 @@ TEST(Kernels, EveryKernelFitsItsSignatureAndTheEnvironment) {
       {EnvironmentType::storage_buffer, profile_capacity * sizeof(ProfileEntry), {}},
       {EnvironmentType::storage_buffer, any, {}},
       {EnvironmentType::linear_sampler, 0, {}},
+      {EnvironmentType::storage_buffer, any, {}},
   };
   const KindRegistry kinds = make_kinds();
   ASSERT_GT(kinds.size(), 0u);

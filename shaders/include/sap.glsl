@@ -1,0 +1,68 @@
+// The surface-aware pyramid (SAP): what its kernels share. passes/subsurface/sap_twin.cpp mirrors these functions.
+#ifndef DERMIS_SAP_GLSL
+#define DERMIS_SAP_GLSL
+
+#include "constants.glsl"
+#include "environment.glsl"
+
+const float sap_sigma = 0.8660254; // of [1 3 3 1] in its own spacings: sqrt(3)/2
+// Widths of the weights in sigmas, by measurement (passes/subsurface/sap_levels.hpp).
+const float sap_depth_width = 2.0;      // distance from the tangent plane: stops at depth steps
+const float sap_tilt_width_down = 2.5;  // depth along the tangent plane: narrows the kernel on slopes
+const float sap_tilt_width_up = 4.0;
+const float sap_tilt_width_tent = 1.5;
+const float sap_area_cap = 1.5;         // of 1 / cos to the viewer
+const float sap_negligible = 1e-12;
+
+// exp(-x^2 / (2 width^2)) = exp2(factor * x^2)
+float sap_factor(float width) { return -0.5 * 1.44269504 / (width * width); }
+
+struct sap_texel {
+  float depth;  // mm
+  vec2 slope;   // change of depth from pixel to pixel, in footprints
+  float reach;  // factor on d: cos^(1/4) to the viewer times the scatter scale
+  float mass;   // share of the texel's own kernel that met the surface
+  uint id;      // profile, 0: nothing here
+};
+
+uvec4 sap_pack(sap_texel t) {
+  return uvec4(floatBitsToUint(t.depth), packHalf2x16(t.slope), packHalf2x16(vec2(t.reach, t.mass)), t.id);
+}
+sap_texel sap_unpack(uvec4 bits) {
+  vec2 pair = unpackHalf2x16(bits.z);
+  return sap_texel(uintBitsToFloat(bits.x), unpackHalf2x16(bits.y), pair.x, pair.y, bits.w);
+}
+
+// Geometric mean of a pixel's sides at a depth, mm.
+float sap_footprint(float depth) {
+  vec2 sides = pixel_footprint(depth);
+  return sqrt(sides.x * sides.y);
+}
+// Rise of a texel's tangent plane at an offset in pixels, mm.
+float sap_rise(float depth, vec2 slope, vec2 offset) { return dot(slope, offset) * sap_footprint(depth); }
+
+ivec2 sap_level_size(int level) { return (frame.rect.zw + (1 << level) - 1) >> level; }
+// Levels from 1 on have a border of one texel; level 0 lies as the view does.
+bool sap_inside(ivec2 at, int level) {
+  int border = level > 0 ? 1 : 0;
+  return all(greaterThanEqual(at, ivec2(-border))) && all(lessThan(at, sap_level_size(level) + border));
+}
+ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at); }
+
+// Row `row` of variant `variant` at d px: sap_lookup of passes/subsurface/sap_weights.cpp.
+float sap_lookup(int variant, int row, float d_px) {
+  int first = (variant * (sap_levels + 1) + row) * sap_nodes;
+  float position = (log2(max(d_px, 1e-30)) - sap_log2_d_first) * sap_nodes_per_octave;
+  if (position < 0.0) { // below the first node all but the centre fades
+    float share = d_px / exp2(sap_log2_d_first);
+    return row == 0 ? 1.0 - share * (1.0 - sap_table[first]) : row == 1 ? share * sap_table[first] : sap_table[first];
+  }
+  position = min(position, float(sap_nodes - 1));
+  int node = min(int(position), sap_nodes - 2);
+  return mix(sap_table[first + node], sap_table[first + node + 1], position - float(node));
+}
+vec3 sap_lookup(int variant, int row, vec3 d_px) {
+  return vec3(sap_lookup(variant, row, d_px.r), sap_lookup(variant, row, d_px.g), sap_lookup(variant, row, d_px.b));
+}
+
+#endif

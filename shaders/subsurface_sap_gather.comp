@@ -1,0 +1,36 @@
+#version 460
+// The last step up: scattered light of every listed pixel.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "subsurface_sap_gather.bindings.glsl"
+#include "environment.glsl"
+#include "tiles.glsl"
+#include "half.glsl"
+#include "radius.glsl"
+#include "sap_up.glsl"
+
+const float least_share = 0.002; // below it the tent is not worth its reads
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  ivec2 texel = texel_of(pixel);
+  vec3 light = texelFetch(light_image, texel, 0).rgb;
+  sap_texel own = sap_unpack(texelFetch(surface_image, texel, 0));
+  float confidence = 1.0;
+  if (!copy_only && own.id != 0u) {
+    vec3 d_px = sap_d_px(own);
+    vec3 centre = sap_lookup(settings.variant, 0, d_px), tent = sap_lookup(settings.variant, 1, d_px);
+    sap_sum near = sap_sum(light, vec3(own.mass));
+    if (max(tent.r, max(tent.g, tent.b)) >= least_share)
+      near = sap_tent(pixel, 0, own);
+    sap_sum rest = sap_from_coarser(pixel, 0, own, light, confidence);
+    rest.mass *= 1.0 - centre - tent;
+    uint widest = profiles[min(own.id, 255u)].widest;
+    confidence = mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
+    light = sap_blend(centre * own.mass, light, tent * near.mass, near.light, rest).light;
+  }
+  imageStore(scattered_image, texel, round_to_half(vec4(light, confidence)));
+}
