@@ -33,7 +33,7 @@ render() { # scene, graph, folder, more options
     --out "out/$3" "${@:4}"
 }
 
-for graph in burley separable; do
+for graph in sap burley separable; do
   render bust "$graph" "bust_$graph"
 done
 say
@@ -46,7 +46,7 @@ if [[ -z "$head" ]]; then
 elif [[ ! -f "$head/LeePerrySmith.glb" ]]; then
   say "Head scan: skipped, there is no LeePerrySmith.glb in '$head'."
 else
-  for graph in burley separable; do
+  for graph in sap burley separable; do
     render head "$graph" "head_$graph" --model "$head/LeePerrySmith.glb" --height 0.24 --albedo "$head/Map-COL.jpg" \
       --specular "$head/Map-SPEC.jpg" --normal "$head/Infinite-Level_02_Tangent_SmoothUV.jpg"
   done
