@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace dermis {
 namespace {
@@ -50,7 +51,8 @@ struct Thing {
 struct Machine {
   const Plan& plan;
   std::vector<Thing> things;
-  std::vector<uint32_t> first_thing; // by resource
+  std::vector<uint32_t> first_thing;              // by resource
+  std::vector<std::vector<uint32_t>> overlapping; // by thing: those with a byte in common, itself included
   std::vector<std::string> objections;
   uint32_t frame = 0;
 
@@ -65,6 +67,7 @@ struct Machine {
         things.push_back(thing);
       }
     }
+    find_overlaps();
     for (const PlanHistory& history : plan.histories) // as if the executor had just made them
       for (uint32_t back = 1; back <= history.frames; ++back) {
         Thing& thing = things[thing_of(history.resource, back)];
@@ -84,13 +87,32 @@ struct Machine {
           fmt::format("frame {}, {}: resource {}@-{}: {}", frame, where, resource, frames_back, what));
   }
 
-  template <class Visit> void for_each_overlapping(uint32_t index, Visit visit) {
+  // In the order of the heap: behind a thing's end nothing overlaps it.
+  void find_overlaps() {
+    overlapping.resize(things.size());
+    std::vector<uint32_t> placed;
     for (uint32_t t = 0; t < things.size(); ++t) {
-      const bool both_placed = things[t].placement != no_instance && things[index].placement != no_instance;
-      if (t == index || (both_placed && share_memory(plan.placements[things[t].placement],
-                                                     plan.placements[things[index].placement])))
-        visit(things[t], t == index);
+      overlapping[t].push_back(t);
+      if (things[t].placement != no_instance) placed.push_back(t);
     }
+    const auto memory = [&](uint32_t t) -> const Placement& { return plan.placements[things[t].placement]; };
+    std::sort(placed.begin(), placed.end(), [&](uint32_t a, uint32_t b) {
+      return std::tuple(memory(a).heap, memory(a).offset, a) <
+             std::tuple(memory(b).heap, memory(b).offset, b);
+    });
+    for (size_t i = 0; i < placed.size(); ++i)
+      for (size_t k = i + 1; k < placed.size() && memory(placed[k]).heap == memory(placed[i]).heap &&
+                             memory(placed[k]).offset < memory(placed[i]).offset + memory(placed[i]).size;
+           ++k)
+        if (share_memory(memory(placed[i]), memory(placed[k]))) {
+          overlapping[placed[i]].push_back(placed[k]);
+          overlapping[placed[k]].push_back(placed[i]);
+        }
+  }
+
+  template <class Visit> void for_each_overlapping(uint32_t index, Visit visit) {
+    for (const uint32_t t : overlapping[index])
+      visit(things[t], t == index);
   }
 
   void begin_frame() {
