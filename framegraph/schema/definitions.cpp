@@ -30,6 +30,7 @@ std::string filled(std::string_view text, std::string_view kinds = {}) {
       {"<options>", fmt::format("{}", limits::options)},
       {"<most formats>", fmt::format("{}", limits::formats)},
       {"<side>", fmt::format("{}", limits::image_side)},
+      {"<border>", fmt::format("{}", limits::image_border)},
       {"<mips>", fmt::format("{}", limits::image_mips)},
       {"<layers>", fmt::format("{}", limits::image_layers)},
       {"<stride>", fmt::format("{}", limits::buffer_stride)},
@@ -95,7 +96,7 @@ std::string resource_definition() {
       "then": {{ "additionalProperties": false, "properties": {{
         "buffer": {{ "$ref": "#/definitions/buffer" }}, {0}, {1}, {2} }} }},
       "else": {{ "required": ["format", "size"], "additionalProperties": false, "properties": {{
-        "format": {{ "$ref": "#/definitions/formats" }}, "size": {{ "$ref": "#/definitions/size" }},
+        "format": {{ "$ref": "#/definitions/formats" }}, "size": {{ "$ref": "#/definitions/size" }}, "border": {{ "$ref": "#/definitions/border" }},
         "round": {{ "$ref": "#/definitions/round" }}, "align": {{ "$ref": "#/definitions/align" }},
         "mips": {{ "anyOf": [{{ "type": "integer", "minimum": 1, "maximum": <mips> }}, {{ "enum": ["full"] }}] }},
         "layers": {{ "type": "integer", "minimum": 1, "maximum": <layers> }}, {0}, {1}, {2} }} }} }})",
@@ -128,7 +129,7 @@ constexpr std::string_view history_text =
 
 constexpr std::string_view import_text =
     R"({ "type": "object", "required": ["format", "size"], "additionalProperties": false, "properties": {
-        "format": { "$ref": "#/definitions/formats" }, "size": { "$ref": "#/definitions/size" },
+        "format": { "$ref": "#/definitions/formats" }, "size": { "$ref": "#/definitions/size" }, "border": { "$ref": "#/definitions/border" },
         "round": { "$ref": "#/definitions/round" }, "align": { "$ref": "#/definitions/align" },
         "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } })";
 
@@ -189,6 +190,9 @@ SchemaMembers graph_definitions(std::string_view kind_names) {
            R"({ "description": "one, or several in order of preference", "anyOf": [{ "$ref": "#/definitions/format" },
       { "type": "array", "minItems": 1, "maxItems": <most formats>, "items": { "$ref": "#/definitions/format" } }] })")},
       {"round", R"({ "enum": ["ceil", "floor"], "description": "of fractions of a size" })"},
+      {"border",
+       with_note(
+           R"({ "type": "integer", "minimum": 0, "maximum": <border>, "description": "texels added on every side, after rounding and aligning [texels]" })")},
       {"align",
        with_note(
            R"({ "type": "integer", "minimum": 1, "maximum": <side>, "description": "sizes are rounded up to a multiple" })")},

@@ -205,7 +205,7 @@ constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 1, "name": 
     "material": { "format": "r8_uint", "size": "view" },
     "depth": { "format": ["depth", "r32f"], "size": "view", "optional": true } },
   "resources": {
-    "half": { "format": "rgba16f", "size": "view*3/4", "round": "floor", "align": 8, "mips": "full", "layers": 2 },
+    "half": { "format": "rgba16f", "size": "view*3/4", "round": "floor", "align": 8, "border": 4, "mips": "full", "layers": 2 },
     "kept": { "format": "rgba16f", "size": "half/2", "mips": 2,
               "history": { "frames": 2, "first": "clear", "on_cut": "keep", "on_resize": "rescale", "note": "n" } },
     "fixed": { "format": "rgba16f", "size": [64, 32], "optional": true },
