@@ -38,7 +38,8 @@ struct ShippedPlans : ::testing::Test {
     return out;
   }
 
-  using Visit = std::function<void(const Graph&, const CompiledPlan&, bool all_bound)>;
+  enum class Bound { all, some, none }; // of the optional slots
+  using Visit = std::function<void(const Graph&, const CompiledPlan&, Bound)>;
 
   void for_each_plan(const Visit& visit) {
     const std::vector<std::string> all = files();
@@ -61,21 +62,22 @@ struct ShippedPlans : ::testing::Test {
           input.bound[optional[i]] = (unbound >> i & 1u) == 0;
         const auto compiled = compile(input, diagnostics);
         ASSERT_TRUE(compiled) << format_as_json(diagnostics);
-        visit(*graph, *compiled, unbound == 0);
+        const bool none = unbound + 1 == 1u << optional.size();
+        visit(*graph, *compiled, unbound == 0 ? Bound::all : none ? Bound::none : Bound::some);
       }
     }
   }
 };
 
 TEST_F(ShippedPlans, AreAcceptedByVerifierAndOracle) {
-  for_each_plan([](const Graph&, const CompiledPlan& compiled, bool) {
+  for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
     EXPECT_EQ(verify(compiled.plan), std::vector<std::string>{});
     EXPECT_EQ(first_hazard(compiled.plan), "");
   });
 }
 
 TEST_F(ShippedPlans, HaveNoBarrierThatCanBeDropped) {
-  for_each_plan([](const Graph&, const CompiledPlan& compiled, bool) {
+  for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
     for (uint32_t b = 0; b < compiled.plan.barriers.size(); ++b)
       EXPECT_FALSE(verify(without_barrier(compiled.plan, b)).empty()) << "barrier " << b;
   });
@@ -83,7 +85,8 @@ TEST_F(ShippedPlans, HaveNoBarrierThatCanBeDropped) {
 
 TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
   Tally tally;
-  for_each_plan([&](const Graph&, const CompiledPlan& compiled, bool) {
+  for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
+    if (bound == Bound::some) return; // the oracle is slow; these are the widest and the narrowest plan
     for (const auto for_each_mutant : {for_each_weaker_mask, for_each_shifted_placement,
                                        for_each_flipped_slot, for_each_swap, for_each_moved_barrier})
       for_each_mutant(compiled.plan, [&](const Plan& mutant, const std::string& what) {
@@ -94,9 +97,9 @@ TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
 }
 
 TEST_F(ShippedPlans, ComputeWhatTheGraphMeansInAnyOrderThatTheBarriersAllow) {
-  for_each_plan([&](const Graph& graph, const CompiledPlan& compiled, bool all_bound) {
+  for_each_plan([&](const Graph& graph, const CompiledPlan& compiled, Bound bound) {
     const Interpretation recorded = interpret(compiled.plan, {frames, 1, 1, 0});
-    if (all_bound) {
+    if (bound == Bound::all) {
       EXPECT_TRUE(agrees(recorded, graph_truth(graph, kinds, frames, 1)));
     }
     for (uint64_t seed = 1; seed <= 20; ++seed) {
