@@ -44,24 +44,29 @@ std::string setting_text(const SettingDeclaration& setting, const SettingValue& 
 }
 
 void choose(CompileContext& c) {
-  for (uint32_t i = 0; i < c.graph.settings.size(); ++i) {
-    const SettingDeclaration& declared = c.graph.settings[i];
-    const bool given = !c.input.settings.empty();
-    const SettingValue value = given ? c.input.settings[i] : declared.default_value;
+  c.settings.clear();
+  c.on.clear();
+  for (uint32_t i = 0; i < c.graph->settings.size(); ++i) {
+    const SettingDeclaration& declared = c.graph->settings[i];
+    const bool given = !c.input->settings.empty();
+    const SettingValue value = given ? c.input->settings[i] : declared.default_value;
     if (!acceptable(declared, value))
-      c.diagnostics.add(
+      c.diagnostics->add(
           DiagnosticId::setting_value, declared.where,
           fmt::format("setting '{}' cannot be {}", declared.name, setting_text(declared, value)));
     c.settings.push_back(value);
-    c.because(Reason::About::choice, i,
-              fmt::format("{} = {}: {}", declared.name, setting_text(declared, value),
-                          given ? "asked for by the caller" : "its default"));
+    c.because(Reason::About::choice, i, [&] {
+      return fmt::format("{} = {}: {}", declared.name, setting_text(declared, value),
+                         given ? "asked for by the caller" : "its default");
+    });
   }
-  c.out.plan.setting_values = c.settings;
-  for (uint32_t i = 0; i < c.graph.passes.size(); ++i) {
-    const ExpressionId when = c.graph.passes[i].when;
-    c.on.push_back(!when.valid() || evaluate(c.graph, when, c.settings));
-    if (!c.on.back()) c.because(Reason::About::pass, i, "off: its 'when' is false with these settings");
+  c.out->plan.setting_values = c.settings;
+  for (uint32_t i = 0; i < c.graph->passes.size(); ++i) {
+    const ExpressionId when = c.graph->passes[i].when;
+    c.on.push_back(!when.valid() || evaluate(*c.graph, when, c.settings));
+    if (!c.on.back())
+      c.because(Reason::About::pass, i,
+                [] { return std::string("off: its 'when' is false with these settings"); });
   }
 }
 

@@ -29,48 +29,68 @@ bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
 
 } // namespace
 
-bool CompileContext::host_owned(ResourceId id) const {
-  const auto& declared = graph.resources[id.value];
-  return declared.origin == Origin::imported || (declared.exported && bound[id.value]);
+namespace {
+
+void clear(CompiledPlan& out) {
+  Plan& plan = out.plan;
+  plan.setting_values.clear();
+  plan.resources.clear();
+  plan.heaps.clear();
+  plan.placements.clear();
+  plan.passes.clear();
+  plan.accesses.clear();
+  plan.barriers.clear();
+  plan.settings.clear();
+  plan.histories.clear();
+  plan.first_final_barrier = plan.final_barrier_count = 0;
+  plan.transient_bytes = plan.history_bytes = 0;
+  out.reasons.clear();
 }
 
-std::optional<CompiledPlan> compile(const CompileInput& input, Diagnostics& diagnostics) {
-  if (!acceptable(input, diagnostics)) return std::nullopt;
-  CompileContext context{input,
-                         *input.graph,
-                         *input.kinds,
-                         *input.device,
-                         diagnostics,
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {}};
+} // namespace
+
+Compiler::Compiler() : context_(std::make_unique<CompileContext>()) {}
+Compiler::~Compiler() = default;
+
+bool Compiler::compile(const CompileInput& input, Diagnostics& diagnostics, CompiledPlan& out) {
+  clear(out);
+  if (!acceptable(input, diagnostics)) return false;
+  CompileContext& context = *context_;
+  context.input = &input;
+  context.graph = input.graph;
+  context.kinds = input.kinds;
+  context.device = input.device;
+  context.diagnostics = &diagnostics;
+  context.out = &out;
   const uint32_t errors_before = diagnostics.count(Severity::error);
   for (auto* phase : {
            resolve_sizes,    // how large is each resource, and which slots does the host bind?
            choose,           // what are the settings, and which passes are on?
            resolve_versions, // which version of which resource does each port see?
            cull,             // which passes does something bound need?
+           gather_usage,     // how do they use each resource?
+           resolve_formats,  // which format does each resource get, and how much memory?
            order,            // in which order do they run?
            lifetimes,        // from which pass to which is each resource alive?
-           resolve_formats,  // which format does each resource get?
            pack,             // where in memory does each one lie?
            synchronize,      // what must wait for what?
        }) {
     phase(context);
-    if (diagnostics.count(Severity::error) != errors_before) return std::nullopt;
+    if (diagnostics.count(Severity::error) == errors_before) continue;
+    clear(out);
+    return false;
   }
-  return std::move(context.out);
+  out.plan.graph = input.graph->name;
+  out.plan.view_width = input.view_width;
+  out.plan.view_height = input.view_height;
+  out.plan.device_profile = input.device->name;
+  return true;
+}
+
+std::optional<CompiledPlan> compile(const CompileInput& input, Diagnostics& diagnostics) {
+  CompiledPlan out;
+  if (!Compiler().compile(input, diagnostics, out)) return std::nullopt;
+  return out;
 }
 
 } // namespace dermis

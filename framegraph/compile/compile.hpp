@@ -4,10 +4,23 @@
 #include "framegraph/compile/device_profile.hpp"
 #include "framegraph/compile/plan.hpp"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace dermis {
+
+enum class PassOrder : uint8_t {
+  memory,  // depth first where that lowers the most bytes alive at once, else that of the file
+  program, // that of the file wherever dependencies allow it
+  random   // any legal one, drawn from CompileInput::order_seed: for tests
+};
+
+enum class PackingLevel : uint8_t {
+  fast,    // one placement by time, and one by size for graphs of a few hundred instances
+  tight,   // several orders and a short search: some 10 us a pass
+  optimize // search until the lower bound is met or about a second of work is done
+};
 
 struct CompileInput {
   const Graph* graph = nullptr;
@@ -19,10 +32,32 @@ struct CompileInput {
                                     // empty: all. Required ones count as bound always.
   std::vector<Format> host_formats; // one per Graph::resources: what the host binds there; undefined or
                                     // empty: the first declared format
+  bool reasons = true;              // fill CompiledPlan::reasons
+  PassOrder order = PassOrder::memory;
+  uint64_t order_seed = 0;
+  PackingLevel packing = PackingLevel::tight;
+  bool alias = true;     // false: no two transients share memory
+  bool cull = true;      // false: every pass that is on and has what it needs runs
+  ResourceId keep_alive; // valid: this transient shares memory with nothing
 };
 
 // The plan, or nullopt with errors in `diagnostics`. Same input, same bytes, on every compiler.
 // Free-threaded.
 std::optional<CompiledPlan> compile(const CompileInput& input, Diagnostics& diagnostics);
+
+// The same, reusing memory: after the first few graphs of a size nothing is allocated. One thread at a time.
+class Compiler {
+public:
+  Compiler();
+  ~Compiler();
+  Compiler(const Compiler&) = delete;
+  Compiler& operator=(const Compiler&) = delete;
+
+  // Overwrites `out`, whose memory is reused. False: errors in `diagnostics`, and `out` holds no plan.
+  bool compile(const CompileInput& input, Diagnostics& diagnostics, CompiledPlan& out);
+
+private:
+  std::unique_ptr<struct CompileContext> context_;
+};
 
 } // namespace dermis

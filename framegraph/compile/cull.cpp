@@ -11,17 +11,15 @@ namespace {
 
 struct Culler {
   CompileContext& c;
-  std::vector<PassId> pending;
-  std::vector<uint8_t> reported; // by resource: one root cause, one diagnostic
 
-  void need(PassId pass, std::string why) {
+  template <class Why> void need(PassId pass, Why&& why) {
     if (c.live[pass.value]) return;
     c.live[pass.value] = 1;
-    pending.push_back(pass);
-    c.because(Reason::About::pass, pass.value, "runs: " + std::move(why));
+    c.pending.push_back(pass);
+    c.because(Reason::About::pass, pass.value, [&] { return "runs: " + why(); });
   }
 
-  void need_value(uint32_t value, const std::string& why) {
+  template <class Why> void need_value(uint32_t value, Why&& why) {
     if (value != no_value && c.values[value].producer.valid()) need(c.values[value].producer, why);
   }
 
@@ -33,12 +31,33 @@ struct Culler {
         continue;
       }
       const auto why = [&](const char* verb) {
-        return fmt::format("'{}' {} its '{}'", c.name(pass), verb, c.name(use.resource));
+        return [this, pass, verb, &use] {
+          return fmt::format("'{}' {} its '{}'", c.name(pass), verb, c.name(use.resource));
+        };
       };
       if (use.frames_back > 0) need_value(c.final_value[use.asked.value], why("reads in later frames"));
       need_value(use.read_value, why("reads"));
       // What is written in place may keep texels of the version before.
       if (use.write_value != no_value) need_value(c.values[use.write_value].previous, why("writes over"));
+    }
+  }
+
+  // Without culling: every pass that has all it needs, and whatever these read.
+  void keep_runnable() {
+    std::vector<uint8_t> lacks(c.live.size(), 0);
+    for (const Use& use : c.uses)
+      if (use.trouble != Use::Trouble::none) lacks[use.pass.value] = 1;
+    for (uint32_t i = 0; i < c.live.size(); ++i)
+      if (c.on[i] && !lacks[i]) need(PassId{i}, [] { return std::string("culling is switched off"); });
+    for (bool again = true; again;) { // a pass needs all its producers to have what they need
+      again = false;
+      for (const Use& use : c.uses) {
+        if (!c.live[use.pass.value] || use.read_value == no_value) continue;
+        const PassId producer = c.values[use.read_value].producer;
+        if (!producer.valid() || c.live[producer.value]) continue;
+        c.live[use.pass.value] = 0;
+        again = true;
+      }
     }
   }
 
@@ -48,16 +67,17 @@ struct Culler {
     const bool missing = use.trouble == Use::Trouble::unbound || use.trouble == Use::Trouble::unwritten ||
                          use.trouble == Use::Trouble::history_unwritten;
     if (missing && port.optional) {
-      c.because(Reason::About::pass, use.pass.value,
-                fmt::format("optional port '{}' stays unbound: nothing provides '{}'", port.name,
-                            c.name(use.asked)));
+      c.because(Reason::About::pass, use.pass.value, [&] {
+        return fmt::format("optional port '{}' stays unbound: nothing provides '{}'", port.name,
+                           c.name(use.asked));
+      });
       return;
     }
-    if (reported[use.asked.value]) return;
-    reported[use.asked.value] = 1;
+    if (c.reported[use.asked.value]) return;
+    c.reported[use.asked.value] = 1;
     const auto refuse = [&](DiagnosticId id, std::string text) {
-      auto& diagnostic = c.diagnostics.add(id, use.where, std::move(text));
-      diagnostic.related.emplace_back(c.graph.resources[use.asked.value].where,
+      auto& diagnostic = c.diagnostics->add(id, c.binding(use).where, std::move(text));
+      diagnostic.related.emplace_back(c.graph->resources[use.asked.value].where,
                                       fmt::format("'{}' is declared here", c.name(use.asked)));
       relate_producers(diagnostic, use.asked);
     };
@@ -91,8 +111,8 @@ struct Culler {
 
   // Where the passes stand that would write `resource`, on or off: the likely cause.
   void relate_producers(Diagnostic& diagnostic, ResourceId resource) {
-    for (uint32_t i = 0; i < c.graph.passes.size(); ++i)
-      for (const PortBinding& binding : c.graph.passes[i].writes)
+    for (uint32_t i = 0; i < c.graph->passes.size(); ++i)
+      for (const PortBinding& binding : c.graph->passes[i].writes)
         if (binding.resource == resource)
           diagnostic.related.emplace_back(binding.where,
                                           fmt::format("'{}' writes it and is {}", c.name(PassId{i}),
@@ -102,7 +122,7 @@ struct Culler {
 
 std::string names_of_outputs(const CompileContext& c, PassId pass) {
   std::string names;
-  for (const PortBinding& binding : c.graph.passes[pass.value].writes)
+  for (const PortBinding& binding : c.graph->passes[pass.value].writes)
     names += fmt::format("{}'{}'", names.empty() ? "" : ", ", c.name(binding.resource));
   return names;
 }
@@ -110,33 +130,41 @@ std::string names_of_outputs(const CompileContext& c, PassId pass) {
 } // namespace
 
 void cull(CompileContext& c) {
-  c.live.assign(c.graph.passes.size(), 0);
-  Culler culler{c, {}, std::vector<uint8_t>(c.graph.resources.size(), 0)};
-  for (uint32_t i = 0; i < c.graph.resources.size(); ++i) {
-    const ResourceDeclaration& declared = c.graph.resources[i];
+  const auto passes = static_cast<uint32_t>(c.graph->passes.size());
+  c.live.assign(passes, 0);
+  c.pending.clear();
+  c.reported.assign(c.graph->resources.size(), 0);
+  Culler culler{c};
+  for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {
+    const ResourceDeclaration& declared = c.graph->resources[i];
     if (!declared.exported || !c.bound[i]) continue;
     if (c.final_value[i] != no_value) {
-      culler.need_value(c.final_value[i], fmt::format("it writes the export '{}'", declared.name));
+      culler.need_value(c.final_value[i],
+                        [&] { return fmt::format("it writes the export '{}'", declared.name); });
     } else if (declared.optional) {
-      c.because(Reason::About::resource, i,
-                "left as the host bound it: no pass that is on writes this optional export");
+      c.because(Reason::About::resource, i, [] {
+        return std::string("left as the host bound it: no pass that is on writes this optional export");
+      });
     } else {
       auto& diagnostic =
-          c.diagnostics.add(DiagnosticId::export_unwritten, declared.where,
-                            fmt::format("no pass that is on writes the export '{}'", declared.name));
+          c.diagnostics->add(DiagnosticId::export_unwritten, declared.where,
+                             fmt::format("no pass that is on writes the export '{}'", declared.name));
       culler.relate_producers(diagnostic, ResourceId{i});
     }
   }
-  for (uint32_t i = 0; i < c.graph.passes.size(); ++i)
-    if (c.on[i] && c.kind(PassId{i}).side_effects) culler.need(PassId{i}, "its kind has side effects");
-  for (size_t at = 0; at < culler.pending.size(); ++at)
-    culler.follow(culler.pending[at]);
-  for (uint32_t i = 0; i < c.graph.passes.size(); ++i) {
+  for (uint32_t i = 0; i < passes; ++i)
+    if (c.on[i] && c.kind(PassId{i}).side_effects)
+      culler.need(PassId{i}, [] { return std::string("its kind has side effects"); });
+  for (size_t at = 0; at < c.pending.size(); ++at)
+    culler.follow(c.pending[at]);
+  if (!c.input->cull) culler.keep_runnable();
+  for (uint32_t i = 0; i < passes; ++i) {
     if (!c.on[i] || c.live[i]) continue;
-    const std::string outputs = names_of_outputs(c, PassId{i});
-    c.because(Reason::About::pass, i,
-              outputs.empty() ? "culled: it writes nothing"
-                              : fmt::format("culled: nothing that is bound needs {}", outputs));
+    c.because(Reason::About::pass, i, [&] {
+      const std::string outputs = names_of_outputs(c, PassId{i});
+      return outputs.empty() ? std::string("culled: it writes nothing")
+                             : fmt::format("culled: nothing that is bound needs {}", outputs);
+    });
   }
 }
 

@@ -13,18 +13,10 @@ constexpr uint32_t threads_per_side = 8;    // kernels run 8x8 groups, one per t
 constexpr uint32_t tiles_per_group = 64;    // DispatchShape::over_tile_grid
 constexpr uint32_t push_constant_bytes = 4; // the port mask, and each setting
 
-void mark(Lifetime& life, uint32_t position, const Use& use) {
-  if (!life.used) life.first = position;
-  life.used = true;
-  life.last = position;
-  life.vk_usage |= usage_info(use.usage).vk_usage;
-  life.deepest_read = std::max(life.deepest_read, use.frames_back);
-}
-
 void add_settings(CompileContext& c, PassId pass, PlanPass& planned) {
-  const PassDeclaration& declared = c.graph.passes[pass.value];
+  const PassDeclaration& declared = c.graph->passes[pass.value];
   const PassKind& kind = c.kind(pass);
-  planned.first_setting = static_cast<uint32_t>(c.out.plan.settings.size());
+  planned.first_setting = static_cast<uint32_t>(c.out->plan.settings.size());
   for (uint32_t s = 0; s < kind.settings.size(); ++s) {
     PlanSetting setting;
     setting.value = kind.settings[s].default_value;
@@ -33,61 +25,96 @@ void add_settings(CompileContext& c, PassId pass, PlanPass& planned) {
       setting.from = binding.from;
       setting.value = binding.from.valid() ? c.settings[binding.from.value] : binding.literal;
     }
-    c.out.plan.settings.push_back(setting);
+    c.out->plan.settings.push_back(setting);
   }
 }
 
-void check_limits(CompileContext& c, PassId pass) {
+// Whether all limits of the device hold; what is beyond them is said of each pass.
+bool check_limits(CompileContext& c, PassId pass) {
   const PassKind& kind = c.kind(pass);
+  bool fits = true;
   const auto refuse = [&](const std::string& text) {
-    c.diagnostics.add(DiagnosticId::device_limit, c.graph.passes[pass.value].where,
-                      fmt::format("pass '{}' {} (device '{}')", c.name(pass), text, c.device.name));
+    fits = false;
+    c.diagnostics->add(DiagnosticId::device_limit, c.graph->passes[pass.value].where,
+                       fmt::format("pass '{}' {} (device '{}')", c.name(pass), text, c.device->name));
   };
   const uint64_t push_bytes = push_constant_bytes * (1 + uint64_t{kind.settings.size()});
-  if (push_bytes > c.device.max_push_constants_bytes)
+  if (push_bytes > c.device->max_push_constants_bytes)
     refuse(fmt::format("needs {} bytes of push constants; the limit is {}", push_bytes,
-                       c.device.max_push_constants_bytes));
+                       c.device->max_push_constants_bytes));
   const auto tiles = [](uint32_t side) { return (uint64_t{side} + threads_per_side - 1) / threads_per_side; };
-  const uint64_t across = tiles(c.input.view_width), down = tiles(c.input.view_height);
+  const uint64_t across = tiles(c.input->view_width), down = tiles(c.input->view_height);
   uint64_t groups = 1;
   if (kind.dispatch == DispatchShape::over_view) groups = std::max(across, down);
   if (kind.dispatch == DispatchShape::over_tile_grid)
     groups = (across * down + tiles_per_group - 1) / tiles_per_group;
-  if (groups > c.device.max_workgroup_count)
+  if (groups > c.device->max_workgroup_count)
     refuse(fmt::format("dispatches {} groups in one dimension; the limit is {}", groups,
-                       c.device.max_workgroup_count));
+                       c.device->max_workgroup_count));
+  return fits;
+}
+
+// What one use asks of the resource.
+void note(CompileContext& c, uint32_t u, const PassKind& kind) {
+  const Use& use = c.uses[u];
+  if (use.trouble != Use::Trouble::none) return;
+  Lifetime& life = c.lifetimes[use.resource.value];
+  life.used = true;
+  life.vk_usage |= usage_info(use.usage).vk_usage;
+  life.deepest_read = std::max(life.deepest_read, use.frames_back);
+  if (kind.ports[use.port].formats.empty()) return;
+  c.narrow.push_back({u, life.first_narrow});
+  life.first_narrow = static_cast<uint32_t>(c.narrow.size() - 1);
+}
+
+void explain_history(CompileContext& c, uint32_t resource, const Lifetime& life) {
+  c.because(Reason::About::resource, resource, [&]() -> std::string {
+    if (!life.used) return "no memory: no pass that runs uses it";
+    if (life.deepest_read == 0) return "kept like a transient: no pass that runs reads its earlier frames";
+    return fmt::format("{} instances: earlier frames are read down to @-{}", life.deepest_read + 1,
+                       life.deepest_read);
+  });
 }
 
 } // namespace
 
+void gather_usage(CompileContext& c) {
+  c.lifetimes.assign(c.graph->resources.size(), {});
+  c.narrow.clear();
+  for (auto pass = static_cast<uint32_t>(c.graph->passes.size());
+       pass-- > 0;) { // last first: `narrow` is a stack
+    if (!c.live[pass]) continue;
+    const PassKind& kind = c.kind(PassId{pass});
+    for (uint32_t u = c.first_use[pass + 1]; u-- > c.first_use[pass];)
+      note(c, u, kind);
+  }
+  for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {
+    if (c.graph->resources[i].history.frames == 0) continue;
+    Lifetime& life = c.lifetimes[i];
+    if (life.deepest_read > 0)
+      life.vk_usage |= usage_info(Usage::clear).vk_usage; // instances start from zero
+    explain_history(c, i, life);
+  }
+}
+
 void lifetimes(CompileContext& c) {
-  c.lifetimes.assign(c.graph.resources.size(), {});
+  std::vector<PlanPass>& passes = c.out->plan.passes;
+  c.kind_fits.assign(c.kinds->size(), 0);
+  for (Lifetime& life : c.lifetimes)
+    life.first = no_value;
   for (uint32_t position = 0; position < c.order.size(); ++position) {
     const PassId pass = c.order[position];
-    PlanPass planned;
+    PlanPass& planned = passes.emplace_back();
     planned.declared = pass;
-    planned.kind = c.graph.passes[pass.value].kind;
+    planned.kind = c.graph->passes[pass.value].kind;
     add_settings(c, pass, planned);
-    c.out.plan.passes.push_back(planned);
-    check_limits(c, pass);
-    for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u)
-      if (c.uses[u].trouble == Use::Trouble::none)
-        mark(c.lifetimes[c.uses[u].resource.value], position, c.uses[u]);
-  }
-  for (uint32_t i = 0; i < c.graph.resources.size(); ++i) {
-    const ResourceDeclaration& declared = c.graph.resources[i];
-    const Lifetime& life = c.lifetimes[i];
-    if (declared.history.frames == 0) continue;
-    if (!life.used)
-      c.because(Reason::About::resource, i, "no memory: no pass that runs uses it");
-    else if (life.deepest_read == 0)
-      c.because(Reason::About::resource, i,
-                "kept like a transient: no pass that runs reads its earlier frames");
-    else {
-      c.lifetimes[i].vk_usage |= usage_info(Usage::clear).vk_usage; // instances start from zero
-      c.because(Reason::About::resource, i,
-                fmt::format("{} instances: earlier frames are read down to @-{}", life.deepest_read + 1,
-                            life.deepest_read));
+    uint8_t& fits = c.kind_fits[planned.kind.value];
+    if (fits != 1) fits = check_limits(c, pass) ? 1 : 2;
+    for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
+      if (c.uses[u].trouble != Use::Trouble::none) continue;
+      Lifetime& life = c.lifetimes[c.uses[u].resource.value];
+      if (life.first == no_value) life.first = position;
+      life.last = position;
     }
   }
 }

@@ -1,136 +1,229 @@
-// In which order the passes run: the order of the file wherever the dependencies allow it. Refuses cycles.
+// In which order the passes run. The order of the file, unless running depth first keeps fewer bytes alive:
+// of the passes that one needs, those come first whose own work needs most memory beyond what they leave
+// (Sethi and Ullman 1970, with bytes for registers). O((n + e) log n).
 
 #include "framegraph/compile/phases.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <functional>
-#include <queue>
 
 namespace dermis {
 namespace {
 
-struct Edge { // `before` must run before `after`
-  PassId before, after;
-  std::string why;
+struct Orderer {
+  CompileContext& c;
+  uint32_t passes = 0;
+
+  // Calls visit(before) for each pass that `pass` waits for, except for readers of what it writes over.
+  template <class Visit> void for_each_before(uint32_t pass, Visit visit) const {
+    for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
+      const Use& use = c.uses[u];
+      if (use.trouble != Use::Trouble::none) continue;
+      if (use.read_value != no_value) visit(c.values[use.read_value].producer);
+      if (use.write_value == no_value) continue;
+      const uint32_t previous = c.values[use.write_value].previous;
+      if (previous != no_value) visit(c.values[previous].producer);
+    }
+    for (const Ordering& ordering : c.graph->passes[pass].after)
+      visit(ordering.after);
+  }
+
+  // Who reads a value that another pass writes over, sorted by that pass.
+  void find_readers() {
+    c.readers.clear();
+    if (!c.overwrites) return;
+    c.candidate.assign(c.values.size(), no_value); // by value: the pass that writes over it
+    for (const Value& value : c.values)
+      if (value.previous != no_value) c.candidate[value.previous] = value.producer.value;
+    for (const Use& use : c.uses) {
+      if (use.trouble != Use::Trouble::none || use.read_value == no_value) continue;
+      const uint32_t overwriter = c.candidate[use.read_value];
+      if (overwriter == no_value || overwriter == use.pass.value) continue;
+      if (c.live[overwriter] && c.live[use.pass.value]) c.readers.emplace_back(overwriter, use.pass.value);
+    }
+    std::sort(c.readers.begin(), c.readers.end());
+  }
+
+  // Fills c.before; false if some pass that is on needs one that does not stand before it.
+  bool collect() {
+    bool forward = true;
+    size_t reader = 0;
+    c.before.clear();
+    c.first_before.clear();
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+      c.first_before.push_back(static_cast<uint32_t>(c.before.size()));
+      if (!c.on[pass]) continue;
+      for_each_before(pass, [&](PassId other) {
+        if (!other.valid() || other.value == pass || !c.on[other.value]) return;
+        forward &= other.value < pass;
+        if (c.live[pass] && c.live[other.value]) c.before.push_back(other.value);
+      });
+      for (; reader < c.readers.size() && c.readers[reader].first == pass; ++reader) {
+        forward &= c.readers[reader].second < pass;
+        c.before.push_back(c.readers[reader].second);
+      }
+    }
+    c.first_before.push_back(static_cast<uint32_t>(c.before.size()));
+    return forward;
+  }
+
+  void file_order() {
+    c.order.clear();
+    for (uint32_t pass = 0; pass < passes; ++pass)
+      if (c.live[pass]) c.order.push_back(PassId{pass});
+  }
+
+  uint64_t transient_bytes(ResourceId id) const {
+    const uint32_t resource = c.plan_resource[id.value];
+    if (resource == no_value || c.out->plan.resources[resource].instance_count > 1) return 0;
+    return c.needs[resource].size;
+  }
+
+  // The most bytes of transients alive at once if the passes run in `sequence`.
+  template <class Sequence> uint64_t most_alive(const Sequence& sequence) {
+    uint64_t alive = 0, most = 0;
+    c.seen.assign(c.graph->resources.size(), 0);
+    std::vector<uint32_t>& left = c.stack; // by resource: uses to come
+    left = c.uses_left;
+    for (const auto& item : sequence) {
+      const uint32_t pass = number(item);
+      for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
+        const Use& use = c.uses[u];
+        if (use.trouble != Use::Trouble::none || c.seen[use.resource.value]) continue;
+        c.seen[use.resource.value] = 1;
+        alive += transient_bytes(use.resource);
+      }
+      most = std::max(most, alive);
+      for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
+        const Use& use = c.uses[u];
+        if (use.trouble == Use::Trouble::none && --left[use.resource.value] == 0)
+          alive -= transient_bytes(use.resource);
+      }
+    }
+    return most;
+  }
+  static uint32_t number(PassId pass) { return pass.value; }
+  static uint32_t number(uint32_t pass) { return pass; }
+
+  void count_uses() {
+    c.uses_left.assign(c.graph->resources.size(), 0);
+    for (const PassId pass : c.order)
+      for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u)
+        if (c.uses[u].trouble == Use::Trouble::none) ++c.uses_left[c.uses[u].resource.value];
+  }
+
+  // As if the passes were a tree: how many bytes each needs while it and all before it run, and how many it
+  // leaves. Sorts what each waits for into the order in which it is best done.
+  void estimate() {
+    c.peak_bytes.assign(passes, 0);
+    c.output_bytes.assign(passes, 0);
+    for (const PassId pass : c.order) {
+      uint64_t output = 0, running = 0, peak = 0;
+      for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
+        const Use& use = c.uses[u];
+        if (use.trouble != Use::Trouble::none || use.write_value == no_value) continue;
+        if (c.values[use.write_value].previous == no_value) output += transient_bytes(use.resource);
+      }
+      const auto gain = [&](uint32_t p) { return c.peak_bytes[p] - c.output_bytes[p]; };
+      const uint32_t first = c.first_before[pass.value], end = c.first_before[pass.value + 1];
+      for (uint32_t i = first + 1; i < end; ++i) // few
+        for (uint32_t at = i; at > first && gain(c.before[at]) > gain(c.before[at - 1]); --at)
+          std::swap(c.before[at], c.before[at - 1]);
+      for (uint32_t i = first; i < end; ++i) {
+        peak = std::max(peak, running + c.peak_bytes[c.before[i]]);
+        running += c.output_bytes[c.before[i]];
+      }
+      c.output_bytes[pass.value] = output;
+      c.peak_bytes[pass.value] = std::max(peak, running + output);
+    }
+  }
+
+  // Depth first from the passes that none waits for, in file order, into c.candidate.
+  void depth_first() {
+    std::vector<uint8_t>& state = c.seen; // 1: somebody waits for it; 2: on the stack or done
+    state.assign(passes, 0);
+    for (const uint32_t before : c.before)
+      state[before] = 1;
+    c.candidate.clear();
+    c.stack.clear();
+    for (const PassId root : c.order) {
+      if (state[root.value] != 0) continue;
+      state[root.value] = 2;
+      c.stack.push_back(root.value);
+      c.uses_cursor.push_back(c.first_before[root.value]);
+      while (!c.stack.empty()) {
+        const uint32_t pass = c.stack.back();
+        uint32_t& at = c.uses_cursor.back();
+        if (at == c.first_before[pass + 1]) {
+          c.candidate.push_back(pass);
+          c.stack.pop_back();
+          c.uses_cursor.pop_back();
+          continue;
+        }
+        const uint32_t next = c.before[at++];
+        if (state[next] == 2) continue;
+        state[next] = 2;
+        c.stack.push_back(next);
+        c.uses_cursor.push_back(c.first_before[next]);
+      }
+    }
+  }
+
+  void save_memory() {
+    count_uses();
+    estimate();
+    depth_first();
+    const uint64_t in_file_order = most_alive(c.order);
+    if (most_alive(c.candidate) >= in_file_order) return;
+    c.order.clear();
+    for (const uint32_t pass : c.candidate)
+      c.order.push_back(PassId{pass});
+  }
+
+  // Any legal order: of the passes that wait for nothing more, one drawn at random.
+  void shuffle() {
+    uint64_t state = c.input->order_seed;
+    const auto draw = [&](size_t limit) { // SplitMix64 (Steele, Lea, Flood 2014)
+      state += 0x9e3779b97f4a7c15ull;
+      uint64_t z = state;
+      z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+      z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+      return (z ^ (z >> 31)) % limit;
+    };
+    std::vector<std::vector<uint32_t>> followers(passes);
+    std::vector<uint32_t> waits(passes, 0), ready;
+    for (const PassId pass : c.order)
+      for (uint32_t i = c.first_before[pass.value]; i < c.first_before[pass.value + 1]; ++i) {
+        followers[c.before[i]].push_back(pass.value);
+        ++waits[pass.value];
+      }
+    for (const PassId pass : c.order)
+      if (waits[pass.value] == 0) ready.push_back(pass.value);
+    c.order.clear();
+    while (!ready.empty()) {
+      std::swap(ready[draw(ready.size())], ready.back());
+      const uint32_t pass = ready.back();
+      ready.pop_back();
+      c.order.push_back(PassId{pass});
+      for (const uint32_t next : followers[pass])
+        if (--waits[next] == 0) ready.push_back(next);
+    }
+  }
 };
-
-std::vector<Edge> dependencies(const CompileContext& c, const std::vector<uint8_t>& wanted,
-                               bool with_readers) {
-  std::vector<Edge> edges;
-  const auto add = [&](PassId before, PassId after, auto&& why) {
-    if (!before.valid() || !after.valid() || before == after || !wanted[before.value] || !wanted[after.value])
-      return;
-    edges.push_back({before, after, why()});
-  };
-  std::vector<PassId> overwriter(c.values.size()); // by value: the pass that writes over it
-  for (const Value& value : c.values)
-    if (value.previous != no_value) overwriter[value.previous] = value.producer;
-  for (const Use& use : c.uses) {
-    if (use.trouble != Use::Trouble::none) continue;
-    if (use.read_value != no_value) {
-      const Value& read = c.values[use.read_value];
-      add(read.producer, use.pass, [&] {
-        return fmt::format("'{}' reads '{}' from '{}'", c.name(use.pass), c.name(read.resource),
-                           c.name(read.producer));
-      });
-      if (with_readers)
-        add(use.pass, overwriter[use.read_value], [&] {
-          return fmt::format("'{}' writes over '{}', which '{}' still reads",
-                             c.name(overwriter[use.read_value]), c.name(read.resource), c.name(use.pass));
-        });
-    }
-    if (use.write_value != no_value && c.values[use.write_value].previous != no_value) {
-      const Value& previous = c.values[c.values[use.write_value].previous];
-      add(previous.producer, use.pass, [&] {
-        return fmt::format("'{}' writes over '{}' from '{}'", c.name(use.pass), c.name(previous.resource),
-                           c.name(previous.producer));
-      });
-    }
-  }
-  for (uint32_t i = 0; i < c.graph.passes.size(); ++i)
-    for (const Ordering& ordering : c.graph.passes[i].after)
-      add(ordering.after, PassId{i}, [&] {
-        return fmt::format("'{}' is to run after '{}': {}", c.name(PassId{i}), c.name(ordering.after),
-                           ordering.reason);
-      });
-  return edges;
-}
-
-// Kahn's algorithm, the smallest pass first. What is missing from the result lies on or behind a cycle.
-std::vector<PassId> sorted(const std::vector<uint8_t>& wanted, const std::vector<Edge>& edges) {
-  std::vector<uint32_t> waits(wanted.size(), 0);
-  std::vector<std::vector<PassId>> followers(wanted.size());
-  for (const Edge& edge : edges) {
-    ++waits[edge.after.value];
-    followers[edge.before.value].push_back(edge.after);
-  }
-  std::priority_queue<uint32_t, std::vector<uint32_t>, std::greater<>> ready;
-  for (uint32_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i] && waits[i] == 0) ready.push(i);
-  std::vector<PassId> result;
-  while (!ready.empty()) {
-    const uint32_t pass = ready.top();
-    ready.pop();
-    result.push_back(PassId{pass});
-    for (const PassId next : followers[pass])
-      if (--waits[next.value] == 0) ready.push(next.value);
-  }
-  return result;
-}
-
-// Walk against the edges among the passes that could not be sorted: each has one that waits too, so the walk
-// returns to a pass it has been at, and that part of it is a cycle.
-void refuse_cycle(CompileContext& c, std::vector<uint8_t> stuck, const std::vector<PassId>& done,
-                  const std::vector<Edge>& edges) {
-  for (const PassId pass : done)
-    stuck[pass.value] = 0;
-  std::vector<uint32_t> incoming(stuck.size(), no_value); // by pass: one edge from a stuck pass
-  for (uint32_t e = 0; e < edges.size(); ++e)
-    if (stuck[edges[e].before.value] && stuck[edges[e].after.value] &&
-        incoming[edges[e].after.value] == no_value)
-      incoming[edges[e].after.value] = e;
-  const auto first = static_cast<uint32_t>(std::find(stuck.begin(), stuck.end(), 1) - stuck.begin());
-  std::vector<uint8_t> seen(stuck.size(), 0);
-  uint32_t at = first;
-  while (!seen[at]) {
-    seen[at] = 1;
-    at = edges[incoming[at]].before.value;
-  }
-  std::vector<const Edge*> cycle;
-  for (uint32_t start = at; cycle.empty() || at != start; at = cycle.back()->before.value)
-    cycle.push_back(&edges[incoming[at]]);
-  std::reverse(cycle.begin(), cycle.end());
-  // Start with the pass that stands first in the file, so that the message does not depend on where the walk
-  // began.
-  std::rotate(cycle.begin(),
-              std::min_element(cycle.begin(), cycle.end(),
-                               [](const Edge* a, const Edge* b) { return a->before < b->before; }),
-              cycle.end());
-  std::string names;
-  for (const Edge* edge : cycle)
-    names += fmt::format("'{}' -> ", c.name(edge->before));
-  auto& diagnostic = c.diagnostics.add(
-      DiagnosticId::pass_cycle, c.graph.passes[cycle.front()->before.value].where,
-      fmt::format("passes wait for each other: {}'{}'", names, c.name(cycle.front()->before)));
-  for (const Edge* edge : cycle)
-    diagnostic.related.emplace_back(c.graph.passes[edge->after.value].where, edge->why);
-}
 
 } // namespace
 
 void order(CompileContext& c) {
-  // A cycle is a mistake even among passes that nothing needs today.
-  const auto everywhere = dependencies(c, c.on, false);
-  const auto all = sorted(c.on, everywhere);
-  const auto count = [](const std::vector<uint8_t>& flags) {
-    return static_cast<size_t>(std::count(flags.begin(), flags.end(), 1));
-  };
-  if (all.size() != count(c.on)) return refuse_cycle(c, c.on, all, everywhere);
-  const auto among_live = dependencies(c, c.live, true);
-  c.order = sorted(c.live, among_live);
-  if (c.order.size() != count(c.live)) refuse_cycle(c, c.live, c.order, among_live);
+  Orderer orderer{c, static_cast<uint32_t>(c.graph->passes.size())};
+  orderer.find_readers();
+  if (orderer.collect()) {
+    orderer.file_order();
+  } else {
+    const uint32_t errors = c.diagnostics->count(Severity::error);
+    sort_backward_graph(c);
+    if (c.diagnostics->count(Severity::error) != errors) return;
+  }
+  if (c.input->order == PassOrder::memory) orderer.save_memory();
+  if (c.input->order == PassOrder::random) orderer.shuffle();
 }
 
 } // namespace dermis

@@ -2,7 +2,10 @@
 // Where in memory each instance lies. Pure data in, pure data out: intervals in time become intervals in
 // bytes.
 
+#include "framegraph/compile/compile.hpp"
+
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace dermis {
@@ -18,9 +21,50 @@ struct Packing {
   uint64_t lower_bound = 0;      // most bytes alive at once: no packing is smaller
 };
 
-// Items whose intervals meet never share a byte. Places items one at a time into the tightest gap that fits,
-// largest first and by first use, and keeps the smaller result; equal items keep their order, so the result
-// is the same on every machine. O(n^2 log n).
-Packing pack_items(const std::vector<PackItem>& items);
+// Items whose intervals meet never share a byte. Every level stops where the lower bound is met. Equal items
+// keep their order and effort is counted in steps, so that the result is the same on every machine.
+//  fast      the tightest gap, largest first: O(n log n + n live)
+//  tight     besides, the order of time, several orders with first and tightest gap, and a short search among
+//  orders optimize  a longer search
+class Packer {
+public:
+  // Reuses the memory of `out` and of earlier calls.
+  void pack(std::span<const PackItem> items, PackingLevel level, Packing& out);
+
+private:
+  struct Span {
+    uint64_t begin = 0, end = 0;
+    uint32_t item = 0;
+  };
+  struct Placed {
+    uint64_t begin = 0, end = 0;
+    uint32_t first = 0, last = 0;
+  };
+  enum class Fit : uint8_t { first, tightest };
+
+  void find_bound(Packing& out);
+  void place_by_time(Packing& out);
+  uint64_t place_in_order(std::span<const uint32_t> order, Fit fit, uint64_t limit);
+  template <class Visit>
+  void for_each_alive(const PackItem& item, uint32_t first, uint32_t last, Visit visit);
+  bool try_order(std::span<const uint32_t> order, Fit fit, Packing& out);
+  void sort_by_size();
+  void try_orders(Packing& out);
+  void search(uint64_t steps, Packing& out);
+
+  std::span<const PackItem> items_;
+  std::vector<int64_t> change_; // by position: bytes that come alive less those that die
+  std::vector<uint32_t> first_at_, last_at_, by_first_, by_last_;
+  std::vector<Span> spans_;
+  std::vector<std::vector<Placed>> blocks_; // by position / block_passes: what is alive there, by begin
+  std::vector<Placed> gathered_;
+  std::vector<uint64_t> sizes_;
+  std::vector<uint64_t> offsets_;
+  std::vector<uint32_t> by_size_, order_, best_order_;
+  Fit best_fit_ = Fit::tightest;
+  uint64_t steps_ = 0;
+};
+
+Packing pack_items(const std::vector<PackItem>& items, PackingLevel level = PackingLevel::tight);
 
 } // namespace dermis

@@ -3,6 +3,7 @@
 // compile/.
 
 #include "framegraph/compile/compile.hpp"
+#include "framegraph/compile/pack.hpp"
 
 #include <string>
 #include <utility>
@@ -28,22 +29,16 @@ struct Value {
 
 // One bound port of one pass that is on.
 struct Use {
+  enum class Trouble : uint8_t { none, unbound, unwritten, ambiguous, replaced, history_unwritten };
   PassId pass;
-  uint32_t port = 0;
-  Usage usage = Usage::sampled_image;
-  ResourceId resource; // whose memory is accessed, after `otherwise`
-  uint32_t frames_back = 0;
-  uint32_t read_value = no_value, write_value = no_value; // into CompileContext::values
+  ResourceId resource;                                    // whose memory is accessed, after `otherwise`
   ResourceId asked;                                       // as bound in the file
-  SourceLocation where;
-  enum class Trouble : uint8_t {
-    none,
-    unbound,
-    unwritten,
-    ambiguous,
-    replaced,
-    history_unwritten
-  } trouble = Trouble::none;
+  uint32_t read_value = no_value, write_value = no_value; // into CompileContext::values
+  uint32_t frames_back = 0;
+  uint32_t binding = 0; // into the pass's reads followed by its writes
+  uint16_t port = 0;
+  Usage usage = Usage::sampled_image;
+  Trouble trouble = Trouble::none;
 };
 
 // A resource's interval in the final order, and how it is used there.
@@ -51,44 +46,133 @@ struct Lifetime {
   bool used = false;
   uint32_t first = 0, last = 0; // positions in Plan::passes
   uint32_t vk_usage = 0;
-  uint32_t deepest_read = 0; // largest frames_back that a live pass reads
+  uint32_t deepest_read = 0;        // largest frames_back that a live pass reads
+  uint32_t first_narrow = no_value; // into CompileContext::narrow: a port that limits the format
+};
+
+struct NarrowUse { // a use whose port works with some formats only
+  uint32_t use = 0;
+  uint32_t next = no_value; // of the same resource
+};
+
+// How a resource's name is understood at one point of the file: see versions.cpp.
+struct Meaning {
+  uint32_t value = no_value;
+  ResourceId later; // valid: whatever the only producer of this resource will write
+};
+
+struct Definition {
+  uint32_t producers = 0; // passes that are on and write it
+  uint32_t first_value = no_value;
+  bool replaced = false; // by `otherwise` of a pass that is off
+  Meaning instead;
+};
+
+// How one object (a resource, or one of its earlier frames) stands between two accesses: see synchronize.cpp.
+struct ObjectState {
+  Stage source_stages = 0;  // the last write, or what its layout transition was made visible to
+  Access source_access = 0; // 0 once that write is available
+  Stage readers = 0;        // stages that read since
+  Layout layout = Layout::undefined;
+  uint32_t last_pass = no_value; // position; in the frame before while `carried`
+  uint8_t visible = 0;           // usages that may read without another barrier
+  bool touched = false;
+  bool carried = false; // from the frame before
+};
+
+struct PassTouch { // all accesses of one pass to one object
+  uint32_t object = 0, resource = 0, frames_back = 0;
+  uint8_t usages = 0;
+};
+
+struct Segment { // bytes of a heap and who had them last in this frame
+  uint64_t begin = 0, end = 0;
+  uint32_t resource = 0; // into Plan::resources
+};
+
+struct Arrival { // a first use whose bytes nothing in this frame had before
+  uint64_t begin = 0, end = 0;
+  uint32_t heap = 0, barrier = 0, resource = 0;
+  uint32_t reason = no_value; // into the reasons
+};
+
+struct MemoryGroup { // instances that may share a heap
+  bool persistent = false;
+  uint32_t type_bits = 0;
+  uint32_t buffers = 0, images = 0;
 };
 
 struct CompileContext {
-  const CompileInput& input;
-  const Graph& graph;
-  const KindRegistry& kinds;
-  const DeviceProfile& device;
-  Diagnostics& diagnostics;
+  const CompileInput* input = nullptr;
+  const Graph* graph = nullptr;
+  const KindRegistry* kinds = nullptr;
+  const DeviceProfile* device = nullptr;
+  Diagnostics* diagnostics = nullptr;
+  CompiledPlan* out = nullptr;
 
   // resolve
   std::vector<uint8_t> bound; // by resource: imports and exports the host binds
   std::vector<Extent> extents;
-  std::vector<Format> formats;
+  std::vector<uint8_t> size_marks;
+  std::vector<ResourceId> size_chain;
   // choose
   std::vector<SettingValue> settings;
   std::vector<uint8_t> on; // by pass: `when` holds
   // versions
   std::vector<Value> values;
-  std::vector<Use> uses;             // sorted by pass, then port
-  std::vector<uint32_t> first_use;   // by pass, and one more: into uses
-  std::vector<uint32_t> final_value; // by resource: its version when the frame ends, no_value if none
+  std::vector<Use> uses;               // sorted by pass, then port
+  std::vector<uint32_t> first_use;     // by pass, and one more: into uses
+  std::vector<uint32_t> final_value;   // by resource: its version when the frame ends, no_value if none
+  std::vector<Meaning> current;        // by resource
+  std::vector<uint32_t> last_version;  // by resource: latest value in its own memory
+  std::vector<Definition> definitions; // by resource
+  std::vector<std::pair<uint32_t, ResourceId>> forward; // use -> name to look up when the scan is over
+  bool overwrites = false;                              // some value is written over another
   // cull
   std::vector<uint8_t> live;
+  std::vector<PassId> pending;
+  std::vector<uint8_t> reported; // by resource: one root cause, one diagnostic
+  // usage
+  std::vector<Lifetime> lifetimes; // by resource
+  std::vector<NarrowUse> narrow;
+  std::vector<uint32_t> plan_resource; // by resource: into Plan::resources, or no_value
+  std::vector<MemoryNeeds> needs;      // by plan resource; size 0: the host's memory
   // order
   std::vector<PassId> order;
-  // lifetimes
-  std::vector<Lifetime> lifetimes;     // by resource
-  std::vector<uint32_t> plan_resource; // by resource: into Plan::resources, or no_value
+  std::vector<uint32_t> first_before, before;         // by pass, and one more: passes that must run before it
+  std::vector<std::pair<uint32_t, uint32_t>> readers; // pass that writes over a value, pass that reads it
+  std::vector<uint64_t> peak_bytes, output_bytes;     // by pass
+  std::vector<uint32_t> candidate, stack, uses_cursor, uses_left;
+  std::vector<uint8_t> seen;
+  std::vector<uint8_t> kind_fits; // by kind: 0 not looked at, 1 within the device's limits, 2 not
+  // pack
+  std::vector<MemoryGroup> groups;
+  std::vector<PackItem> items;
+  std::vector<uint32_t> item_placement;
+  Packer packer;
+  Packing packing;
+  // synchronize
+  std::vector<uint32_t> first_object; // by plan resource; objects follow frames_back
+  std::vector<ObjectState> states, ends;
+  std::vector<PassTouch> touches;
+  std::vector<std::vector<Segment>> memory; // by heap
+  std::vector<Arrival> arrivals;
 
-  CompiledPlan out;
-
-  const std::string& name(ResourceId id) const { return graph.resources[id.value].name; }
-  const std::string& name(PassId id) const { return graph.passes[id.value].name; }
-  const PassKind& kind(PassId id) const { return kinds[graph.passes[id.value].kind]; }
-  bool host_owned(ResourceId id) const; // its memory comes from the host in this plan
-  void because(Reason::About about, uint32_t index, std::string text) {
-    out.reasons.push_back({about, index, std::move(text)});
+  const std::string& name(ResourceId id) const { return graph->resources[id.value].name; }
+  const std::string& name(PassId id) const { return graph->passes[id.value].name; }
+  const PassKind& kind(PassId id) const { return (*kinds)[graph->passes[id.value].kind]; }
+  const PortBinding& binding(const Use& use) const {
+    const PassDeclaration& pass = graph->passes[use.pass.value];
+    return use.binding < pass.reads.size() ? pass.reads[use.binding]
+                                           : pass.writes[use.binding - pass.reads.size()];
+  }
+  bool host_owned(ResourceId id) const { // its memory comes from the host in this plan
+    const ResourceDeclaration& declared = graph->resources[id.value];
+    return declared.origin == Origin::imported || (declared.exported && bound[id.value]);
+  }
+  // `text` is called only if somebody wants reasons.
+  template <class Text> void because(Reason::About about, uint32_t index, Text&& text) {
+    if (input->reasons) out->reasons.push_back({about, index, text()});
   }
 };
 
@@ -96,13 +180,19 @@ struct CompileContext {
 void resolve_sizes(CompileContext& context); // bound slots, extents
 void choose(CompileContext& context);        // values of settings; which passes are on
 void resolve_versions(
-    CompileContext& context);            // which version each port reads and writes, `otherwise` applied
-void cull(CompileContext& context);      // which passes run: those that something bound needs
-void order(CompileContext& context);     // in which order; refuses cycles
-void lifetimes(CompileContext& context); // first and last use, union of usages, Plan::passes
-void resolve_formats(CompileContext& context); // one format each, Plan::resources
+    CompileContext& context);               // which version each port reads and writes, `otherwise` applied
+void cull(CompileContext& context);         // which passes run: those that something bound needs
+void gather_usage(CompileContext& context); // union of usages, deepest read
+void resolve_formats(CompileContext& context); // one format each, Plan::resources, memory needs
+void order(CompileContext& context);           // in which order; refuses cycles
+void lifetimes(CompileContext& context);       // first and last use, Plan::passes
 void pack(CompileContext& context);            // heaps and placements
 void synchronize(CompileContext& context);     // accesses and barriers
+
+// The passes marked in c.live in the order of the file, dependencies before all. Only for graphs in which
+// some pass needs one that stands behind it. Refuses cycles, also among the passes that are on but not
+// needed.
+void sort_backward_graph(CompileContext& context);
 
 // "technique = 'hybrid'": the value as a graph file would write it.
 std::string setting_text(const SettingDeclaration& setting, const SettingValue& value);

@@ -20,12 +20,13 @@ std::optional<uint32_t> scaled(uint64_t base, Rational factor, const SizeExpress
   const auto denominator = static_cast<uint64_t>(factor.denominator);
   if (numerator != 0 && base > UINT64_MAX / numerator) return std::nullopt;
   const uint64_t product = base * numerator;
-  uint64_t value = product / denominator;
-  if (rounding == Rounding::ceil && product % denominator != 0) ++value;
+  uint64_t value = denominator == 1 ? product : product / denominator;
+  if (rounding == Rounding::ceil && value * denominator != product) ++value;
   value = std::max<uint64_t>(value, 1);
   if (value > largest_side) return std::nullopt;
   const uint64_t step = std::max<uint32_t>(align, 1);
-  value = (value + step - 1) / step * step + 2 * uint64_t{size.border};
+  if (step != 1) value = (value + step - 1) / step * step;
+  value += 2 * uint64_t{size.border};
   if (value > largest_side) return std::nullopt;
   return static_cast<uint32_t>(value);
 }
@@ -39,31 +40,36 @@ uint32_t full_chain(uint32_t width, uint32_t height) {
 
 struct SizeResolver {
   CompileContext& c;
-  enum class Mark : uint8_t { untouched, open, done, failed };
-  std::vector<Mark> marks;
+  enum Mark : uint8_t { untouched, open, done, failed };
 
   void too_large(const ResourceDeclaration& declared, const std::string& what) {
-    c.diagnostics.add(DiagnosticId::size_out_of_range, declared.where,
-                      fmt::format("'{}' {}", declared.name, what));
+    c.diagnostics->add(DiagnosticId::size_out_of_range, declared.where,
+                       fmt::format("'{}' {}", declared.name, what));
   }
 
   // Sizes of resources that others are sized by are few and shallow, but a file may chain thousands: no
   // recursion.
   void resolve(ResourceId wanted) {
-    std::vector<ResourceId> chain{wanted};
+    if (c.size_marks[wanted.value] != untouched) return;
+    if (c.graph->resources[wanted.value].size.base != SizeExpression::Base::resource) {
+      c.size_marks[wanted.value] = evaluate(wanted) ? done : failed;
+      return;
+    }
+    std::vector<ResourceId>& chain = c.size_chain;
+    chain.assign(1, wanted);
     while (true) { // walk to the first resource whose base is known
       const ResourceId id = chain.back();
-      if (marks[id.value] == Mark::done || marks[id.value] == Mark::failed) break;
-      if (marks[id.value] == Mark::open) return refuse_cycle(chain);
-      marks[id.value] = Mark::open;
-      const SizeExpression& size = c.graph.resources[id.value].size;
+      if (c.size_marks[id.value] == done || c.size_marks[id.value] == failed) break;
+      if (c.size_marks[id.value] == open) return refuse_cycle(chain);
+      c.size_marks[id.value] = open;
+      const SizeExpression& size = c.graph->resources[id.value].size;
       if (size.base != SizeExpression::Base::resource) break;
       chain.push_back(size.resource);
     }
     while (!chain.empty()) {
       const ResourceId id = chain.back();
       chain.pop_back();
-      if (marks[id.value] == Mark::open) marks[id.value] = evaluate(id) ? Mark::done : Mark::failed;
+      if (c.size_marks[id.value] == open) c.size_marks[id.value] = evaluate(id) ? done : failed;
     }
   }
 
@@ -72,24 +78,24 @@ struct SizeResolver {
     std::string names;
     for (auto at = start; at != chain.end(); ++at)
       names += fmt::format("{}'{}'", at == start ? "" : " -> ", c.name(*at));
-    auto& diagnostic = c.diagnostics.add(DiagnosticId::size_cycle, c.graph.resources[start->value].where,
-                                         fmt::format("sizes refer to each other in a circle: {}", names));
+    auto& diagnostic = c.diagnostics->add(DiagnosticId::size_cycle, c.graph->resources[start->value].where,
+                                          fmt::format("sizes refer to each other in a circle: {}", names));
     for (auto at = start + 1; at + 1 < chain.end(); ++at)
-      diagnostic.related.emplace_back(c.graph.resources[at->value].where,
+      diagnostic.related.emplace_back(c.graph->resources[at->value].where,
                                       fmt::format("'{}' is declared here", c.name(*at)));
     for (const ResourceId id : chain)
-      marks[id.value] = Mark::failed;
+      c.size_marks[id.value] = failed;
   }
 
   bool evaluate(ResourceId id) {
-    const ResourceDeclaration& declared = c.graph.resources[id.value];
+    const ResourceDeclaration& declared = c.graph->resources[id.value];
     const SizeExpression& size = declared.size;
     uint64_t base_x = 1, base_y = 1;
     if (size.base == SizeExpression::Base::view) {
-      base_x = c.input.view_width;
-      base_y = c.input.view_height;
+      base_x = c.input->view_width;
+      base_y = c.input->view_height;
     } else if (size.base == SizeExpression::Base::resource) {
-      if (marks[size.resource.value] == Mark::failed) return false; // already reported
+      if (c.size_marks[size.resource.value] == failed) return false; // already reported
       base_x = c.extents[size.resource.value].width;
       base_y = c.extents[size.resource.value].height;
     }
@@ -107,15 +113,15 @@ struct SizeResolver {
   }
 
   bool finish_image(const ResourceDeclaration& declared, Extent& extent) {
-    const uint32_t limit = c.device.max_image_dimension;
+    const uint32_t limit = c.device->max_image_dimension;
     if (extent.width > limit || extent.height > limit) {
       too_large(declared, fmt::format("is {}x{} texels; the device '{}' holds at most {} a side",
-                                      extent.width, extent.height, c.device.name, limit));
+                                      extent.width, extent.height, c.device->name, limit));
       return false;
     }
-    if (declared.layers < 1 || declared.layers > c.device.max_image_layers) {
+    if (declared.layers < 1 || declared.layers > c.device->max_image_layers) {
       too_large(declared, fmt::format("has {} layers; the device '{}' holds 1 .. {}", declared.layers,
-                                      c.device.name, c.device.max_image_layers));
+                                      c.device->name, c.device->max_image_layers));
       return false;
     }
     const uint32_t full = full_chain(extent.width, extent.height);
@@ -130,12 +136,12 @@ struct SizeResolver {
 
   bool finish_buffer(const ResourceDeclaration& declared, Extent& extent) {
     const uint64_t elements = uint64_t{extent.width} * extent.height;
-    const uint64_t limit = c.device.max_storage_buffer_bytes;
+    const uint64_t limit = c.device->max_storage_buffer_bytes;
     const uint64_t stride = std::max<uint32_t>(declared.stride, 1);
     if (elements > limit / stride || declared.extra_elements > limit / stride - elements) {
       too_large(declared,
                 fmt::format("has {} + {} elements of {} bytes; the device '{}' holds at most {} bytes",
-                            elements, declared.extra_elements, stride, c.device.name, limit));
+                            elements, declared.extra_elements, stride, c.device->name, limit));
       return false;
     }
     extent.bytes = (elements + declared.extra_elements) * stride;
@@ -145,99 +151,106 @@ struct SizeResolver {
 
 // Why `format` cannot be used for resource `id`; empty if it can.
 std::string objection(const CompileContext& c, ResourceId id, Format format) {
-  for (const PassId pass : c.order)
-    for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
-      const Use& use = c.uses[u];
-      if (use.resource != id || use.trouble != Use::Trouble::none) continue;
-      const Port& port = c.kind(pass).ports[use.port];
-      if (!port.formats.empty() &&
-          std::find(port.formats.begin(), port.formats.end(), format) == port.formats.end())
-        return fmt::format("port '{}' of pass '{}' cannot work with it", port.name, c.name(pass));
-    }
+  for (uint32_t n = c.lifetimes[id.value].first_narrow; n != no_value; n = c.narrow[n].next) {
+    const Use& use = c.uses[c.narrow[n].use];
+    const Port& port = c.kind(use.pass).ports[use.port];
+    if (std::find(port.formats.begin(), port.formats.end(), format) == port.formats.end())
+      return fmt::format("port '{}' of pass '{}' cannot work with it", port.name, c.name(use.pass));
+  }
   const uint32_t usage = c.lifetimes[id.value].vk_usage;
-  if (usage != 0 && !c.device.supports(format, usage))
-    return fmt::format("the device '{}' does not support it with image usage {:#x}", c.device.name, usage);
+  if (usage != 0 && !c.device->supports(format, usage))
+    return fmt::format("the device '{}' does not support it with image usage {:#x}", c.device->name, usage);
   return {};
 }
 
-void choose_format(CompileContext& c, ResourceId id) {
-  const ResourceDeclaration& declared = c.graph.resources[id.value];
-  const Format bound = c.input.host_formats.empty() ? Format::undefined : c.input.host_formats[id.value];
-  std::vector<Format> candidates = declared.formats;
+void choose_format(CompileContext& c, ResourceId id, Format& chosen) {
+  const ResourceDeclaration& declared = c.graph->resources[id.value];
+  const Format bound = c.input->host_formats.empty() ? Format::undefined : c.input->host_formats[id.value];
+  std::span<const Format> candidates = declared.formats;
   if (c.host_owned(id) && bound != Format::undefined) {
-    if (std::find(candidates.begin(), candidates.end(), bound) == candidates.end()) {
+    const auto found = std::find(candidates.begin(), candidates.end(), bound);
+    if (found == candidates.end()) {
       std::string list;
       for (const Format format : candidates)
         list += fmt::format("{}{}", list.empty() ? "" : ", ", format_info(format).name);
-      c.diagnostics.add(DiagnosticId::host_format, declared.where,
-                        fmt::format("the host binds '{}' as {}; declared are {}", declared.name,
-                                    format_info(bound).name, list));
+      c.diagnostics->add(DiagnosticId::host_format, declared.where,
+                         fmt::format("the host binds '{}' as {}; declared are {}", declared.name,
+                                     format_info(bound).name, list));
       return;
     }
-    candidates = {bound};
+    candidates = candidates.subspan(static_cast<size_t>(found - candidates.begin()), 1);
   }
   std::string objections;
   for (const Format format : candidates) {
     const std::string reason = objection(c, id, format);
     if (reason.empty()) {
-      c.formats[id.value] = format;
-      c.because(Reason::About::resource, id.value,
-                fmt::format("format {}: {}{}", format_info(format).name,
-                            bound == format && c.host_owned(id) ? "the host binds it"
-                            : format == candidates.front()      ? "first in the list"
-                                                                : "first usable one in the list",
-                            objections));
+      chosen = format;
+      c.because(Reason::About::resource, id.value, [&] {
+        return fmt::format("format {}: {}{}", format_info(format).name,
+                           bound == format && c.host_owned(id) ? "the host binds it"
+                           : format == candidates.front()      ? "first in the list"
+                                                               : "first usable one in the list",
+                           objections);
+      });
       return;
     }
     objections += fmt::format("; not {}: {}", format_info(format).name, reason);
   }
-  c.diagnostics.add(DiagnosticId::no_usable_format, declared.where,
-                    fmt::format("no format of '{}' can be used{}", declared.name,
-                                objections.empty() ? ": none is declared" : objections));
+  c.diagnostics->add(DiagnosticId::no_usable_format, declared.where,
+                     fmt::format("no format of '{}' can be used{}", declared.name,
+                                 objections.empty() ? ": none is declared" : objections));
+}
+
+MemoryNeeds needs_of(const DeviceProfile& device, const PlanResource& resource) {
+  if (resource.type == ResourceType::buffer) return device.buffer_needs({resource.bytes, resource.vk_usage});
+  return device.image_needs(
+      {resource.format, resource.width, resource.height, resource.mips, resource.layers, resource.vk_usage});
 }
 
 } // namespace
 
 void resolve_sizes(CompileContext& c) {
-  const auto count = c.graph.resources.size();
+  const auto count = c.graph->resources.size();
   c.bound.assign(count, 0);
   c.extents.assign(count, {});
   for (uint32_t i = 0; i < count; ++i) {
-    const ResourceDeclaration& declared = c.graph.resources[i];
+    const ResourceDeclaration& declared = c.graph->resources[i];
     const bool slot = declared.origin == Origin::imported || declared.exported;
-    c.bound[i] = slot && (!declared.optional || c.input.bound.empty() || c.input.bound[i]);
+    c.bound[i] = slot && (!declared.optional || c.input->bound.empty() || c.input->bound[i]);
     if (slot && !c.bound[i])
-      c.because(Reason::About::resource, i, "the host leaves this optional slot unbound");
+      c.because(Reason::About::resource, i,
+                [] { return std::string("the host leaves this optional slot unbound"); });
     if (slot && declared.history.frames > 0)
-      c.diagnostics.add(
+      c.diagnostics->add(
           DiagnosticId::history_of_host_memory, declared.where,
           fmt::format("'{}' is bound by the host, so its earlier frames are not the graph's to keep",
                       declared.name));
   }
-  SizeResolver resolver{c, std::vector<SizeResolver::Mark>(count, SizeResolver::Mark::untouched)};
+  c.size_marks.assign(count, SizeResolver::untouched);
+  SizeResolver resolver{c};
   for (uint32_t i = 0; i < count; ++i)
     resolver.resolve(ResourceId{i});
 }
 
 void resolve_formats(CompileContext& c) {
-  const auto count = c.graph.resources.size();
-  c.formats.assign(count, Format::undefined);
+  const auto count = c.graph->resources.size();
+  Plan& plan = c.out->plan;
+  c.needs.clear();
   c.plan_resource.assign(count, no_value);
   int32_t slot = 0;
   for (uint32_t i = 0; i < count; ++i) {
     const ResourceId id{i};
-    const ResourceDeclaration& declared = c.graph.resources[i];
+    const ResourceDeclaration& declared = c.graph->resources[i];
     const bool is_slot = declared.origin == Origin::imported || declared.exported;
     const int32_t own_slot = is_slot ? slot++ : -1;
     const Lifetime& life = c.lifetimes[i];
     if (!life.used && !c.bound[i]) continue;
-    if (declared.type == ResourceType::image) choose_format(c, id);
-    PlanResource resource;
+    PlanResource& resource = plan.resources.emplace_back();
+    if (declared.type == ResourceType::image) choose_format(c, id, resource.format);
     resource.declared = id;
     resource.type = declared.type;
     resource.origin = declared.origin;
     resource.exported = declared.exported && c.bound[i];
-    resource.format = c.formats[i];
     resource.width = c.extents[i].width;
     resource.height = c.extents[i].height;
     resource.mips = c.extents[i].mips;
@@ -246,8 +259,8 @@ void resolve_formats(CompileContext& c) {
     resource.vk_usage = life.vk_usage;
     resource.instance_count = life.deepest_read + 1;
     resource.slot = own_slot;
-    c.plan_resource[i] = static_cast<uint32_t>(c.out.plan.resources.size());
-    c.out.plan.resources.push_back(resource);
+    c.plan_resource[i] = static_cast<uint32_t>(plan.resources.size() - 1);
+    c.needs.push_back(c.host_owned(id) ? MemoryNeeds{} : needs_of(*c.device, resource));
   }
 }
 

@@ -1,272 +1,345 @@
-// What must wait for what. Each object (a resource, or one of its earlier frames) is walked through the frame
-// on its own: every access either finds the contents visible, in the right layout, or gets one barrier before
-// its pass.
+// What must wait for what. Walks through the frame once, remembering how each object (a resource, or one of
+// its earlier frames) stands: every access either finds the contents visible, in the right layout, or gets
+// one barrier before its pass. Only objects of histories are walked twice, since they start as the frame
+// before left them.
 
 #include "framegraph/compile/phases.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace dermis {
 namespace {
+
+constexpr auto usage_count = static_cast<uint32_t>(Usage::count);
+constexpr uint32_t usage_sets = 1u << usage_count; // sets of usages, as masks
+static_assert(usage_count <= 8, "PassTouch::usages and ObjectState::visible are bytes");
+
+// What a set of usages comes to.
+struct UsageSet {
+  Stage stages = 0;
+  Access access = 0;
+  Layout image_layout = Layout::undefined; // one layout for all: `general` serves every one of them
+  uint8_t sees = 0; // usages that see what these see: visible to them, visible to those
+  bool reads = false, writes = false;
+};
+
+std::array<UsageSet, usage_sets> make_usage_sets() {
+  std::array<UsageSet, usage_sets> sets{};
+  for (uint32_t mask = 1; mask < usage_sets; ++mask) {
+    UsageSet& set = sets[mask];
+    for (uint32_t u = 0; u < usage_count; ++u) {
+      if ((mask >> u & 1) == 0) continue;
+      const UsageInfo& info = usage_info(static_cast<Usage>(u));
+      set.image_layout = set.stages == 0 || set.image_layout == info.layout ? info.layout : Layout::general;
+      set.stages |= info.stages;
+      set.access |= info.access;
+      set.reads |= info.reads;
+      set.writes |= info.writes;
+      for (uint32_t other = 0; other < usage_count; ++other) {
+        const UsageInfo& wanted = usage_info(static_cast<Usage>(other));
+        if ((wanted.stages & ~info.stages) == 0 && (wanted.access & ~info.access) == 0)
+          set.sees = static_cast<uint8_t>(set.sees | 1u << other);
+      }
+    }
+  }
+  return sets;
+}
 
 struct Scope {
   Stage stages = 0;
   Access access = 0;
 };
 
-// All accesses of one pass to one object.
-struct Touch {
-  uint32_t position = 0;     // in Plan::passes
-  std::vector<Scope> scopes; // one per port
-  Stage stages = 0;          // their union
-  Access access = 0;
-  Layout layout = Layout::undefined;
-  bool reads = false, writes = false;
-};
-
-// How one object stands between two accesses.
-struct State {
-  bool touched = false;
-  Layout layout = Layout::undefined;
-  // What the next dependency on the contents must wait for: the last write, or (behind a layout transition,
-  // which is a write of its own) what that transition was made visible to. `access` is 0 once the write is
-  // available.
-  Scope source;
-  Stage readers = 0;             // stages that read since
-  std::vector<Scope> visible;    // where the contents may be read without another barrier
-  uint32_t last_pass = no_value; // position; in the frame before while `carried`
-  bool carried = false;          // from the frame before
-};
-
 // Where a dependency on everything done so far starts.
-Scope tail(const State& state) {
+Scope tail(const ObjectState& state) {
   if (!state.touched) return {};
-  return {state.readers != 0 && state.source.access == 0 ? state.readers
-                                                         : state.source.stages | state.readers,
-          state.source.access};
+  return {state.readers != 0 && state.source_access == 0 ? state.readers
+                                                         : state.source_stages | state.readers,
+          state.source_access};
 }
-
-bool visible_to(const State& state, const Touch& touch) {
-  return std::all_of(touch.scopes.begin(), touch.scopes.end(), [&](const Scope& wanted) {
-    return std::any_of(state.visible.begin(), state.visible.end(), [&](const Scope& has) {
-      return (wanted.stages & ~has.stages) == 0 && (wanted.access & ~has.access) == 0;
-    });
-  });
-}
-
-// Fills in the barrier that `touch` needs behind `state`; false if it needs none.
-bool dependency(const State& state, const Touch& touch, PlanBarrier& barrier) {
-  const bool pending = state.source.access != 0;
-  const bool must_see = touch.reads && !visible_to(state, touch);
-  const Scope everything = tail(state);
-  barrier.source_stages = everything.stages;
-  barrier.source_access = everything.access;
-  barrier.destination_stages = touch.stages;
-  barrier.destination_access = touch.access;
-  barrier.old_layout = state.layout;
-  barrier.new_layout = touch.layout;
-  if (touch.layout != state.layout) {
-    barrier.why = !pending      ? PlanBarrier::Why::layout
-                  : touch.reads ? PlanBarrier::Why::read_after_write
-                                : PlanBarrier::Why::write_after_write;
-    return true;
-  }
-  if (must_see) {
-    barrier.why = PlanBarrier::Why::read_after_write;
-    barrier.source_stages = touch.writes ? everything.stages | state.source.stages : state.source.stages;
-    return true;
-  }
-  if (!touch.writes) return false;
-  barrier.why = pending ? PlanBarrier::Why::write_after_write : PlanBarrier::Why::write_after_read;
-  if (!pending) barrier.destination_access = 0; // readers only have to be done: nothing to make visible
-  return true;
-}
-
-void advance(State& state, const Touch& touch, bool waited) {
-  const bool transition = !state.touched || touch.layout != state.layout;
-  if (touch.writes || transition) {
-    state.source = {touch.stages, touch.access & all_write_access};
-    state.readers = 0;
-    state.visible.clear();
-  }
-  if (!touch.writes) {
-    if (waited) {
-      state.source.access = 0;
-      state.visible.insert(state.visible.end(), touch.scopes.begin(), touch.scopes.end());
-    }
-    state.readers |= touch.stages;
-  }
-  state.touched = true;
-  state.carried = false;
-  state.layout = touch.layout;
-  state.last_pass = touch.position;
-}
-
-struct Planned { // a barrier and where it goes
-  uint32_t position;
-  PlanBarrier barrier;
-  std::string reason;
-};
 
 struct Synchronizer {
   CompileContext& c;
   Plan& plan;
-  std::vector<uint32_t> first_object;      // by plan resource; objects follow frames_back
-  std::vector<std::vector<Touch>> touches; // by object
-  std::vector<State> ends;                 // by object: how it stands when the frame is over
-  std::vector<Planned> planned;
-
-  explicit Synchronizer(CompileContext& context) : c(context), plan(context.out.plan) {
-    for (const PlanResource& resource : plan.resources) {
-      first_object.push_back(static_cast<uint32_t>(touches.size()));
-      touches.resize(touches.size() + resource.instance_count);
-    }
-    ends.resize(touches.size());
-  }
+  const std::array<UsageSet, usage_sets>& sets;
+  bool emit = false; // barriers; otherwise only how each object ends
 
   const std::string& name(uint32_t resource) const { return c.name(plan.resources[resource].declared); }
   const std::string& pass_name(uint32_t position) const { return c.name(plan.passes[position].declared); }
-  bool host_owned(uint32_t resource) const { return c.host_owned(plan.resources[resource].declared); }
+  bool host_owned(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
 
-  // One layout for all ports of a pass that see the same image: `general` serves every one of them.
-  static void merge(Touch& touch, const UsageInfo& usage, bool image) {
-    const Layout layout = image ? usage.layout : Layout::undefined;
-    touch.layout = touch.scopes.empty() || touch.layout == layout ? layout : Layout::general;
-    touch.scopes.push_back({usage.stages, usage.access});
-    touch.stages |= usage.stages;
-    touch.access |= usage.access;
-    touch.reads |= usage.reads;
-    touch.writes |= usage.writes;
+  // Returns whether the plan has histories.
+  bool number_objects() {
+    uint32_t objects = 0;
+    c.first_object.clear();
+    for (const PlanResource& resource : plan.resources) {
+      c.first_object.push_back(objects);
+      objects += resource.instance_count;
+    }
+    c.states.assign(objects, {});
+    return objects != plan.resources.size();
   }
 
-  void collect() {
-    for (uint32_t position = 0; position < plan.passes.size(); ++position) {
-      PlanPass& pass = plan.passes[position];
-      pass.first_access = static_cast<uint32_t>(plan.accesses.size());
-      for (uint32_t u = c.first_use[pass.declared.value]; u < c.first_use[pass.declared.value + 1]; ++u) {
-        const Use& use = c.uses[u];
-        if (use.trouble != Use::Trouble::none) continue;
-        const UsageInfo& usage = usage_info(use.usage);
-        const uint32_t resource = c.plan_resource[use.resource.value];
-        auto& list = touches[first_object[resource] + use.frames_back];
-        if (list.empty() || list.back().position != position) list.emplace_back().position = position;
-        merge(list.back(), usage, plan.resources[resource].type == ResourceType::image);
-        plan.accesses.push_back({use.port, resource, use.frames_back, usage.stages, usage.access, {}});
+  // Earlier frames of a history start where the frame before left them, one role younger; everything else
+  // arrives with its first barrier.
+  void carry_over() {
+    for (uint32_t r = 0; r < plan.resources.size(); ++r)
+      for (uint32_t back = plan.resources[r].instance_count; back-- > 0;) {
+        const uint32_t object = c.first_object[r] + back;
+        c.states[object] = back == 0 ? ObjectState{} : c.ends[object - 1];
+        c.states[object].carried = back != 0;
       }
-      pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
-      for (uint32_t a = pass.first_access; a < plan.accesses.size(); ++a) {
-        PlanAccess& access = plan.accesses[a];
-        access.layout = touches[first_object[access.resource] + access.frames_back].back().layout;
-      }
+  }
+
+  // The oldest instance of a history was one role younger when the frame before ended, and so on.
+  void find_ends() {
+    c.ends.assign(c.states.size(), {});
+    uint32_t deepest = 1;
+    for (const PlanResource& resource : plan.resources)
+      deepest = std::max(deepest, resource.instance_count);
+    for (uint32_t frame = 0; frame < deepest; ++frame) {
+      carry_over();
+      for (uint32_t position = 0; position < plan.passes.size(); ++position)
+        run_pass(position);
+      c.ends = c.states;
+    }
+    carry_over();
+  }
+
+  void collect(const PlanPass& pass) {
+    c.touches.clear();
+    for (uint32_t u = c.first_use[pass.declared.value]; u < c.first_use[pass.declared.value + 1]; ++u) {
+      const Use& use = c.uses[u];
+      if (use.trouble != Use::Trouble::none) continue;
+      const uint32_t resource = c.plan_resource[use.resource.value];
+      const uint32_t object = c.first_object[resource] + use.frames_back;
+      const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
+      const auto same = std::find_if(c.touches.begin(), c.touches.end(),
+                                     [&](const PassTouch& touch) { return touch.object == object; });
+      if (same == c.touches.end())
+        c.touches.push_back({object, resource, use.frames_back, usage});
+      else
+        same->usages |= usage;
     }
   }
 
-  // How an object stands when the frame begins: earlier frames of a history are where the frame before left
-  // them, one role younger; everything else arrives with its first barrier.
-  State start_of(uint32_t object, uint32_t frames_back) const {
-    if (frames_back == 0) return {};
-    State state = ends[object - 1];
-    state.carried = true;
-    return state;
+  Layout layout_of(const PassTouch& touch) const {
+    return plan.resources[touch.resource].type == ResourceType::image ? sets[touch.usages].image_layout
+                                                                      : Layout::undefined;
   }
 
-  void find_ends() {
-    for (uint32_t r = 0; r < plan.resources.size(); ++r)
-      for (uint32_t back = 0; back < plan.resources[r].instance_count; ++back) {
-        const uint32_t object = first_object[r] + back;
-        State state = start_of(object, back);
-        for (const Touch& touch : touches[object]) {
-          PlanBarrier unused;
-          advance(state, touch, !state.touched || dependency(state, touch, unused));
-        }
-        ends[object] = state;
+  void add_accesses(PlanPass& pass) {
+    pass.first_access = static_cast<uint32_t>(plan.accesses.size());
+    for (uint32_t u = c.first_use[pass.declared.value]; u < c.first_use[pass.declared.value + 1]; ++u) {
+      const Use& use = c.uses[u];
+      if (use.trouble != Use::Trouble::none) continue;
+      const UsageInfo& usage = usage_info(use.usage);
+      const uint32_t resource = c.plan_resource[use.resource.value];
+      const uint32_t object = c.first_object[resource] + use.frames_back;
+      Layout layout = Layout::undefined;
+      for (const PassTouch& touch : c.touches)
+        if (touch.object == object) layout = layout_of(touch);
+      plan.accesses.push_back({use.port, resource, use.frames_back, usage.stages, usage.access, layout});
+    }
+    pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
+  }
+
+  void run_pass(uint32_t position) {
+    PlanPass& pass = plan.passes[position];
+    collect(pass);
+    if (emit) {
+      add_accesses(pass);
+      pass.first_barrier = static_cast<uint32_t>(plan.barriers.size());
+    }
+    for (const PassTouch& touch : c.touches)
+      run_touch(touch, position);
+    if (emit) pass.barrier_count = static_cast<uint32_t>(plan.barriers.size()) - pass.first_barrier;
+  }
+
+  void run_touch(const PassTouch& touch, uint32_t position) {
+    ObjectState& state = c.states[touch.object];
+    const UsageSet& set = sets[touch.usages];
+    const Layout layout = layout_of(touch);
+    bool waited = true;
+    if (!state.touched) {
+      if (emit) arrive(touch, set, layout);
+    } else {
+      PlanBarrier barrier;
+      waited = dependency(state, touch.usages, set, layout, barrier);
+      if (waited && emit) {
+        barrier.resource = touch.resource;
+        barrier.frames_back = touch.frames_back;
+        explain(barrier, state, position);
+        if (state.carried) barrier.why = PlanBarrier::Why::history;
+        plan.barriers.push_back(barrier);
       }
+    }
+    const bool transition = !state.touched || layout != state.layout;
+    if (set.writes || transition) {
+      state.source_stages = set.stages;
+      state.source_access = set.access & all_write_access;
+      state.readers = 0;
+      state.visible = 0;
+    }
+    if (!set.writes) {
+      if (waited) {
+        state.source_access = 0;
+        state.visible = static_cast<uint8_t>(state.visible | touch.usages);
+      }
+      state.readers |= set.stages;
+    }
+    state.touched = true;
+    state.carried = false;
+    state.layout = layout;
+    state.last_pass = position;
   }
 
-  // Source and reason of the first barrier of an object whose old contents do not count.
-  std::string arrive(uint32_t resource, PlanBarrier& barrier) const {
-    const PlanResource& own = plan.resources[resource];
-    if (host_owned(resource)) {
+  // Fills in the barrier that an access needs behind `state`; false if it needs none.
+  bool dependency(const ObjectState& state, uint8_t usages, const UsageSet& set, Layout layout,
+                  PlanBarrier& barrier) const {
+    const bool pending = state.source_access != 0;
+    const bool must_see = set.reads && (usages & ~sets[state.visible].sees) != 0;
+    const Scope everything = tail(state);
+    barrier.source_stages = everything.stages;
+    barrier.source_access = everything.access;
+    barrier.destination_stages = set.stages;
+    barrier.destination_access = set.access;
+    barrier.old_layout = state.layout;
+    barrier.new_layout = layout;
+    if (layout != state.layout) {
+      barrier.why = !pending    ? PlanBarrier::Why::layout
+                    : set.reads ? PlanBarrier::Why::read_after_write
+                                : PlanBarrier::Why::write_after_write;
+      return true;
+    }
+    if (must_see) {
+      barrier.why = PlanBarrier::Why::read_after_write;
+      barrier.source_stages = set.writes ? everything.stages | state.source_stages : state.source_stages;
+      return true;
+    }
+    if (!set.writes) return false;
+    barrier.why = pending ? PlanBarrier::Why::write_after_write : PlanBarrier::Why::write_after_read;
+    if (!pending) barrier.destination_access = 0; // readers only have to be done: nothing to make visible
+    return true;
+  }
+
+  void wait_for(PlanBarrier& barrier, const Scope& scope) const {
+    barrier.source_stages |= scope.stages;
+    barrier.source_access |= scope.access;
+  }
+
+  // The first barrier of an object whose old contents do not count.
+  void arrive(const PassTouch& touch, const UsageSet& set, Layout layout) {
+    const auto index = static_cast<uint32_t>(plan.barriers.size());
+    const PlanResource& own = plan.resources[touch.resource];
+    PlanBarrier& barrier = plan.barriers.emplace_back();
+    barrier.resource = touch.resource;
+    barrier.frames_back = touch.frames_back;
+    barrier.destination_stages = set.stages;
+    barrier.destination_access = set.access;
+    barrier.new_layout = layout;
+    if (host_owned(touch.resource)) {
       barrier.from_host = true;
       barrier.why = PlanBarrier::Why::host_before;
-      return fmt::format("takes '{}' over from the host", name(resource));
-    }
-    if (own.instance_count > 1) { // the oldest instance becomes the newest
-      const Scope scope = tail(ends[first_object[resource] + own.instance_count - 1]);
-      barrier.source_stages = scope.stages;
-      barrier.source_access = scope.access;
+      c.because(Reason::About::barrier, index,
+                [&] { return fmt::format("takes '{}' over from the host", name(touch.resource)); });
+    } else if (own.instance_count > 1) { // the oldest instance becomes the newest
+      wait_for(barrier, tail(c.ends[c.first_object[touch.resource] + own.instance_count - 1]));
       barrier.why = PlanBarrier::Why::history;
-      return fmt::format("reuses the oldest instance of '{}' for this frame", name(resource));
-    }
-    // Occupants of the same bytes: those before it in this frame, and all of them in the frame before.
-    std::string others;
-    const Placement& place = plan.placements[own.first_instance];
-    for (const Placement& other : plan.placements) {
-      const bool overlap = other.heap == place.heap && other.offset < place.offset + place.size &&
-                           place.offset < other.offset + other.size;
-      if (!overlap) continue;
-      const Scope scope = tail(ends[first_object[other.resource]]);
-      barrier.source_stages |= scope.stages;
-      barrier.source_access |= scope.access;
-      if (other.resource != resource)
-        others += fmt::format("{}'{}'", others.empty() ? "" : ", ", name(other.resource));
-    }
-    barrier.why = others.empty() ? PlanBarrier::Why::first_use : PlanBarrier::Why::alias;
-    if (others.empty())
-      return fmt::format("first use of '{}', behind its last use in the frame before", name(resource));
-    return fmt::format("'{}' takes over memory of {}", name(resource), others);
-  }
-
-  std::string explain(const PlanBarrier& barrier, const State& before, uint32_t position) const {
-    const std::string& pass = pass_name(position);
-    const std::string what = barrier.frames_back == 0
-                                 ? fmt::format("'{}'", name(barrier.resource))
-                                 : fmt::format("'{}@-{}'", name(barrier.resource), barrier.frames_back);
-    const std::string last =
-        fmt::format("'{}'{}", pass_name(before.last_pass), before.carried ? " in the frame before" : "");
-    switch (barrier.why) {
-    case PlanBarrier::Why::write_after_read:
-      return fmt::format("'{}' writes over {} once {} has read it", pass, what, last);
-    case PlanBarrier::Why::write_after_write:
-      return fmt::format("'{}' writes {} after {}", pass, what, last);
-    case PlanBarrier::Why::layout:
-      return fmt::format("'{}' needs {} in another layout than {}", pass, what, last);
-    default:
-      return fmt::format("'{}' reads {} as {} left it", pass, what, last);
+      c.because(Reason::About::barrier, index, [&] {
+        return fmt::format("reuses the oldest instance of '{}' for this frame", name(touch.resource));
+      });
+    } else {
+      take_over(touch.resource, index);
     }
   }
 
-  void walk(uint32_t resource, uint32_t frames_back) {
-    const uint32_t object = first_object[resource] + frames_back;
-    State state = start_of(object, frames_back);
-    for (const Touch& touch : touches[object]) {
-      PlanBarrier barrier;
-      barrier.resource = resource;
-      barrier.frames_back = frames_back;
-      bool waited = true;
-      if (!state.touched) {
-        barrier.destination_stages = touch.stages;
-        barrier.destination_access = touch.access;
-        barrier.new_layout = touch.layout;
-        std::string reason = arrive(resource, barrier);
-        planned.push_back({touch.position, barrier, std::move(reason)});
-      } else {
-        waited = dependency(state, touch, barrier);
-        if (waited) {
-          std::string reason = explain(barrier, state, touch.position);
-          if (state.carried) barrier.why = PlanBarrier::Why::history;
-          planned.push_back({touch.position, barrier, std::move(reason)});
-        }
+  // Memory passes from those that had its bytes before in this frame; where there is none, from those that
+  // had them last in the frame before, which are known when the walk is over. Earlier ones than the last had
+  // to be done before it: the wait reaches them through it.
+  void take_over(uint32_t resource, uint32_t barrier) {
+    const Placement& place = plan.placements[plan.resources[resource].first_instance];
+    std::vector<Segment>& segments = c.memory[place.heap];
+    const uint64_t begin = place.offset, end = place.offset + place.size;
+    const uint32_t reason = c.input->reasons ? static_cast<uint32_t>(c.out->reasons.size()) : no_value;
+    c.because(Reason::About::barrier, barrier,
+              [&] { return fmt::format("first use of '{}'", name(resource)); });
+    auto first = std::lower_bound(segments.begin(), segments.end(), begin,
+                                  [](const Segment& one, uint64_t at) { return one.end <= at; });
+    auto last = first;
+    uint64_t reached = begin;
+    for (; last != segments.end() && last->begin < end; ++last) {
+      if (last->begin > reached)
+        c.arrivals.push_back({reached, last->begin, place.heap, barrier, resource, reason});
+      inherit(last->resource, resource, barrier, reason, false);
+      reached = last->end;
+    }
+    if (reached < end) c.arrivals.push_back({reached, end, place.heap, barrier, resource, reason});
+    // What is left of the first and the last of them stays.
+    std::array<Segment, 3> pieces;
+    size_t count = 0;
+    if (first != last && first->begin < begin) pieces[count++] = {first->begin, begin, first->resource};
+    pieces[count++] = {begin, end, resource};
+    if (first != last && (last - 1)->end > end)
+      pieces[count++] = {end, (last - 1)->end, (last - 1)->resource};
+    const auto replaced = static_cast<size_t>(last - first);
+    const size_t in_place = std::min(replaced, count);
+    std::copy_n(pieces.begin(), in_place, first);
+    if (replaced > count)
+      segments.erase(first + static_cast<std::ptrdiff_t>(count), last);
+    else
+      segments.insert(first + static_cast<std::ptrdiff_t>(in_place),
+                      pieces.begin() + static_cast<std::ptrdiff_t>(in_place),
+                      pieces.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+
+  void inherit(uint32_t from, uint32_t resource, uint32_t barrier, uint32_t reason, bool frame_before) {
+    wait_for(plan.barriers[barrier], tail(c.states[c.first_object[from]]));
+    if (from != resource) plan.barriers[barrier].why = PlanBarrier::Why::alias;
+    if (reason == no_value) return;
+    const char* when = frame_before ? " in the frame before" : "";
+    c.out->reasons[reason].text += from == resource
+                                       ? fmt::format("; behind its last use{}", when)
+                                       : fmt::format("; takes over memory of '{}'{}", name(from), when);
+  }
+
+  void settle_arrivals() {
+    for (const Arrival& arrival : c.arrivals) {
+      const std::vector<Segment>& segments = c.memory[arrival.heap];
+      auto at = std::lower_bound(segments.begin(), segments.end(), arrival.begin,
+                                 [](const Segment& one, uint64_t begin) { return one.end <= begin; });
+      for (; at != segments.end() && at->begin < arrival.end; ++at)
+        inherit(at->resource, arrival.resource, arrival.barrier, arrival.reason, true);
+    }
+  }
+
+  void explain(const PlanBarrier& barrier, const ObjectState& before, uint32_t position) {
+    c.because(Reason::About::barrier, static_cast<uint32_t>(plan.barriers.size()), [&] {
+      const std::string& pass = pass_name(position);
+      const std::string what = barrier.frames_back == 0
+                                   ? fmt::format("'{}'", name(barrier.resource))
+                                   : fmt::format("'{}@-{}'", name(barrier.resource), barrier.frames_back);
+      const std::string last =
+          fmt::format("'{}'{}", pass_name(before.last_pass), before.carried ? " in the frame before" : "");
+      switch (barrier.why) {
+      case PlanBarrier::Why::write_after_read:
+        return fmt::format("'{}' writes over {} once {} has read it", pass, what, last);
+      case PlanBarrier::Why::write_after_write:
+        return fmt::format("'{}' writes {} after {}", pass, what, last);
+      case PlanBarrier::Why::layout:
+        return fmt::format("'{}' needs {} in another layout than {}", pass, what, last);
+      default:
+        return fmt::format("'{}' reads {} as {} left it", pass, what, last);
       }
-      advance(state, touch, waited);
-    }
+    });
   }
 
   // Every slot is handed back in the state the host asked for, also one that no pass touched.
   void hand_back(uint32_t resource) {
-    const State& end = ends[first_object[resource]];
+    const ObjectState& end = c.states[c.first_object[resource]];
     const Scope scope = tail(end);
     PlanBarrier barrier;
     barrier.resource = resource;
@@ -276,26 +349,11 @@ struct Synchronizer {
     barrier.source_access = scope.access;
     barrier.old_layout = end.layout;
     barrier.why = PlanBarrier::Why::host_after;
-    planned.push_back({static_cast<uint32_t>(plan.passes.size()), barrier,
-                       fmt::format("hands '{}' back to the host{}", name(resource),
-                                   end.touched ? "" : "; no pass touched it")});
-  }
-
-  void write_out() {
-    std::stable_sort(planned.begin(), planned.end(),
-                     [](const Planned& a, const Planned& b) { return a.position < b.position; });
-    size_t next = 0;
-    const auto batch = [&](uint32_t position, uint32_t& first, uint32_t& count) {
-      first = static_cast<uint32_t>(plan.barriers.size());
-      for (; next < planned.size() && planned[next].position == position; ++next) {
-        c.because(Reason::About::barrier, static_cast<uint32_t>(plan.barriers.size()), planned[next].reason);
-        plan.barriers.push_back(planned[next].barrier);
-      }
-      count = static_cast<uint32_t>(plan.barriers.size()) - first;
-    };
-    for (uint32_t position = 0; position < plan.passes.size(); ++position)
-      batch(position, plan.passes[position].first_barrier, plan.passes[position].barrier_count);
-    batch(static_cast<uint32_t>(plan.passes.size()), plan.first_final_barrier, plan.final_barrier_count);
+    c.because(Reason::About::barrier, static_cast<uint32_t>(plan.barriers.size()), [&] {
+      return fmt::format("hands '{}' back to the host{}", name(resource),
+                         end.touched ? "" : "; no pass touched it");
+    });
+    plan.barriers.push_back(barrier);
   }
 
   void describe_histories() {
@@ -305,10 +363,10 @@ struct Synchronizer {
       PlanHistory history;
       history.resource = r;
       history.frames = resource.instance_count - 1;
-      history.declaration = c.graph.resources[resource.declared.value].history;
+      history.declaration = c.graph->resources[resource.declared.value].history;
       history.layout_at_start.push_back(Layout::undefined);
       for (uint32_t back = 1; back < resource.instance_count; ++back)
-        history.layout_at_start.push_back(ends[first_object[r] + back - 1].layout);
+        history.layout_at_start.push_back(c.ends[c.first_object[r] + back - 1].layout);
       plan.histories.push_back(std::move(history));
     }
   }
@@ -317,20 +375,24 @@ struct Synchronizer {
 } // namespace
 
 void synchronize(CompileContext& c) {
-  Synchronizer synchronizer{c};
-  synchronizer.collect();
-  synchronizer.find_ends();
-  for (uint32_t r = 0; r < c.out.plan.resources.size(); ++r) {
-    for (uint32_t back = 0; back < c.out.plan.resources[r].instance_count; ++back)
-      synchronizer.walk(r, back);
-    if (synchronizer.host_owned(r)) synchronizer.hand_back(r);
-  }
-  synchronizer.write_out();
-  synchronizer.describe_histories();
-  c.out.plan.graph = c.graph.name;
-  c.out.plan.view_width = c.input.view_width;
-  c.out.plan.view_height = c.input.view_height;
-  c.out.plan.device_profile = c.device.name;
+  static const std::array<UsageSet, usage_sets> sets = make_usage_sets();
+  Plan& plan = c.out->plan;
+  Synchronizer walk{c, plan, sets};
+  const bool histories = walk.number_objects();
+  if (histories) walk.find_ends();
+  c.arrivals.clear();
+  c.memory.resize(std::max(c.memory.size(), plan.heaps.size()));
+  for (std::vector<Segment>& segments : c.memory)
+    segments.clear();
+  walk.emit = true;
+  for (uint32_t position = 0; position < plan.passes.size(); ++position)
+    walk.run_pass(position);
+  walk.settle_arrivals();
+  plan.first_final_barrier = static_cast<uint32_t>(plan.barriers.size());
+  for (uint32_t r = 0; r < plan.resources.size(); ++r)
+    if (walk.host_owned(r)) walk.hand_back(r);
+  plan.final_barrier_count = static_cast<uint32_t>(plan.barriers.size()) - plan.first_final_barrier;
+  if (histories) walk.describe_histories();
 }
 
 } // namespace dermis

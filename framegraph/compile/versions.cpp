@@ -10,35 +10,23 @@
 namespace dermis {
 namespace {
 
-// What a name stands for at one point of the file: a value, or (before anything wrote it) a name to look up
-// later.
-struct Meaning {
-  uint32_t value = no_value;
-  ResourceId later; // valid: whatever the only producer of this resource will write
-};
-
-// Who gives a resource its first meaning after a reader that stands before all its writers.
-struct Definition {
-  uint32_t producers = 0; // passes that are on and write it
-  uint32_t first_value = no_value;
-  bool replaced = false; // by `otherwise` of a pass that is off
-  Meaning instead;
-};
-
 struct VersionScan {
   CompileContext& c;
-  std::vector<Meaning> current;                         // by resource
-  std::vector<uint32_t> last_version;                   // by resource: latest value in its own memory
-  std::vector<Definition> definitions;                  // by resource
-  std::vector<std::pair<uint32_t, ResourceId>> forward; // use -> name to look up when the scan is over
 
-  explicit VersionScan(CompileContext& context)
-      : c(context), current(context.graph.resources.size()), last_version(current.size(), no_value),
-        definitions(current.size()) {
-    for (uint32_t i = 0; i < current.size(); ++i) {
-      if (c.graph.resources[i].origin != Origin::imported || !c.bound[i]) continue;
-      current[i].value = add_value({ResourceId{i}, 0, PassId{}, no_value});
-      last_version[i] = current[i].value;
+  void begin() {
+    const size_t resources = c.graph->resources.size();
+    c.values.clear();
+    c.uses.clear();
+    c.first_use.clear();
+    c.forward.clear();
+    c.overwrites = false;
+    c.current.assign(resources, {});
+    c.last_version.assign(resources, no_value);
+    c.definitions.assign(resources, {});
+    for (uint32_t i = 0; i < resources; ++i) {
+      if (c.graph->resources[i].origin != Origin::imported || !c.bound[i]) continue;
+      c.current[i].value = add_value({ResourceId{i}, 0, PassId{}, no_value});
+      c.last_version[i] = c.current[i].value;
     }
   }
 
@@ -48,41 +36,45 @@ struct VersionScan {
   }
 
   bool unbound_import(ResourceId id) const {
-    return c.graph.resources[id.value].origin == Origin::imported && !c.bound[id.value];
+    return c.graph->resources[id.value].origin == Origin::imported && !c.bound[id.value];
   }
 
   void scan_uses(PassId pass) {
-    const PassDeclaration& declared = c.graph.passes[pass.value];
-    c.first_use.push_back(static_cast<uint32_t>(c.uses.size()));
+    const PassDeclaration& declared = c.graph->passes[pass.value];
+    const PassKind& kind = (*c.kinds)[declared.kind];
+    const auto first = static_cast<uint32_t>(c.uses.size());
+    c.first_use.push_back(first);
+    uint32_t number = 0;
     for (const auto* bindings : {&declared.reads, &declared.writes})
       for (const PortBinding& binding : *bindings) {
         Use use;
         use.pass = pass;
-        use.port = binding.port;
-        use.usage = c.kind(pass).ports[binding.port].usage;
+        use.port = static_cast<uint16_t>(binding.port);
+        use.usage = kind.ports[binding.port].usage;
         use.resource = use.asked = binding.resource;
         use.frames_back = binding.frames_back;
-        use.where = binding.where;
+        use.binding = number++;
         c.uses.push_back(use);
       }
-    const auto first = c.uses.begin() + c.first_use.back();
-    std::stable_sort(first, c.uses.end(), [](const Use& a, const Use& b) { return a.port < b.port; });
-    for (uint32_t u = c.first_use.back(); u < c.uses.size(); ++u)
+    for (uint32_t u = first + 1; u < c.uses.size(); ++u) // few, and nearly always sorted
+      for (uint32_t at = u; at > first && c.uses[at].port < c.uses[at - 1].port; --at)
+        std::swap(c.uses[at], c.uses[at - 1]);
+    for (uint32_t u = first; u < c.uses.size(); ++u)
       read(u);
-    for (uint32_t u = c.first_use.back(); u < c.uses.size(); ++u)
+    for (uint32_t u = first; u < c.uses.size(); ++u)
       write(u);
   }
 
   void read(uint32_t index) {
     Use& use = c.uses[index];
     if (!usage_info(use.usage).reads || use.frames_back > 0) return;
-    const Meaning& meaning = current[use.asked.value];
+    const Meaning& meaning = c.current[use.asked.value];
     if (unbound_import(use.asked))
       use.trouble = Use::Trouble::unbound;
     else if (meaning.value != no_value)
       see(use, meaning.value);
     else
-      forward.emplace_back(index, meaning.later.valid() ? meaning.later : use.asked);
+      c.forward.emplace_back(index, meaning.later.valid() ? meaning.later : use.asked);
   }
 
   void see(Use& use, uint32_t value) {
@@ -107,58 +99,60 @@ struct VersionScan {
       return;
     }
     const uint32_t id = use.asked.value;
-    const uint32_t before = current[id].value;
+    const uint32_t before = c.current[id].value;
     const PassId producer = before == no_value ? PassId{} : c.values[before].producer;
     const bool own = before != no_value && c.values[before].resource == use.asked;
     const bool second =
-        own && (producer == use.pass || (c.graph.resources[id].origin != Origin::imported &&
+        own && (producer == use.pass || (c.graph->resources[id].origin != Origin::imported &&
                                          producer.valid() && !reads_too(use.pass, use.asked)));
     if (second) return refuse_second(use, producer);
-    const uint32_t previous = last_version[id];
+    const uint32_t previous = c.last_version[id];
     const uint32_t version = previous == no_value ? 1 : c.values[previous].version + 1;
+    c.overwrites |= previous != no_value;
     use.write_value = add_value({use.asked, version, use.pass, previous});
-    last_version[id] = use.write_value;
-    current[id] = {use.write_value, {}};
-    Definition& definition = definitions[id];
+    c.last_version[id] = use.write_value;
+    c.current[id] = {use.write_value, {}};
+    Definition& definition = c.definitions[id];
     if (++definition.producers == 1) definition.first_value = use.write_value;
   }
 
   void refuse_second(const Use& use, PassId producer) {
-    auto& diagnostic = c.diagnostics.add(
-        DiagnosticId::second_producer, use.where,
+    auto& diagnostic = c.diagnostics->add(
+        DiagnosticId::second_producer, c.binding(use).where,
         producer == use.pass
             ? fmt::format("pass '{}' writes '{}' through two ports", c.name(use.pass), c.name(use.asked))
             : fmt::format("passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
                           c.name(producer), c.name(use.pass), c.name(use.asked), c.name(use.pass),
                           c.name(producer)));
-    diagnostic.related.emplace_back(c.graph.passes[producer.value].where,
+    diagnostic.related.emplace_back(c.graph->passes[producer.value].where,
                                     fmt::format("'{}' is declared here", c.name(producer)));
   }
 
   void scan_otherwise(PassId pass) {
     c.first_use.push_back(static_cast<uint32_t>(c.uses.size()));
     std::vector<std::pair<ResourceId, Meaning>> replaced; // all look at the state before the pass
-    for (const PassThrough& through : c.graph.passes[pass.value].otherwise) {
-      if (c.graph.resources[through.output.value].type != c.graph.resources[through.instead.value].type) {
-        c.diagnostics.add(DiagnosticId::otherwise_mismatch, through.where,
-                          fmt::format("'{}' cannot stand in for '{}': one is an image, the other a buffer",
-                                      c.name(through.instead), c.name(through.output)));
+    for (const PassThrough& through : c.graph->passes[pass.value].otherwise) {
+      if (c.graph->resources[through.output.value].type != c.graph->resources[through.instead.value].type) {
+        c.diagnostics->add(DiagnosticId::otherwise_mismatch, through.where,
+                           fmt::format("'{}' cannot stand in for '{}': one is an image, the other a buffer",
+                                       c.name(through.instead), c.name(through.output)));
         continue;
       }
-      Meaning meaning = current[through.instead.value];
+      Meaning meaning = c.current[through.instead.value];
       if (meaning.value == no_value && !meaning.later.valid()) meaning.later = through.instead;
       replaced.emplace_back(through.output, meaning);
-      c.because(Reason::About::resource, through.output.value,
-                fmt::format("stands for '{}' after pass '{}', which is off", c.name(through.instead),
-                            c.name(pass)));
+      c.because(Reason::About::resource, through.output.value, [&] {
+        return fmt::format("stands for '{}' after pass '{}', which is off", c.name(through.instead),
+                           c.name(pass));
+      });
     }
     for (const auto& [output, meaning] : replaced) {
-      Definition& definition = definitions[output.value];
+      Definition& definition = c.definitions[output.value];
       if (!definition.replaced) {
         definition.replaced = true;
         definition.instead = meaning;
       }
-      current[output.value] = meaning;
+      c.current[output.value] = meaning;
     }
   }
 
@@ -166,8 +160,8 @@ struct VersionScan {
   // resource.
   void look_ahead(uint32_t index, ResourceId wanted) {
     Use& use = c.uses[index];
-    for (size_t step = 0; step <= definitions.size(); ++step) {
-      const Definition& definition = definitions[wanted.value];
+    for (size_t step = 0; step <= c.definitions.size(); ++step) {
+      const Definition& definition = c.definitions[wanted.value];
       const bool writes_it = definition.first_value != no_value && writes(use.pass, wanted);
       if (unbound_import(wanted)) {
         use.trouble = Use::Trouble::unbound;
@@ -196,19 +190,20 @@ struct VersionScan {
 
 void resolve_versions(CompileContext& c) {
   VersionScan scan{c};
-  for (uint32_t i = 0; i < c.graph.passes.size(); ++i) {
+  scan.begin();
+  for (uint32_t i = 0; i < c.graph->passes.size(); ++i) {
     if (c.on[i])
       scan.scan_uses(PassId{i});
     else
       scan.scan_otherwise(PassId{i});
   }
   c.first_use.push_back(static_cast<uint32_t>(c.uses.size()));
-  for (const auto& [use, wanted] : scan.forward)
+  for (const auto& [use, wanted] : c.forward)
     scan.look_ahead(use, wanted);
 
-  c.final_value.assign(c.graph.resources.size(), no_value);
+  c.final_value.assign(c.graph->resources.size(), no_value);
   for (uint32_t i = 0; i < c.final_value.size(); ++i) {
-    const uint32_t last = scan.current[i].value;
+    const uint32_t last = c.current[i].value;
     if (last != no_value && c.values[last].resource == ResourceId{i}) c.final_value[i] = last;
   }
   for (Use& use : c.uses)

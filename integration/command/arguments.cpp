@@ -56,11 +56,12 @@ void add_settings(CLI::App& verb, std::vector<NamedValue>& settings) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void add_common(CLI::App& verb, Session& session) {
+void add_common(CLI::App& verb, Session& session, bool json_is_file = false) {
   static const std::map<std::string, ColorMode> modes{
       {"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}};
   const char* group = "Common options";
-  verb.add_flag("--json", session.json, "One JSON document on standard output, for programs")->group(group);
+  if (!json_is_file)
+    verb.add_flag("--json", session.json, "One JSON document on standard output, for programs")->group(group);
   verb.add_flag("--quiet,-q", session.quiet, "Errors only")->group(group);
   verb.add_option("--color", session.color, "Colour: auto, always or never [auto]")
       ->transform(CLI::CheckedTransformer(modes).description("MODE"))
@@ -70,11 +71,11 @@ void add_common(CLI::App& verb, Session& session) {
 // The verb's options live as long as the function that runs it.
 template <class Options, class Declare>
 void add_verb(CLI::App& app, Invocation& invocation, const char* name, const char* what, const char* example,
-              ExitCode (*work)(const Session&, const Options&), Declare declare) {
+              ExitCode (*work)(const Session&, const Options&), Declare declare, bool json_is_file = false) {
   CLI::App& verb = *app.add_subcommand(name, what);
   verb.footer(fmt::format("Example:\n  {}", example));
   auto options = std::make_shared<Options>();
-  add_common(verb, invocation.session);
+  add_common(verb, invocation.session, json_is_file);
   declare(verb, *options);
   verb.callback([&invocation, options, work] {
     invocation.run = [options, work](const Session& session) { return work(session, *options); };
@@ -201,6 +202,24 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       });
 }
 
+void add_bench_verbs(CLI::App& app, Invocation& invocation) {
+  CLI::App& bench = *app.add_subcommand("bench", "Measure the library on this machine");
+  bench.require_subcommand(1);
+  add_verb<BenchCompileOptions>(
+      bench, invocation, "compile", "Time and memory of compiling drawn graphs, or those of a folder",
+      "dermis bench compile --json build/bench_compile.json", bench_compile,
+      [](CLI::App& verb, BenchCompileOptions& options) {
+        verb.add_option("--shapes", options.shapes, "What is drawn [tests/benchmark/shapes.json]")
+            ->type_name("FILE");
+        verb.add_option("--graphs", options.graphs, "Measure the graph files of a folder instead")
+            ->type_name("DIR");
+        verb.add_flag("--optimize", options.optimize, "Also the packing level that takes seconds a graph");
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+      },
+      true);
+}
+
 std::string_view name_part(std::string_view argument) {
   return argument.substr(0, argument.find('='));
 }
@@ -222,8 +241,15 @@ std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
     return fmt::format("there is no verb '{}'; {}", first,
                        suggestion.empty() ? "verbs: " + list_words(words) : suggestion);
   }
-  const CLI::App* verb = *found;
-  for (int i = 2; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+  CLI::App* verb = *found;
+  int options_from = 2;
+  if (argc > 2)
+    for (CLI::App* inner : verb->get_subcommands([](CLI::App*) { return true; }))
+      if (inner->get_name() == argv[2]) {
+        verb = inner;
+        options_from = 3;
+      }
+  for (int i = options_from; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string name(name_part(argv[i]));
     if (!name.starts_with("--") || verb->get_option_no_throw(name) != nullptr) continue;
     for (const CLI::Option* one : verb->get_options())
@@ -267,6 +293,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
   add_text_verbs(app, invocation);
   add_schema_verb(app, invocation);
   add_picture_verbs(app, invocation);
+  add_bench_verbs(app, invocation);
 
   // Also a line that cannot be read is answered in the way it asks for.
   invocation.session.json = std::count(argv, argv + argc, std::string_view("--json")) > 0;
@@ -275,8 +302,10 @@ Invocation read_arguments(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    const auto chosen = app.get_subcommands();
-    invocation.help = chosen.empty() ? app.help() : chosen.front()->help();
+    const CLI::App* chosen = &app;
+    while (!chosen->get_subcommands().empty())
+      chosen = chosen->get_subcommands().front();
+    invocation.help = chosen->help();
   } catch (const CLI::CallForVersion& version) {
     invocation.help = std::string(version.what()) + "\n";
   } catch (const CLI::ParseError& error) {

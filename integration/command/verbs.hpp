@@ -80,4 +80,12 @@ struct ReferenceOptions {
 };
 ExitCode reference(const Session& session, const ReferenceOptions& options);
 
+struct BenchCompileOptions {
+  std::string shapes = "tests/benchmark/shapes.json";
+  std::string graphs;    // folder of graph files to measure instead; "": none
+  std::string json;      // file to write; "": none
+  bool optimize = false; // also the level that takes seconds a graph
+};
+ExitCode bench_compile(const Session& session, const BenchCompileOptions& options);
+
 } // namespace dermis::tools

@@ -1,0 +1,44 @@
+#pragma once
+// Graphs for the benchmarks, drawn from a seed as tests/benchmark/shapes.json describes.
+
+#include "framegraph/model/graph.hpp"
+#include "framegraph/text/document.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+struct DrawnResource {
+  uint32_t percent = 0;
+  Format format = Format::undefined;
+  Rational scale; // times the view
+};
+
+struct Shape {
+  std::string name;
+  enum class Kind : uint8_t { chain, fan, random } kind = Kind::chain;
+  Rational readers{2, 3}; // fan: this part of the passes reads the one source
+  uint32_t arity = 3;     // fan: reads of a pass of the reduction tree, 2 .. 3
+  uint32_t max_reads = 3, max_writes = 2, unread_percent = 80, window = 32, dead_percent = 0; // random
+};
+
+struct ShapeFile {
+  uint32_t view_width = 0, view_height = 0;
+  std::vector<DrawnResource> resources;
+  std::vector<Shape> shapes;
+};
+
+// nullopt with errors in `diagnostics`.
+std::optional<ShapeFile> read_shapes(const std::string& path, Diagnostics& diagnostics);
+
+// Kinds of the drawn graphs: images a b c are read, out and out2 written; one kind is culled when unread, the
+// other never.
+KindRegistry benchmark_kinds();
+
+// `passes` >= 2. The same graph for the same arguments on every machine.
+Graph draw_graph(const ShapeFile& file, const Shape& shape, uint32_t passes, uint64_t seed);
+
+} // namespace dermis::tools
