@@ -267,6 +267,9 @@ struct Synchronizer {
     const uint32_t reason = c.input->reasons ? static_cast<uint32_t>(c.out->reasons.size()) : no_value;
     c.because(Reason::About::barrier, barrier,
               [&] { return fmt::format("first use of '{}'", name(resource)); });
+    // Its own last use in the frame before counts wherever the others lie: a plan whose placements are moved
+    // apart stays in order.
+    c.arrivals.push_back({begin, begin, place.heap, barrier, resource, reason});
     auto first = std::lower_bound(segments.begin(), segments.end(), begin,
                                   [](const Segment& one, uint64_t at) { return one.end <= at; });
     auto last = first;
@@ -308,11 +311,14 @@ struct Synchronizer {
 
   void settle_arrivals() {
     for (const Arrival& arrival : c.arrivals) {
+      if (arrival.begin == arrival.end)
+        inherit(arrival.resource, arrival.resource, arrival.barrier, arrival.reason, true);
       const std::vector<Segment>& segments = c.memory[arrival.heap];
       auto at = std::lower_bound(segments.begin(), segments.end(), arrival.begin,
                                  [](const Segment& one, uint64_t begin) { return one.end <= begin; });
       for (; at != segments.end() && at->begin < arrival.end; ++at)
-        inherit(at->resource, arrival.resource, arrival.barrier, arrival.reason, true);
+        if (at->resource != arrival.resource)
+          inherit(at->resource, arrival.resource, arrival.barrier, arrival.reason, true);
     }
   }
 
