@@ -56,7 +56,12 @@ struct ShippedPlans : ::testing::Test {
         if (graph->resources[r].optional) optional.push_back(r);
       for (uint32_t unbound = 0; unbound < 1u << optional.size(); ++unbound) {
         SCOPED_TRACE(unbound);
-        CompileInput input{&*graph, &kinds, &device, 640, 360, {}, {}, {}};
+        CompileInput input;
+        input.graph = &*graph;
+        input.kinds = &kinds;
+        input.device = &device;
+        input.view_width = 640;
+        input.view_height = 360;
         input.bound.assign(graph->resources.size(), true);
         for (size_t i = 0; i < optional.size(); ++i)
           input.bound[optional[i]] = (unbound >> i & 1u) == 0;
