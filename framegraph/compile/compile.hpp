@@ -17,8 +17,8 @@ enum class PassOrder : uint8_t {
 };
 
 enum class PackingLevel : uint8_t {
-  fast,    // one placement by time, and one by size for graphs of a few hundred instances
-  tight,   // several orders and a short search: some 10 us a pass
+  fast,    // one placement, largest first
+  tight,   // several orders and a short search: below 20 us a pass
   optimize // search until the lower bound is met or about a second of work is done
 };
 

@@ -9,8 +9,6 @@
 namespace dermis {
 namespace {
 
-// Up to so many items level fast also tries the order of time.
-constexpr size_t few_items = 0;
 // Comparisons of two items the searches may make; one takes about a nanosecond.
 constexpr uint64_t tight_steps_per_item = 6'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
@@ -315,8 +313,9 @@ void Packer::pack(std::span<const PackItem> items, PackingLevel level, Packing& 
   out.size = unlimited;
   try_order(by_size_, Fit::tightest, out);
   if (out.size == out.lower_bound) return;
-  if (items.size() <= few_items || level != PackingLevel::fast) place_by_time(out);
-  if (out.size == out.lower_bound || level == PackingLevel::fast) return;
+  if (level == PackingLevel::fast) return;
+  place_by_time(out);
+  if (out.size == out.lower_bound) return;
   const uint64_t budget =
       level == PackingLevel::optimize ? optimize_steps : tight_steps_per_item * items.size();
   if (level == PackingLevel::tight && items.size() * items.size() > budget) return;

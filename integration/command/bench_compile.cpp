@@ -233,7 +233,8 @@ struct Bench {
     std::vector<std::string> files;
     std::error_code error;
     for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-      if (at->path().extension() == ".json") files.push_back(at->path().string());
+      if (at->path().extension() == ".json" && !at->path().string().ends_with(".expect.json"))
+        files.push_back(at->path().string());
     std::sort(files.begin(), files.end());
     std::vector<LoadedGraph> loaded;
     for (const std::string& file : files) {
