@@ -204,7 +204,8 @@ TEST_F(GraphLife, AFailedReloadLeavesTheRunningGraphBitIdentical) {
       const std::string broken = with("\"subsurface.burley\"", "\"subsurface.nothing\"");
       const dermis_source source = source_of(broken, "broken.json");
       EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_ERROR_CONFIG);
-      const dermis_source half = source_of(burley.substr(0, burley.size() / 2), "half.json");
+      const std::string cut = burley.substr(0, burley.size() / 2);
+      const dermis_source half = source_of(cut, "half.json");
       EXPECT_EQ(dermis_graph_reload(graph, &half, nullptr), DERMIS_ERROR_CONFIG);
       EXPECT_EQ(dermis_graph_resize(graph, 0, 0, nullptr), DERMIS_ERROR_ARGUMENT);
       EXPECT_EQ(dermis_graph_set_setting(graph, "samples", "1e9", nullptr), DERMIS_ERROR_CONFIG);
