@@ -6,18 +6,7 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre"};
 constexpr std::string_view result_options[] = {"color", "light"};
-
-constexpr KindSetting texturing{.name = "texturing",
-                                .type = SettingType::enumeration,
-                                .default_value = option_value(0),
-                                .minimum = 0,
-                                .maximum = 0,
-                                .options = texturing_options,
-                                .unit = "",
-                                .doc = "where albedo is applied: after scattering (keeps texture detail), "
-                                       "its square root on both sides, or before"};
 
 constexpr Port setup_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
@@ -39,7 +28,7 @@ constexpr Port setup_ports[] = {
      "change of depth from pixel to pixel over the pixel's size, x and y",
      {}},
 };
-constexpr KindSetting setup_settings[] = {texturing};
+constexpr KindSetting setup_settings[] = {setting::texturing};
 
 constexpr Port combine_ports[] = {
     {"scattered", Usage::sampled_image, false, "texture2D", "scattered light", {}},
@@ -55,7 +44,7 @@ constexpr Port combine_ports[] = {
      {}},
 };
 constexpr KindSetting combine_settings[] = {
-    texturing,
+    setting::texturing,
     {.name = "result",
      .type = SettingType::enumeration,
      .default_value = option_value(0),
@@ -81,7 +70,7 @@ constexpr Port light_ports[] = {
      "scattered light before albedo; the input light where nothing scatters, in full precision",
      {}},
 };
-constexpr KindSetting light_settings[] = {texturing};
+constexpr KindSetting light_settings[] = {setting::texturing};
 
 } // namespace
 

@@ -8,7 +8,6 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre"};
 constexpr std::string_view variant_options[] = {"base", "smooth"};
 
 constexpr std::string_view light_doc = "rgb light, a = area of the surface over its cross-section, capped";
@@ -52,17 +51,7 @@ constexpr Port setup_ports[] = {
     {"light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
-constexpr KindSetting setup_settings[] = {
-    {.name = "texturing",
-     .type = SettingType::enumeration,
-     .default_value = option_value(0),
-     .minimum = 0,
-     .maximum = 0,
-     .options = texturing_options,
-     .unit = "",
-     .doc = "where albedo is applied: after scattering (keeps texture detail), its square root on both "
-            "sides, or before"},
-};
+constexpr KindSetting setup_settings[] = {setting::texturing};
 
 constexpr Port down_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of the finer level", {}},

@@ -6,9 +6,9 @@
 
 namespace dermis::subsurface {
 
-extern const PassKind classify_kind, tile_list_kind;        // tile_signatures.cpp
-extern const PassKind setup_kind, combine_kind, light_kind; // light_signatures.cpp
-extern const PassKind burley_kind, separable_kind;          // scatter_signatures.cpp
+extern const PassKind classify_kind, tile_list_kind;                               // tile_signatures.cpp
+extern const PassKind setup_kind, combine_kind, light_kind;                        // light_signatures.cpp
+extern const PassKind burley_kind, separable_kind;                                 // scatter_signatures.cpp
 extern const PassKind sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind; // sap_signatures.cpp
 
 // Ports that several kinds declare with the same meaning.
@@ -50,5 +50,20 @@ constexpr SettingValue integer_value(int64_t value) {
 constexpr SettingValue option_value(int64_t index) {
   return {SettingType::enumeration, index, 0.0};
 }
+
+// Settings that several kinds declare with the same meaning.
+namespace setting {
+inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre"};
+inline constexpr KindSetting texturing{
+    .name = "texturing",
+    .type = SettingType::enumeration,
+    .default_value = option_value(0),
+    .minimum = 0,
+    .maximum = 0,
+    .options = texturing_options,
+    .unit = "",
+    .doc = "where albedo is applied: after scattering (keeps texture detail), "
+           "its square root on both sides, or before"};
+} // namespace setting
 
 } // namespace dermis::subsurface
