@@ -124,6 +124,16 @@ bool read_numbers(const Document& document, NodeId node, std::string_view what, 
   return true;
 }
 
+NodeId find_misspelt(const Document& document, NodeId object, std::string_view key) {
+  constexpr size_t most_looked_at = 256; // a hostile object may have hundreds of thousands of keys
+  const std::string_view wanted[] = {key};
+  size_t looked_at = 0;
+  for (NodeId child = document[object].first_child; child.valid() && looked_at < most_looked_at;
+       child = document[child].next, ++looked_at)
+    if (!nearest(document.key(child), wanted).empty()) return child;
+  return {};
+}
+
 std::vector<NodeId> children(const Document& document, NodeId node) {
   std::vector<NodeId> out;
   out.reserve(document[node].child_count);
@@ -137,8 +147,12 @@ bool check_version(const Document& document, std::string_view key, int64_t suppo
   if (!expect_kind(document, document.root(), "the file", NodeKind::object, diagnostics)) return false;
   const NodeId node = document.find(document.root(), key);
   if (!node.valid()) {
-    diagnostics.add(DiagnosticId::missing_key, document.where(document.root()),
-                    fmt::format("the file needs its format version, \"{}\": {}", key, supported));
+    const NodeId misspelt = find_misspelt(document, document.root(), key);
+    diagnostics
+        .add(misspelt.valid() ? DiagnosticId::unknown_key : DiagnosticId::missing_key,
+             misspelt.valid() ? document.where_key(misspelt) : document.where(document.root()),
+             fmt::format("the file needs its format version, \"{}\": {}", key, supported))
+        .suggestion = misspelt.valid() ? fmt::format("did you mean '{}'?", key) : std::string();
     return false;
   }
   if (!expect_kind(document, node, fmt::format("'{}', the format version,", key), NodeKind::integer,
@@ -174,6 +188,7 @@ NodeId ObjectReader::find(std::string_view key, Need need) {
   const NodeId child = document_.find(node_, key);
   if (!child.valid() && need == Need::required) {
     ok_ = false;
+    if (!diagnostics_.full()) missing_.push_back({key, diagnostics_.list.size()});
     diagnostics_.add(DiagnosticId::missing_key, document_.where(node_),
                      fmt::format("{} needs the key '{}'", what_, key));
   }
@@ -271,10 +286,20 @@ bool ObjectReader::finish() {
     if (std::find(asked_.begin(), asked_.end(), key) != asked_.end()) continue;
     ok_ = false;
     if (diagnostics_.full()) break; // a hostile object may have hundreds of thousands of unknown keys
-    diagnostics_
-        .add(DiagnosticId::unknown_key, document_.where_key(child),
-             fmt::format("{} has no key '{}'", what_, shown(key)))
-        .suggestion = did_you_mean(key, asked_);
+    const std::string_view meant = nearest(key, asked_);
+    const auto missing =
+        std::find_if(missing_.begin(), missing_.end(), [&](const Missing& one) { return one.key == meant; });
+    Diagnostic fresh{DiagnosticId::unknown_key,
+                     document_.where_key(child),
+                     fmt::format("{} has no key '{}'", what_, shown(key)),
+                     did_you_mean(key, asked_),
+                     {}};
+    if (missing != missing_.end()) { // one root cause: the key is there, misspelt
+      diagnostics_.list[missing->diagnostic] = std::move(fresh);
+      missing_.erase(missing);
+    } else {
+      diagnostics_.add(fresh.id, fresh.where, fresh.text).suggestion = fresh.suggestion;
+    }
   }
   return ok_;
 }

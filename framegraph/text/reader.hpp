@@ -47,7 +47,8 @@ public:
   NodeId array(std::string_view key, size_t least, size_t greatest, Need need = Need::required);
   NodeId any(std::string_view key, Need need = Need::required);
 
-  // Reports keys that nobody asked for. True when this object had no error at all, here or before.
+  // Reports keys that nobody asked for; one that is a misspelt required key takes the place of the message
+  // that the key is missing. True when this object had no error at all, here or before.
   bool finish();
 
   bool ok() const { return ok_; }
@@ -63,7 +64,12 @@ private:
   Diagnostics& diagnostics_;
   NodeId node_;
   std::string what_;
+  struct Missing {
+    std::string_view key;
+    size_t diagnostic; // index into Diagnostics::list
+  };
   std::vector<std::string_view> asked_;
+  std::vector<Missing> missing_;
   bool ok_ = true;
 };
 
@@ -83,6 +89,9 @@ bool expect_kind(const Document&, NodeId, std::string_view what, NodeKind kind, 
 
 // Is it [A-Za-z_][A-Za-z0-9_]* of at most limits::name_bytes? Else an error at `where`.
 bool check_name(std::string_view name, std::string_view what, const SourceLocation& where, Diagnostics&);
+
+// The first member of `object` whose key is a slip of the pen away from `key`; invalid when there is none.
+NodeId find_misspelt(const Document&, NodeId object, std::string_view key);
 
 // Children in the order of the text.
 std::vector<NodeId> children(const Document&, NodeId);

@@ -113,16 +113,13 @@ void read_profiles(const Document& document, ObjectReader& reader, const fs::pat
     std::optional<subsurface::Profile> profile;
     if (file.valid()) {
       ObjectReader object(document, node, what, diagnostics);
-      object.has("id");
+      object.any("id");
       if (object.string("file") && object.finish())
         profile = read_profile_file(document, file, folder, profile_folder, diagnostics);
     } else {
       profile = subsurface::read_inline_profile(document, node, what, diagnostics);
     }
-    if (!id_node.valid()) {
-      diagnostics.add(DiagnosticId::missing_key, document.where(node), fmt::format("{} needs an 'id'", what));
-      continue;
-    }
+    if (!id_node.valid()) continue;
     const auto id = read_integer(document, id_node, fmt::format("'id' of {}", what), 1, 255, diagnostics);
     if (!id) continue;
     NodeId& first = taken[static_cast<size_t>(*id)];

@@ -42,7 +42,7 @@ std::optional<Profile> read_inline_profile(const Document& document, NodeId obje
                                            Diagnostics& diagnostics) {
   Profile profile;
   ObjectReader reader(document, object, std::move(what), diagnostics);
-  reader.has("id");
+  reader.any("id");
   read_numbers_into(reader, profile);
   if (!reader.finish()) return std::nullopt;
   profile.name = "inline";

@@ -48,6 +48,28 @@ TEST(Reader, AnUnknownKeyIsRefusedAtTheKeyWithASuggestion) {
               {"thing", "'colur'", "did you mean 'colour'?"});
 }
 
+TEST(Reader, AMisspeltRequiredKeyIsOneDiagnostic) {
+  Parsed parsed = parse("{ \"cuont\": 1 }");
+  ObjectReader object(*parsed.document, parsed.document->root(), "thing", parsed.diagnostics);
+  EXPECT_FALSE(object.integer("count", 0, 1));
+  EXPECT_FALSE(object.finish());
+  expect_only(parsed.diagnostics, DiagnosticId::unknown_key, 1, 3,
+              {"thing", "'cuont'", "did you mean 'count'?"});
+}
+
+TEST(Reader, OneMisspeltKeyStandsForOneMissingKeyOnly) {
+  Parsed parsed = parse("{ \"cuont\": 1, \"coutn\": 2, \"shade\": 3 }");
+  ObjectReader object(*parsed.document, parsed.document->root(), "thing", parsed.diagnostics);
+  object.integer("count", 0, 1);
+  object.string("name");
+  EXPECT_FALSE(object.finish());
+  ASSERT_EQ(parsed.diagnostics.list.size(), 4u) << all_messages(parsed.diagnostics);
+  EXPECT_EQ(parsed.diagnostics.list[0].suggestion, "did you mean 'count'?");
+  EXPECT_EQ(parsed.diagnostics.list[1].id, DiagnosticId::missing_key); // 'name'
+  EXPECT_EQ(parsed.diagnostics.list[2].suggestion, "did you mean 'count'?");
+  EXPECT_EQ(parsed.diagnostics.list[3].suggestion, ""); // 'shade'
+}
+
 TEST(Reader, AMissingKeyIsNamedAtTheObject) {
   Parsed parsed = parse("\n { }");
   ObjectReader object(*parsed.document, parsed.document->root(), "thing", parsed.diagnostics);
@@ -139,6 +161,10 @@ TEST(Reader, TheVersionKeyIsRequiredAndChecked) {
   Parsed absent = parse("{ }");
   EXPECT_FALSE(check_version(*absent.document, "v", 1, absent.diagnostics));
   expect_only(absent.diagnostics, DiagnosticId::missing_key, 1, 1, {"\"v\": 1"});
+  Parsed misspelt = parse("{ \"vresion\": 1 }");
+  EXPECT_FALSE(check_version(*misspelt.document, "version", 1, misspelt.diagnostics));
+  expect_only(misspelt.diagnostics, DiagnosticId::unknown_key, 1, 3,
+              {"\"version\": 1", "did you mean 'version'?"});
   Parsed newer = parse("{ \"v\": 2 }");
   EXPECT_FALSE(check_version(*newer.document, "v", 1, newer.diagnostics));
   expect_only(newer.diagnostics, DiagnosticId::unsupported_version, 1, 8, {"version 1"});

@@ -179,9 +179,25 @@ private:
     for (size_t i = 1; i < static_cast<size_t>(Format::count); ++i) {
       if (works_with(port, static_cast<Format>(i))) accepted.push_back(static_cast<Format>(i));
     }
-    declared_here(reader_.error(DiagnosticId::format_mismatch, binding.where,
-                                fmt::format("{} works with {}; '{}' declares {}", what, format_list(accepted),
-                                            resource.name, format_list(resource.formats))));
+    report_formats(binding, fmt::format("{} works with {}", what, format_list(accepted)));
+  }
+
+  // One message a resource, however many ports its formats do not fit.
+  void report_formats(const PortBinding& binding, const std::string& port) {
+    const ResourceDeclaration& resource = reader_.graph.resources[binding.resource.value];
+    const auto known = reader_.format_mismatches.find(binding.resource);
+    if (known != reader_.format_mismatches.end()) {
+      constexpr size_t most_related = 8;
+      auto& related = reader_.diagnostics.list[known->second].related;
+      if (related.size() <= most_related) related.emplace_back(binding.where, port);
+      return;
+    }
+    if (!reader_.diagnostics.full())
+      reader_.format_mismatches.emplace(binding.resource, reader_.diagnostics.list.size());
+    reader_
+        .error(DiagnosticId::format_mismatch, binding.where,
+               fmt::format("{}; '{}' declares {}", port, resource.name, format_list(resource.formats)))
+        .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
   }
 
   GraphReader& reader_;

@@ -30,6 +30,9 @@ struct GraphReader {
   // Some names could not be read at all: one that is not found may be among them, and is no error.
   bool unknown_settings = false, unknown_resources = false;
   bool unknown_writes = false; // some pass writes something that could not be read
+  // The message that a resource's formats do not fit a port: further ports are added to it. Indices into
+  // Diagnostics::list.
+  std::map<ResourceId, size_t> format_mismatches;
   // Where each resource and pass is read from, by id.
   std::vector<NodeId> resource_nodes, pass_nodes;
 

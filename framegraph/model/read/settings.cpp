@@ -115,6 +115,22 @@ void read_options(GraphReader& reader, ObjectReader& object, std::string_view ke
   if (ok) ok = read_default(reader, object, key, out);
 }
 
+// No key gives the type; one of those that are there may be meant to.
+void report_untyped(GraphReader& reader, const ObjectReader& object) {
+  constexpr std::string_view other_keys[] = {"min", "max", "default", "by", "unit", "note"};
+  const std::string text =
+      fmt::format("{} needs its type and value: one of the keys {}", object.what(), list_words(type_keys));
+  for (const NodeId child : children(reader.document, object.node())) {
+    const std::string_view key = reader.document.key(child);
+    const bool known = std::find(std::begin(other_keys), std::end(other_keys), key) != std::end(other_keys);
+    const std::string suggestion = known ? std::string() : did_you_mean(key, type_keys);
+    if (suggestion.empty()) continue;
+    reader.error(DiagnosticId::unknown_key, reader.document.where_key(child), text).suggestion = suggestion;
+    return;
+  }
+  reader.error(DiagnosticId::missing_key, reader.document.where(object.node()), text);
+}
+
 bool read_setting(GraphReader& reader, NodeId node, SettingDeclaration& out) {
   ObjectReader object(reader.document, node, fmt::format("setting '{}'", out.name), reader.diagnostics);
   if (!object.ok()) return false;
@@ -125,9 +141,7 @@ bool read_setting(GraphReader& reader, NodeId node, SettingDeclaration& out) {
     break;
   }
   if (found == std::size(type_keys)) {
-    reader.error(
-        DiagnosticId::missing_key, reader.document.where(node),
-        fmt::format("{} needs its type and value: one of the keys {}", object.what(), list_words(type_keys)));
+    report_untyped(reader, object);
     return false;
   }
   bool ok = true;
