@@ -71,5 +71,7 @@ std::string format_for_people(const Diagnostics& all, const Diagnostic& one, boo
 // The whole list as a JSON array of {id, name, severity, file, line, column, pointer, text, suggestion, hint,
 // related}.
 std::string format_as_json(const Diagnostics& all);
+// The whole list as a SARIF 2.1.0 log of one run. Columns count code points there, paths are URIs.
+std::string format_as_sarif(const Diagnostics& all, std::string_view tool_version);
 
 } // namespace dermis

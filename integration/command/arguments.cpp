@@ -84,9 +84,26 @@ void add_verb(CLI::App& app, Invocation& invocation, const char* name, const cha
 
 void add_text_verbs(CLI::App& app, Invocation& invocation) {
   add_verb<ValidateOptions>(
-      app, invocation, "validate", "Check graph, profile and scene files",
-      "dermis validate configs/graphs/burley.json", validate, [](CLI::App& verb, ValidateOptions& options) {
-        verb.add_option("files", options.files, "Files to check")->required()->type_name("FILE");
+      app, invocation, "validate", "Check graphs, profiles, scenes, expectations and captures",
+      "dermis validate configs/graphs/burley.json\n  dermis validate capture/ --sarif results.sarif",
+      validate, [](CLI::App& verb, ValidateOptions& options) {
+        verb.add_option("files", options.files,
+                        "Files to check; a folder stands for the captured frames in it")
+            ->required()
+            ->type_name("FILE");
+        verb.add_option("--profiles", options.profiles,
+                        "Folder of profiles that captures name [configs/profiles]")
+            ->type_name("DIR");
+        verb.add_option("--sarif", options.sarif,
+                        "File for the messages as SARIF 2.1.0, - for standard output")
+            ->type_name("FILE");
+      });
+  add_verb<UpgradeOptions>(
+      app, invocation, "upgrade", "Bring files to the newest version of their format",
+      "dermis upgrade configs/graphs/burley.json\n  dermis upgrade --check configs/graphs/*.json", upgrade,
+      [](CLI::App& verb, UpgradeOptions& options) {
+        verb.add_option("files", options.files, "Files to upgrade in place")->required()->type_name("FILE");
+        verb.add_flag("--check", options.check, "Write nothing; fail if a file is not of the newest version");
       });
   add_verb<ExplainOptions>(
       app, invocation, "explain", "Show the plan of a graph with the reason for each decision",

@@ -28,10 +28,14 @@ void copy(const subsurface::Matrix4& from, float* to) {
 
 } // namespace
 
+std::filesystem::path profiles_folder(const std::string& option) {
+  return option.empty() ? shipped_profiles : option;
+}
+
 std::optional<CapturedSequence> check_sequence(const Session& session, const std::string& folder,
                                                const std::string& profiles) {
   CapturedSequence sequence;
-  sequence.profiles = profiles.empty() ? shipped_profiles : profiles;
+  sequence.profiles = profiles_folder(profiles);
   Diagnostics diagnostics;
   sequence.folders = find_frames(folder, diagnostics);
   for (const std::filesystem::path& one : sequence.folders) {

@@ -21,6 +21,9 @@ struct CapturedSequence {
   uint64_t sanitised_values = 0;              // not finite or negative; taken as 0
 };
 
+// Folder of the profiles that frames name: what --profiles says, else configs/profiles.
+std::filesystem::path profiles_folder(const std::string& option);
+
 // Reads every frame once, so that all problems are said before work begins. `profiles` "": configs/profiles.
 // nullopt when it has been said what is wrong.
 std::optional<CapturedSequence> check_sequence(const Session& session, const std::string& folder,

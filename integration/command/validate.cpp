@@ -1,25 +1,25 @@
 // dermis validate: reads files as strictly as everything else does, compiles graphs with the generic device
-// and lets the verifier check their plans.
+// and lets the verifier check their plans; reads the pictures of captures.
 
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/verify/verify.hpp"
+#include "integration/command/captured.hpp"
 #include "integration/command/expect/expectation.hpp"
+#include "integration/command/file_kind.hpp"
 #include "integration/command/graph_input.hpp"
+#include "integration/command/output.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
+#include "integration/files/capture_pictures.hpp"
 #include "passes/subsurface/profile.hpp"
 
+#include <dermis/dermis.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace dermis::tools {
 namespace {
-
-struct FileKind {
-  std::string_view version_key, name;
-  bool (*check)(const Document& document, Diagnostics& diagnostics);
-};
 
 bool check_graph(const Document& document, Diagnostics& diagnostics) {
   const std::optional<LoadedGraph> loaded = load_graph(document, diagnostics);
@@ -47,21 +47,14 @@ bool check_expectations(const Document& document, Diagnostics& diagnostics) {
   return read_expectations(document, diagnostics).has_value();
 }
 
-constexpr FileKind file_kinds[] = {
-    {"dermis", "graph", check_graph},
-    {"dermis_profile", "profile", check_profile},
-    {"dermis_scene", "scene", check_scene},
-    {"dermis_expect", "expectations", check_expectations},
-};
-
-// Told apart by the version key that each format has at its root; a file with none is read as a graph, whose
-// reader says what is missing.
-const FileKind& kind_of(const Document& document) {
-  for (const FileKind& kind : file_kinds)
-    if (document[document.root()].kind == NodeKind::object &&
-        document.find(document.root(), kind.version_key).valid())
-      return kind;
-  return file_kinds[0];
+bool check_capture(const Document& document, const std::string& path, const std::string& profiles,
+                   Diagnostics& diagnostics) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const uint32_t errors = diagnostics.count(Severity::error);
+  std::optional<CapturedFrame> frame =
+      read_description(document, folder, profiles_folder(profiles), diagnostics);
+  if (frame) read_pictures(folder, document, *frame, diagnostics);
+  return diagnostics.count(Severity::error) == errors;
 }
 
 struct CheckedFile {
@@ -70,25 +63,65 @@ struct CheckedFile {
   bool good = false;
 };
 
-CheckedFile check_file(const std::string& path, Diagnostics& diagnostics) {
+CheckedFile check_file(const std::string& path, const ValidateOptions& options, Diagnostics& diagnostics) {
   const std::optional<Document> document = read_input(path, diagnostics);
   if (!document) return {path};
-  const FileKind& kind = kind_of(*document);
-  return {path, kind.name, kind.check(*document, diagnostics)};
+  const FileKindId kind = file_kind_of(*document);
+  CheckedFile checked{path, file_kinds()[static_cast<size_t>(kind)].name};
+  switch (kind) {
+  case FileKindId::graph:
+    checked.good = check_graph(*document, diagnostics);
+    break;
+  case FileKindId::profile:
+    checked.good = check_profile(*document, diagnostics);
+    break;
+  case FileKindId::scene:
+    checked.good = check_scene(*document, diagnostics);
+    break;
+  case FileKindId::expectations:
+    checked.good = check_expectations(*document, diagnostics);
+    break;
+  case FileKindId::capture:
+    checked.good = check_capture(*document, path, options.profiles, diagnostics);
+    break;
+  }
+  return checked;
+}
+
+// A folder stands for the frames of the capture in it.
+std::vector<CheckedFile> check_path(const std::string& path, const ValidateOptions& options,
+                                    Diagnostics& diagnostics) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) return {check_file(path, options, diagnostics)};
+  std::vector<CheckedFile> checked;
+  for (const std::filesystem::path& frame : find_frames(path, diagnostics))
+    checked.push_back(check_file((frame / "frame.json").string(), options, diagnostics));
+  if (checked.empty()) checked.push_back({path});
+  return checked;
 }
 
 } // namespace
 
 ExitCode validate(const Session& session, const ValidateOptions& options) {
+  if (session.json && options.sarif == "-")
+    return fail(session, ExitCode::usage, "--json and --sarif - both want standard output; name a file");
   Diagnostics diagnostics;
   std::vector<CheckedFile> files;
   for (const std::string& path : options.files)
-    files.push_back(check_file(path, diagnostics));
+    for (CheckedFile& one : check_path(path, options, diagnostics))
+      files.push_back(std::move(one));
+  if (!options.sarif.empty()) {
+    const std::string version =
+        fmt::format("{}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH);
+    const std::string problem = deliver_text(options.sarif, format_as_sarif(diagnostics, version));
+    if (!problem.empty()) return fail(session, ExitCode::environment, problem, &diagnostics);
+  }
   const bool all_good =
       std::all_of(files.begin(), files.end(), [](const CheckedFile& one) { return one.good; });
   print_diagnostics(session, diagnostics);
   for (const CheckedFile& one : files)
-    if (one.good) say(session, fmt::format("{}: {}, no problems\n", one.path, one.kind));
+    if (one.good && options.sarif != "-")
+      say(session, fmt::format("{}: {}, no problems\n", one.path, one.kind));
   if (session.json) {
     JsonWriter answer;
     answer.open_object().member("ok", all_good).key("files").open_array();

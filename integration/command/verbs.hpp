@@ -18,9 +18,17 @@ struct Size {
 using NamedValue = std::pair<std::string, std::string>;
 
 struct ValidateOptions {
-  std::vector<std::string> files; // graphs, profiles, expectations; told apart by their version key
+  std::vector<std::string> files; // of any kind, told apart by their version key; or folders of captures
+  std::string profiles;           // folder of the profiles that captures name
+  std::string sarif;              // file for the messages as SARIF, - for standard output; "": none
 };
 ExitCode validate(const Session& session, const ValidateOptions& options);
+
+struct UpgradeOptions {
+  std::vector<std::string> files;
+  bool check = false; // write nothing, fail where something would be written
+};
+ExitCode upgrade(const Session& session, const UpgradeOptions& options);
 
 struct ExplainOptions {
   std::string graph; // or the code of a diagnostic: "D0103"

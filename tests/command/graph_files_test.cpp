@@ -1,5 +1,6 @@
 // validate, explain and graph: good files answer well; each wrong one says where, what and what to do.
 
+#include "tests/command/capture_builder.hpp"
 #include "tests/command/command_fixture.hpp"
 
 #include <fmt/format.h>
@@ -142,6 +143,67 @@ TEST_F(GraphFiles, AnOutputThatCannotBeWrittenIsAnEnvironmentErrorAndLeavesNothi
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("no/such/folder.dot"));
   EXPECT_THAT(files(), IsEmpty());
+}
+
+TEST_F(GraphFiles, MessagesGoIntoASarifFile) {
+  const std::string bad = write("bad.json", burley_with("\"imports\"", "\"import\""));
+  const Outcome outcome = run({"validate", bad, "--sarif", path("out.sarif")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("D0103"));
+  const Outcome log = run({"validate", bad, "--sarif", "-"});
+  EXPECT_EQ(log.exit_code, 1);
+  ASSERT_TRUE(is_json(log.out)) << log.out;
+  std::ifstream stream(path("out.sarif"));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  EXPECT_EQ(text.str(), log.out);
+  EXPECT_THAT(log.out, AllOf(HasSubstr("\"ruleId\": \"D0103\""), HasSubstr("\"version\": \"2.1.0\"")));
+  const Outcome good = run({"validate", burley, "--sarif", "-"});
+  EXPECT_EQ(good.exit_code, 0);
+  EXPECT_TRUE(is_json(good.out)) << good.out;
+  EXPECT_EQ(run({"validate", burley, "--sarif", "-", "--json"}).exit_code, 2);
+  EXPECT_EQ(run({"validate", burley, "--sarif", path("no/such.sarif")}).exit_code, 3);
+}
+
+TEST_F(GraphFiles, ACaptureIsCheckedWithItsPicturesAsAFileOrAsAFolder) {
+  write_plane(path("capture"));
+  for (const std::string& one : {path("capture"), path("capture/frame.json")}) {
+    const Outcome outcome = run({"validate", one});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("frame.json: capture, no problems"));
+  }
+  Plane named;
+  named.profiles = R"([{ "id": 1, "file": "skin" }])";
+  write_plane(path("named"), named);
+  EXPECT_EQ(run({"validate", path("named")}).exit_code, 0);
+  const Outcome elsewhere = run({"validate", path("named"), "--profiles", path("capture")});
+  EXPECT_EQ(elsewhere.exit_code, 1);
+  EXPECT_THAT(elsewhere.err, HasSubstr("profile 'skin' is not there"));
+  write("capture/lighting.exr", "no picture");
+  const Outcome broken = run({"validate", path("capture")});
+  EXPECT_EQ(broken.exit_code, 1);
+  EXPECT_THAT(broken.err, HasSubstr("lighting.exr"));
+  const Outcome empty = run({"validate", "docs"});
+  EXPECT_EQ(empty.exit_code, 1);
+  EXPECT_THAT(empty.err, HasSubstr("holds no frame"));
+}
+
+TEST_F(GraphFiles, UpgradeHasNothingToDoForTheNewestVersionAndRefusesUnknownOnes) {
+  const std::string text = burley_with("\"burley\"", "\"mine\"");
+  const std::string mine = write("mine.json", text);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"upgrade", mine}, {"upgrade", "--check", mine}}) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("graph, version 1 is the newest: nothing to"));
+  }
+  EXPECT_THAT(files(), testing::ElementsAre("mine.json"));
+  const std::string newer = write("newer.json", "{ \"dermis_scene\": 7 }");
+  const Outcome refused = run({"upgrade", "--check", newer, mine, "--json"});
+  EXPECT_EQ(refused.exit_code, 1);
+  ASSERT_TRUE(is_json(refused.out));
+  EXPECT_THAT(refused.out, AllOf(HasSubstr("\"kind\": \"scene\", \"version\": null"), HasSubstr("D0110"),
+                                 HasSubstr("\"kind\": \"graph\", \"version\": 1, \"changed\": false")));
 }
 
 } // namespace

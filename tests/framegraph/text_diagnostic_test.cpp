@@ -99,5 +99,31 @@ TEST(Diagnostic, EveryIdHasANameAHintAndItsNumberInItsCode) {
   }
 }
 
+TEST(Diagnostics, SarifHasTheRuleThePlaceInCodePointsAndWhatIsRelated) {
+  testing::Parsed parsed = testing::parse("{\n  \"\xc3\xa9\": 1, \"\xc3\xa9\": 2 }");
+  ASSERT_EQ(parsed.diagnostics.list.size(), 1u);
+  parsed.diagnostics.files[0].name = "folder with space/\xc3\xa9#1.json";
+  const std::string log = format_as_sarif(parsed.diagnostics, "1.2.3");
+  const testing::Parsed read_back = testing::parse(log);
+  ASSERT_TRUE(read_back.document) << log;
+  for (const char* part :
+       {"\"version\": \"2.1.0\"", "\"columnKind\": \"unicodeCodePoints\"", "\"ruleId\": \"D0102\"",
+        "\"ruleIndex\": 0", "\"level\": \"error\"", "{ \"startLine\": 2, \"startColumn\": 11 }",
+        "{ \"startLine\": 2, \"startColumn\": 3 }", "folder%20with%20space/%C3%A9%231.json",
+        "\"text\": \"first given here\""})
+    EXPECT_NE(log.find(part), std::string::npos) << part << "\n" << log;
+}
+
+TEST(Diagnostics, SarifListsEachRuleOnceAndIsWholeWithoutMessages) {
+  Diagnostics none;
+  EXPECT_TRUE(testing::parse(format_as_sarif(none, "0")).document);
+  Diagnostics two;
+  two.add(DiagnosticId::file_unreadable, {}, "a");
+  two.add(DiagnosticId::file_unreadable, {}, "b\xff\x01");
+  const std::string log = format_as_sarif(two, "0");
+  EXPECT_TRUE(testing::parse(log).document) << log;
+  EXPECT_EQ(log.find("\"name\": \"file_unreadable\""), log.rfind("\"name\": \"file_unreadable\""));
+}
+
 } // namespace
 } // namespace dermis
