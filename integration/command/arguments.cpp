@@ -235,6 +235,19 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
       },
       true);
+  add_verb<BenchRecordOptions>(
+      bench, invocation, "record", "Time and allocations of recording graphs, on a device that only counts",
+      "dermis bench record --json build/bench_record.json", bench_record,
+      [](CLI::App& verb, BenchRecordOptions& options) {
+        verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")
+            ->type_name("DIR");
+        verb.add_option("--profile", options.profile, "Profile of id 1 [configs/profiles/skin.json]")
+            ->type_name("FILE");
+        add_size(verb, options.size);
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+      },
+      true);
 }
 
 std::string_view name_part(std::string_view argument) {

@@ -96,4 +96,11 @@ struct BenchCompileOptions {
 };
 ExitCode bench_compile(const Session& session, const BenchCompileOptions& options);
 
+struct BenchRecordOptions {
+  std::string graphs = "configs/graphs", profile = "configs/profiles/skin.json";
+  std::string json; // file to write; "": none
+  Size size{1280, 720};
+};
+ExitCode bench_record(const Session& session, const BenchRecordOptions& options);
+
 } // namespace dermis::tools
