@@ -248,6 +248,32 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
       },
       true);
+  add_verb<BenchErrorTimeOptions>(
+      bench, invocation, "error-time", "Run time against error of every technique at every still scene",
+      "dermis bench error-time --size 640x360 --json build/error_time.json --html build/error_time.html",
+      bench_error_time,
+      [](CLI::App& verb, BenchErrorTimeOptions& options) {
+        add_size(verb, options.size);
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with plots and pictures")->type_name("FILE");
+        verb.add_option("--head", options.head, "Folder of the head scan (LeePerrySmith.glb and its maps)")
+            ->type_name("DIR");
+        verb.add_flag("--study", options.study, "Also the framings that study one head");
+        verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--techniques", options.techniques, "Only these techniques, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--file", options.file, "What is measured [tests/benchmark/error_time.json]")
+            ->type_name("FILE");
+        verb.add_option("--cache", options.cache, "Folder that keeps references [build/bench_truth]")
+            ->type_name("DIR");
+      },
+      true);
 }
 
 std::string_view name_part(std::string_view argument) {
@@ -324,6 +350,9 @@ Invocation read_arguments(int argc, const char* const* argv) {
   add_schema_verb(app, invocation);
   add_picture_verbs(app, invocation);
   add_bench_verbs(app, invocation);
+
+  for (int i = 0; i < argc; ++i)
+    invocation.session.command += (i == 0 ? "" : " ") + std::string(argv[i]);
 
   // Also a line that cannot be read is answered in the way it asks for.
   invocation.session.json = std::count(argv, argv + argc, std::string_view("--json")) > 0;

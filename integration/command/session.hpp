@@ -14,6 +14,7 @@ struct Session {
   bool json = false;  // one JSON document on stdout instead of text
   bool quiet = false; // errors only
   ColorMode color = ColorMode::automatic;
+  std::string command; // line that the program was called with, for reports
 };
 
 // Says what went wrong and what to do, for people on stderr or for programs on stdout; returns `code`.

@@ -103,4 +103,16 @@ struct BenchRecordOptions {
 };
 ExitCode bench_record(const Session& session, const BenchRecordOptions& options);
 
+struct BenchErrorTimeOptions {
+  std::string file = "tests/benchmark/error_time.json"; // what is measured
+  Size size{640, 360};
+  std::string json, csv, html;             // files to write; "": none
+  std::string head;                        // folder of the head scan; "": its scenes are left out
+  bool study = false;                      // also the scenes that are for the study of one head
+  std::vector<std::string> scenes;         // only these; empty: all
+  std::vector<std::string> techniques;     // likewise
+  std::string cache = "build/bench_truth"; // folder for references; "": none is kept
+};
+ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& options);
+
 } // namespace dermis::tools

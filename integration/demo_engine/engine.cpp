@@ -58,6 +58,16 @@ void put_in_place(Scene& scene) {
   bust->albedo = glm::dvec3(1.0); // the map has it
 }
 
+void move_camera(Scene& scene, const CameraPlace& place) {
+  const auto point = [](const std::array<double, 3>& p) {
+    return Curve<glm::dvec3>(glm::dvec3(p[0], p[1], p[2]));
+  };
+  scene.camera.orthographic = false;
+  scene.camera.position = point(place.position);
+  scene.camera.target = point(place.target);
+  scene.camera.vertical_fov = Curve<double>(place.vertical_fov);
+}
+
 std::array<float, 16> rows_of(const glm::dmat4& m) {
   std::array<float, 16> rows{};
   for (int r = 0; r < 4; ++r)
@@ -169,6 +179,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   if (auto done = check(options); !done) return done.error();
   auto scene = load(options.scene);
   if (!scene) return scene.error();
+  if (options.camera) move_camera(*scene, *options.camera);
   Model model;
   if (!options.model.mesh.empty()) {
     auto loaded = load_model(options.model);

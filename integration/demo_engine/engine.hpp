@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,12 @@ struct ModelOptions {
   double height_metres = 0.0;           // scales the model to this height; 0 = as in the file (metres)
 };
 
+// A perspective camera that takes the place of the scene's and stays where it is.
+struct CameraPlace {
+  std::array<double, 3> position{}, target{}; // metres
+  double vertical_fov = 25.0;                 // degrees, 1..150
+};
+
 struct RenderOptions {
   std::string scene; // scene file
   std::string graph; // graph file; "" = without Dermis: light times albedo, as an engine has it before
@@ -30,6 +37,7 @@ struct RenderOptions {
   bool jitter = false;         // sub-pixel camera jitter (Halton 2, 3; period 8)
   bool validation = false;     // run under the Khronos validation layer
   std::string device;          // part of the device's name; "" = choose
+  std::optional<CameraPlace> camera;
   std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text
 };
 

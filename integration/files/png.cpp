@@ -41,26 +41,29 @@ std::vector<uint8_t> encode_srgb8(const Image& linear) {
   return bytes;
 }
 
-bool write_png(const std::filesystem::path& path, uint32_t width, uint32_t height,
-               std::span<const uint8_t> rgb, std::string& error) {
-  if (width == 0 || height == 0 || width > max_image_side || height > max_image_side ||
-      rgb.size() != size_t{width} * height * 3) {
-    error = fmt::format("'{}' cannot be written: {} bytes for {} x {} pixels", path.string(), rgb.size(),
-                        width, height);
-    return false;
-  }
+std::vector<uint8_t> encode_png(uint32_t width, uint32_t height, std::span<const uint8_t> rgb) {
   std::vector<uint8_t> file;
+  if (width == 0 || height == 0 || width > max_image_side || height > max_image_side ||
+      rgb.size() != size_t{width} * height * 3)
+    return file;
   const auto append = [](void* target, void* data, int size) {
     const auto* first = static_cast<const uint8_t*>(data);
     static_cast<std::vector<uint8_t>*>(target)->insert(static_cast<std::vector<uint8_t>*>(target)->end(),
                                                        first, first + size);
   };
   if (!stbi_write_png_to_func(append, &file, static_cast<int>(width), static_cast<int>(height), 3, rgb.data(),
-                              static_cast<int>(width * 3))) {
-    error = fmt::format("'{}' cannot be encoded", path.string());
-    return false;
-  }
-  return write_bytes(path, file, error);
+                              static_cast<int>(width * 3)))
+    file.clear();
+  return file;
+}
+
+bool write_png(const std::filesystem::path& path, uint32_t width, uint32_t height,
+               std::span<const uint8_t> rgb, std::string& error) {
+  const std::vector<uint8_t> file = encode_png(width, height, rgb);
+  if (!file.empty()) return write_bytes(path, file, error);
+  error = fmt::format("'{}' cannot be encoded: {} bytes for {} x {} pixels", path.string(), rgb.size(), width,
+                      height);
+  return false;
 }
 
 std::optional<Image> read_png(const std::filesystem::path& path, std::string& error) {

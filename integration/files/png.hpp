@@ -19,6 +19,9 @@ float srgb_decode(float encoded);
 // 8-bit sRGB of a linear picture with 3 channels, rounded to nearest.
 std::vector<uint8_t> encode_srgb8(const Image& linear);
 
+// width * height * 3 bytes as a PNG file; empty if a size does not fit.
+std::vector<uint8_t> encode_png(uint32_t width, uint32_t height, std::span<const uint8_t> rgb);
+
 // Writes width * height * 3 bytes as PNG. Atomic; see bytes.hpp for failures.
 bool write_png(const std::filesystem::path& path, uint32_t width, uint32_t height,
                std::span<const uint8_t> rgb, std::string& error);

@@ -1,0 +1,36 @@
+#pragma once
+// What `dermis bench error-time` measures, as data: tests/benchmark/error_time.json. Adding a technique, a
+// setting or a framing is a line there.
+
+#include "integration/command/bench/subject.hpp"
+#include "integration/command/verbs.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+struct TechniqueRequest {
+  std::string technique, setting; // names in the report
+  std::string graph;              // file
+  std::vector<NamedValue> set;    // of the graph's settings
+  bool heat_map = false;          // show where it errs
+};
+
+struct ErrorTimeFile {
+  uint32_t repetitions = 15, warm_up = 2; // of each technique at each scene
+  uint32_t subset = 4096; // pixels of a scene that have a truth, where it is not known everywhere
+  std::string skin;       // profile of the generated scenes
+  std::string baseline_technique, baseline_setting; // what ratios are to
+  std::vector<SceneRequest> scenes;
+  std::vector<TechniqueRequest> techniques;
+  std::string self_setting;             // that sets the number of samples, where a graph has it
+  uint32_t self_samples = 4096;         // of the reference of psnr_db_self
+  std::vector<std::string> self_scenes; // "scene/framing" where that is measured; it takes long
+};
+
+// nullopt with located errors.
+std::optional<ErrorTimeFile> read_error_time(const std::string& path, Diagnostics& diagnostics);
+
+} // namespace dermis::tools

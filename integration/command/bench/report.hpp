@@ -1,0 +1,82 @@
+#pragma once
+// What a bench found, and how it is written: JSON and CSV for programs, one self-contained HTML page for
+// people. Every bench fills the same structs.
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace dermis::tools {
+
+// monostate: not measured; null in JSON, empty in CSV, a dash in HTML.
+using ReportValue = std::variant<std::monostate, bool, int64_t, double, std::string>;
+
+struct ReportColumn {
+  std::string key;   // in JSON and CSV
+  std::string title; // in HTML, with the unit; "": not shown there
+  int digits = 3;    // significant, of numbers in HTML
+};
+
+struct ReportTable {
+  std::vector<ReportColumn> columns;
+  std::vector<std::vector<ReportValue>> rows; // each as long as `columns`
+
+  ReportValue& at(size_t row, std::string_view key); // the column must exist
+};
+
+struct PlotPoint {
+  double x = 0, y = 0; // > 0
+  std::string label;   // shown when pointed at
+  bool on_front = false;
+};
+struct PlotSeries {
+  std::string name; // the same name has the same colour in all plots
+  std::vector<PlotPoint> points;
+};
+// Both axes logarithmic. Points on the front are filled and joined by a line.
+struct Plot {
+  std::string title, x_title, y_title;
+  std::vector<PlotSeries> series;
+};
+
+struct ReportPicture {
+  std::string caption;
+  uint32_t width = 0, height = 0;
+  std::vector<uint8_t> rgb;
+};
+struct ReportPictures {
+  std::string title, explanation;
+  std::vector<ReportPicture> pictures;
+};
+
+struct Report {
+  std::string bench; // "error-time"
+  std::string title, summary;
+  std::vector<std::pair<std::string, std::string>> facts; // machine, command, repetitions
+  std::vector<std::string> notes;                         // what was left out and why
+  ReportTable table;
+  std::vector<Plot> plots;
+  std::vector<ReportPictures> pictures;
+};
+
+// Facts that every bench states: command, processor, threads, and where given the device.
+std::vector<std::pair<std::string, std::string>> machine_facts(const std::string& command,
+                                                               const std::string& device);
+
+std::string report_as_json(const Report& report);
+std::string report_as_csv(const Report& report);
+// Nothing is loaded from elsewhere; follows the reader's light or dark scheme. Works without scripts; with
+// them tables sort by a click on a title.
+std::string report_as_html(const Report& report);
+
+// Writes what is asked for: "" leaves one out, "-" is standard output. Returns what went wrong, "" for
+// nothing.
+std::string deliver_report(const Report& report, const std::string& json, const std::string& csv,
+                           const std::string& html);
+
+// SVG of a plot; `colors` holds the names of all series of the page in order.
+std::string plot_as_svg(const Plot& plot, const std::vector<std::string>& names);
+
+} // namespace dermis::tools

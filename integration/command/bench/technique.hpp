@@ -1,0 +1,67 @@
+#pragma once
+// One technique at one setting, ready to run on still frames.
+
+#include "integration/command/apply_slots.hpp"
+#include "integration/command/bench/plan_file.hpp"
+#include "integration/command/device_graph.hpp"
+#include "integration/command/graph_input.hpp"
+#include "passes/subsurface/truth/truth.hpp"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+struct TechniqueTimes { // milliseconds of one run
+  double device = 0;    // all passes but those that only hand light to tools
+  double sampling = 0;  // the scattering passes alone: without tiles, setup and combination
+};
+
+struct TechniqueCounts { // of one frame
+  uint32_t dispatches = 0;
+  uint64_t transient_bytes = 0;
+  double mean_spp = 0;                   // stochastic samples a subsurface pixel
+  std::optional<double> reads_per_pixel; // nullopt: a pass whose reads nobody has counted
+  std::string unknown_kind;              // then: its kind
+};
+
+// Keeps its graph on the device from frame to frame as long as size and slots fit. One thread.
+class TechniqueRun {
+public:
+  // Errors: input (a graph that cannot be read or compiled, a setting that is not there).
+  static demo::Result<std::unique_ptr<TechniqueRun>> create(demo::VulkanHost& host,
+                                                            const TechniqueRequest& request,
+                                                            std::span<const CaptureProfile> profiles,
+                                                            std::span<const float> sap_tables);
+
+  // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel.
+  demo::Result<std::vector<float>> scatter(const CapturedFrame& frame);
+  // Runs the last frame again, on whatever light is there.
+  demo::Result<TechniqueTimes> run_again();
+  // Of the last frame. `sampled_share`: of its subsurface pixels, those whose light is scattered at all;
+  // `d_px`: its median d per channel.
+  TechniqueCounts counts(double sampled_share, const subsurface::PerChannel& d_px);
+
+  const TechniqueRequest& request() const { return request_; }
+
+private:
+  TechniqueRun(demo::VulkanHost& host, TechniqueRequest request)
+      : host_(host), request_(std::move(request)) {}
+  demo::Result<> prepare(const CapturedFrame& frame, const SlotChoice& slots);
+
+  demo::VulkanHost& host_;
+  TechniqueRequest request_;
+  LoadedGraph loaded_;
+  std::string text_;
+  std::vector<DeviceGraphRequest::Profile> profiles_;
+  std::span<const float> sap_tables_;
+  DeviceGraphRequest made_for_;
+  CompiledPlan plan_;
+  std::unique_ptr<DeviceGraph> device_;
+  dermis_frame frame_ = DERMIS_FRAME_INIT;
+};
+
+} // namespace dermis::tools

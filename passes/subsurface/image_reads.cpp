@@ -1,0 +1,136 @@
+#include "passes/subsurface/image_reads.hpp"
+
+#include "passes/subsurface/sap_weights.hpp"
+#include "passes/subsurface/separable_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::subsurface {
+
+namespace {
+
+int64_t setting(const PassKind& kind, const ReadsQuestion& question, std::string_view name) {
+  const int index = find_setting(kind, name);
+  return index < 0 ? 0 : question.settings[static_cast<size_t>(index)].integer;
+}
+
+// 1 where an optional port is bound.
+double one_if(const PassKind& kind, const ReadsQuestion& question, std::string_view port, PortSide side) {
+  const int index = find_port(kind, port, side);
+  return index >= 0 && question.bound[static_cast<size_t>(index)] ? 1 : 0;
+}
+
+double scale_read(const PassKind& kind, const ReadsQuestion& question) {
+  return one_if(kind, question, "scatter_scale", PortSide::read);
+}
+
+// patch.glsl, build_patch: material and depth of four neighbours.
+constexpr double patch_reads = 4 * 2;
+
+// The largest of a row of the pyramid's table over the channels.
+double largest_share(const ReadsQuestion& question, int64_t variant, uint32_t row) {
+  constexpr size_t table = size_t{sap_table_rows} * sap_node_count;
+  if (question.sap_tables.size() < 2 * table) return 1;
+  const auto values = question.sap_tables.subspan(static_cast<size_t>(variant) * table, table);
+  double largest = 0;
+  for (const double d : question.d_px)
+    largest = std::max(largest, sap_lookup<double>(values, row, d));
+  return largest;
+}
+
+ImageReads classify(const PassKind& kind, const ReadsQuestion& question) {
+  return {2 + scale_read(kind, question)};
+}
+
+ImageReads none(const PassKind&, const ReadsQuestion&) {
+  return {};
+}
+
+// subsurface_setup.comp and subsurface_sap_setup.comp: material, light, depth, the patch.
+ImageReads setup(const PassKind& kind, const ReadsQuestion& question) {
+  const bool textured = setting(kind, question, "texturing") != 0;
+  return {3 + patch_reads + scale_read(kind, question) +
+          (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+}
+
+// Material, light, depth; a sample reads material, depth, light and slope.
+ImageReads burley(const PassKind& kind, const ReadsQuestion& question) {
+  const auto samples = static_cast<double>(setting(kind, question, "samples"));
+  return {3 + scale_read(kind, question) + 4 * samples, samples};
+}
+
+// Material, light, depth and, on the second axis, the first one's result; at each offset two sides, each
+// interpolated between two texels, of which one has no share at a whole offset; a texel's material, depth and
+// light. Offsets are those of the node below d and, but for the share that lies on it, of the node above.
+ImageReads separable(const PassKind& kind, const ReadsQuestion& question) {
+  const uint32_t taps = separable_taps[static_cast<size_t>(setting(kind, question, "taps"))];
+  const double sides = double(taps - 1) / 2;
+  return {3 + scale_read(kind, question) + one_if(kind, question, "blurred", PortSide::read) +
+          sides * 2 * 2 * 3};
+}
+
+// Sixteen children: surface and light.
+ImageReads sap_down(const PassKind&, const ReadsQuestion&) {
+  return {16 * 2};
+}
+
+constexpr double tent_reads = 9 * 2;    // surface and light
+constexpr double coarser_reads = 4 * 3; // surface, light and mass
+
+ImageReads sap_up(const PassKind& kind, const ReadsQuestion& question) {
+  constexpr double least_share = 0.004; // subsurface_sap_up.comp
+  const int64_t variant = setting(kind, question, "variant");
+  const bool last = one_if(kind, question, "coarse_scattered", PortSide::read) == 0;
+  const auto row = static_cast<uint32_t>(setting(kind, question, "level") + 1);
+  const bool tent = variant == int64_t(SapVariant::smooth) &&
+                    (last || largest_share(question, variant, row) >= least_share);
+  return {2 + (tent ? tent_reads : 0) + (last ? 0 : coarser_reads)};
+}
+
+ImageReads sap_gather(const PassKind& kind, const ReadsQuestion& question) {
+  constexpr double least_share = 0.002; // subsurface_sap_gather.comp
+  const bool tent = largest_share(question, setting(kind, question, "variant"), 1) >= least_share;
+  return {2 + (tent ? tent_reads : 0) + coarser_reads};
+}
+
+// Material, scattered light, albedo.
+ImageReads combine(const PassKind& kind, const ReadsQuestion& question) {
+  return {2 + one_if(kind, question, "albedo", PortSide::read)};
+}
+
+// Lighting, material, depth, scattered light.
+ImageReads light(const PassKind& kind, const ReadsQuestion& question) {
+  const bool textured = setting(kind, question, "texturing") != 0;
+  return {4 + scale_read(kind, question) + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+}
+
+struct Entry {
+  std::string_view kind;
+  ImageReads (*reads)(const PassKind&, const ReadsQuestion&);
+};
+constexpr Entry entries[] = {
+    {"subsurface.classify", classify},     {"subsurface.tile_list", none},
+    {"subsurface.setup", setup},           {"subsurface.burley", burley},
+    {"subsurface.separable", separable},   {"subsurface.sap_setup", setup},
+    {"subsurface.sap_down", sap_down},     {"subsurface.sap_up", sap_up},
+    {"subsurface.sap_gather", sap_gather}, {"subsurface.combine", combine},
+    {"subsurface.light", light},
+};
+
+} // namespace
+
+std::optional<ImageReads> image_reads(const PassKind& kind, const ReadsQuestion& question) {
+  for (const Entry& entry : entries)
+    if (entry.kind == kind.name) return entry.reads(kind, question);
+  return std::nullopt;
+}
+
+std::vector<std::string_view> kinds_with_known_reads() {
+  std::vector<std::string_view> names;
+  for (const Entry& entry : entries)
+    names.push_back(entry.kind);
+  return names;
+}
+
+} // namespace dermis::subsurface
