@@ -46,6 +46,7 @@ std::string setting_text(const SettingDeclaration& setting, const SettingValue& 
 void choose(CompileContext& c) {
   c.settings.clear();
   c.on.clear();
+  c.kind_of.clear();
   for (uint32_t i = 0; i < c.graph->settings.size(); ++i) {
     const SettingDeclaration& declared = c.graph->settings[i];
     const bool given = !c.input->settings.empty();
@@ -55,18 +56,19 @@ void choose(CompileContext& c) {
           DiagnosticId::setting_value, declared.where,
           fmt::format("setting '{}' cannot be {}", declared.name, setting_text(declared, value)));
     c.settings.push_back(value);
-    c.because(Reason::About::choice, i, [&] {
-      return fmt::format("{} = {}: {}", declared.name, setting_text(declared, value),
-                         given ? "asked for by the caller" : "its default");
-    });
+    c.because(Reason::About::choice, i, given ? Reason::Why::asked_for : Reason::Why::by_default);
   }
   c.out->plan.setting_values = c.settings;
+  constexpr size_t ahead = 8;
   for (uint32_t i = 0; i < c.graph->passes.size(); ++i) {
+    if (i + ahead < c.graph->passes.size()) {
+      fetch(&c.graph->passes[i + ahead].when);
+      fetch(&c.graph->passes[i + ahead].after);
+    }
     const ExpressionId when = c.graph->passes[i].when;
+    c.kind_of.push_back(c.graph->passes[i].kind);
     c.on.push_back(!when.valid() || evaluate(*c.graph, when, c.settings));
-    if (!c.on.back())
-      c.because(Reason::About::pass, i,
-                [] { return std::string("off: its 'when' is false with these settings"); });
+    if (!c.on.back()) c.because(Reason::About::pass, i, Reason::Why::off);
   }
 }
 

@@ -42,6 +42,7 @@ void clear(CompiledPlan& out) {
   plan.barriers.clear();
   plan.settings.clear();
   plan.histories.clear();
+  plan.history_layouts.clear();
   plan.first_final_barrier = plan.final_barrier_count = 0;
   plan.transient_bytes = plan.history_bytes = 0;
   out.reasons.clear();

@@ -60,4 +60,7 @@ private:
   std::unique_ptr<struct CompileContext> context_;
 };
 
+// "'hybrid'", "8": the value as a graph file would write it.
+std::string setting_text(const SettingDeclaration& setting, const SettingValue& value);
+
 } // namespace dermis

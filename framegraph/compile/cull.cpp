@@ -12,15 +12,15 @@ namespace {
 struct Culler {
   CompileContext& c;
 
-  template <class Why> void need(PassId pass, Why&& why) {
+  void need(PassId pass, Reason::Why why, uint32_t a = 0, uint32_t b = 0) {
     if (c.live[pass.value]) return;
     c.live[pass.value] = 1;
     c.pending.push_back(pass);
-    c.because(Reason::About::pass, pass.value, [&] { return "runs: " + why(); });
+    c.because(Reason::About::pass, pass.value, why, a, b);
   }
 
-  template <class Why> void need_value(uint32_t value, Why&& why) {
-    if (value != no_value && c.values[value].producer.valid()) need(c.values[value].producer, why);
+  void need_value(uint32_t value, Reason::Why why, uint32_t a, uint32_t b = 0) {
+    if (value != no_value && c.values[value].producer.valid()) need(c.values[value].producer, why, a, b);
   }
 
   void follow(PassId pass) {
@@ -30,15 +30,13 @@ struct Culler {
         examine(use);
         continue;
       }
-      const auto why = [&](const char* verb) {
-        return [this, pass, verb, &use] {
-          return fmt::format("'{}' {} its '{}'", c.name(pass), verb, c.name(use.resource));
-        };
-      };
-      if (use.frames_back > 0) need_value(c.final_value[use.asked.value], why("reads in later frames"));
-      need_value(use.read_value, why("reads"));
+      const uint32_t resource = use.resource.value;
+      if (use.frames_back > 0)
+        need_value(c.final_value[use.asked.value], Reason::Why::read_later_by, pass.value, resource);
+      need_value(use.read_value, Reason::Why::read_by, pass.value, resource);
       // What is written in place may keep texels of the version before.
-      if (use.write_value != no_value) need_value(c.values[use.write_value].previous, why("writes over"));
+      if (use.write_value != no_value)
+        need_value(c.values[use.write_value].previous, Reason::Why::written_over_by, pass.value, resource);
     }
   }
 
@@ -48,7 +46,7 @@ struct Culler {
     for (const Use& use : c.uses)
       if (use.trouble != Use::Trouble::none) lacks[use.pass.value] = 1;
     for (uint32_t i = 0; i < c.live.size(); ++i)
-      if (c.on[i] && !lacks[i]) need(PassId{i}, [] { return std::string("culling is switched off"); });
+      if (c.on[i] && !lacks[i]) need(PassId{i}, Reason::Why::culling_off);
     for (bool again = true; again;) { // a pass needs all its producers to have what they need
       again = false;
       for (const Use& use : c.uses) {
@@ -67,10 +65,7 @@ struct Culler {
     const bool missing = use.trouble == Use::Trouble::unbound || use.trouble == Use::Trouble::unwritten ||
                          use.trouble == Use::Trouble::history_unwritten;
     if (missing && port.optional) {
-      c.because(Reason::About::pass, use.pass.value, [&] {
-        return fmt::format("optional port '{}' stays unbound: nothing provides '{}'", port.name,
-                           c.name(use.asked));
-      });
+      c.because(Reason::About::pass, use.pass.value, Reason::Why::port_unbound, use.port, use.asked.value);
       return;
     }
     if (c.reported[use.asked.value]) return;
@@ -120,13 +115,6 @@ struct Culler {
   }
 };
 
-std::string names_of_outputs(const CompileContext& c, PassId pass) {
-  std::string names;
-  for (const PortBinding& binding : c.graph->passes[pass.value].writes)
-    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", c.name(binding.resource));
-  return names;
-}
-
 } // namespace
 
 void cull(CompileContext& c) {
@@ -136,16 +124,13 @@ void cull(CompileContext& c) {
   c.reported.assign(c.graph->resources.size(), 0);
   Culler culler{c};
   for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {
-    const ResourceDeclaration& declared = c.graph->resources[i];
-    if (!declared.exported || !c.bound[i]) continue;
+    if (!c.facts[i].exported || !c.bound[i]) continue;
     if (c.final_value[i] != no_value) {
-      culler.need_value(c.final_value[i],
-                        [&] { return fmt::format("it writes the export '{}'", declared.name); });
-    } else if (declared.optional) {
-      c.because(Reason::About::resource, i, [] {
-        return std::string("left as the host bound it: no pass that is on writes this optional export");
-      });
+      culler.need_value(c.final_value[i], Reason::Why::writes_export, i);
+    } else if (c.facts[i].optional) {
+      c.because(Reason::About::resource, i, Reason::Why::unwritten_export);
     } else {
+      const ResourceDeclaration& declared = c.graph->resources[i];
       auto& diagnostic =
           c.diagnostics->add(DiagnosticId::export_unwritten, declared.where,
                              fmt::format("no pass that is on writes the export '{}'", declared.name));
@@ -153,19 +138,12 @@ void cull(CompileContext& c) {
     }
   }
   for (uint32_t i = 0; i < passes; ++i)
-    if (c.on[i] && c.kind(PassId{i}).side_effects)
-      culler.need(PassId{i}, [] { return std::string("its kind has side effects"); });
+    if (c.on[i] && c.kind(PassId{i}).side_effects) culler.need(PassId{i}, Reason::Why::side_effects);
   for (size_t at = 0; at < c.pending.size(); ++at)
     culler.follow(c.pending[at]);
   if (!c.input->cull) culler.keep_runnable();
-  for (uint32_t i = 0; i < passes; ++i) {
-    if (!c.on[i] || c.live[i]) continue;
-    c.because(Reason::About::pass, i, [&] {
-      const std::string outputs = names_of_outputs(c, PassId{i});
-      return outputs.empty() ? std::string("culled: it writes nothing")
-                             : fmt::format("culled: nothing that is bound needs {}", outputs);
-    });
-  }
+  for (uint32_t i = 0; i < passes; ++i)
+    if (c.on[i] && !c.live[i]) c.because(Reason::About::pass, i, Reason::Why::not_needed);
 }
 
 } // namespace dermis

@@ -68,12 +68,10 @@ void note(CompileContext& c, uint32_t u, const PassKind& kind) {
 }
 
 void explain_history(CompileContext& c, uint32_t resource, const Lifetime& life) {
-  c.because(Reason::About::resource, resource, [&]() -> std::string {
-    if (!life.used) return "no memory: no pass that runs uses it";
-    if (life.deepest_read == 0) return "kept like a transient: no pass that runs reads its earlier frames";
-    return fmt::format("{} instances: earlier frames are read down to @-{}", life.deepest_read + 1,
-                       life.deepest_read);
-  });
+  const Reason::Why why = !life.used               ? Reason::Why::history_unused
+                          : life.deepest_read == 0 ? Reason::Why::history_unread
+                                                   : Reason::Why::history_read;
+  c.because(Reason::About::resource, resource, why, life.deepest_read);
 }
 
 } // namespace
@@ -89,7 +87,7 @@ void gather_usage(CompileContext& c) {
       note(c, u, kind);
   }
   for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {
-    if (c.graph->resources[i].history.frames == 0) continue;
+    if (!c.facts[i].history) continue;
     Lifetime& life = c.lifetimes[i];
     if (life.deepest_read > 0)
       life.vk_usage |= usage_info(Usage::clear).vk_usage; // instances start from zero
@@ -100,22 +98,14 @@ void gather_usage(CompileContext& c) {
 void lifetimes(CompileContext& c) {
   std::vector<PlanPass>& passes = c.out->plan.passes;
   c.kind_fits.assign(c.kinds->size(), 0);
-  for (Lifetime& life : c.lifetimes)
-    life.first = no_value;
   for (uint32_t position = 0; position < c.order.size(); ++position) {
     const PassId pass = c.order[position];
     PlanPass& planned = passes.emplace_back();
     planned.declared = pass;
-    planned.kind = c.graph->passes[pass.value].kind;
+    planned.kind = c.kind_of[pass.value];
     add_settings(c, pass, planned);
     uint8_t& fits = c.kind_fits[planned.kind.value];
     if (fits != 1) fits = check_limits(c, pass) ? 1 : 2;
-    for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
-      if (c.uses[u].trouble != Use::Trouble::none) continue;
-      Lifetime& life = c.lifetimes[c.uses[u].resource.value];
-      if (life.first == no_value) life.first = position;
-      life.last = position;
-    }
   }
 }
 

@@ -72,43 +72,37 @@ struct Orderer {
       if (c.live[pass]) c.order.push_back(PassId{pass});
   }
 
-  uint64_t transient_bytes(ResourceId id) const {
-    const uint32_t resource = c.plan_resource[id.value];
-    if (resource == no_value || c.out->plan.resources[resource].instance_count > 1) return 0;
-    return c.needs[resource].size;
-  }
-
-  // The most bytes of transients alive at once if the passes run in `sequence`.
-  template <class Sequence> uint64_t most_alive(const Sequence& sequence) {
-    uint64_t alive = 0, most = 0;
-    c.seen.assign(c.graph->resources.size(), 0);
-    std::vector<uint32_t>& left = c.stack; // by resource: uses to come
-    left = c.uses_left;
+  // From where to where each resource is used if the passes run in `sequence`.
+  template <class Sequence> void find_intervals(const Sequence& sequence, std::vector<Interval>& intervals) {
+    intervals.assign(c.graph->resources.size(), {});
+    uint32_t position = 0;
     for (const auto& item : sequence) {
       const uint32_t pass = number(item);
       for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
-        const Use& use = c.uses[u];
-        if (use.trouble != Use::Trouble::none || c.seen[use.resource.value]) continue;
-        c.seen[use.resource.value] = 1;
-        alive += transient_bytes(use.resource);
+        if (c.uses[u].trouble != Use::Trouble::none) continue;
+        Interval& interval = intervals[c.uses[u].resource.value];
+        interval.first = std::min(interval.first, position);
+        interval.last = position;
       }
-      most = std::max(most, alive);
-      for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
-        const Use& use = c.uses[u];
-        if (use.trouble == Use::Trouble::none && --left[use.resource.value] == 0)
-          alive -= transient_bytes(use.resource);
-      }
+      ++position;
     }
-    return most;
   }
   static uint32_t number(PassId pass) { return pass.value; }
   static uint32_t number(uint32_t pass) { return pass; }
 
-  void count_uses() {
-    c.uses_left.assign(c.graph->resources.size(), 0);
-    for (const PassId pass : c.order)
-      for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u)
-        if (c.uses[u].trouble == Use::Trouble::none) ++c.uses_left[c.uses[u].resource.value];
+  // The most bytes of transients alive at once.
+  uint64_t most_alive(const std::vector<Interval>& intervals) {
+    c.changes.assign(c.order.size() + 1, 0);
+    for (uint32_t r = 0; r < intervals.size(); ++r) {
+      if (intervals[r].first == no_value) continue;
+      const auto bytes = static_cast<int64_t>(c.transient_bytes[r]);
+      c.changes[intervals[r].first] += bytes;
+      c.changes[intervals[r].last + 1] -= bytes;
+    }
+    int64_t alive = 0, most = 0;
+    for (const int64_t change : c.changes)
+      most = std::max(most, alive += change);
+    return static_cast<uint64_t>(most);
   }
 
   // As if the passes were a tree: how many bytes each needs while it and all before it run, and how many it
@@ -121,7 +115,7 @@ struct Orderer {
       for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
         const Use& use = c.uses[u];
         if (use.trouble != Use::Trouble::none || use.write_value == no_value) continue;
-        if (c.values[use.write_value].previous == no_value) output += transient_bytes(use.resource);
+        if (c.values[use.write_value].previous == no_value) output += c.transient_bytes[use.resource.value];
       }
       const auto gain = [&](uint32_t p) { return c.peak_bytes[p] - c.output_bytes[p]; };
       const uint32_t first = c.first_before[pass.value], end = c.first_before[pass.value + 1];
@@ -169,11 +163,11 @@ struct Orderer {
   }
 
   void save_memory() {
-    count_uses();
     estimate();
     depth_first();
-    const uint64_t in_file_order = most_alive(c.order);
-    if (most_alive(c.candidate) >= in_file_order) return;
+    find_intervals(c.candidate, c.other_intervals);
+    if (most_alive(c.other_intervals) >= most_alive(c.intervals)) return;
+    c.intervals.swap(c.other_intervals);
     c.order.clear();
     for (const uint32_t pass : c.candidate)
       c.order.push_back(PassId{pass});
@@ -222,8 +216,9 @@ void order(CompileContext& c) {
     sort_backward_graph(c);
     if (c.diagnostics->count(Severity::error) != errors) return;
   }
-  if (c.input->order == PassOrder::memory) orderer.save_memory();
   if (c.input->order == PassOrder::random) orderer.shuffle();
+  orderer.find_intervals(c.order, c.intervals);
+  if (c.input->order == PassOrder::memory) orderer.save_memory();
 }
 
 } // namespace dermis

@@ -2,21 +2,13 @@
 
 #include "framegraph/compile/phases.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <iterator>
-#include <numeric>
 
 namespace dermis {
 namespace {
 
 uint64_t align_up(uint64_t value, uint64_t alignment) {
   return (value + alignment - 1) / alignment * alignment;
-}
-
-bool meet(uint32_t first_a, uint32_t last_a, uint32_t first_b, uint32_t last_b) {
-  return first_a <= last_b && first_b <= last_a;
 }
 
 // Heaps hold instances that are all persistent or all not, and that some memory type suits.
@@ -39,7 +31,7 @@ void make_placements(CompileContext& c) {
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
     PlanResource& resource = plan.resources[r];
     if (c.host_owned(resource.declared)) continue;
-    const Lifetime& life = c.lifetimes[resource.declared.value];
+    const Interval& life = c.intervals[resource.declared.value];
     const MemoryNeeds& needs = c.needs[r];
     const bool persistent = resource.instance_count > 1;
     const uint32_t index = group_of(c, persistent, needs.memory_type_bits);
@@ -95,50 +87,6 @@ void place_group(CompileContext& c, uint32_t index) {
   plan.heaps.push_back(heap);
 }
 
-bool share_bytes(const Placement& a, const Placement& b) {
-  return a.heap == b.heap && a.offset < b.offset + b.size && b.offset < a.offset + a.size;
-}
-
-// In large plans only the nearest in time are named.
-constexpr uint32_t named_neighbours = 24;
-
-void explain_placements(CompileContext& c) {
-  const Plan& plan = c.out->plan;
-  const auto name = [&](const Placement& p) -> const std::string& {
-    return c.name(plan.resources[p.resource].declared);
-  };
-  std::vector<uint32_t> by_first(plan.placements.size());
-  std::iota(by_first.begin(), by_first.end(), 0u);
-  std::stable_sort(by_first.begin(), by_first.end(), [&](uint32_t a, uint32_t b) {
-    return plan.placements[a].first_use < plan.placements[b].first_use;
-  });
-  const auto count = static_cast<uint32_t>(by_first.size());
-  for (uint32_t at = 0; at < count; ++at) {
-    const uint32_t i = by_first[at];
-    const Placement& own = plan.placements[i];
-    c.because(Reason::About::placement, i, [&] {
-      if (own.persistent) return std::string("shares no memory: its contents outlive the frame");
-      std::string shared, apart;
-      const uint32_t from = at > named_neighbours ? at - named_neighbours : 0;
-      const uint32_t to = std::min(count, at + named_neighbours + 1);
-      for (uint32_t k = from; k < to; ++k) {
-        const Placement& other = plan.placements[by_first[k]];
-        if (k == at || other.heap != own.heap) continue;
-        if (share_bytes(own, other))
-          fmt::format_to(std::back_inserter(shared), "{}'{}'", shared.empty() ? "" : ", ", name(other));
-        else if (meet(own.first_use, own.last_use, other.first_use, other.last_use))
-          fmt::format_to(std::back_inserter(apart), "{}'{}' [{}, {}]", apart.empty() ? "" : ", ", name(other),
-                         other.first_use, other.last_use);
-      }
-      std::string text = fmt::format("alive in passes [{}, {}]", own.first_use, own.last_use);
-      if (!shared.empty()) text += "; shares memory with " + shared;
-      if (!apart.empty()) text += "; not with " + apart + ", which live at the same time";
-      if (from > 0 || to < count) text += "; further ones are not listed";
-      return text;
-    });
-  }
-}
-
 } // namespace
 
 void pack(CompileContext& c) {
@@ -146,7 +94,6 @@ void pack(CompileContext& c) {
   make_placements(c);
   for (uint32_t g = 0; g < c.groups.size(); ++g)
     place_group(c, g);
-  if (c.input->reasons) explain_placements(c);
 }
 
 } // namespace dermis

@@ -23,7 +23,7 @@ struct Packing {
 
 // Items whose intervals meet never share a byte. Every level stops where the lower bound is met. Equal items
 // keep their order and effort is counted in steps, so that the result is the same on every machine.
-//  fast      the tightest gap, largest first: O(n log n + n live)
+//  fast      the tightest gap, largest first, up to three times in other orders: O(n log n + n live)
 //  tight     besides, the order of time, several orders with first and tightest gap, and a short search among
 //  orders optimize  a longer search
 class Packer {
@@ -40,15 +40,19 @@ private:
     uint64_t begin = 0, end = 0;
     uint32_t first = 0, last = 0;
   };
+  struct Range {
+    uint64_t begin = 0, end = 0;
+  };
   enum class Fit : uint8_t { first, tightest };
 
   void find_bound(Packing& out);
   void place_by_time(Packing& out);
   uint64_t place_in_order(std::span<const uint32_t> order, Fit fit, uint64_t limit);
-  template <class Visit>
-  void for_each_alive(const PackItem& item, uint32_t first, uint32_t last, Visit visit);
+  uint64_t find_place(const PackItem& item, uint32_t first, uint32_t last, Fit fit);
+  size_t gather(const std::vector<Placed>& block, const PackItem& item, uint32_t from, Range* to);
   bool try_order(std::span<const uint32_t> order, Fit fit, Packing& out);
-  void sort_by_size();
+  void sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32_t>& sorted);
+  void try_again(Packing& out);
   void try_orders(Packing& out);
   void search(uint64_t steps, Packing& out);
 
@@ -57,7 +61,7 @@ private:
   std::vector<uint32_t> first_at_, last_at_, by_first_, by_last_;
   std::vector<Span> spans_;
   std::vector<std::vector<Placed>> blocks_; // by position / block_passes: what is alive there, by begin
-  std::vector<Placed> gathered_;
+  std::vector<Range> gathered_;
   std::vector<uint64_t> sizes_;
   std::vector<uint64_t> offsets_;
   std::vector<uint32_t> by_size_, order_, best_order_;

@@ -12,7 +12,7 @@ namespace {
 // Comparisons of two items the searches may make; one takes about a nanosecond.
 constexpr uint64_t tight_steps_per_item = 6'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
-constexpr uint32_t block_passes = 16; // positions that share one list of what is alive in them
+constexpr uint32_t block_passes = 32; // positions that share one list of what is alive in them
 constexpr uint64_t unlimited = UINT64_MAX;
 
 uint64_t align_up(uint64_t value, uint64_t alignment) {
@@ -111,83 +111,94 @@ void Packer::place_by_time(Packing& out) {
   out.offsets = offsets_;
 }
 
-// The next gap for `item` below what is placed: called for all that are alive with it, by rising begin.
+// The gap for one item among what is placed and alive with it, handed in by rising begin. Nothing here
+// branches on what it finds: which gap fits is as good as random.
 struct GapFinder {
+  static constexpr uint64_t no_gap =
+      UINT64_MAX / 2; // sizes stay far below: a gap too small wraps to beyond it
   uint64_t size, alignment;
-  bool first_only;
-  uint64_t best = unlimited, best_slack = unlimited, free_from = 0;
+  uint64_t keep; // 0: the first gap that fits; all bits: the tightest one
+  uint64_t best = 0, best_slack = no_gap, free_from = 0;
+  bool found = false;
 
-  // False: no better gap can come.
-  bool pass(uint64_t begin, uint64_t end) {
-    if (begin > free_from) {
-      const uint64_t start = align_up(free_from, alignment);
-      if (start + size <= begin && begin - start - size < best_slack) {
-        best = start;
-        best_slack = begin - start - size;
-        if (first_only || best_slack == 0) return false;
-      }
-    }
+  void pass(uint64_t begin, uint64_t end) {
+    const uint64_t start = align_up(free_from, alignment);
+    const uint64_t slack = begin - start - size;
+    const bool better = slack < best_slack;
+    best = better ? start : best;
+    best_slack = better ? slack & keep : best_slack;
+    found |= better;
     free_from = std::max(free_from, end);
-    return true;
   }
-  uint64_t place() const { return best != unlimited ? best : align_up(free_from, alignment); }
+  uint64_t place() const { return found ? best : align_up(free_from, alignment); }
 };
 
-// Calls visit for everything placed in blocks [first, last] that is alive with `item`, by rising begin, until
-// it returns false.
-template <class Visit>
-void Packer::for_each_alive(const PackItem& item, uint32_t first, uint32_t last, Visit visit) {
-  const auto alive = [&](const Placed& other) {
-    return other.first <= item.last && item.first <= other.last;
-  };
-  if (last - first < 2) { // nearly always: one block, or two to merge
-    const std::vector<Placed>& a = blocks_[first];
-    const std::vector<Placed>& b = blocks_[last];
-    size_t at_a = 0, at_b = first == last ? b.size() : 0;
-    steps_ += a.size() + b.size() - at_b;
-    while (at_a < a.size() || at_b < b.size()) {
-      const bool from_a = at_b == b.size() || (at_a < a.size() && a[at_a].begin <= b[at_b].begin);
-      const Placed& other = from_a ? a[at_a++] : b[at_b++];
-      if (alive(other) && !visit(other.begin, other.end)) return;
-    }
-    return;
+// Appends to `to` what is alive with `item` and began at `from` or later; `to` has room for all.
+size_t Packer::gather(const std::vector<Placed>& block, const PackItem& item, uint32_t from, Range* to) {
+  steps_ += block.size();
+  size_t count = 0;
+  for (const Placed& other : block) {
+    to[count] = {other.begin, other.end};
+    count += static_cast<size_t>(other.first <= item.last) & static_cast<size_t>(item.first <= other.last) &
+             static_cast<size_t>(other.first >= from);
   }
-  gathered_.clear();
-  for (uint32_t block = first; block <= last; ++block) {
-    steps_ += blocks_[block].size();
-    for (const Placed& other : blocks_[block])
-      if (alive(other) && std::max(other.first, item.first) / block_passes <= block &&
-          (block == first || other.first / block_passes == block)) // where it is met first
-        gathered_.push_back(other);
+  return count;
+}
+
+// Where `item` lies best among what is placed in its blocks.
+uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last, Fit fit) {
+  size_t room = 2; // and two that end the lists
+  for (uint32_t block = first; block <= last; ++block)
+    room += blocks_[block].size();
+  if (gathered_.size() < room) gathered_.resize(2 * room);
+  constexpr Range end_of_list = {unlimited, unlimited};
+  GapFinder gaps{item.size, item.alignment, fit == Fit::first ? 0 : ~uint64_t{0}};
+  Range* a = gathered_.data();
+  const size_t count_a = gather(blocks_[first], item, 0, a);
+  a[count_a] = end_of_list;
+  if (first == last) {
+    for (size_t i = 0; i < count_a; ++i)
+      gaps.pass(a[i].begin, a[i].end);
+    return gaps.place();
   }
-  std::sort(gathered_.begin(), gathered_.end(),
-            [](const Placed& a, const Placed& b) { return a.begin < b.begin; });
-  for (const Placed& other : gathered_)
-    if (!visit(other.begin, other.end)) return;
+  Range* b = a + count_a + 1; // each where it is met first
+  size_t count_b = 0;
+  for (uint32_t block = first + 1; block <= last; ++block)
+    count_b += gather(blocks_[block], item, block * block_passes, b + count_b);
+  if (last - first > 1)
+    std::sort(b, b + count_b, [](const Range& x, const Range& y) { return x.begin < y.begin; });
+  b[count_b] = end_of_list;
+  for (size_t left = count_a + count_b; left > 0; --left) {
+    const bool from_b = b->begin < a->begin;
+    const Range next = from_b ? *b : *a;
+    a += from_b ? 0 : 1;
+    b += from_b ? 1 : 0;
+    gaps.pass(next.begin, next.end);
+  }
+  return gaps.place();
 }
 
 // Places items one by one among all those placed before that are alive with them; fills offsets_. Returns the
 // size, or `limit` as soon as it is reached.
 uint64_t Packer::place_in_order(std::span<const uint32_t> order, Fit fit, uint64_t limit) {
-  for (std::vector<Placed>& block : blocks_)
-    block.clear();
+  const size_t blocks = change_.size() / block_passes + 1;
+  for (size_t b = 0; b < blocks; ++b)
+    blocks_[b].clear();
   uint64_t size = 0;
   for (const uint32_t i : order) {
     const PackItem& item = items_[i];
     const uint32_t first = item.first / block_passes, last = item.last / block_passes;
-    GapFinder gaps{item.size, item.alignment, fit == Fit::first};
-    for_each_alive(item, first, last, [&](uint64_t begin, uint64_t end) { return gaps.pass(begin, end); });
-    const uint64_t place = gaps.place();
+    const uint64_t place = find_place(item, first, last, fit);
     size = std::max(size, place + item.size);
     if (size >= limit) return limit;
     offsets_[i] = place;
     for (uint32_t b = first; b <= last; ++b) {
       std::vector<Placed>& block = blocks_[b];
-      size_t at = block.size();
-      while (at > 0 && block[at - 1].begin > place)
-        --at;
-      block.insert(block.begin() + static_cast<std::ptrdiff_t>(at),
-                   {place, place + item.size, item.first, item.last});
+      block.emplace_back();
+      size_t at = block.size() - 1;
+      for (; at > 0 && block[at - 1].begin > place; --at)
+        block[at] = block[at - 1];
+      block[at] = {place, place + item.size, item.first, item.last};
     }
   }
   return size;
@@ -202,27 +213,29 @@ bool Packer::try_order(std::span<const uint32_t> order, Fit fit, Packing& out) {
   return true;
 }
 
-// Largest first, then by first use. Graphs have few different sizes: those are counted instead of sorted.
-void Packer::sort_by_size() {
+// Largest first, equal ones as in `given`. Graphs have few different sizes: those are counted instead of
+// sorted.
+void Packer::sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32_t>& sorted) {
   constexpr size_t few_sizes = 32;
-  const auto count = static_cast<uint32_t>(items_.size());
-  counting_sort(count, static_cast<uint32_t>(change_.size()), first_at_, by_first_,
-                [&](uint32_t i) { return items_[i].first; });
   sizes_.clear();
-  for (uint32_t i = 0; i < count && sizes_.size() <= few_sizes; ++i)
+  for (size_t i = 0; i < given.size() && sizes_.size() <= few_sizes; ++i)
     if (std::find(sizes_.begin(), sizes_.end(), items_[i].size) == sizes_.end())
       sizes_.push_back(items_[i].size);
   if (sizes_.size() > few_sizes) {
-    by_size_ = by_first_;
-    std::stable_sort(by_size_.begin(), by_size_.end(),
+    sorted = given;
+    std::stable_sort(sorted.begin(), sorted.end(),
                      [&](uint32_t a, uint32_t b) { return items_[a].size > items_[b].size; });
     return;
   }
   std::sort(sizes_.begin(), sizes_.end(), std::greater<>());
-  by_size_.clear();
+  sorted.resize(given.size() + 1); // one more, to be written in vain
+  size_t filled = 0;
   for (const uint64_t size : sizes_)
-    for (const uint32_t i : by_first_)
-      if (items_[i].size == size) by_size_.push_back(i);
+    for (const uint32_t i : given) { // every one is written, those of the size stay
+      sorted[filled] = i;
+      filled += items_[i].size == size ? 1 : 0;
+    }
+  sorted.pop_back();
 }
 
 void Packer::try_orders(Packing& out) {
@@ -300,6 +313,27 @@ void Packer::search(uint64_t steps, Packing& out) {
   }
 }
 
+// Where the first placement left much to gain: what ends last goes first among equals; then the largest
+// product of size and time.
+void Packer::try_again(Packing& out) {
+  constexpr uint64_t much = 13; // a part in this many of the bound: less would not pay for the time
+  const auto worth_it = [&] { return out.size - out.lower_bound > out.lower_bound / much; };
+  if (!worth_it()) return;
+  const auto count = static_cast<uint32_t>(items_.size());
+  const auto positions = static_cast<uint32_t>(change_.size());
+  counting_sort(count, positions, last_at_, by_last_, [&](uint32_t i) { return items_[i].last; });
+  std::reverse(by_last_.begin(), by_last_.end());
+  sort_by_size(by_last_, order_);
+  try_order(order_, Fit::tightest, out);
+  if (!worth_it()) return;
+  const auto area = [&](uint32_t i) {
+    return items_[i].size * (uint64_t{items_[i].last} - items_[i].first + 1);
+  };
+  order_ = by_size_;
+  std::stable_sort(order_.begin(), order_.end(), [&](uint32_t a, uint32_t b) { return area(a) > area(b); });
+  try_order(order_, Fit::tightest, out);
+}
+
 void Packer::pack(std::span<const PackItem> items, PackingLevel level, Packing& out) {
   items_ = items;
   steps_ = 0;
@@ -309,10 +343,13 @@ void Packer::pack(std::span<const PackItem> items, PackingLevel level, Packing& 
   if (items.empty()) return;
   if (blocks_.size() < change_.size() / block_passes + 1) blocks_.resize(change_.size() / block_passes + 1);
   offsets_.resize(items.size());
-  sort_by_size();
+  counting_sort(static_cast<uint32_t>(items.size()), static_cast<uint32_t>(change_.size()), first_at_,
+                by_first_, [&](uint32_t i) { return items_[i].first; });
+  sort_by_size(by_first_, by_size_);
   out.size = unlimited;
   try_order(by_size_, Fit::tightest, out);
   if (out.size == out.lower_bound) return;
+  try_again(out);
   if (level == PackingLevel::fast) return;
   place_by_time(out);
   if (out.size == out.lower_bound) return;

@@ -5,6 +5,7 @@
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/compile/pack.hpp"
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,22 @@
 namespace dermis {
 
 inline constexpr uint32_t no_value = 0xffffffffu;
+
+// Asks for memory that is needed soon.
+inline void fetch(const void* address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#else
+  static_cast<void>(address);
+#endif
+}
+
+// What most phases ask of a declaration, without its names and places in the file.
+struct ResourceFacts {
+  bool image = true, imported = false, exported = false, optional = false;
+  bool host_owned = false; // its memory comes from the host in this plan
+  bool history = false;
+};
 
 // Size of a resource at the allocated view size.
 struct Extent {
@@ -35,19 +52,23 @@ struct Use {
   ResourceId asked;                                       // as bound in the file
   uint32_t read_value = no_value, write_value = no_value; // into CompileContext::values
   uint32_t frames_back = 0;
-  uint32_t binding = 0; // into the pass's reads followed by its writes
+  uint16_t binding = 0; // into the pass's reads followed by its writes
   uint16_t port = 0;
   Usage usage = Usage::sampled_image;
+  bool reads = false, writes = false; // what the usage does
   Trouble trouble = Trouble::none;
 };
 
-// A resource's interval in the final order, and how it is used there.
+// How a resource is used by the passes that run.
 struct Lifetime {
   bool used = false;
-  uint32_t first = 0, last = 0; // positions in Plan::passes
   uint32_t vk_usage = 0;
   uint32_t deepest_read = 0;        // largest frames_back that a live pass reads
   uint32_t first_narrow = no_value; // into CompileContext::narrow: a port that limits the format
+};
+
+struct Interval { // of positions in the order
+  uint32_t first = no_value, last = 0;
 };
 
 struct NarrowUse { // a use whose port works with some formats only
@@ -93,7 +114,12 @@ struct Segment { // bytes of a heap and who had them last in this frame
 struct Arrival { // a first use whose bytes nothing in this frame had before
   uint64_t begin = 0, end = 0;
   uint32_t heap = 0, barrier = 0, resource = 0;
-  uint32_t reason = no_value; // into the reasons
+};
+
+struct Answer { // what memory the device wants for one description
+  bool given = false;
+  PlanResource to;
+  MemoryNeeds needs;
 };
 
 struct MemoryGroup { // instances that may share a heap
@@ -111,13 +137,15 @@ struct CompileContext {
   CompiledPlan* out = nullptr;
 
   // resolve
-  std::vector<uint8_t> bound; // by resource: imports and exports the host binds
+  std::vector<ResourceFacts> facts; // by resource
+  std::vector<uint8_t> bound;       // by resource: imports and exports the host binds
   std::vector<Extent> extents;
   std::vector<uint8_t> size_marks;
   std::vector<ResourceId> size_chain;
   // choose
   std::vector<SettingValue> settings;
-  std::vector<uint8_t> on; // by pass: `when` holds
+  std::vector<uint8_t> on;     // by pass: `when` holds
+  std::vector<KindId> kind_of; // by pass
   // versions
   std::vector<Value> values;
   std::vector<Use> uses;               // sorted by pass, then port
@@ -135,14 +163,18 @@ struct CompileContext {
   // usage
   std::vector<Lifetime> lifetimes; // by resource
   std::vector<NarrowUse> narrow;
-  std::vector<uint32_t> plan_resource; // by resource: into Plan::resources, or no_value
-  std::vector<MemoryNeeds> needs;      // by plan resource; size 0: the host's memory
+  std::vector<uint32_t> plan_resource;   // by resource: into Plan::resources, or no_value
+  std::vector<MemoryNeeds> needs;        // by plan resource; size 0: the host's memory
+  std::vector<uint64_t> transient_bytes; // by resource: 0 unless the frame's own
+  std::array<Answer, 32> answers;        // of the device, at most one for each remainder of a hash
   // order
   std::vector<PassId> order;
   std::vector<uint32_t> first_before, before;         // by pass, and one more: passes that must run before it
   std::vector<std::pair<uint32_t, uint32_t>> readers; // pass that writes over a value, pass that reads it
   std::vector<uint64_t> peak_bytes, output_bytes;     // by pass
-  std::vector<uint32_t> candidate, stack, uses_cursor, uses_left;
+  std::vector<uint32_t> candidate, stack, uses_cursor;
+  std::vector<Interval> intervals, other_intervals; // by resource, in c.order and in the candidate
+  std::vector<int64_t> changes;                     // by position: bytes that come alive less those that die
   std::vector<uint8_t> seen;
   std::vector<uint8_t> kind_fits; // by kind: 0 not looked at, 1 within the device's limits, 2 not
   // pack
@@ -155,24 +187,24 @@ struct CompileContext {
   std::vector<uint32_t> first_object; // by plan resource; objects follow frames_back
   std::vector<ObjectState> states, ends;
   std::vector<PassTouch> touches;
+  std::vector<uint32_t> touch_of_use;
   std::vector<std::vector<Segment>> memory; // by heap
   std::vector<Arrival> arrivals;
+  std::vector<uint32_t>
+      arrival_of; // by plan resource: barrier of its first use, unless the host's or a history
 
   const std::string& name(ResourceId id) const { return graph->resources[id.value].name; }
   const std::string& name(PassId id) const { return graph->passes[id.value].name; }
-  const PassKind& kind(PassId id) const { return (*kinds)[graph->passes[id.value].kind]; }
+  const PassKind& kind(PassId id) const { return (*kinds)[kind_of[id.value]]; }
   const PortBinding& binding(const Use& use) const {
     const PassDeclaration& pass = graph->passes[use.pass.value];
     return use.binding < pass.reads.size() ? pass.reads[use.binding]
                                            : pass.writes[use.binding - pass.reads.size()];
   }
-  bool host_owned(ResourceId id) const { // its memory comes from the host in this plan
-    const ResourceDeclaration& declared = graph->resources[id.value];
-    return declared.origin == Origin::imported || (declared.exported && bound[id.value]);
-  }
-  // `text` is called only if somebody wants reasons.
-  template <class Text> void because(Reason::About about, uint32_t index, Text&& text) {
-    if (input->reasons) out->reasons.push_back({about, index, text()});
+  bool host_owned(ResourceId id) const { return facts[id.value].host_owned; }
+  void because(Reason::About about, uint32_t index, Reason::Why why, uint32_t a = 0, uint32_t b = 0,
+               uint32_t c = 0) {
+    if (input->reasons) out->reasons.push_back({about, why, index, a, b, c});
   }
 };
 
@@ -193,8 +225,5 @@ void synchronize(CompileContext& context);     // accesses and barriers
 // some pass needs one that stands behind it. Refuses cycles, also among the passes that are on but not
 // needed.
 void sort_backward_graph(CompileContext& context);
-
-// "technique = 'hybrid'": the value as a graph file would write it.
-std::string setting_text(const SettingDeclaration& setting, const SettingValue& value);
 
 } // namespace dermis

@@ -95,12 +95,11 @@ struct PlanPass {
 };
 
 // History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned
-// with their contents discarded) into layout_at_start before the first frame that reads them.
+// with their contents discarded) into their layout at the start before the first frame that reads them.
 struct PlanHistory {
-  uint32_t resource = 0;               // into Plan::resources
-  uint32_t frames = 1;                 // deepest `@-N` this plan reads; instance_count is frames + 1
-  std::vector<Layout> layout_at_start; // by frames_back 0 .. frames: layout of that instance when a frame
-                                       // starts; [0] is undefined: its old contents are discarded
+  uint32_t resource = 0;     // into Plan::resources
+  uint32_t frames = 1;       // deepest `@-N` this plan reads; instance_count is frames + 1
+  uint32_t first_layout = 0; // into Plan::history_layouts, one for each frames_back 0 .. frames
   HistoryDeclaration declaration;
 };
 
@@ -117,16 +116,55 @@ struct Plan {
   std::vector<PlanBarrier> barriers;
   std::vector<PlanSetting> settings;
   std::vector<PlanHistory> histories;
+  std::vector<Layout> history_layouts; // of an instance when a frame starts; the newest's is undefined: its
+                                       // old contents are discarded
   uint32_t first_final_barrier = 0,
            final_barrier_count = 0;                // batch after the last pass: to the host's `after`
   uint64_t transient_bytes = 0, history_bytes = 0; // heap bytes by kind
 };
 
-// Why something was decided, outside the canonical bytes.
+// Why something was decided, outside the canonical bytes: what the compiler knew, as indices. explain/ makes
+// sentences of it. Placements need none: the plan itself tells what lives beside them.
 struct Reason {
-  enum class About : uint8_t { pass, resource, barrier, placement, choice } about = About::pass;
-  uint32_t index = 0; // pass: PassId in the graph; resource: ResourceId; barrier/placement: index in the plan
-  std::string text;
+  enum class About : uint8_t { pass, resource, barrier, choice };
+  enum class Why : uint8_t {
+    // of a pass; a, b: what needs it, as named here
+    off,             // its `when` is false
+    read_by,         // pass a reads its resource b
+    read_later_by,   // pass a reads its resource b in later frames
+    written_over_by, // pass a writes over its resource b
+    writes_export,   // resource a
+    side_effects,    // of its kind
+    culling_off,     // asked for by the caller
+    port_unbound,    // optional port a; nothing provides resource b
+    not_needed,      // culled
+    // of a resource
+    unbound,            // the host leaves this optional slot alone
+    stands_for,         // a by another name, behind pass b, which is off
+    unwritten_export,   // optional, and no pass that is on writes it
+    format,             // Format a; b: 0 first of the list, 1 first usable one, 2 bound by the host
+    format_not_ported,  // not Format a: port c of pass b cannot work with it
+    format_unsupported, // not Format a: the device does not support image usage b
+    history_unused,     // no pass that runs uses it
+    history_unread,     // no pass that runs reads its earlier frames
+    history_read,       // earlier frames are read, down to a
+    // of a barrier; b: 1 if that was in the frame before
+    from_host,       // the first access to resource a takes it over
+    oldest_instance, // of resource a becomes that of this frame
+    first_use,       // of resource a
+    behind_last_use, // its own
+    takes_memory,    // of resource a
+    dependency,      // pass at position c behind that at position a: see PlanBarrier::why
+    to_host,         // resource a is handed back; b: 1 if no pass touched it
+    // of a setting
+    asked_for, // by the caller
+    by_default
+  };
+  About about = About::pass;
+  Why why = Why::off;
+  uint32_t index = 0; // pass: PassId in the graph; resource: ResourceId; choice: SettingId; barrier: index in
+                      // the plan
+  uint32_t a = 0, b = 0, c = 0; // as said at each Why; resources and passes are ids in the graph
 };
 
 struct CompiledPlan {

@@ -149,18 +149,39 @@ struct SizeResolver {
   }
 };
 
-// Why `format` cannot be used for resource `id`; empty if it can.
-std::string objection(const CompileContext& c, ResourceId id, Format format) {
+struct Objection { // why a format cannot be used for a resource
+  bool exists = false;
+  uint32_t use = no_value; // whose port cannot work with it; none: the device
+};
+
+Objection objection(const CompileContext& c, ResourceId id, Format format) {
   for (uint32_t n = c.lifetimes[id.value].first_narrow; n != no_value; n = c.narrow[n].next) {
     const Use& use = c.uses[c.narrow[n].use];
     const Port& port = c.kind(use.pass).ports[use.port];
     if (std::find(port.formats.begin(), port.formats.end(), format) == port.formats.end())
-      return fmt::format("port '{}' of pass '{}' cannot work with it", port.name, c.name(use.pass));
+      return {true, c.narrow[n].use};
   }
   const uint32_t usage = c.lifetimes[id.value].vk_usage;
-  if (usage != 0 && !c.device->supports(format, usage))
-    return fmt::format("the device '{}' does not support it with image usage {:#x}", c.device->name, usage);
-  return {};
+  return {usage != 0 && !c.device->supports(format, usage), no_value};
+}
+
+void refuse_formats(CompileContext& c, ResourceId id, std::span<const Format> candidates) {
+  const ResourceDeclaration& declared = c.graph->resources[id.value];
+  std::string text = fmt::format("no format of '{}' can be used", declared.name);
+  if (candidates.empty()) text += ": none is declared";
+  for (const Format format : candidates) {
+    const Objection why = objection(c, id, format);
+    text += fmt::format("; not {}: ", format_info(format).name);
+    if (why.use == no_value) {
+      text += fmt::format("the device '{}' does not support it with image usage {:#x}", c.device->name,
+                          c.lifetimes[id.value].vk_usage);
+    } else {
+      const Use& use = c.uses[why.use];
+      text += fmt::format("port '{}' of pass '{}' cannot work with it", c.kind(use.pass).ports[use.port].name,
+                          c.name(use.pass));
+    }
+  }
+  c.diagnostics->add(DiagnosticId::no_usable_format, declared.where, std::move(text));
 }
 
 void choose_format(CompileContext& c, ResourceId id, Format& chosen) {
@@ -180,31 +201,44 @@ void choose_format(CompileContext& c, ResourceId id, Format& chosen) {
     }
     candidates = candidates.subspan(static_cast<size_t>(found - candidates.begin()), 1);
   }
-  std::string objections;
+  const auto because = [&](Reason::Why why, Format format, uint32_t b, uint32_t port = 0) {
+    c.because(Reason::About::resource, id.value, why, static_cast<uint32_t>(format), b, port);
+  };
   for (const Format format : candidates) {
-    const std::string reason = objection(c, id, format);
-    if (reason.empty()) {
+    const Objection why = objection(c, id, format);
+    if (!why.exists) {
       chosen = format;
-      c.because(Reason::About::resource, id.value, [&] {
-        return fmt::format("format {}: {}{}", format_info(format).name,
-                           bound == format && c.host_owned(id) ? "the host binds it"
-                           : format == candidates.front()      ? "first in the list"
-                                                               : "first usable one in the list",
-                           objections);
-      });
+      const bool host = bound == format && c.host_owned(id);
+      because(Reason::Why::format, format, host ? 2 : format == candidates.front() ? 0 : 1);
       return;
     }
-    objections += fmt::format("; not {}: {}", format_info(format).name, reason);
+    if (why.use == no_value)
+      because(Reason::Why::format_unsupported, format, c.lifetimes[id.value].vk_usage);
+    else
+      because(Reason::Why::format_not_ported, format, c.uses[why.use].pass.value, c.uses[why.use].port);
   }
-  c.diagnostics->add(DiagnosticId::no_usable_format, declared.where,
-                     fmt::format("no format of '{}' can be used{}", declared.name,
-                                 objections.empty() ? ": none is declared" : objections));
+  refuse_formats(c, id, candidates);
 }
 
-MemoryNeeds needs_of(const DeviceProfile& device, const PlanResource& resource) {
+bool same_description(const PlanResource& a, const PlanResource& b) {
+  return a.width == b.width && a.height == b.height && a.format == b.format && a.vk_usage == b.vk_usage &&
+         a.mips == b.mips && a.layers == b.layers && a.bytes == b.bytes && a.type == b.type;
+}
+
+MemoryNeeds ask(const DeviceProfile& device, const PlanResource& resource) {
   if (resource.type == ResourceType::buffer) return device.buffer_needs({resource.bytes, resource.vk_usage});
   return device.image_needs(
       {resource.format, resource.width, resource.height, resource.mips, resource.layers, resource.vk_usage});
+}
+
+// Graphs have few different descriptions, and devices take their time.
+MemoryNeeds needs_of(CompileContext& c, const PlanResource& resource) {
+  const uint64_t mixed = (uint64_t{resource.width} * 31 + resource.height) * 31 + resource.bytes +
+                         static_cast<uint64_t>(resource.format) * 5 + resource.vk_usage;
+  Answer& answer = c.answers[(mixed ^ mixed >> 7) % c.answers.size()];
+  if (!answer.given || !same_description(answer.to, resource))
+    answer = {true, resource, ask(*c.device, resource)};
+  return answer.needs;
 }
 
 } // namespace
@@ -213,13 +247,25 @@ void resolve_sizes(CompileContext& c) {
   const auto count = c.graph->resources.size();
   c.bound.assign(count, 0);
   c.extents.assign(count, {});
+  c.facts.clear();
+  constexpr size_t ahead = 6;
   for (uint32_t i = 0; i < count; ++i) {
+    if (i + ahead < count) {
+      fetch(&c.graph->resources[i + ahead].type);
+      fetch(&c.graph->resources[i + ahead].size);
+      fetch(&c.graph->resources[i + ahead].history);
+    }
     const ResourceDeclaration& declared = c.graph->resources[i];
     const bool slot = declared.origin == Origin::imported || declared.exported;
+    ResourceFacts& facts = c.facts.emplace_back();
+    facts.image = declared.type == ResourceType::image;
+    facts.imported = declared.origin == Origin::imported;
+    facts.exported = declared.exported;
+    facts.optional = declared.optional;
+    facts.history = declared.history.frames != 0;
     c.bound[i] = slot && (!declared.optional || c.input->bound.empty() || c.input->bound[i]);
-    if (slot && !c.bound[i])
-      c.because(Reason::About::resource, i,
-                [] { return std::string("the host leaves this optional slot unbound"); });
+    facts.host_owned = facts.imported || (slot && c.bound[i]);
+    if (slot && !c.bound[i]) c.because(Reason::About::resource, i, Reason::Why::unbound);
     if (slot && declared.history.frames > 0)
       c.diagnostics->add(
           DiagnosticId::history_of_host_memory, declared.where,
@@ -235,16 +281,20 @@ void resolve_sizes(CompileContext& c) {
 void resolve_formats(CompileContext& c) {
   const auto count = c.graph->resources.size();
   Plan& plan = c.out->plan;
+  constexpr size_t ahead = 8;
   c.needs.clear();
+  c.answers.fill({});
   c.plan_resource.assign(count, no_value);
+  c.transient_bytes.assign(count, 0);
   int32_t slot = 0;
   for (uint32_t i = 0; i < count; ++i) {
     const ResourceId id{i};
-    const ResourceDeclaration& declared = c.graph->resources[i];
-    const bool is_slot = declared.origin == Origin::imported || declared.exported;
+    if (i + ahead < count) fetch(c.graph->resources[i + ahead].formats.data());
+    const bool is_slot = c.facts[i].imported || c.facts[i].exported;
     const int32_t own_slot = is_slot ? slot++ : -1;
     const Lifetime& life = c.lifetimes[i];
     if (!life.used && !c.bound[i]) continue;
+    const ResourceDeclaration& declared = c.graph->resources[i];
     PlanResource& resource = plan.resources.emplace_back();
     if (declared.type == ResourceType::image) choose_format(c, id, resource.format);
     resource.declared = id;
@@ -260,7 +310,8 @@ void resolve_formats(CompileContext& c) {
     resource.instance_count = life.deepest_read + 1;
     resource.slot = own_slot;
     c.plan_resource[i] = static_cast<uint32_t>(plan.resources.size() - 1);
-    c.needs.push_back(c.host_owned(id) ? MemoryNeeds{} : needs_of(*c.device, resource));
+    c.needs.push_back(c.host_owned(id) ? MemoryNeeds{} : needs_of(c, resource));
+    if (resource.instance_count == 1) c.transient_bytes[i] = c.needs.back().size;
   }
 }
 

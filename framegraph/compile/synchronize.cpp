@@ -5,8 +5,6 @@
 
 #include "framegraph/compile/phases.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 
@@ -67,8 +65,9 @@ struct Synchronizer {
   const std::array<UsageSet, usage_sets>& sets;
   bool emit = false; // barriers; otherwise only how each object ends
 
-  const std::string& name(uint32_t resource) const { return c.name(plan.resources[resource].declared); }
-  const std::string& pass_name(uint32_t position) const { return c.name(plan.passes[position].declared); }
+  void because(uint32_t barrier, Reason::Why why, uint32_t resource, uint32_t b = 0) {
+    c.because(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
+  }
   bool host_owned(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
 
   // Returns whether the plan has histories.
@@ -109,49 +108,51 @@ struct Synchronizer {
     carry_over();
   }
 
-  void collect(const PlanPass& pass) {
-    c.touches.clear();
-    for (uint32_t u = c.first_use[pass.declared.value]; u < c.first_use[pass.declared.value + 1]; ++u) {
-      const Use& use = c.uses[u];
-      if (use.trouble != Use::Trouble::none) continue;
-      const uint32_t resource = c.plan_resource[use.resource.value];
-      const uint32_t object = c.first_object[resource] + use.frames_back;
-      const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
-      const auto same = std::find_if(c.touches.begin(), c.touches.end(),
-                                     [&](const PassTouch& touch) { return touch.object == object; });
-      if (same == c.touches.end())
-        c.touches.push_back({object, resource, use.frames_back, usage});
-      else
-        same->usages |= usage;
-    }
-  }
-
   Layout layout_of(const PassTouch& touch) const {
     return plan.resources[touch.resource].type == ResourceType::image ? sets[touch.usages].image_layout
                                                                       : Layout::undefined;
   }
 
-  void add_accesses(PlanPass& pass) {
-    pass.first_access = static_cast<uint32_t>(plan.accesses.size());
-    for (uint32_t u = c.first_use[pass.declared.value]; u < c.first_use[pass.declared.value + 1]; ++u) {
+  // What the pass does to each object; by use: which of them it touches.
+  void collect(uint32_t first_use, uint32_t end) {
+    c.touches.clear();
+    c.touch_of_use.clear();
+    for (uint32_t u = first_use; u < end; ++u) {
       const Use& use = c.uses[u];
+      c.touch_of_use.push_back(no_value);
       if (use.trouble != Use::Trouble::none) continue;
-      const UsageInfo& usage = usage_info(use.usage);
       const uint32_t resource = c.plan_resource[use.resource.value];
       const uint32_t object = c.first_object[resource] + use.frames_back;
-      Layout layout = Layout::undefined;
-      for (const PassTouch& touch : c.touches)
-        if (touch.object == object) layout = layout_of(touch);
-      plan.accesses.push_back({use.port, resource, use.frames_back, usage.stages, usage.access, layout});
+      const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
+      uint32_t same = 0;
+      while (same < c.touches.size() && c.touches[same].object != object)
+        ++same;
+      if (same == c.touches.size()) c.touches.push_back({object, resource, use.frames_back, 0});
+      c.touches[same].usages |= usage;
+      c.touch_of_use.back() = same;
+    }
+  }
+
+  void add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end) {
+    pass.first_access = static_cast<uint32_t>(plan.accesses.size());
+    for (uint32_t u = first_use; u < end; ++u) {
+      const uint32_t touched = c.touch_of_use[u - first_use];
+      if (touched == no_value) continue;
+      const PassTouch& touch = c.touches[touched];
+      const Use& use = c.uses[u];
+      const UsageSet& usage = sets[size_t{1} << static_cast<uint32_t>(use.usage)];
+      plan.accesses.push_back(
+          {use.port, touch.resource, use.frames_back, usage.stages, usage.access, layout_of(touch)});
     }
     pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
   }
 
   void run_pass(uint32_t position) {
     PlanPass& pass = plan.passes[position];
-    collect(pass);
+    const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
+    collect(first_use, end);
     if (emit) {
-      add_accesses(pass);
+      add_accesses(pass, first_use, end);
       pass.first_barrier = static_cast<uint32_t>(plan.barriers.size());
     }
     for (const PassTouch& touch : c.touches)
@@ -172,7 +173,8 @@ struct Synchronizer {
       if (waited && emit) {
         barrier.resource = touch.resource;
         barrier.frames_back = touch.frames_back;
-        explain(barrier, state, position);
+        c.because(Reason::About::barrier, static_cast<uint32_t>(plan.barriers.size()),
+                  Reason::Why::dependency, state.last_pass, state.carried ? 1 : 0, position);
         if (state.carried) barrier.why = PlanBarrier::Why::history;
         plan.barriers.push_back(barrier);
       }
@@ -244,14 +246,11 @@ struct Synchronizer {
     if (host_owned(touch.resource)) {
       barrier.from_host = true;
       barrier.why = PlanBarrier::Why::host_before;
-      c.because(Reason::About::barrier, index,
-                [&] { return fmt::format("takes '{}' over from the host", name(touch.resource)); });
+      because(index, Reason::Why::from_host, touch.resource);
     } else if (own.instance_count > 1) { // the oldest instance becomes the newest
       wait_for(barrier, tail(c.ends[c.first_object[touch.resource] + own.instance_count - 1]));
       barrier.why = PlanBarrier::Why::history;
-      c.because(Reason::About::barrier, index, [&] {
-        return fmt::format("reuses the oldest instance of '{}' for this frame", name(touch.resource));
-      });
+      because(index, Reason::Why::oldest_instance, touch.resource);
     } else {
       take_over(touch.resource, index);
     }
@@ -264,23 +263,17 @@ struct Synchronizer {
     const Placement& place = plan.placements[plan.resources[resource].first_instance];
     std::vector<Segment>& segments = c.memory[place.heap];
     const uint64_t begin = place.offset, end = place.offset + place.size;
-    const uint32_t reason = c.input->reasons ? static_cast<uint32_t>(c.out->reasons.size()) : no_value;
-    c.because(Reason::About::barrier, barrier,
-              [&] { return fmt::format("first use of '{}'", name(resource)); });
-    // Its own last use in the frame before counts wherever the others lie: a plan whose placements are moved
-    // apart stays in order.
-    c.arrivals.push_back({begin, begin, place.heap, barrier, resource, reason});
-    auto first = std::lower_bound(segments.begin(), segments.end(), begin,
-                                  [](const Segment& one, uint64_t at) { return one.end <= at; });
+    because(barrier, Reason::Why::first_use, resource);
+    c.arrival_of[resource] = barrier;
+    const auto first = behind(segments, begin);
     auto last = first;
     uint64_t reached = begin;
     for (; last != segments.end() && last->begin < end; ++last) {
-      if (last->begin > reached)
-        c.arrivals.push_back({reached, last->begin, place.heap, barrier, resource, reason});
-      inherit(last->resource, resource, barrier, reason, false);
+      if (last->begin > reached) c.arrivals.push_back({reached, last->begin, place.heap, barrier, resource});
+      inherit(last->resource, resource, barrier, false);
       reached = last->end;
     }
-    if (reached < end) c.arrivals.push_back({reached, end, place.heap, barrier, resource, reason});
+    if (reached < end) c.arrivals.push_back({reached, end, place.heap, barrier, resource});
     // What is left of the first and the last of them stays.
     std::array<Segment, 3> pieces;
     size_t count = 0;
@@ -299,48 +292,35 @@ struct Synchronizer {
                       pieces.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
-  void inherit(uint32_t from, uint32_t resource, uint32_t barrier, uint32_t reason, bool frame_before) {
+  // The first segment that ends behind `at`.
+  static std::vector<Segment>::iterator behind(std::vector<Segment>& segments, uint64_t at) {
+    auto first = segments.begin();
+    for (auto left = segments.end() - first; left > 0;) { // without a branch that nobody can foretell
+      const auto half = left / 2;
+      const bool before = first[half].end <= at;
+      first += before ? half + 1 : 0;
+      left = before ? left - half - 1 : half;
+    }
+    return first;
+  }
+
+  void inherit(uint32_t from, uint32_t resource, uint32_t barrier, bool frame_before) {
     wait_for(plan.barriers[barrier], tail(c.states[c.first_object[from]]));
     if (from != resource) plan.barriers[barrier].why = PlanBarrier::Why::alias;
-    if (reason == no_value) return;
-    const char* when = frame_before ? " in the frame before" : "";
-    c.out->reasons[reason].text += from == resource
-                                       ? fmt::format("; behind its last use{}", when)
-                                       : fmt::format("; takes over memory of '{}'{}", name(from), when);
+    because(barrier, from == resource ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from,
+            frame_before ? 1 : 0);
   }
 
+  // A resource's own last use in the frame before counts wherever the others lie: a plan whose placements are
+  // moved apart stays in order.
   void settle_arrivals() {
+    for (uint32_t r = 0; r < c.arrival_of.size(); ++r)
+      if (c.arrival_of[r] != no_value) inherit(r, r, c.arrival_of[r], true);
     for (const Arrival& arrival : c.arrivals) {
-      if (arrival.begin == arrival.end)
-        inherit(arrival.resource, arrival.resource, arrival.barrier, arrival.reason, true);
-      const std::vector<Segment>& segments = c.memory[arrival.heap];
-      auto at = std::lower_bound(segments.begin(), segments.end(), arrival.begin,
-                                 [](const Segment& one, uint64_t begin) { return one.end <= begin; });
-      for (; at != segments.end() && at->begin < arrival.end; ++at)
-        if (at->resource != arrival.resource)
-          inherit(at->resource, arrival.resource, arrival.barrier, arrival.reason, true);
+      std::vector<Segment>& segments = c.memory[arrival.heap];
+      for (auto at = behind(segments, arrival.begin); at != segments.end() && at->begin < arrival.end; ++at)
+        if (at->resource != arrival.resource) inherit(at->resource, arrival.resource, arrival.barrier, true);
     }
-  }
-
-  void explain(const PlanBarrier& barrier, const ObjectState& before, uint32_t position) {
-    c.because(Reason::About::barrier, static_cast<uint32_t>(plan.barriers.size()), [&] {
-      const std::string& pass = pass_name(position);
-      const std::string what = barrier.frames_back == 0
-                                   ? fmt::format("'{}'", name(barrier.resource))
-                                   : fmt::format("'{}@-{}'", name(barrier.resource), barrier.frames_back);
-      const std::string last =
-          fmt::format("'{}'{}", pass_name(before.last_pass), before.carried ? " in the frame before" : "");
-      switch (barrier.why) {
-      case PlanBarrier::Why::write_after_read:
-        return fmt::format("'{}' writes over {} once {} has read it", pass, what, last);
-      case PlanBarrier::Why::write_after_write:
-        return fmt::format("'{}' writes {} after {}", pass, what, last);
-      case PlanBarrier::Why::layout:
-        return fmt::format("'{}' needs {} in another layout than {}", pass, what, last);
-      default:
-        return fmt::format("'{}' reads {} as {} left it", pass, what, last);
-      }
-    });
   }
 
   // Every slot is handed back in the state the host asked for, also one that no pass touched.
@@ -355,10 +335,7 @@ struct Synchronizer {
     barrier.source_access = scope.access;
     barrier.old_layout = end.layout;
     barrier.why = PlanBarrier::Why::host_after;
-    c.because(Reason::About::barrier, static_cast<uint32_t>(plan.barriers.size()), [&] {
-      return fmt::format("hands '{}' back to the host{}", name(resource),
-                         end.touched ? "" : "; no pass touched it");
-    });
+    because(static_cast<uint32_t>(plan.barriers.size()), Reason::Why::to_host, resource, end.touched ? 0 : 1);
     plan.barriers.push_back(barrier);
   }
 
@@ -369,11 +346,12 @@ struct Synchronizer {
       PlanHistory history;
       history.resource = r;
       history.frames = resource.instance_count - 1;
+      history.first_layout = static_cast<uint32_t>(plan.history_layouts.size());
       history.declaration = c.graph->resources[resource.declared.value].history;
-      history.layout_at_start.push_back(Layout::undefined);
+      plan.history_layouts.push_back(Layout::undefined);
       for (uint32_t back = 1; back < resource.instance_count; ++back)
-        history.layout_at_start.push_back(c.ends[c.first_object[r] + back - 1].layout);
-      plan.histories.push_back(std::move(history));
+        plan.history_layouts.push_back(c.ends[c.first_object[r] + back - 1].layout);
+      plan.histories.push_back(history);
     }
   }
 };
@@ -387,6 +365,7 @@ void synchronize(CompileContext& c) {
   const bool histories = walk.number_objects();
   if (histories) walk.find_ends();
   c.arrivals.clear();
+  c.arrival_of.assign(plan.resources.size(), no_value);
   c.memory.resize(std::max(c.memory.size(), plan.heaps.size()));
   for (std::vector<Segment>& segments : c.memory)
     segments.clear();

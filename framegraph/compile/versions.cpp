@@ -24,7 +24,7 @@ struct VersionScan {
     c.last_version.assign(resources, no_value);
     c.definitions.assign(resources, {});
     for (uint32_t i = 0; i < resources; ++i) {
-      if (c.graph->resources[i].origin != Origin::imported || !c.bound[i]) continue;
+      if (!c.facts[i].imported || !c.bound[i]) continue;
       c.current[i].value = add_value({ResourceId{i}, 0, PassId{}, no_value});
       c.last_version[i] = c.current[i].value;
     }
@@ -35,22 +35,23 @@ struct VersionScan {
     return static_cast<uint32_t>(c.values.size() - 1);
   }
 
-  bool unbound_import(ResourceId id) const {
-    return c.graph->resources[id.value].origin == Origin::imported && !c.bound[id.value];
-  }
+  bool unbound_import(ResourceId id) const { return c.facts[id.value].imported && !c.bound[id.value]; }
 
   void scan_uses(PassId pass) {
     const PassDeclaration& declared = c.graph->passes[pass.value];
     const PassKind& kind = (*c.kinds)[declared.kind];
     const auto first = static_cast<uint32_t>(c.uses.size());
     c.first_use.push_back(first);
-    uint32_t number = 0;
+    uint16_t number = 0;
     for (const auto* bindings : {&declared.reads, &declared.writes})
       for (const PortBinding& binding : *bindings) {
         Use use;
         use.pass = pass;
         use.port = static_cast<uint16_t>(binding.port);
         use.usage = kind.ports[binding.port].usage;
+        const UsageInfo& usage = usage_info(use.usage);
+        use.reads = usage.reads;
+        use.writes = usage.writes;
         use.resource = use.asked = binding.resource;
         use.frames_back = binding.frames_back;
         use.binding = number++;
@@ -67,7 +68,7 @@ struct VersionScan {
 
   void read(uint32_t index) {
     Use& use = c.uses[index];
-    if (!usage_info(use.usage).reads || use.frames_back > 0) return;
+    if (!use.reads || use.frames_back > 0) return;
     const Meaning& meaning = c.current[use.asked.value];
     if (unbound_import(use.asked))
       use.trouble = Use::Trouble::unbound;
@@ -80,20 +81,20 @@ struct VersionScan {
   void see(Use& use, uint32_t value) {
     use.read_value = value;
     use.resource = c.values[value].resource;
-    if (usage_info(use.usage).writes && use.resource != use.asked) use.trouble = Use::Trouble::replaced;
+    if (use.writes && use.resource != use.asked) use.trouble = Use::Trouble::replaced;
   }
 
   bool reads_too(PassId pass, ResourceId id) const {
     for (uint32_t u = c.first_use[pass.value]; u < c.uses.size(); ++u) {
       const Use& use = c.uses[u];
-      if (use.asked == id && use.frames_back == 0 && usage_info(use.usage).reads) return true;
+      if (use.asked == id && use.frames_back == 0 && use.reads) return true;
     }
     return false;
   }
 
   void write(uint32_t index) {
     Use& use = c.uses[index];
-    if (!usage_info(use.usage).writes) return;
+    if (!use.writes) return;
     if (unbound_import(use.asked)) {
       use.trouble = Use::Trouble::unbound;
       return;
@@ -102,9 +103,8 @@ struct VersionScan {
     const uint32_t before = c.current[id].value;
     const PassId producer = before == no_value ? PassId{} : c.values[before].producer;
     const bool own = before != no_value && c.values[before].resource == use.asked;
-    const bool second =
-        own && (producer == use.pass || (c.graph->resources[id].origin != Origin::imported &&
-                                         producer.valid() && !reads_too(use.pass, use.asked)));
+    const bool second = own && (producer == use.pass || (!c.facts[id].imported && producer.valid() &&
+                                                         !reads_too(use.pass, use.asked)));
     if (second) return refuse_second(use, producer);
     const uint32_t previous = c.last_version[id];
     const uint32_t version = previous == no_value ? 1 : c.values[previous].version + 1;
@@ -141,10 +141,8 @@ struct VersionScan {
       Meaning meaning = c.current[through.instead.value];
       if (meaning.value == no_value && !meaning.later.valid()) meaning.later = through.instead;
       replaced.emplace_back(through.output, meaning);
-      c.because(Reason::About::resource, through.output.value, [&] {
-        return fmt::format("stands for '{}' after pass '{}', which is off", c.name(through.instead),
-                           c.name(pass));
-      });
+      c.because(Reason::About::resource, through.output.value, Reason::Why::stands_for, through.instead.value,
+                pass.value);
     }
     for (const auto& [output, meaning] : replaced) {
       Definition& definition = c.definitions[output.value];
@@ -186,12 +184,22 @@ struct VersionScan {
   }
 };
 
+// Bindings lie all over the heap, and waiting for them is most of this phase's work: ask for them in time.
+constexpr uint32_t ahead = 8; // passes
+void fetch_bindings(const PassDeclaration& pass) {
+  for (const auto* bindings : {&pass.reads, &pass.writes})
+    for (const PortBinding& binding : *bindings)
+      fetch(&binding);
+}
+
 } // namespace
 
 void resolve_versions(CompileContext& c) {
   VersionScan scan{c};
   scan.begin();
-  for (uint32_t i = 0; i < c.graph->passes.size(); ++i) {
+  const auto passes = static_cast<uint32_t>(c.graph->passes.size());
+  for (uint32_t i = 0; i < passes; ++i) {
+    if (i + ahead < passes) fetch_bindings(c.graph->passes[i + ahead]);
     if (c.on[i])
       scan.scan_uses(PassId{i});
     else

@@ -1,5 +1,7 @@
 #include "framegraph/explain/plan_dot.hpp"
 
+#include "framegraph/explain/reasons.hpp"
+
 #include <fmt/format.h>
 
 namespace dermis {
@@ -75,6 +77,7 @@ std::string plan_dot(const Graph& graph, const KindRegistry& kinds, const Compil
     out += resource_node(graph.resources[resource.declared.value], resource.declared.value, detail);
   }
   std::vector<bool> runs(graph.passes.size(), false);
+  const ReasonIndex reasons(graph, kinds, compiled);
   for (uint32_t position = 0; position < plan.passes.size(); ++position) {
     const PlanPass& pass = plan.passes[position];
     runs[pass.declared.value] = true;
@@ -87,9 +90,7 @@ std::string plan_dot(const Graph& graph, const KindRegistry& kinds, const Compil
   }
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
     if (runs[p]) continue;
-    std::string why;
-    for (const Reason& reason : compiled.reasons)
-      if (reason.about == Reason::About::pass && reason.index == p) why = reason.text;
+    const std::string why = reasons.about(Reason::About::pass, p);
     out +=
         pass_node(graph, kinds, p, "", fmt::format(", color=gray, fontcolor=gray, tooltip={}", quoted(why)));
   }

@@ -1,6 +1,7 @@
 #include "framegraph/explain/plan_json.hpp"
 
 #include "framegraph/explain/names.hpp"
+#include "framegraph/explain/reasons.hpp"
 #include "framegraph/text/json_writer.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace {
 constexpr std::string_view setting_types[] = {"bool", "int", "real", "enum", "choice"};
 constexpr std::string_view dispatch_shapes[] = {"over_view",    "over_tiles",   "over_tile_grid",
                                                 "over_written", "single_group", "none"};
-constexpr std::string_view subjects[] = {"pass", "resource", "barrier", "placement", "setting"};
+constexpr std::string_view subjects[] = {"pass", "resource", "barrier", "setting"};
 constexpr std::string_view history_first[] = {"discard", "clear"};
 constexpr std::string_view history_on_cut[] = {"invalidate", "keep"};
 constexpr std::string_view history_on_resize[] = {"invalidate", "rescale"};
@@ -181,8 +182,8 @@ struct Exporter {
       out.member("on_cut", name_in(history_on_cut, history.declaration.on_cut));
       out.member("on_resize", name_in(history_on_resize, history.declaration.on_resize));
       out.key("layout_at_start").open_array(true);
-      for (const Layout at_start : history.layout_at_start)
-        out.value(layout_name(at_start));
+      for (uint32_t back = 0; back <= history.frames; ++back)
+        out.value(layout_name(plan.history_layouts[history.first_layout + back]));
       out.close().close();
     }
     out.close();
@@ -195,7 +196,16 @@ struct Exporter {
       if (reason.about == Reason::About::pass) out.member("name", graph.passes[reason.index].name);
       if (reason.about == Reason::About::resource) out.member("name", graph.resources[reason.index].name);
       if (reason.about == Reason::About::choice) out.member("name", graph.settings[reason.index].name);
-      out.member("text", reason.text).close();
+      out.member("text", reason_text(graph, kinds, plan, reason)).close();
+    }
+    if (!compiled.reasons.empty()) {
+      const std::vector<std::string> texts = placement_reasons(graph, plan);
+      for (size_t i = 0; i < texts.size(); ++i)
+        out.open_object(true)
+            .member("about", "placement")
+            .member("index", i)
+            .member("text", texts[i])
+            .close();
     }
     out.close();
   }

@@ -1,6 +1,7 @@
 #include "framegraph/explain/plan_text.hpp"
 
 #include "framegraph/explain/names.hpp"
+#include "framegraph/explain/reasons.hpp"
 
 #include <fmt/format.h>
 
@@ -14,16 +15,12 @@ struct TextExporter {
   const KindRegistry& kinds;
   const CompiledPlan& compiled;
   const Plan& plan = compiled.plan;
+  const ReasonIndex reasons{graph, kinds, compiled};
   std::string out = {};
 
   void line(const std::string& text) { out += text + '\n'; }
 
-  std::string reason(Reason::About about, uint32_t index) const {
-    std::string all;
-    for (const Reason& one : compiled.reasons)
-      if (one.about == about && one.index == index) all += (all.empty() ? "" : "; ") + one.text;
-    return all;
-  }
+  std::string reason(Reason::About about, uint32_t index) const { return reasons.about(about, index); }
 
   std::string object(uint32_t resource, uint32_t frames_back) const {
     const std::string& name = graph.resources[plan.resources[resource].declared.value].name;

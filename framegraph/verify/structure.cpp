@@ -93,7 +93,7 @@ struct Checker {
       if (!exists) continue;
       ++described[history.resource];
       expect(plan.resources[history.resource].instance_count == history.frames + 1 &&
-                 history.layout_at_start.size() == history.frames + 1,
+                 range_in(history.first_layout, uint64_t{history.frames} + 1, plan.history_layouts.size()),
              "a history has the wrong number of instances or layouts", h);
     }
     for (size_t r = 0; r < plan.resources.size(); ++r)

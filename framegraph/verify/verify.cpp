@@ -72,7 +72,7 @@ struct Machine {
       for (uint32_t back = 1; back <= history.frames; ++back) {
         Thing& thing = things[thing_of(history.resource, back)];
         thing.defined = true;
-        thing.layout = history.layout_at_start[back];
+        thing.layout = plan.history_layouts[history.first_layout + back];
       }
   }
 
@@ -124,7 +124,8 @@ struct Machine {
     }
     for (const PlanHistory& history : plan.histories)
       for (uint32_t back = 1; back <= history.frames; ++back)
-        if (things[thing_of(history.resource, back)].layout != history.layout_at_start[back])
+        if (things[thing_of(history.resource, back)].layout !=
+            plan.history_layouts[history.first_layout + back])
           object("is not in the layout the plan promises at the start of a frame", history.resource, back,
                  "start");
   }

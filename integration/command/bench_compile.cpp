@@ -18,9 +18,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr uint32_t pass_counts[] = {10, 100, 1000, 10000};
-constexpr uint32_t most_rotating = 64;      // graphs that take turns, so that none stays in the caches
-constexpr uint32_t rotated_passes = 64'000; // fewer graphs where one is larger than a 64th of this
-constexpr uint32_t least_rotating = 4;
+constexpr uint32_t rotating = 64;              // graphs that take turns, so that none stays in the caches
 constexpr uint64_t time_per_row = 300'000'000; // ns
 constexpr uint32_t least_samples = 5, most_samples = 200;
 constexpr uint32_t memory_passes = 100, memory_seeds = 50, fan_seeds = 20;
@@ -155,12 +153,15 @@ Subject draw(const ShapeFile& file, const KindRegistry& kinds, const Shape& shap
 }
 
 std::string table_line(const Row& row) {
-  const std::string goal = row.goal > 0.0 ? fmt::format("{:.0f}", row.goal) : "-";
+  const auto time = [&](double ns, bool given) { return given ? fmt::format("{:.0f}", ns) : "-"; };
+  const bool timed = row.samples > 0;
   return fmt::format(
-      "{:<12}{:>7}{:>5}  {:<9}{:<9}{:<4}{:>9.0f}{:>9.0f}{:>9.0f}{:>7}{:>10.1f}{:>8.4f}{:>8.4f}{:>7.2f}\n",
-      row.shape, row.passes, row.rotating, level_names[static_cast<size_t>(row.options.level)],
-      order_names[static_cast<size_t>(row.options.order)], row.options.reasons ? "yes" : "no", row.median,
-      row.low, row.high, goal, row.heap_bytes / mebibyte, row.ratio, row.worst_ratio, row.batches_per_pass);
+      "{:<12}{:>7}{:>5}  {:<9}{:<9}{:<4}{:>9}{:>9}{:>9}{:>7}{:>10.1f}{:>8.4f}{:>8.4f}{:>7.2f}\n", row.shape,
+      row.passes, row.rotating, level_names[static_cast<size_t>(row.options.level)],
+      order_names[static_cast<size_t>(row.options.order)], row.options.reasons ? "yes" : "no",
+      time(row.median, timed), time(row.low, timed), time(row.high, timed),
+      time(row.goal, timed && row.goal > 0.0), row.heap_bytes / mebibyte, row.ratio, row.worst_ratio,
+      row.batches_per_pass);
 }
 
 constexpr std::string_view table_head = "shape        passes  rot  level    order    why  ns/pass    10 %    "
@@ -200,7 +201,6 @@ struct Bench {
   bool add_times(const ShapeFile& file, const KindRegistry& kinds) {
     for (const Shape& shape : file.shapes)
       for (const uint32_t passes : pass_counts) {
-        const uint32_t rotating = std::clamp(rotated_passes / passes, least_rotating, most_rotating);
         const Subject subject = draw(file, kinds, shape, passes, rotating);
         if (!add(subject, {}, true) || !add(subject, {PackingLevel::fast, PassOrder::memory, true}, true))
           return false;

@@ -37,7 +37,8 @@ TEST(RandomGraphs, NoBarrierCanBeDropped) {
     const auto whole = compiled(builder);
     for (uint32_t b = 0; b < whole.plan.barriers.size(); ++b)
       EXPECT_FALSE(verify(without_barrier(whole.plan, b)).empty())
-          << "seed " << seed << ", barrier " << b << ": " << reasons(whole, Reason::About::barrier, b);
+          << "seed " << seed << ", barrier " << b << ": "
+          << reasons(builder, whole, Reason::About::barrier, b);
     if (HasFailure()) return;
   }
 }

@@ -127,14 +127,14 @@ TEST(Formats, TheFirstOneThatEveryPortAndTheDeviceCanUseIsTaken) {
   b.middle().formats = {Format::rgba8_srgb, Format::b10g11r11f, Format::rgba16f};
   auto whole = compiled(b); // sRGB cannot be stored to
   EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::b10g11r11f);
-  EXPECT_THAT(reasons(whole, Reason::About::resource, 1),
+  EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
               HasSubstr("not rgba8_srgb: the device 'generic' does not support it"));
   b.graph.passes[1].kind = b.kinds.find("test.narrow"); // reads through the same port number, rgba16f only
   b.graph.passes[1].reads[0].port = 0;
   b.graph.passes[1].writes[0].port = 1;
   whole = compiled(b);
   EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::rgba16f);
-  EXPECT_THAT(reasons(whole, Reason::About::resource, 1),
+  EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
               HasSubstr("port 'a' of pass 'second' cannot work with it"));
   b.middle().formats = {Format::r8_unorm};
   const auto errors = refused(b);

@@ -183,7 +183,7 @@ TEST(Aliasing, ANewOccupantWaitsForEveryOldOneAndDiscardsItsContents) {
   uint32_t index = 0;
   while (whole.plan.barriers[index].why != Why::alias)
     ++index;
-  EXPECT_THAT(reasons(whole, Reason::About::barrier, index), HasSubstr("takes over memory of"));
+  EXPECT_THAT(reasons(b, whole, Reason::About::barrier, index), HasSubstr("takes over memory of"));
 }
 
 TEST(Aliasing, TheFirstOccupantOfAFrameWaitsForTheLastOnesOfTheFrameBefore) {
@@ -219,7 +219,7 @@ TEST(History, InstancesTakeTurnsAndKeepTheirContentsOverThreeFrames) {
   EXPECT_EQ(whole.plan.transient_bytes, 0u);
   // Written in 'general', read by 'show' in 'shader_read_only': it rests there, one frame and two frames
   // later.
-  EXPECT_THAT(whole.plan.histories[0].layout_at_start,
+  EXPECT_THAT(whole.plan.history_layouts,
               ::testing::ElementsAre(Layout::undefined, Layout::shader_read_only, Layout::shader_read_only));
   for (uint32_t i = 0; i < 3; ++i)
     EXPECT_TRUE(whole.plan.placements[sum.first_instance + i].persistent);
@@ -246,7 +246,7 @@ TEST(History, TheFirstReadWaitsForTheFrameBeforeAndTheNewestReusesTheOldest) {
   EXPECT_EQ(past.source_access, access::shader_storage_write);
   EXPECT_EQ(past.old_layout, Layout::general);
   EXPECT_EQ(past.new_layout, Layout::shader_read_only);
-  EXPECT_EQ(whole.plan.histories[0].layout_at_start[1], Layout::general);
+  EXPECT_EQ(whole.plan.history_layouts[1], Layout::general);
   const auto newest = barrier_on(b, whole.plan, "accumulate", "sum", 0);
   EXPECT_EQ(newest.why, Why::history);
   EXPECT_EQ(newest.old_layout, Layout::undefined);

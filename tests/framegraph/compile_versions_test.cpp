@@ -30,10 +30,10 @@ TEST(Culling, APassThatNothingBoundNeedsDoesNotRunNorDoItsProducers) {
   b.pass("make_y", "test.shade", {{"a", "x"}}, {{"out", "y"}});
   const auto plan = compiled(b);
   EXPECT_EQ(pass_names(b, plan.plan), "blur finish");
-  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("make_y").value),
+  EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("make_y").value),
               HasSubstr("culled: nothing that is bound needs 'y'"));
-  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("make_x").value), HasSubstr("culled"));
-  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("blur").value),
+  EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("make_x").value), HasSubstr("culled"));
+  EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("blur").value),
               HasSubstr("'finish' reads its 'blurred'"));
 }
 
@@ -101,7 +101,7 @@ TEST(Culling, AnOptionalPortOfAnUnboundImportStaysUnbound) {
   input.bound[b.resource("mask").value] = false;
   const auto plan = compiled(b, input);
   EXPECT_EQ(plan.plan.passes.back().access_count, 2u);
-  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("apply_mask").value),
+  EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("apply_mask").value),
               HasSubstr("optional port 'b' stays unbound"));
 }
 
@@ -122,7 +122,7 @@ TEST(Choice, ReadersOfAPassThatIsOffGetItsOtherwise) {
   EXPECT_EQ(pass_names(b, plan.plan), "finish");
   const PlanAccess& read = plan.plan.accesses[plan.plan.passes[0].first_access];
   EXPECT_EQ(plan.plan.resources[read.resource].declared, b.resource("light"));
-  EXPECT_THAT(reasons(plan, Reason::About::pass, b.pass_id("blur").value), HasSubstr("off"));
+  EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("blur").value), HasSubstr("off"));
 }
 
 TEST(Choice, OtherwiseSeesTheVersionThatThePassWouldHaveSeen) {

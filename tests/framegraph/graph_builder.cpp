@@ -1,5 +1,7 @@
 #include "tests/framegraph/graph_builder.hpp"
 
+#include "framegraph/explain/reasons.hpp"
+
 #include "framegraph/verify/verify.hpp"
 
 #include <gtest/gtest.h>
@@ -215,11 +217,9 @@ std::string pass_names(const GraphBuilder& builder, const Plan& plan) {
   return names;
 }
 
-std::string reasons(const CompiledPlan& compiled, Reason::About about, uint32_t index) {
-  std::string all;
-  for (const Reason& reason : compiled.reasons)
-    if (reason.about == about && reason.index == index) all += reason.text + "\n";
-  return all;
+std::string reasons(const GraphBuilder& builder, const CompiledPlan& compiled, Reason::About about,
+                    uint32_t index) {
+  return ReasonIndex(builder.graph, builder.kinds, compiled).about(about, index);
 }
 
 } // namespace dermis::testing

@@ -53,7 +53,8 @@ std::vector<Diagnostic> refused(const GraphBuilder& builder, const CompileInput&
 
 // Names of the passes of a plan, in order, with a space between them.
 std::string pass_names(const GraphBuilder& builder, const Plan& plan);
-// All reasons about one thing, a line each.
-std::string reasons(const CompiledPlan& compiled, Reason::About about, uint32_t index);
+// All reasons about one thing.
+std::string reasons(const GraphBuilder& builder, const CompiledPlan& compiled, Reason::About about,
+                    uint32_t index);
 
 } // namespace dermis::testing

@@ -178,7 +178,8 @@ struct Oracle {
       if (transition(all[k]) && same_thing(all[k], thing)) return all[k].barrier->new_layout;
     for (const PlanHistory& history : plan.histories)
       for (uint32_t back = 1; history.resource == thing.resource && back <= history.frames; ++back)
-        if (instance(thing.resource, back, 0) == thing.instance) return history.layout_at_start[back];
+        if (instance(thing.resource, back, 0) == thing.instance)
+          return plan.history_layouts[history.first_layout + back];
     return Layout::undefined;
   }
 
@@ -213,7 +214,8 @@ struct Oracle {
         for (uint32_t back = 1; history.resource == o.resource && back <= history.frames; ++back) {
           Operation past = o;
           past.instance = instance(o.resource, back, o.frame);
-          if (layout(past, at) != history.layout_at_start[back]) return "starts a frame in another layout";
+          if (layout(past, at) != plan.history_layouts[history.first_layout + back])
+            return "starts a frame in another layout";
         }
       return host(o.resource) && !with_host(at) ? "is not handed back" : "";
     }

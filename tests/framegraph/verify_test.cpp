@@ -77,8 +77,7 @@ TEST(Verify, RefusesIndicesOutOfRange) {
 TEST(Verify, RefusesAWrongLayout) {
   expect_refused([](Plan& plan) { plan.accesses.back().layout = Layout::transfer_source; },
                  "not in the layout the access");
-  expect_refused([](Plan& plan) { plan.histories[0].layout_at_start[1] = Layout::transfer_source; },
-                 "layout");
+  expect_refused([](Plan& plan) { plan.history_layouts[1] = Layout::transfer_source; }, "layout");
 }
 
 TEST(Verify, RefusesAReadOutsideItsLifetime) {
@@ -105,15 +104,16 @@ TEST(Verify, RefusesEveryBarrierThatLosesItsSource) {
 
 TEST(Verify, RefusesEveryBarrierThatLosesAWriteItMustMakeAvailable) {
   for (uint64_t seed = 0; seed < seeds; ++seed) {
-    const auto whole = compiled(random_graph(seed));
+    const auto builder = random_graph(seed);
+    const auto whole = compiled(builder);
     const Plan& plan = whole.plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
       // An alias barrier names the writes of every occupant, also those that a later occupant made available.
       if (plan.barriers[i].source_access == 0 || plan.barriers[i].why == PlanBarrier::Why::alias) continue;
       Plan mutant = plan;
       mutant.barriers[i].source_access = 0;
-      EXPECT_THAT(verify(mutant), Not(IsEmpty()))
-          << "seed " << seed << ", barrier " << i << ": " << reasons(whole, Reason::About::barrier, i);
+      EXPECT_THAT(verify(mutant), Not(IsEmpty())) << "seed " << seed << ", barrier " << i << ": "
+                                                  << reasons(builder, whole, Reason::About::barrier, i);
     }
     if (HasFailure()) return;
   }

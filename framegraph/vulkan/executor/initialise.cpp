@@ -80,7 +80,8 @@ void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
       const bool clear =
           (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0; // the same bit for buffers
       initialise(device, commands,
-                 {instance.image, instance.buffer, static_cast<VkImageLayout>(history.layout_at_start[back]),
+                 {instance.image, instance.buffer,
+                  static_cast<VkImageLayout>(state.plan.history_layouts[history.first_layout + back]),
                   clear});
       instance.ready = true;
     }

@@ -1,5 +1,6 @@
 #include "integration/command/expect/observe.hpp"
 
+#include "framegraph/explain/reasons.hpp"
 #include "framegraph/verify/verify.hpp"
 
 #include <fmt/format.h>
@@ -34,7 +35,7 @@ std::vector<Format> host_formats(const Graph& graph, const ExpectedCase& inputs,
   return out;
 }
 
-Facts facts_of(const Graph& graph, const CompiledPlan& compiled) {
+Facts facts_of(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled) {
   const Plan& plan = compiled.plan;
   Facts facts;
   facts.passes.emplace();
@@ -51,7 +52,7 @@ Facts facts_of(const Graph& graph, const CompiledPlan& compiled) {
   for (const Reason& reason : compiled.reasons) {
     if (reason.about != Reason::About::pass || runs[reason.index]) continue;
     std::string& why = (*facts.culled)[graph.passes[reason.index].name];
-    why += (why.empty() ? "" : "; ") + reason.text;
+    why += (why.empty() ? "" : "; ") + reason_text(graph, kinds, plan, reason);
   }
   facts.barriers = plan.barriers.size();
   facts.batches = batches;
@@ -91,7 +92,7 @@ Observation observe(const LoadedGraph& loaded, const ExpectedCase& inputs) {
   out = observe_messages(diagnostics);
   if (!compiled) return out;
   const std::vector<std::string> codes = std::move(out.facts.diagnostics);
-  out.facts = facts_of(loaded.graph, *compiled);
+  out.facts = facts_of(loaded.graph, loaded.kinds, *compiled);
   out.facts.diagnostics = codes;
   out.objections = verify(compiled->plan);
   return out;

@@ -1,0 +1,212 @@
+#include "framegraph/explain/reasons.hpp"
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/explain/names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace dermis {
+namespace {
+
+struct Speaker {
+  const Graph& graph;
+  const KindRegistry& kinds;
+  const Plan& plan;
+  const Reason& reason;
+
+  const std::string& pass(uint32_t id) const { return graph.passes[id].name; }
+  const std::string& resource(uint32_t id) const { return graph.resources[id].name; }
+  const std::string& pass_at(uint32_t position) const { return pass(plan.passes[position].declared.value); }
+  std::string_view port(uint32_t of_pass, uint32_t number) const {
+    return kinds[graph.passes[of_pass].kind].ports[number].name;
+  }
+  std::string_view format() const { return format_info(static_cast<Format>(reason.a)).name; }
+  const char* when() const { return reason.b != 0 ? " in the frame before" : ""; }
+
+  std::string needed(const char* verb) const {
+    return fmt::format("runs: '{}' {} its '{}'", pass(reason.a), verb, resource(reason.b));
+  }
+
+  std::string not_needed() const {
+    std::string names;
+    for (const PortBinding& binding : graph.passes[reason.index].writes)
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", resource(binding.resource.value));
+    return names.empty() ? "culled: it writes nothing" : "culled: nothing that is bound needs " + names;
+  }
+
+  std::string chosen_format() const {
+    constexpr std::string_view how[] = {"first in the list", "first usable one in the list",
+                                        "the host binds it"};
+    return fmt::format("format {}: {}", format(), how[reason.b]);
+  }
+
+  std::string setting(const char* whose) const {
+    const SettingDeclaration& declared = graph.settings[reason.index];
+    return fmt::format("{} = {}: {}", declared.name,
+                       setting_text(declared, plan.setting_values[reason.index]), whose);
+  }
+
+  std::string dependency() const {
+    const PlanBarrier& barrier = plan.barriers[reason.index];
+    const std::string& later = pass_at(reason.c);
+    const std::string& name = resource(plan.resources[barrier.resource].declared.value);
+    const std::string what = barrier.frames_back == 0 ? fmt::format("'{}'", name)
+                                                      : fmt::format("'{}@-{}'", name, barrier.frames_back);
+    const std::string last = fmt::format("'{}'{}", pass_at(reason.a), when());
+    switch (barrier.why) {
+    case PlanBarrier::Why::write_after_read:
+      return fmt::format("'{}' writes over {} once {} has read it", later, what, last);
+    case PlanBarrier::Why::write_after_write:
+      return fmt::format("'{}' writes {} after {}", later, what, last);
+    case PlanBarrier::Why::layout:
+      return fmt::format("'{}' needs {} in another layout than {}", later, what, last);
+    default:
+      return fmt::format("'{}' reads {} as {} left it", later, what, last);
+    }
+  }
+
+  std::string text() const {
+    switch (reason.why) {
+    case Reason::Why::off:
+      return "off: its 'when' is false with these settings";
+    case Reason::Why::read_by:
+      return needed("reads");
+    case Reason::Why::read_later_by:
+      return needed("reads in later frames");
+    case Reason::Why::written_over_by:
+      return needed("writes over");
+    case Reason::Why::writes_export:
+      return fmt::format("runs: it writes the export '{}'", resource(reason.a));
+    case Reason::Why::side_effects:
+      return "runs: its kind has side effects";
+    case Reason::Why::culling_off:
+      return "runs: culling is switched off";
+    case Reason::Why::port_unbound:
+      return fmt::format("optional port '{}' stays unbound: nothing provides '{}'",
+                         port(reason.index, reason.a), resource(reason.b));
+    case Reason::Why::not_needed:
+      return not_needed();
+    case Reason::Why::unbound:
+      return "the host leaves this optional slot unbound";
+    case Reason::Why::stands_for:
+      return fmt::format("stands for '{}' after pass '{}', which is off", resource(reason.a), pass(reason.b));
+    case Reason::Why::unwritten_export:
+      return "left as the host bound it: no pass that is on writes this optional export";
+    case Reason::Why::format:
+      return chosen_format();
+    case Reason::Why::format_not_ported:
+      return fmt::format("not {}: port '{}' of pass '{}' cannot work with it", format(),
+                         port(reason.b, reason.c), pass(reason.b));
+    case Reason::Why::format_unsupported:
+      return fmt::format("not {}: the device '{}' does not support it with image usage {:#x}", format(),
+                         plan.device_profile, reason.b);
+    case Reason::Why::history_unused:
+      return "no memory: no pass that runs uses it";
+    case Reason::Why::history_unread:
+      return "kept like a transient: no pass that runs reads its earlier frames";
+    case Reason::Why::history_read:
+      return fmt::format("{} instances: earlier frames are read down to @-{}", reason.a + 1, reason.a);
+    case Reason::Why::from_host:
+      return fmt::format("takes '{}' over from the host", resource(reason.a));
+    case Reason::Why::oldest_instance:
+      return fmt::format("reuses the oldest instance of '{}' for this frame", resource(reason.a));
+    case Reason::Why::first_use:
+      return fmt::format("first use of '{}'", resource(reason.a));
+    case Reason::Why::behind_last_use:
+      return fmt::format("behind its last use{}", when());
+    case Reason::Why::takes_memory:
+      return fmt::format("takes over memory of '{}'{}", resource(reason.a), when());
+    case Reason::Why::dependency:
+      return dependency();
+    case Reason::Why::to_host:
+      return fmt::format("hands '{}' back to the host{}", resource(reason.a),
+                         reason.b != 0 ? "; no pass touched it" : "");
+    case Reason::Why::asked_for:
+      return setting("asked for by the caller");
+    case Reason::Why::by_default:
+      return setting("its default");
+    }
+    return {};
+  }
+};
+
+auto subject(const Reason& reason) {
+  return std::tuple(reason.about, reason.index);
+}
+
+bool share_bytes(const Placement& a, const Placement& b) {
+  return a.heap == b.heap && a.offset < b.offset + b.size && b.offset < a.offset + a.size;
+}
+
+bool meet(const Placement& a, const Placement& b) {
+  return a.first_use <= b.last_use && b.first_use <= a.last_use;
+}
+
+// In large plans only the nearest in time are named.
+constexpr size_t named_neighbours = 24;
+
+} // namespace
+
+std::string reason_text(const Graph& graph, const KindRegistry& kinds, const Plan& plan,
+                        const Reason& reason) {
+  return Speaker{graph, kinds, plan, reason}.text();
+}
+
+ReasonIndex::ReasonIndex(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled)
+    : graph_(graph), kinds_(kinds), compiled_(compiled) {
+  for (const Reason& reason : compiled.reasons)
+    sorted_.push_back(&reason);
+  std::stable_sort(sorted_.begin(), sorted_.end(),
+                   [](const Reason* a, const Reason* b) { return subject(*a) < subject(*b); });
+}
+
+std::string ReasonIndex::about(Reason::About about, uint32_t index) const {
+  const auto wanted = std::tuple(about, index);
+  auto at = std::lower_bound(sorted_.begin(), sorted_.end(), wanted,
+                             [](const Reason* one, const auto& key) { return subject(*one) < key; });
+  std::string all;
+  for (; at != sorted_.end() && subject(**at) == wanted; ++at)
+    all += (all.empty() ? "" : "; ") + reason_text(graph_, kinds_, compiled_.plan, **at);
+  return all;
+}
+
+std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan) {
+  std::vector<uint32_t> by_first(plan.placements.size());
+  for (uint32_t i = 0; i < by_first.size(); ++i)
+    by_first[i] = i;
+  std::stable_sort(by_first.begin(), by_first.end(), [&](uint32_t a, uint32_t b) {
+    return plan.placements[a].first_use < plan.placements[b].first_use;
+  });
+  std::vector<std::string> texts(plan.placements.size());
+  for (size_t at = 0; at < by_first.size(); ++at) {
+    const Placement& own = plan.placements[by_first[at]];
+    std::string& text = texts[by_first[at]];
+    if (own.persistent) {
+      text = "shares no memory: its contents outlive the frame";
+      continue;
+    }
+    const size_t from = at > named_neighbours ? at - named_neighbours : 0;
+    const size_t to = std::min(by_first.size(), at + named_neighbours + 1);
+    std::string shared, apart;
+    for (size_t k = from; k < to; ++k) {
+      const Placement& other = plan.placements[by_first[k]];
+      if (k == at || other.heap != own.heap) continue;
+      const std::string& name = graph.resources[plan.resources[other.resource].declared.value].name;
+      if (share_bytes(own, other))
+        shared += fmt::format("{}'{}'", shared.empty() ? "" : ", ", name);
+      else if (meet(own, other))
+        apart +=
+            fmt::format("{}'{}' [{}, {}]", apart.empty() ? "" : ", ", name, other.first_use, other.last_use);
+    }
+    text = fmt::format("alive in passes [{}, {}]", own.first_use, own.last_use);
+    if (!shared.empty()) text += "; shares memory with " + shared;
+    if (!apart.empty()) text += "; not with " + apart + ", which live at the same time";
+    if (from > 0 || to < by_first.size()) text += "; further ones are not listed";
+  }
+  return texts;
+}
+
+} // namespace dermis
