@@ -10,7 +10,7 @@ namespace dermis {
 namespace {
 
 // Comparisons of two items the searches may make; one takes about a nanosecond.
-constexpr uint64_t tight_steps_per_item = 6'000;
+constexpr uint64_t tight_steps_per_item = 10'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
 constexpr uint32_t block_passes = 32; // positions that share one list of what is alive in them
 constexpr uint64_t unlimited = UINT64_MAX;

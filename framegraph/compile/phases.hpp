@@ -189,6 +189,10 @@ struct CompileContext {
   std::vector<PassTouch> touches;
   std::vector<uint32_t> touch_of_use;
   std::vector<std::vector<Segment>> memory; // by heap
+  std::vector<PlanBarrier> drafts;          // as found, before they are sorted into batches
+  std::vector<uint32_t>
+      batch_of;              // by draft: position of the pass it stands before; then its place in the plan
+  size_t reasons_before = 0; // of the other phases
   std::vector<Arrival> arrivals;
   std::vector<uint32_t>
       arrival_of; // by plan resource: barrier of its first use, unless the host's or a history

@@ -1,7 +1,11 @@
 // What must wait for what. Walks through the frame once, remembering how each object (a resource, or one of
 // its earlier frames) stands: every access either finds the contents visible, in the right layout, or gets
-// one barrier before its pass. Only objects of histories are walked twice, since they start as the frame
-// before left them.
+// one barrier behind the pass that it waits for and before its own. Only objects of histories are walked
+// twice, since they start as the frame before left them.
+//
+// Barriers share batches where they can: each may stand at any boundary between the pass it waits for and its
+// own, and as few boundaries as possible get a batch. That is stabbing intervals with points: in the order of
+// their ends, each takes the last point if that lies inside, else its own end becomes the next.
 
 #include "framegraph/compile/phases.hpp"
 
@@ -63,7 +67,8 @@ struct Synchronizer {
   CompileContext& c;
   Plan& plan;
   const std::array<UsageSet, usage_sets>& sets;
-  bool emit = false; // barriers; otherwise only how each object ends
+  bool emit = false;              // barriers; otherwise only how each object ends
+  uint32_t last_batch = no_value; // position of the pass behind it
 
   void because(uint32_t barrier, Reason::Why why, uint32_t resource, uint32_t b = 0) {
     c.because(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
@@ -147,17 +152,47 @@ struct Synchronizer {
     pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
   }
 
+  // Adds a barrier for the pass at `position` that waits for nothing of this frame behind the pass at
+  // `after`.
+  void batch(uint32_t index, uint32_t after, uint32_t position) {
+    const bool shared = last_batch != no_value && (after == no_value || after < last_batch);
+    if (!shared) last_batch = position;
+    c.batch_of[index] = last_batch;
+  }
+
+  uint32_t draft() {
+    c.drafts.emplace_back();
+    c.batch_of.push_back(no_value);
+    return static_cast<uint32_t>(c.drafts.size() - 1);
+  }
+
+  // Brings the drafts into the order of their batches, those of one batch as they were found.
+  void sort_into_batches() {
+    for (const uint32_t position : c.batch_of)
+      ++plan.passes[position].barrier_count;
+    uint32_t filled = 0;
+    for (PlanPass& pass : plan.passes) {
+      pass.first_barrier = filled;
+      filled += pass.barrier_count;
+      pass.barrier_count = 0;
+    }
+    plan.barriers.resize(c.drafts.size());
+    for (uint32_t i = 0; i < c.drafts.size(); ++i) {
+      PlanPass& pass = plan.passes[c.batch_of[i]];
+      c.batch_of[i] = pass.first_barrier + pass.barrier_count++;
+      plan.barriers[c.batch_of[i]] = c.drafts[i];
+    }
+    for (size_t r = c.reasons_before; r < c.out->reasons.size(); ++r)
+      c.out->reasons[r].index = c.batch_of[c.out->reasons[r].index];
+  }
+
   void run_pass(uint32_t position) {
     PlanPass& pass = plan.passes[position];
     const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
     collect(first_use, end);
-    if (emit) {
-      add_accesses(pass, first_use, end);
-      pass.first_barrier = static_cast<uint32_t>(plan.barriers.size());
-    }
+    if (emit) add_accesses(pass, first_use, end);
     for (const PassTouch& touch : c.touches)
       run_touch(touch, position);
-    if (emit) pass.barrier_count = static_cast<uint32_t>(plan.barriers.size()) - pass.first_barrier;
   }
 
   void run_touch(const PassTouch& touch, uint32_t position) {
@@ -166,17 +201,19 @@ struct Synchronizer {
     const Layout layout = layout_of(touch);
     bool waited = true;
     if (!state.touched) {
-      if (emit) arrive(touch, set, layout);
+      if (emit) arrive(touch, set, layout, position);
     } else {
       PlanBarrier barrier;
       waited = dependency(state, touch.usages, set, layout, barrier);
       if (waited && emit) {
         barrier.resource = touch.resource;
         barrier.frames_back = touch.frames_back;
-        c.because(Reason::About::barrier, static_cast<uint32_t>(plan.barriers.size()),
-                  Reason::Why::dependency, state.last_pass, state.carried ? 1 : 0, position);
+        const uint32_t index = draft();
+        c.because(Reason::About::barrier, index, Reason::Why::dependency, state.last_pass,
+                  state.carried ? 1 : 0, position);
         if (state.carried) barrier.why = PlanBarrier::Why::history;
-        plan.barriers.push_back(barrier);
+        c.drafts[index] = barrier;
+        batch(index, state.carried ? no_value : state.last_pass, position);
       }
     }
     const bool transition = !state.touched || layout != state.layout;
@@ -234,10 +271,11 @@ struct Synchronizer {
   }
 
   // The first barrier of an object whose old contents do not count.
-  void arrive(const PassTouch& touch, const UsageSet& set, Layout layout) {
-    const auto index = static_cast<uint32_t>(plan.barriers.size());
+  void arrive(const PassTouch& touch, const UsageSet& set, Layout layout, uint32_t position) {
+    const uint32_t index = draft();
     const PlanResource& own = plan.resources[touch.resource];
-    PlanBarrier& barrier = plan.barriers.emplace_back();
+    PlanBarrier& barrier = c.drafts[index];
+    uint32_t after = no_value;
     barrier.resource = touch.resource;
     barrier.frames_back = touch.frames_back;
     barrier.destination_stages = set.stages;
@@ -252,14 +290,16 @@ struct Synchronizer {
       barrier.why = PlanBarrier::Why::history;
       because(index, Reason::Why::oldest_instance, touch.resource);
     } else {
-      take_over(touch.resource, index);
+      after = take_over(touch.resource, index);
     }
+    batch(index, after, position);
   }
 
   // Memory passes from those that had its bytes before in this frame; where there is none, from those that
   // had them last in the frame before, which are known when the walk is over. Earlier ones than the last had
   // to be done before it: the wait reaches them through it.
-  void take_over(uint32_t resource, uint32_t barrier) {
+  // Returns the last pass of this frame that had any of them, no_value if none had.
+  uint32_t take_over(uint32_t resource, uint32_t barrier) {
     const Placement& place = plan.placements[plan.resources[resource].first_instance];
     std::vector<Segment>& segments = c.memory[place.heap];
     const uint64_t begin = place.offset, end = place.offset + place.size;
@@ -268,9 +308,12 @@ struct Synchronizer {
     const auto first = behind(segments, begin);
     auto last = first;
     uint64_t reached = begin;
+    uint32_t after = no_value;
     for (; last != segments.end() && last->begin < end; ++last) {
       if (last->begin > reached) c.arrivals.push_back({reached, last->begin, place.heap, barrier, resource});
       inherit(last->resource, resource, barrier, false);
+      const uint32_t ended = c.states[c.first_object[last->resource]].last_pass;
+      after = after == no_value ? ended : std::max(after, ended);
       reached = last->end;
     }
     if (reached < end) c.arrivals.push_back({reached, end, place.heap, barrier, resource});
@@ -290,6 +333,7 @@ struct Synchronizer {
       segments.insert(first + static_cast<std::ptrdiff_t>(in_place),
                       pieces.begin() + static_cast<std::ptrdiff_t>(in_place),
                       pieces.begin() + static_cast<std::ptrdiff_t>(count));
+    return after;
   }
 
   // The first segment that ends behind `at`.
@@ -305,8 +349,8 @@ struct Synchronizer {
   }
 
   void inherit(uint32_t from, uint32_t resource, uint32_t barrier, bool frame_before) {
-    wait_for(plan.barriers[barrier], tail(c.states[c.first_object[from]]));
-    if (from != resource) plan.barriers[barrier].why = PlanBarrier::Why::alias;
+    wait_for(c.drafts[barrier], tail(c.states[c.first_object[from]]));
+    if (from != resource) c.drafts[barrier].why = PlanBarrier::Why::alias;
     because(barrier, from == resource ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from,
             frame_before ? 1 : 0);
   }
@@ -370,9 +414,13 @@ void synchronize(CompileContext& c) {
   for (std::vector<Segment>& segments : c.memory)
     segments.clear();
   walk.emit = true;
+  c.drafts.clear();
+  c.batch_of.clear();
+  c.reasons_before = c.out->reasons.size();
   for (uint32_t position = 0; position < plan.passes.size(); ++position)
     walk.run_pass(position);
   walk.settle_arrivals();
+  walk.sort_into_batches();
   plan.first_final_barrier = static_cast<uint32_t>(plan.barriers.size());
   for (uint32_t r = 0; r < plan.resources.size(); ++r)
     if (walk.host_owned(r)) walk.hand_back(r);
