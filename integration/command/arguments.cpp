@@ -274,6 +274,19 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("DIR");
       },
       true);
+  add_verb<BenchTruthOptions>(
+      bench, invocation, "truth", "Laws with known answers, beside what every technique makes of them",
+      "dermis bench truth --json build/truth.json", bench_truth,
+      [](CLI::App& verb, BenchTruthOptions& options) {
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
+        verb.add_option("--file", options.file, "Techniques and tolerances [tests/benchmark/truth.json]")
+            ->type_name("FILE");
+      },
+      true);
 }
 
 std::string_view name_part(std::string_view argument) {

@@ -115,4 +115,10 @@ struct BenchErrorTimeOptions {
 };
 ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& options);
 
+struct BenchTruthOptions {
+  std::string file = "tests/benchmark/truth.json"; // techniques and tolerances
+  std::string json, csv, html;                     // files to write; "": none
+};
+ExitCode bench_truth(const Session& session, const BenchTruthOptions& options);
+
 } // namespace dermis::tools

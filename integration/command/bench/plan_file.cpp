@@ -56,22 +56,7 @@ struct FileReader {
 
   void technique(NodeId node, size_t number) {
     ObjectReader object(document, node, fmt::format("technique {}", number), diagnostics);
-    TechniqueRequest request;
-    if (const auto name = object.name("technique")) request.technique = *name;
-    if (const auto text = object.string("setting")) request.setting = *text;
-    if (const auto path = object.string("graph")) request.graph = *path;
-    if (const auto flag = object.boolean("heat_map", Need::optional)) request.heat_map = *flag;
-    const NodeId set = object.object("set", Need::optional);
-    if (set.valid())
-      for (const NodeId one : children(document, set)) {
-        const Node& value = document[one];
-        const std::string name(document.key(one));
-        if (value.kind == NodeKind::integer)
-          request.set.emplace_back(name, fmt::format("{}", value.integer));
-        else if (const auto text =
-                     read_string(document, one, fmt::format("'{}' of {}", name, object.what()), diagnostics))
-          request.set.emplace_back(name, std::string(*text));
-      }
+    TechniqueRequest request = read_technique(document, object, diagnostics);
     if (object.finish()) file.techniques.push_back(std::move(request));
   }
 
@@ -123,6 +108,26 @@ struct FileReader {
 };
 
 } // namespace
+
+TechniqueRequest read_technique(const Document& document, ObjectReader& object, Diagnostics& diagnostics) {
+  TechniqueRequest request;
+  if (const auto name = object.name("technique")) request.technique = *name;
+  if (const auto text = object.string("setting")) request.setting = *text;
+  if (const auto path = object.string("graph")) request.graph = *path;
+  if (const auto flag = object.boolean("heat_map", Need::optional)) request.heat_map = *flag;
+  const NodeId set = object.object("set", Need::optional);
+  if (!set.valid()) return request;
+  for (const NodeId one : children(document, set)) {
+    const Node& value = document[one];
+    const std::string name(document.key(one));
+    if (value.kind == NodeKind::integer)
+      request.set.emplace_back(name, fmt::format("{}", value.integer));
+    else if (const auto text =
+                 read_string(document, one, fmt::format("'{}' of {}", name, object.what()), diagnostics))
+      request.set.emplace_back(name, std::string(*text));
+  }
+  return request;
+}
 
 std::optional<ErrorTimeFile> read_error_time(const std::string& path, Diagnostics& diagnostics) {
   const auto document = read_document(path, diagnostics);

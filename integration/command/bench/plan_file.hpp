@@ -2,6 +2,7 @@
 // What `dermis bench error-time` measures, as data: tests/benchmark/error_time.json. Adding a technique, a
 // setting or a framing is a line there.
 
+#include "framegraph/text/reader.hpp"
 #include "integration/command/bench/subject.hpp"
 #include "integration/command/verbs.hpp"
 
@@ -29,6 +30,9 @@ struct ErrorTimeFile {
   uint32_t self_samples = 4096;         // of the reference of psnr_db_self
   std::vector<std::string> self_scenes; // "scene/framing" where that is measured; it takes long
 };
+
+// The keys technique, setting, graph, set and heat_map of an entry; whoever calls finishes the object.
+TechniqueRequest read_technique(const Document& document, ObjectReader& object, Diagnostics& diagnostics);
 
 // nullopt with located errors.
 std::optional<ErrorTimeFile> read_error_time(const std::string& path, Diagnostics& diagnostics);
