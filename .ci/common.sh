@@ -8,18 +8,33 @@ packages=(
   mesa-vulkan-drivers vulkan-validationlayers
 )
 
+# What the fuzz targets need beside them.
+fuzz_packages=(clang libclang-rt-14-dev)
+
 say() { printf '%s\n' "$*"; }
 fail() { # exit code, message
   printf '%s: %s\n' "$(basename "$0")" "$2" >&2
   exit "$1"
 }
 
-# Packages that the build needs and that are not installed, one a line.
+# Those of the given packages that are not installed, one a line.
 missing_packages() {
   local package
-  for package in "${packages[@]}"; do
+  for package in "$@"; do
     [[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)" == installed ]] || say "$package"
   done
+}
+
+# Is this a user who may install packages, with or without sudo?
+may_install() { [[ $EUID -eq 0 ]] || { command -v sudo >/dev/null && sudo -n true 2>/dev/null; }; }
+
+# Can the fuzz targets be built here, once install_packages was given their packages?
+can_fuzz() {
+  if command -v dpkg-query >/dev/null; then
+    [[ -z "$(missing_packages "${fuzz_packages[@]}")" ]] || may_install
+  else
+    command -v clang++ >/dev/null
+  fi
 }
 
 install_packages() {
@@ -28,10 +43,10 @@ install_packages() {
     return
   fi
   local missing become=()
-  mapfile -t missing < <(missing_packages)
+  mapfile -t missing < <(missing_packages "${packages[@]}")
   [[ ${#missing[@]} -gt 0 ]] || return 0
   if [[ $EUID -ne 0 ]]; then
-    if command -v sudo >/dev/null && sudo -n true 2>/dev/null; then
+    if may_install; then
       become=(sudo)
     else
       fail 3 "missing packages; as root: apt-get install --no-install-recommends ${missing[*]}"

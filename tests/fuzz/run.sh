@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Runs every fuzz target for some seconds from its committed corpus, the shipped files and a dictionary.
+# usage: run.sh [SECONDS [TARGET...]]; exit code 1: a finding, kept in build/fuzz/findings
+set -euo pipefail
+cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
+
+seconds=${1:-10}
+shift || true
+targets=("$@")
+[[ ${#targets[@]} -gt 0 ]] || targets=(graph profile scene capture exr)
+
+declare -A shipped=([graph]=configs/graphs [profile]=configs/profiles [scene]=configs/scenes)
+findings=build/fuzz/findings
+mkdir -p "$findings"
+failed=()
+for target in "${targets[@]}"; do
+  grown=build/fuzz/corpus/$target # what earlier runs found stays for the next
+  mkdir -p "$grown"
+  folders=("$grown" "tests/fuzz/corpus/$target")
+  [[ -z ${shipped[$target]:-} ]] || folders+=("${shipped[$target]}")
+  log=build/fuzz/$target.log
+  if build/fuzz/fuzz/fuzz_"$target" -max_total_time="$seconds" -timeout=5 -rss_limit_mb=2048 -max_len=65536 \
+    -dict=tests/fuzz/keys.dict -artifact_prefix="$findings/$target-" -print_final_stats=1 -verbosity=1 \
+    "${folders[@]}" >"$log" 2>&1; then
+    runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+    covered=$(grep -o 'cov: [0-9]*' "$log" | tail -n 1)
+    printf 'fuzz %-10s %9s inputs, %s, no finding\n' "$target" "$runs" "$covered"
+  else
+    printf 'fuzz %-10s FINDING, kept in %s; the log: %s\n' "$target" "$findings" "$log"
+    tail -n 30 "$log"
+    failed+=("$target")
+  fi
+done
+[[ ${#failed[@]} -eq 0 ]]
