@@ -67,6 +67,48 @@ void note(CompileContext& c, uint32_t u, const PassKind& kind) {
   life.first_narrow = static_cast<uint32_t>(c.narrow.size() - 1);
 }
 
+// When the oldest frame of a history is read for the last time, and when this frame's is first touched.
+struct Renewal {
+  uint32_t last_read = 0, first_touch = no_value;
+  bool own_texels = true; // whether the pass that writes reads the oldest frame in no other way
+};
+
+Renewal renewal_of(const CompileContext& c, ResourceId id, uint32_t deepest) {
+  Renewal result;
+  for (uint32_t position = 0; position < c.order.size(); ++position) {
+    const uint32_t pass = c.order[position].value;
+    bool reads_freely = false, touches = false;
+    for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
+      const Use& use = c.uses[u];
+      if (use.trouble != Use::Trouble::none || use.resource != id) continue;
+      touches |= use.frames_back == 0;
+      if (use.frames_back != deepest) continue;
+      result.last_read = position;
+      reads_freely |= !c.kind(PassId{pass}).ports[use.port].own_texels;
+    }
+    if (touches && result.first_touch == no_value) {
+      result.first_touch = position;
+      result.own_texels = !reads_freely;
+    }
+  }
+  return result;
+}
+
+// A history needs no instance beyond the frames it keeps where the oldest has been read before its memory is
+// written, or is read by the writer alone, each texel by the invocation that writes it.
+void renew_in_place(CompileContext& c) {
+  for (PlanResource& resource : c.out->plan.resources) {
+    Lifetime& life = c.lifetimes[resource.declared.value];
+    if (life.deepest_read == 0 || !c.input->alias || resource.declared == c.input->keep_alive) continue;
+    const Renewal renewal = renewal_of(c, resource.declared, life.deepest_read);
+    life.updates_oldest = renewal.last_read == renewal.first_touch && renewal.own_texels;
+    if (renewal.last_read >= renewal.first_touch && !life.updates_oldest) continue;
+    resource.instance_count = life.deepest_read;
+    c.because(Reason::About::resource, resource.declared.value, Reason::Why::renewed_in_place,
+              life.deepest_read, life.updates_oldest ? 1 : 0);
+  }
+}
+
 void explain_history(CompileContext& c, uint32_t resource, const Lifetime& life) {
   const Reason::Why why = !life.used               ? Reason::Why::history_unused
                           : life.deepest_read == 0 ? Reason::Why::history_unread
@@ -107,6 +149,7 @@ void lifetimes(CompileContext& c) {
     uint8_t& fits = c.kind_fits[planned.kind.value];
     if (fits != 1) fits = check_limits(c, pass) ? 1 : 2;
   }
+  renew_in_place(c);
 }
 
 } // namespace dermis

@@ -33,7 +33,7 @@ void make_placements(CompileContext& c) {
     if (c.host_owned(resource.declared)) continue;
     const Interval& life = c.intervals[resource.declared.value];
     const MemoryNeeds& needs = c.needs[r];
-    const bool persistent = resource.instance_count > 1;
+    const bool persistent = c.lifetimes[resource.declared.value].deepest_read > 0;
     const uint32_t index = group_of(c, persistent, needs.memory_type_bits);
     MemoryGroup& group = c.groups[index];
     group.type_bits &= needs.memory_type_bits;

@@ -64,6 +64,7 @@ struct Lifetime {
   bool used = false;
   uint32_t vk_usage = 0;
   uint32_t deepest_read = 0;        // largest frames_back that a live pass reads
+  bool updates_oldest = false;      // the pass that reads the deepest one writes this frame's over it
   uint32_t first_narrow = no_value; // into CompileContext::narrow: a port that limits the format
 };
 

@@ -13,9 +13,9 @@ namespace dermis {
 
 inline constexpr uint32_t no_instance = 0xffffffffu;
 
-// A physical image or buffer. Transients have one instance; a history resource of N frames has up to N+1
-// instances of which one is current: in frame f (counted per view from 0), `frames_back` b of history
-// resource r lives in instance first_instance + (f - b) mod instance_count.
+// A physical image or buffer. Transients have one instance; a history resource of which N earlier frames are
+// read has N+1, or N where a frame may be written into the memory of the oldest. In frame f (counted per view
+// from 0), `frames_back` b of resource r lives in instance first_instance + (f - b) mod instance_count.
 struct PlanResource {
   ResourceId declared;
   ResourceType type = ResourceType::image;
@@ -26,7 +26,7 @@ struct PlanResource {
   uint32_t width = 1, height = 1, mips = 1, layers = 1; // images, at the allocated view size
   uint64_t bytes = 0;                                   // buffers: size asked for
   uint32_t vk_usage = 0;                                // of all its ports; histories: and of a clear
-  uint32_t instance_count = 1;                          // > 1: history
+  uint32_t instance_count = 1;
   uint32_t first_instance = no_instance; // into Plan::placements; no_instance: the host's memory
   int32_t slot =
       -1; // imports and exports, bound or not: running number among them in the order of Graph::resources
@@ -54,6 +54,7 @@ struct PlanAccess { // one bound port of one pass
   Stage stages = 0;
   Access access = 0;
   Layout layout = Layout::undefined;
+  bool own_texels = false; // reads only what the same invocation writes: see Port::own_texels
 };
 
 // One memory dependency on the whole of one resource: an image barrier over all mips and layers, or a buffer
@@ -98,7 +99,7 @@ struct PlanPass {
 // with their contents discarded) into their layout at the start before the first frame that reads them.
 struct PlanHistory {
   uint32_t resource = 0;     // into Plan::resources
-  uint32_t frames = 1;       // deepest `@-N` this plan reads; instance_count is frames + 1
+  uint32_t frames = 1;       // deepest `@-N` this plan reads
   uint32_t first_layout = 0; // into Plan::history_layouts, one for each frames_back 0 .. frames
   HistoryDeclaration declaration;
 };
@@ -148,6 +149,7 @@ struct Reason {
     history_unused,     // no pass that runs uses it
     history_unread,     // no pass that runs reads its earlier frames
     history_read,       // earlier frames are read, down to a
+    renewed_in_place,   // the oldest frame a has been read when this one is written; b: 1 by the same pass
     // of a barrier; b: 1 if that was in the frame before
     from_host,       // the first access to resource a takes it over
     oldest_instance, // of resource a becomes that of this frame

@@ -311,7 +311,7 @@ void resolve_formats(CompileContext& c) {
     resource.slot = own_slot;
     c.plan_resource[i] = static_cast<uint32_t>(plan.resources.size() - 1);
     c.needs.push_back(c.host_owned(id) ? MemoryNeeds{} : needs_of(c, resource));
-    if (resource.instance_count == 1) c.transient_bytes[i] = c.needs.back().size;
+    if (life.deepest_read == 0) c.transient_bytes[i] = c.needs.back().size;
   }
 }
 

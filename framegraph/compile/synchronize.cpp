@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace dermis {
 namespace {
@@ -75,13 +76,24 @@ struct Synchronizer {
   }
   bool host_owned(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
 
+  const Lifetime& life(uint32_t resource) const {
+    return c.lifetimes[plan.resources[resource].declared.value];
+  }
+  // Frames of a resource that a frame touches, this one included: each is an object.
+  uint32_t roles(uint32_t resource) const { return life(resource).deepest_read + 1; }
+  // This frame's and the oldest are one object where the one is written over the other.
+  uint32_t object_of(uint32_t resource, uint32_t frames_back) const {
+    const bool oldest = frames_back == 0 && life(resource).updates_oldest;
+    return c.first_object[resource] + (oldest ? life(resource).deepest_read : frames_back);
+  }
+
   // Returns whether the plan has histories.
   bool number_objects() {
     uint32_t objects = 0;
     c.first_object.clear();
-    for (const PlanResource& resource : plan.resources) {
+    for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       c.first_object.push_back(objects);
-      objects += resource.instance_count;
+      objects += roles(r);
     }
     c.states.assign(objects, {});
     return objects != plan.resources.size();
@@ -91,9 +103,9 @@ struct Synchronizer {
   // arrives with its first barrier.
   void carry_over() {
     for (uint32_t r = 0; r < plan.resources.size(); ++r)
-      for (uint32_t back = plan.resources[r].instance_count; back-- > 0;) {
+      for (uint32_t back = roles(r); back-- > 0;) {
         const uint32_t object = c.first_object[r] + back;
-        c.states[object] = back == 0 ? ObjectState{} : c.ends[object - 1];
+        c.states[object] = back == 0 ? ObjectState{} : c.ends[object_of(r, back - 1)];
         c.states[object].carried = back != 0;
       }
   }
@@ -102,8 +114,8 @@ struct Synchronizer {
   void find_ends() {
     c.ends.assign(c.states.size(), {});
     uint32_t deepest = 1;
-    for (const PlanResource& resource : plan.resources)
-      deepest = std::max(deepest, resource.instance_count);
+    for (uint32_t r = 0; r < plan.resources.size(); ++r)
+      deepest = std::max(deepest, roles(r));
     for (uint32_t frame = 0; frame < deepest; ++frame) {
       carry_over();
       for (uint32_t position = 0; position < plan.passes.size(); ++position)
@@ -127,7 +139,7 @@ struct Synchronizer {
       c.touch_of_use.push_back(no_value);
       if (use.trouble != Use::Trouble::none) continue;
       const uint32_t resource = c.plan_resource[use.resource.value];
-      const uint32_t object = c.first_object[resource] + use.frames_back;
+      const uint32_t object = object_of(resource, use.frames_back);
       const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
       uint32_t same = 0;
       while (same < c.touches.size() && c.touches[same].object != object)
@@ -139,6 +151,7 @@ struct Synchronizer {
   }
 
   void add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end) {
+    const std::span<const Port> ports = c.kind(pass.declared).ports;
     pass.first_access = static_cast<uint32_t>(plan.accesses.size());
     for (uint32_t u = first_use; u < end; ++u) {
       const uint32_t touched = c.touch_of_use[u - first_use];
@@ -146,8 +159,8 @@ struct Synchronizer {
       const PassTouch& touch = c.touches[touched];
       const Use& use = c.uses[u];
       const UsageSet& usage = sets[size_t{1} << static_cast<uint32_t>(use.usage)];
-      plan.accesses.push_back(
-          {use.port, touch.resource, use.frames_back, usage.stages, usage.access, layout_of(touch)});
+      plan.accesses.push_back({use.port, touch.resource, use.frames_back, usage.stages, usage.access,
+                               layout_of(touch), use.frames_back > 0 && ports[use.port].own_texels});
     }
     pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
   }
@@ -285,8 +298,12 @@ struct Synchronizer {
       barrier.from_host = true;
       barrier.why = PlanBarrier::Why::host_before;
       because(index, Reason::Why::from_host, touch.resource);
-    } else if (own.instance_count > 1) { // the oldest instance becomes the newest
-      wait_for(barrier, tail(c.ends[c.first_object[touch.resource] + own.instance_count - 1]));
+    } else if (roles(touch.resource) > 1) {
+      const uint32_t oldest = c.first_object[touch.resource] + roles(touch.resource) - 1;
+      const bool in_place = own.instance_count < roles(touch.resource);
+      const ObjectState& before = in_place ? c.states[oldest] : c.ends[oldest];
+      if (in_place && !before.carried) after = before.last_pass;
+      wait_for(barrier, tail(before));
       barrier.why = PlanBarrier::Why::history;
       because(index, Reason::Why::oldest_instance, touch.resource);
     } else {
@@ -385,16 +402,15 @@ struct Synchronizer {
 
   void describe_histories() {
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
-      const PlanResource& resource = plan.resources[r];
-      if (resource.instance_count == 1) continue;
+      if (roles(r) == 1) continue;
       PlanHistory history;
       history.resource = r;
-      history.frames = resource.instance_count - 1;
+      history.frames = roles(r) - 1;
       history.first_layout = static_cast<uint32_t>(plan.history_layouts.size());
-      history.declaration = c.graph->resources[resource.declared.value].history;
+      history.declaration = c.graph->resources[plan.resources[r].declared.value].history;
       plan.history_layouts.push_back(Layout::undefined);
-      for (uint32_t back = 1; back < resource.instance_count; ++back)
-        plan.history_layouts.push_back(c.ends[c.first_object[r] + back - 1].layout);
+      for (uint32_t back = 1; back < roles(r); ++back)
+        plan.history_layouts.push_back(c.ends[object_of(r, back - 1)].layout);
       plan.histories.push_back(history);
     }
   }

@@ -108,7 +108,10 @@ struct Speaker {
     case Reason::Why::history_unread:
       return "kept like a transient: no pass that runs reads its earlier frames";
     case Reason::Why::history_read:
-      return fmt::format("{} instances: earlier frames are read down to @-{}", reason.a + 1, reason.a);
+      return fmt::format("earlier frames are read down to @-{}", reason.a);
+    case Reason::Why::renewed_in_place:
+      return fmt::format("each frame takes the memory of @-{}, which {}", reason.a,
+                         reason.b != 0 ? "its writer reads texel by texel" : "has been read by then");
     case Reason::Why::from_host:
       return fmt::format("takes '{}' over from the host", resource(reason.a));
     case Reason::Why::oldest_instance:

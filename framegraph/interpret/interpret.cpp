@@ -19,9 +19,12 @@ struct Interpreter {
 
   void prepare() {
     memory = memory_of(plan);
-    for (const PlanResource& resource : plan.resources)
+    for (const PlanResource& resource : plan.resources) {
+      const bool history =
+          resource.first_instance != no_instance && plan.placements[resource.first_instance].persistent;
       for (uint32_t i = 0; i < resource.instance_count; ++i)
-        pieces.push_back(resource.instance_count > 1 ? Pixels{} : poison());
+        pieces.push_back(history ? Pixels{} : poison());
+    }
     uint32_t slots = 0;
     for (const PlanResource& resource : plan.resources)
       slots = std::max(slots, static_cast<uint32_t>(resource.slot + 1));

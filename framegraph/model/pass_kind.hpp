@@ -20,6 +20,8 @@ struct Port {
       glsl_type; // images: "texture2D", "utexture2D", "image2D", "uimage2D"; buffers: the element type
   std::string_view doc;
   std::span<const Format> formats = {}; // formats the shader can work with; empty = any the resource declares
+  bool own_texels = false; // reads of an image: each invocation reads only the texels that it alone writes,
+                           // before it writes them; the image may then be the one that it writes
 };
 
 enum class SettingType : uint8_t { boolean, integer, real, enumeration, choice };

@@ -8,6 +8,13 @@ namespace {
 struct Checker {
   const Plan& plan;
   std::vector<std::string> objections;
+  std::vector<uint32_t> deepest = {}; // by resource: earlier frames that its history keeps
+
+  void find_histories() {
+    deepest.assign(plan.resources.size(), 0);
+    for (const PlanHistory& history : plan.histories)
+      if (history.resource < deepest.size()) deepest[history.resource] = history.frames;
+  }
 
   void expect(bool holds, const char* what, size_t index) {
     if (!holds) objections.push_back(fmt::format("{} (index {})", what, index));
@@ -16,7 +23,7 @@ struct Checker {
   static bool range_in(uint64_t first, uint64_t count, size_t size) { return first + count <= size; }
 
   bool object_exists(uint32_t resource, uint32_t frames_back) const {
-    return resource < plan.resources.size() && frames_back < plan.resources[resource].instance_count;
+    return resource < plan.resources.size() && frames_back <= deepest[resource];
   }
 
   void resources() {
@@ -33,7 +40,7 @@ struct Checker {
       for (uint32_t k = 0; inside && k < resource.instance_count; ++k) {
         const Placement& placement = plan.placements[resource.first_instance + k];
         expect(placement.resource == i, "a placement belongs to another resource", i);
-        expect(placement.persistent == (resource.instance_count > 1), "only history outlives a frame", i);
+        expect(placement.persistent == (deepest[i] > 0), "only history outlives a frame", i);
       }
     }
   }
@@ -92,12 +99,13 @@ struct Checker {
       expect(exists, "a history belongs to no resource", h);
       if (!exists) continue;
       ++described[history.resource];
-      expect(plan.resources[history.resource].instance_count == history.frames + 1 &&
+      const uint32_t instances = plan.resources[history.resource].instance_count;
+      expect(history.frames >= 1 && instances <= history.frames + 1 && instances >= history.frames &&
                  range_in(history.first_layout, uint64_t{history.frames} + 1, plan.history_layouts.size()),
              "a history has the wrong number of instances or layouts", h);
     }
     for (size_t r = 0; r < plan.resources.size(); ++r)
-      expect(described[r] == (plan.resources[r].instance_count > 1 ? 1u : 0u),
+      expect(described[r] == (plan.resources[r].instance_count > 1 || deepest[r] > 0 ? 1u : 0u),
              "a history is not described once", r);
   }
 };
@@ -110,6 +118,7 @@ bool share_memory(const Placement& a, const Placement& b) {
 
 std::vector<std::string> verify_structure(const Plan& plan) {
   Checker checker{plan, {}};
+  checker.find_histories();
   checker.resources();
   checker.placements();
   checker.passes();

@@ -5,8 +5,10 @@
 //
 //  read    every earlier write to the same bytes is ordered before it, the last one to the same thing is
 //          visible to it, and the contents are defined
+//          and are those of the frame meant: written that many frames ago, or before the first
 //  write   every earlier access to the same bytes is ordered before it, every earlier write is available, and
 //          the last one visible to it unless it was read since: then the wait for the reader is enough
+//          a pass reads and writes the same thing as two frames of a history only texel by texel
 //  layout  equals what the access was planned with; transitions are writes; `undefined` discards the contents
 //  host    a slot is taken over before its first access and handed back, ordered and available, at the end
 
@@ -44,6 +46,7 @@ struct Thing {
   bool with_host = false;   // not ours to touch now
   bool handed_back = false; // to the host, in this frame
   bool defined = false;     // contents mean something
+  int64_t of_frame = 0;     // what was written last: below 0 as the executor made it
   Layout layout = Layout::undefined;
   std::vector<Event> events;
 };
@@ -72,6 +75,7 @@ struct Machine {
       for (uint32_t back = 1; back <= history.frames; ++back) {
         Thing& thing = things[thing_of(history.resource, back)];
         thing.defined = true;
+        thing.of_frame = -int64_t{back};
         thing.layout = plan.history_layouts[history.first_layout + back];
       }
   }
@@ -115,10 +119,17 @@ struct Machine {
       visit(things[t], t == index);
   }
 
+  bool renewed_in_place(uint32_t resource) const {
+    return std::any_of(plan.histories.begin(), plan.histories.end(), [&](const PlanHistory& history) {
+      return history.resource == resource && plan.resources[resource].instance_count == history.frames;
+    });
+  }
+
   void begin_frame() {
     for (Thing& thing : things)
       thing.handed_back = false;
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
+      if (renewed_in_place(r)) continue; // it holds the oldest frame still
       Thing& current = things[thing_of(r, 0)];
       current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
     }
@@ -215,6 +226,9 @@ struct Machine {
     if (thing.image && thing.layout != access.layout)
       wrong("is not in the layout the access was planned with");
     if (reads && !thing.defined) wrong("is read, but its contents are not defined");
+    if (reads && thing.defined && thing.placement != no_instance &&
+        plan.placements[thing.placement].persistent && thing.of_frame != int64_t{frame} - access.frames_back)
+      wrong("is read, but holds the contents of another frame");
     for_each_overlapping(index, [&](const Thing& other, bool own) {
       for (const Event& event : other.events) {
         const bool ordered = (access.stages & ~event.ordered) == 0;
@@ -231,6 +245,20 @@ struct Machine {
     });
   }
 
+  // Two frames of a history in one thing, one read and one written by the same pass.
+  void check_own_texels(const PlanAccess* accesses, uint32_t count, const PlanAccess& read,
+                        const std::string& where) {
+    if ((read.access & ~all_write_access) == 0 || read.own_texels) return;
+    const auto overwrites = [&](const PlanAccess& write) {
+      return (write.access & all_write_access) != 0 && write.resource == read.resource &&
+             write.frames_back != read.frames_back &&
+             thing_of(write.resource, write.frames_back) == thing_of(read.resource, read.frames_back);
+    };
+    if (std::any_of(accesses, accesses + count, overwrites))
+      object("is written over by the pass that reads it, not texel by texel", read.resource, read.frames_back,
+             where);
+  }
+
   void leave(const PlanAccess& access, bool first_of_pass) {
     const uint32_t index = thing_of(access.resource, access.frames_back);
     const Access writes = access.access & all_write_access;
@@ -242,6 +270,7 @@ struct Machine {
       // Everything before is ordered before this write, so whatever waits for the write waits for it too.
       if (first_of_pass) thing.events.clear();
       thing.defined = true;
+      thing.of_frame = int64_t{frame} - access.frames_back;
     }
     thing.events.push_back({access.stages, writes, writes != 0, 0, false, {}});
   }
@@ -249,8 +278,10 @@ struct Machine {
   void run(const PlanPass& pass, const std::string& where) {
     const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
     run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, where);
-    for (uint32_t a = 0; a < pass.access_count; ++a)
+    for (uint32_t a = 0; a < pass.access_count; ++a) {
       check(accesses[a], where);
+      check_own_texels(accesses, pass.access_count, accesses[a], where);
+    }
     for (uint32_t a = 0; a < pass.access_count; ++a) {
       const bool first = std::none_of(accesses, accesses + a, [&](const PlanAccess& earlier) {
         return earlier.resource == accesses[a].resource && earlier.frames_back == accesses[a].frames_back;
@@ -277,8 +308,8 @@ std::vector<std::string> verify(const Plan& plan) {
   auto objections = verify_structure(plan);
   if (!objections.empty()) return objections;
   uint32_t frames = 3; // the first, one that follows it, and one that follows a frame like itself
-  for (const PlanResource& resource : plan.resources)
-    frames = std::max(frames, resource.instance_count + 2);
+  for (const PlanHistory& history : plan.histories)
+    frames = std::max(frames, history.frames + 3);
   Machine machine{plan};
   for (uint32_t f = 0; f < frames && machine.objections.empty(); ++f)
     machine.run_frame();

@@ -225,6 +225,83 @@ TEST(History, InstancesTakeTurnsAndKeepTheirContentsOverThreeFrames) {
     EXPECT_TRUE(whole.plan.placements[sum.first_instance + i].persistent);
 }
 
+const PlanResource& history_of(const Plan& plan) {
+  return plan.resources[plan.histories.at(0).resource];
+}
+
+TEST(History, ThatWasReadBeforeItIsWrittenIsRenewedInPlace) {
+  GraphBuilder b;
+  b.import("light");
+  b.history("sum", 2);
+  b.exported("result");
+  b.pass("show", "test.need", {{"a", "sum@-2"}}, {{"out", "result"}});
+  b.pass("accumulate", "test.shade", {{"a", "light"}, {"b", "sum@-1"}}, {{"out", "sum"}});
+  const auto whole = compiled(b);
+  EXPECT_EQ(whole.plan.histories.at(0).frames, 2u);
+  EXPECT_EQ(history_of(whole.plan).instance_count, 2u);
+  EXPECT_THAT(reasons(b, whole, Reason::About::resource, b.resource("sum").value),
+              HasSubstr("has been read by then"));
+  CompileInput apart = b.input();
+  apart.alias = false;
+  EXPECT_EQ(history_of(compiled(b, apart).plan).instance_count, 3u);
+}
+
+GraphBuilder blend(const char* port) {
+  GraphBuilder b;
+  b.import("light");
+  b.history("sum");
+  b.exported("result");
+  b.pass("accumulate", "test.blend", {{port, "sum@-1"}}, {{"out", "sum"}});
+  b.pass("show", "test.need", {{"a", "sum"}}, {{"out", "result"}});
+  return b;
+}
+
+TEST(History, IsWrittenOverByThePassThatReadsItOnlyTexelByTexel) {
+  const auto own = compiled(blend("own")).plan;
+  EXPECT_EQ(history_of(own).instance_count, 1u);
+  for (const PlanAccess& access : own.accesses)
+    if (access.resource == own.histories.at(0).resource && access.frames_back == 1) {
+      EXPECT_EQ(access.layout, Layout::general);
+      EXPECT_TRUE(access.own_texels);
+    }
+  EXPECT_EQ(history_of(compiled(blend("a")).plan).instance_count, 2u);
+}
+
+TEST(History, ThatAnotherPassReadsLaterIsNotWrittenOver) {
+  GraphBuilder b = blend("own");
+  b.exported("before");
+  b.pass("look back", "test.need", {{"a", "sum@-1"}}, {{"out", "before"}});
+  CompileInput input = b.input();
+  input.order = PassOrder::program;
+  EXPECT_EQ(history_of(compiled(b, input).plan).instance_count, 2u);
+}
+
+TEST(History, TheVerifierRefusesAFrameThatIsWrittenOverTooEarly) {
+  Plan freely = compiled(blend("own")).plan;
+  for (PlanAccess& access : freely.accesses)
+    access.own_texels = false;
+  EXPECT_FALSE(verify(freely).empty());
+  Plan flat = compiled(blend("a")).plan;
+  flat.resources[flat.histories.at(0).resource].instance_count = 1;
+  EXPECT_FALSE(verify(flat).empty());
+}
+
+TEST(History, ItsValidityNeverChangesThePacking) {
+  for (const char* port : {"own", "a"}) {
+    const GraphBuilder usual = blend(port);
+    GraphBuilder other = blend(port);
+    HistoryDeclaration& history = other.graph.resources[other.resource("sum").value].history;
+    history.first = HistoryDeclaration::First::clear;
+    history.on_cut = HistoryDeclaration::OnCut::keep;
+    history.on_resize = HistoryDeclaration::OnResize::rescale;
+    const Plan one = compiled(usual).plan, two = compiled(other).plan;
+    ASSERT_EQ(one.placements.size(), two.placements.size());
+    for (size_t i = 0; i < one.placements.size(); ++i)
+      EXPECT_EQ(one.placements[i].offset, two.placements[i].offset);
+    EXPECT_EQ(one.history_bytes, two.history_bytes);
+  }
+}
+
 TEST(History, OnlyAsManyInstancesAsThisPlanReadsBack) {
   EXPECT_EQ(compiled(accumulation(3, "sum@-1")).plan.histories[0].frames, 1u);
   const auto unread = compiled(accumulation(3, "light"));

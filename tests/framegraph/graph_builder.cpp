@@ -20,6 +20,9 @@ constexpr Port shade_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "
                                 {"out2", Usage::storage_image_write, true, "image2D", ""}};
 constexpr Port need_ports[] = {{"a", Usage::sampled_image, false, "texture2D", ""},
                                {"out", Usage::storage_image_write, false, "image2D", ""}};
+constexpr Port blend_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
+                                {"own", Usage::sampled_image, true, "texture2D", "", {}, true},
+                                {"out", Usage::storage_image_write, false, "image2D", ""}};
 constexpr Port update_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
                                  {"image", Usage::storage_image_update, false, "image2D", ""}};
 constexpr Port fill_ports[] = {{"target", Usage::clear, false, "", ""}};
@@ -59,6 +62,7 @@ KindRegistry test_kinds() {
   kinds.add(kind("test.count", count_ports));
   kinds.add(kind("test.tiles", tiles_ports));
   kinds.add(kind("test.narrow", narrow_ports));
+  kinds.add(kind("test.blend", blend_ports));
   PassKind probe = kind("test.probe", probe_ports);
   probe.side_effects = true;
   kinds.add(probe);

@@ -152,6 +152,31 @@ struct Oracle {
     return "";
   }
 
+  const PlanHistory* history_of(uint32_t resource) const {
+    for (const PlanHistory& history : plan.histories)
+      if (history.resource == resource) return &history;
+    return nullptr;
+  }
+  bool keeps_oldest(uint32_t resource) const { // in the instance of this frame, until that is written
+    const PlanHistory* history = history_of(resource);
+    return history && plan.resources[resource].instance_count == history->frames;
+  }
+
+  // Does operation `second` read the frame it means, and does its pass leave that alone meanwhile?
+  bool right_frame(size_t second) const {
+    const Operation& o = all[second];
+    if (!history_of(o.resource)) return true;
+    for (const Operation& other : all)
+      if (other.step == o.step && same_thing(other, o) && written(other) != 0 && !o.access->own_texels &&
+          other.access->frames_back != o.access->frames_back)
+        return false;
+    for (size_t k = second; k-- > 0;)
+      if (all[k].step != o.step && same_thing(all[k], o) && written(all[k]) != 0)
+        return all[k].frame + o.access->frames_back == o.frame + all[k].access->frames_back;
+    const uint32_t first_frames = o.access->frames_back;
+    return o.frame < first_frames; // as the executor starts it
+  }
+
   // Do the contents that operation `second` reads mean something?
   bool defined(size_t second) const {
     for (size_t k = second; k-- > 0;) {
@@ -159,7 +184,8 @@ struct Oracle {
       if (o.step == all[second].step || !overlap(o, all[second])) continue;
       const bool own = same_thing(o, all[second]);
       if (o.what == Operation::What::frame_begins) {
-        if (own) return host(o.resource) && plan.resources[o.resource].origin == Origin::imported;
+        if (own && !keeps_oldest(o.resource))
+          return host(o.resource) && plan.resources[o.resource].origin == Origin::imported;
       } else if (!own) {
         if (written(o) != 0 || (transition(o) && !o.barrier->from_host)) return false;
       } else if (written(o) != 0) {
@@ -169,7 +195,7 @@ struct Oracle {
         return false;
       }
     }
-    return plan.resources[all[second].resource].instance_count > 1; // as the executor starts it
+    return history_of(all[second].resource) != nullptr; // as the executor starts it
   }
 
   // The layout of a thing just before operation `at`.
@@ -198,6 +224,7 @@ struct Oracle {
       if (owned) return "is the host's";
       if (image(o) && layout(o, at) != o.access->layout) return "is in another layout";
       if (read(o) != 0 && !defined(at)) return "is read undefined";
+      if (read(o) != 0 && !right_frame(at)) return "reads another frame";
       if (host(o.resource)) return "";
       const Placement& memory = plan.placements[plan.resources[o.resource].first_instance];
       const auto position = static_cast<uint32_t>(
@@ -250,8 +277,8 @@ std::string first_hazard(const Plan& plan) {
   Oracle oracle{plan, {}};
   if (const std::string wrong = oracle.live_together(); !wrong.empty()) return wrong;
   uint32_t frames = 3;
-  for (const PlanResource& resource : plan.resources)
-    frames = std::max(frames, resource.instance_count + 2);
+  for (const PlanHistory& history : plan.histories)
+    frames = std::max(frames, history.frames + 3);
   oracle.unroll(frames + 1); // the beginning of the last one tells how the one before ended
   for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {
     const Operation& o = oracle.all[b];

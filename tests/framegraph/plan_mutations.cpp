@@ -65,8 +65,11 @@ void for_each_shifted_placement(const Plan& plan, const VisitMutant& visit) {
 }
 
 void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit) {
+  std::vector<uint32_t> frames(plan.resources.size(), 0);
+  for (const PlanHistory& history : plan.histories)
+    frames[history.resource] = history.frames;
   for (size_t a = 0; a < plan.accesses.size(); ++a)
-    for (uint32_t back = 0; back < plan.resources[plan.accesses[a].resource].instance_count; ++back) {
+    for (uint32_t back = 0; back <= frames[plan.accesses[a].resource]; ++back) {
       if (back == plan.accesses[a].frames_back) continue;
       Plan mutant = plan;
       mutant.accesses[a].frames_back = back;

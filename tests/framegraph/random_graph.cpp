@@ -54,6 +54,16 @@ struct Draft {
     return name;
   }
 
+  // The pass that writes a history. Some read its oldest frame texel by texel.
+  void keep(const std::string& history) {
+    const auto frames = b.graph.resources[b.resource(history).value].history.frames;
+    if (random.chance(40))
+      b.pass(fresh("blend"), "test.blend",
+             {{"a", any(readable)}, {"own", fmt::format("{}@-{}", history, frames)}}, {{"out", history}});
+    else
+      b.pass(fresh("keep"), "test.shade", reads(3), {{"out", history}});
+  }
+
   void one_pass() {
     const auto name = fresh("pass");
     const uint32_t kind = random.below(10);
@@ -109,7 +119,7 @@ GraphBuilder random_graph(uint64_t seed) {
   for (uint32_t i = 0; i < passes; ++i)
     draft.one_pass();
   for (const auto& history : draft.histories)
-    draft.b.pass(draft.fresh("keep"), "test.shade", draft.reads(3), {{"out", history}});
+    draft.keep(history);
   draft.b.exported("result");
   draft.b.pass("finish", "test.shade", draft.reads(3), {{"out", "result"}});
   return std::move(draft.b);

@@ -74,7 +74,7 @@ void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
   for (const PlanHistory& history : state.plan.histories) {
     const PlanResource& resource = state.plan.resources[history.resource];
     if (resource.first_instance == no_instance) continue;
-    for (uint32_t back = 1; back < resource.instance_count; ++back) {
+    for (uint32_t back = 1; back <= history.frames; ++back) {
       Instance& instance = state.instances[instance_of(state, resource, back)];
       if (instance.ready) continue;
       const bool clear =
