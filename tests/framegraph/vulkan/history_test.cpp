@@ -45,6 +45,23 @@ TEST_F(HistoryTest, TwoFramesBackIsTwoFramesBack) {
   }
 }
 
+TEST_F(HistoryTest, RenewedInPlaceKeepsCountingAndStartsAnewAfterACut) {
+  SmallGraph g;
+  g.exported("result");
+  g.history("count");
+  g.image("copy");
+  g.pass("look", "test.add", {{"a", "count@-1"}}, {{"target", "copy"}});
+  g.set(g.pass("step", "test.add", {{"a", "copy"}}, {{"target", "count"}}), "bias", 1);
+  g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  for (int i = 1; i <= 4; ++i)
+    ASSERT_FALSE(frame());
+  EXPECT_THAT(read(result), Each(FloatEq(4.0f)));
+  ASSERT_FALSE(frame(0.0f, {}, true));
+  EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
+}
+
 TEST_F(HistoryTest, AgeGrowsWithEveryFrameAndACutSaysWhy) {
   const SmallGraph g = counter();
   make_executor(g, side, side);
