@@ -38,13 +38,15 @@ std::string number(double value) {
   return value >= 1e-4 && value < 10000 ? fmt::format("{:.4g}", value) : fmt::format("{:.0e}", value);
 }
 
-// 1, 2, 5 of each decade; 1 alone where the axis spans many.
+// 1, 2, 5 of each decade; 1 alone where the axis spans many, more where it spans little.
 std::vector<double> ticks(const Axis& axis) {
+  constexpr double mantissas[] = {1, 2, 5, 3, 7, 1.5, 4, 6, 8};
+  const double decades = axis.high - axis.low;
+  const size_t count = decades > 3.5 ? 1 : decades > 1 ? 3 : decades > 0.6 ? 5 : std::size(mantissas);
   std::vector<double> all;
   for (int decade = static_cast<int>(std::floor(axis.low)); decade <= axis.high; ++decade)
-    for (const double mantissa : {1.0, 2.0, 5.0}) {
-      if (mantissa > 1 && axis.high - axis.low > 3.5) continue;
-      const double at = std::log10(mantissa) + decade;
+    for (size_t i = 0; i < count; ++i) {
+      const double at = std::log10(mantissas[i]) + decade;
       if (at >= axis.low && at <= axis.high) all.push_back(std::pow(10.0, at));
     }
   return all;
