@@ -27,6 +27,7 @@ struct Exporter {
   const Graph& graph;
   const KindRegistry& kinds;
   const CompiledPlan& compiled;
+  const Provenance& provenance;
   const Plan& plan = compiled.plan;
   JsonWriter out = {};
 
@@ -211,6 +212,17 @@ struct Exporter {
     out.close();
   }
 
+  void changes() {
+    out.key("changes").open_array();
+    for (const Change& change : provenance.changes) {
+      const uint32_t file = change.where.file.value;
+      out.open_object(true).member("did", change_name(change.what)).member("at", change.at);
+      out.member("file", file < provenance.files.size() ? provenance.files[file].name : std::string());
+      out.member("line", change.where.line).member("column", change.where.column).close();
+    }
+    out.close();
+  }
+
   std::string whole() {
     out.open_object();
     out.member("dermis_plan", plan_json_version).member("graph", plan.graph);
@@ -227,6 +239,7 @@ struct Exporter {
     out.close();
     barriers("final_barriers", plan.first_final_barrier, plan.final_barrier_count);
     reasons();
+    changes();
     out.close();
     return std::move(out).finish();
   }
@@ -234,8 +247,9 @@ struct Exporter {
 
 } // namespace
 
-std::string plan_json(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled) {
-  return Exporter{graph, kinds, compiled}.whole();
+std::string plan_json(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled,
+                      const Provenance& provenance) {
+  return Exporter{graph, kinds, compiled, provenance}.whole();
 }
 
 } // namespace dermis

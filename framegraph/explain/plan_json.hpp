@@ -2,6 +2,7 @@
 // The whole plan as JSON, complete enough for a stranger's program to check or to run it.
 
 #include "framegraph/compile/plan.hpp"
+#include "framegraph/compose/compose.hpp"
 #include "framegraph/model/graph.hpp"
 
 #include <string>
@@ -12,7 +13,9 @@ inline constexpr uint32_t plan_json_version = 1; // of the layout below; raised 
 
 // Every index that the document uses is the position in the array it refers to. Masks are written as a hex
 // string (they have 64 bits, which JSON numbers do not) and as names. `graph` and `kinds` are those it was
-// compiled from. The same plan gives the same bytes.
-std::string plan_json(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled);
+// compiled from; `provenance` tells what other files than the graph's did to it. The same plan gives the same
+// bytes.
+std::string plan_json(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled,
+                      const Provenance& provenance = {});
 
 } // namespace dermis

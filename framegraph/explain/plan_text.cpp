@@ -96,6 +96,12 @@ struct TextExporter {
     }
   }
 
+  void changes(const Provenance& provenance) {
+    if (!provenance.changes.empty()) line("\nset by other files, in this order");
+    for (const Change& change : provenance.changes)
+      line(fmt::format("  {:<8} {}  ({})", change_name(change.what), change.at, provenance.place(change)));
+  }
+
   void heap(uint32_t index) {
     const Heap& one = plan.heaps[index];
     line(fmt::format("\nheap {}: {} of {}, at least {} needed{}", index, bytes_text(one.size),
@@ -120,7 +126,8 @@ struct TextExporter {
 
 } // namespace
 
-std::string plan_text(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled) {
+std::string plan_text(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled,
+                      const Provenance& provenance) {
   TextExporter exporter{graph, kinds, compiled};
   exporter.head();
   exporter.passes();
@@ -128,6 +135,7 @@ std::string plan_text(const Graph& graph, const KindRegistry& kinds, const Compi
   exporter.resources();
   for (uint32_t h = 0; h < compiled.plan.heaps.size(); ++h)
     exporter.heap(h);
+  exporter.changes(provenance);
   return std::move(exporter.out);
 }
 

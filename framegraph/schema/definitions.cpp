@@ -146,6 +146,15 @@ constexpr std::string_view pass_text =
           "pass": { "type": "string" }, "reason": { "type": "string", "minLength": 1 }, <note> } } }, <note> },
       "allOf": [{ "$ref": "#/definitions/pass_of_a_kind" }] })";
 
+constexpr std::string_view include_text =
+    R"({ "type": "object", "required": ["include"], "additionalProperties": false, "properties": {
+        "include": { "type": "string", "description": "a fragment whose passes stand here and whose other members join the graph's; relative, without .." }, <note> } })";
+
+constexpr std::string_view passes_text =
+    R"({ "type": "array", "maxItems": <passes>, "items": {
+        "if": { "required": ["include"], "not": { "required": ["pass"] } },
+        "then": { "$ref": "#/definitions/include" }, "else": { "$ref": "#/definitions/pass" } } })";
+
 std::string with_note(std::string_view text, std::string_view kinds = {}) {
   std::string out(text);
   constexpr std::string_view word = "<note>";
@@ -170,8 +179,26 @@ SchemaMembers graph_root_members() {
       "description": "images that the host owns and binds" },
     "resources": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/resource" },
       "description": "images and buffers that the graph owns" },
-    "passes": { "type": "array", "maxItems": <passes>, "items": { "$ref": "#/definitions/pass" } },
+    "passes": { "$ref": "#/definitions/passes" },
     "exports": { "type": "array", "maxItems": <resources>, "items": { "type": "string" }, "description": "what the host gets back" },
+    <note>
+  })")},
+  };
+}
+
+SchemaMembers fragment_root_members() {
+  return {
+      {"type", R"("object")"},
+      {"required", R"(["dermis_fragment"])"},
+      {"additionalProperties", "false"},
+      {"properties", with_note(R"({
+    "$schema": { "type": "string" },
+    "dermis_fragment": { "type": "integer", "const": 1, "description": "version of the format" },
+    "settings": { "type": "object", "maxProperties": <settings>, "additionalProperties": { "$ref": "#/definitions/setting" } },
+    "imports": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/import" } },
+    "resources": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/resource" } },
+    "passes": { "$ref": "#/definitions/passes" },
+    "exports": { "type": "array", "maxItems": <resources>, "items": { "type": "string" } },
     <note>
   })")},
   };
@@ -206,6 +233,8 @@ SchemaMembers graph_definitions(std::string_view kind_names) {
       {"source", R"({ "type": "string" })"},
       {"target", R"({ "type": "string" })"},
       {"pass", with_note(pass_text, kind_names)},
+      {"include", with_note(include_text)},
+      {"passes", with_note(passes_text)},
   };
 }
 

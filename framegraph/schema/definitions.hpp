@@ -14,6 +14,7 @@ inline constexpr std::string_view schema_dialect = "http://json-schema.org/draft
 using SchemaMembers = std::vector<std::pair<std::string_view, std::string>>;
 
 SchemaMembers graph_root_members();
+SchemaMembers fragment_root_members();
 // `kind_names`: the names of all kinds as the inside of a JSON array.
 SchemaMembers graph_definitions(std::string_view kind_names);
 

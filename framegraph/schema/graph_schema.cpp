@@ -94,15 +94,12 @@ std::string kind_names(const KindRegistry& kinds) {
   return out;
 }
 
-} // namespace
-
-std::string graph_schema(const KindRegistry& kinds) {
+std::string write_schema(const KindRegistry& kinds, std::string_view title, std::string_view description,
+                         const SchemaMembers& root) {
   JsonWriter out;
   out.open_object();
-  out.member("$schema", schema_dialect).member("title", "Dermis graph");
-  out.member("description", "What Dermis may run: settings, images and buffers, passes, and what is handed "
-                            "back. docs/format.md describes every key.");
-  for (const auto& [key, text] : graph_root_members())
+  out.member("$schema", schema_dialect).member("title", title).member("description", description);
+  for (const auto& [key, text] : root)
     out.key(key).json(text);
   out.key("definitions").open_object();
   for (const auto& [name, text] : graph_definitions(kind_names(kinds)))
@@ -113,6 +110,21 @@ std::string graph_schema(const KindRegistry& kinds) {
     write_kind(out, kinds[{i}]);
   out.close().close().close().close();
   return std::move(out).finish();
+}
+
+} // namespace
+
+std::string graph_schema(const KindRegistry& kinds) {
+  return write_schema(kinds, "Dermis graph",
+                      "What Dermis may run: settings, images and buffers, passes, and what is handed back. "
+                      "docs/format.md describes every key.",
+                      graph_root_members());
+}
+
+std::string fragment_schema(const KindRegistry& kinds) {
+  return write_schema(kinds, "Dermis fragment",
+                      "A part that several graphs include. docs/overlays.md describes every key.",
+                      fragment_root_members());
 }
 
 } // namespace dermis

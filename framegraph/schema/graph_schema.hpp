@@ -12,5 +12,7 @@ namespace dermis {
 
 // Of graphs that use `kinds` and no others. Same kinds, same bytes. Any thread.
 std::string graph_schema(const KindRegistry& kinds);
+// Of the fragments that such graphs include.
+std::string fragment_schema(const KindRegistry& kinds);
 
 } // namespace dermis

@@ -74,15 +74,25 @@ std::string Document::pointer(NodeId id) const {
 }
 
 SourceLocation Document::where(NodeId id) const {
+  if (!origins.empty()) return sources[origins[id.value].source].where(origins[id.value].node);
   return {file, nodes[id.value].line, nodes[id.value].column, pointer(id)};
 }
 
 SourceLocation Document::where_key(NodeId id) const {
+  if (!origins.empty()) {
+    const Origin& origin = origins[id.value];
+    const Document& source = sources[origin.source];
+    return origin.key_node.valid() ? source.where(origin.key_node) : source.where_key(origin.node);
+  }
   if (nodes[id.value].key_line == 0) return where(id);
   return {file, nodes[id.value].key_line, nodes[id.value].key_column, pointer(id)};
 }
 
 SourceLocation where_in_string(const Document& document, NodeId id, size_t decoded, const Diagnostics& all) {
+  if (!document.origins.empty()) {
+    const Document::Origin& origin = document.origins[id.value];
+    return where_in_string(document.sources[origin.source], origin.node, decoded, all);
+  }
   SourceLocation out = document.where(id);
   const std::string_view text = all.files[document.file.value].text;
   size_t at = document[id].offset + 1; // behind the opening quote

@@ -33,9 +33,17 @@ struct Node {
 
 // Nodes in the order of the text, [0] the root. Strings are unescaped UTF-8 and contain no U+0000.
 struct Document {
-  FileId file; // into Diagnostics::files
+  FileId file; // into Diagnostics::files; of the first of `sources` where there are some
   std::vector<Node> nodes;
   std::string characters;
+
+  // Of a document that was put together from several ones (framegraph/compose): where each node was read.
+  struct Origin {
+    uint32_t source;       // into `sources`
+    NodeId node, key_node; // key_node: the value that gave the key; invalid: the key stands at `node`
+  };
+  std::vector<Document> sources;
+  std::vector<Origin> origins; // by node; empty: all were read here
 
   NodeId root() const { return {0}; }
   const Node& operator[](NodeId id) const { return nodes[id.value]; }
@@ -43,8 +51,8 @@ struct Document {
   std::string_view key(NodeId id) const;                  // "" in arrays and at the root
   NodeId find(NodeId object, std::string_view key) const; // invalid when there is none; linear
 
-  std::string pointer(NodeId id) const;      // RFC 6901
-  SourceLocation where(NodeId id) const;     // the value
+  std::string pointer(NodeId id) const;      // RFC 6901, in this document
+  SourceLocation where(NodeId id) const;     // the value, in the file that it was read from
   SourceLocation where_key(NodeId id) const; // its key, or the value where there is none
 };
 

@@ -128,6 +128,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, con
     if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_reload"); alive != DERMIS_OK)
       return alive;
     ProgramInput input = graph->input;
+    input.included.clear(); // files may have changed
     if (const dermis_result result =
             read_source(log, "dermis_graph_reload: source", *source, input.source_name, input.source_text);
         result != DERMIS_OK)

@@ -69,6 +69,23 @@ dermis_result read_unbound(const Log& log, const dermis_graph_desc& desc, Progra
   return DERMIS_OK;
 }
 
+dermis_result read_overlays(const Log& log, const dermis_graph_desc& desc, ProgramInput& input) {
+  if (desc.reserved_too != 0)
+    return bad_argument(log, "{}: desc.reserved_too is {}, expected 0", function, desc.reserved_too);
+  input.include = desc.include;
+  input.include_user = desc.include_user;
+  return for_each<dermis_source>(log, "overlays", desc.overlays, desc.overlay_count, DERMIS_SOURCE_INIT,
+                                 [&](uint32_t i, const dermis_source& source) {
+                                   SourceText overlay;
+                                   const dermis_result result = read_source(
+                                       log, fmt::format("{}: desc.overlays[{}]", function, i).c_str(), source,
+                                       overlay.name, overlay.text);
+                                   if (overlay.name.empty()) overlay.name = fmt::format("overlay {}", i);
+                                   input.overlays.push_back(std::move(overlay));
+                                   return result;
+                                 });
+}
+
 dermis_result read_formats(const Log& log, const dermis_graph_desc& desc, ProgramInput& input) {
   return for_each<dermis_slot_format>(
       log, "formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
@@ -121,6 +138,7 @@ dermis_result read_graph_desc(const Log& log, const dermis_graph_desc& desc, Pro
   input.height = desc.height;
   if (result == DERMIS_OK) result = read_unbound(log, desc, input);
   if (result == DERMIS_OK) result = read_formats(log, desc, input);
+  if (result == DERMIS_OK) result = read_overlays(log, desc, input);
   if (result == DERMIS_OK) result = read_profiles(log, desc, input, diagnostics);
   return result;
 }

@@ -89,13 +89,15 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
     std::string description;
     switch (static_cast<int>(format)) {
     case DERMIS_DESCRIBE_JSON:
-      description = dermis::plan_json(program.graph, kinds, program.compiled);
+      description =
+          dermis::plan_json(program.graph, kinds, program.compiled, {program.changes, program.files});
       break;
     case DERMIS_DESCRIBE_DOT:
       description = dermis::plan_dot(program.graph, kinds, program.compiled);
       break;
     case DERMIS_DESCRIBE_TEXT:
-      description = dermis::plan_text(program.graph, kinds, program.compiled);
+      description =
+          dermis::plan_text(program.graph, kinds, program.compiled, {program.changes, program.files});
       break;
     default:
       return bad_argument(log, "dermis_graph_describe: format is {}, expected 0..2",

@@ -2,6 +2,7 @@
 
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
+#include "framegraph/text/limits.hpp"
 #include "integration/abi/slots.hpp"
 #include "passes/kernels.hpp"
 
@@ -48,6 +49,38 @@ void tell_lost_histories(const Program& program, vulkan::HistoryReason reason, D
   }
 }
 
+// Asks the host once for each name.
+FileText open_file(ProgramInput& input, std::string_view name) {
+  const auto known = input.included.find(name);
+  if (known != input.included.end()) return {known->second.name, known->second.text, ""};
+  if (input.include == nullptr) return {"", "", "the host gives no include function"};
+  const std::string asked(name);
+  dermis_source source = DERMIS_SOURCE_INIT;
+  if (input.include(input.include_user, asked.c_str(), &source) != 1)
+    return {"", "", "the host has no such file"};
+  if (source.text == nullptr || source.length > limits::file_bytes)
+    return {"", "",
+            fmt::format("the host delivers {}", source.text == nullptr
+                                                    ? "no text"
+                                                    : fmt::format("{} bytes, at most {} are read",
+                                                                  source.length, limits::file_bytes))};
+  const SourceText text{source.name != nullptr ? source.name : asked,
+                        std::string(source.text, source.length)};
+  input.included.emplace(asked, text);
+  return {text.name, text.text, ""};
+}
+
+std::optional<Composition> compose_sources(ProgramInput& input, Diagnostics& diagnostics) {
+  auto graph = parse_document(input.source_name, input.source_text, diagnostics);
+  std::vector<Document> overlays;
+  for (const SourceText& overlay : input.overlays)
+    if (auto document = parse_document(overlay.name, overlay.text, diagnostics))
+      overlays.push_back(std::move(*document));
+  if (!graph || overlays.size() != input.overlays.size()) return std::nullopt;
+  const OpenFile open = [&](std::string_view name) { return open_file(input, name); };
+  return compose(std::move(*graph), std::move(overlays), open, diagnostics);
+}
+
 template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span<const T>(values));
 }
@@ -86,15 +119,17 @@ vulkan::Error make_executor(dermis_context_t& context, const ProgramInput& input
 
 } // namespace
 
-dermis_result build_program(dermis_context_t& context, const ProgramInput& input,
-                            vulkan::HistoryReason history, Diagnostics& diagnostics,
-                            std::unique_ptr<Program>& program) {
-  const auto document = parse_document(input.source_name, input.source_text, diagnostics);
-  if (!document) return DERMIS_ERROR_CONFIG;
-  auto graph = read_graph(*document, context.kinds, diagnostics);
+dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
+                            Diagnostics& diagnostics, std::unique_ptr<Program>& program) {
+  auto composition = compose_sources(input, diagnostics);
+  if (!composition) return DERMIS_ERROR_CONFIG;
+  auto graph = read_graph(composition->document, context.kinds, diagnostics);
   if (!graph) return DERMIS_ERROR_CONFIG;
   auto candidate = std::make_unique<Program>();
   candidate->graph = std::move(*graph);
+  candidate->changes = std::move(composition->changes);
+  for (const SourceFile& file : diagnostics.files)
+    candidate->files.push_back({file.name, ""});
   candidate->settings = settings_of(candidate->graph, input.settings, diagnostics);
 
   CompileInput compile_input;

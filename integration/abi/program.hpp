@@ -3,10 +3,12 @@
 // swapped.
 
 #include "framegraph/compile/compile.hpp"
+#include "framegraph/compose/compose.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/abi/context.hpp"
 #include "passes/subsurface/environment.hpp"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,9 +25,18 @@ struct HostSetting {
   std::string json; // as given by the host, so that it can be carried over a reload
 };
 
+struct SourceText {
+  std::string name, text;
+};
+
 // All that a program is built from; copied from the host, kept for reload and resize.
 struct ProgramInput {
   std::string source_name, source_text;
+  std::vector<SourceText> overlays;
+  dermis_include_fn include = nullptr;
+  void* include_user = nullptr;
+  std::map<std::string, SourceText, std::less<>>
+      included; // what `include` delivered; asked again at a reload
   uint32_t width = 0, height = 0;
   std::vector<subsurface::NumberedProfile> profiles;
   std::vector<std::string> unbound;
@@ -47,6 +58,8 @@ struct Slot {
 
 struct Program {
   Graph graph;
+  std::vector<Change> changes;   // what overlays and included files did
+  std::vector<SourceFile> files; // that the changes name; without their texts
   CompiledPlan compiled;
   std::vector<SettingValue> settings; // by Graph::settings: what the next record uses
   std::vector<Slot> slots;
@@ -56,10 +69,10 @@ struct Program {
   uint64_t last_frame = 0; // frame_index it was recorded with last; 0: never
 };
 
-// Parses, compiles and allocates. On failure `diagnostics` tells why and `program` is unchanged. Thread: any.
-dermis_result build_program(dermis_context_t& context, const ProgramInput& input,
-                            vulkan::HistoryReason history, Diagnostics& diagnostics,
-                            std::unique_ptr<Program>& program);
+// Parses, compiles and allocates. On failure `diagnostics` tells why and `program` is unchanged. Keeps in
+// `input` what the host delivers. Thread: any.
+dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
+                            Diagnostics& diagnostics, std::unique_ptr<Program>& program);
 
 // The value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
 std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,

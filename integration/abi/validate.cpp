@@ -1,4 +1,5 @@
 #include "framegraph/compile/compile.hpp"
+#include "framegraph/compose/compose.hpp"
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/abi/graph_desc.hpp"
@@ -24,8 +25,11 @@ dermis_result validate(const dermis_source* given, dermis_report* report) {
   const KindRegistry kinds = subsurface::make_kinds();
   const DeviceProfile device = generic_profile();
   bool valid = false;
-  if (const auto document = parse_document(std::move(name), std::move(text), diagnostics))
-    if (const auto graph = read_graph(*document, kinds, diagnostics)) {
+  auto document = parse_document(std::move(name), std::move(text), diagnostics);
+  const auto composition =
+      document ? compose(std::move(*document), {}, {}, diagnostics) : std::optional<Composition>();
+  if (composition)
+    if (const auto graph = read_graph(composition->document, kinds, diagnostics)) {
       CompileInput input;
       input.graph = &*graph;
       input.kinds = &kinds;

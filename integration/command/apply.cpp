@@ -43,6 +43,8 @@ demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& s
   DeviceGraphRequest request;
   request.graph_name = run.options.graph;
   request.graph_text = run.graph_text;
+  request.overlays = run.loaded.overlays;
+  request.open = open_beside(run.options.graph, run.options.parts.roots);
   request.width = frame.description.width;
   request.height = frame.description.height;
   request.settings = settings_as_json(run.loaded.graph, run.options.settings);
@@ -126,7 +128,7 @@ ExitCode report(const Run& run, const CapturedSequence& sequence) {
 
 ExitCode apply(const Session& session, const ApplyOptions& options) {
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, diagnostics);
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);

@@ -56,6 +56,22 @@ void add_settings(CLI::App& verb, std::vector<NamedValue>& settings) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what) {
+  verb.add_option("--root", roots, what)
+      ->type_name("DIR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_parts(CLI::App& verb, GraphParts& parts) {
+  verb.add_option("--overlay", parts.overlays, "Overlay to apply to the graph; may be repeated, in order")
+      ->type_name("FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_root(verb, parts.roots,
+           "Folder that included files are read from, beside the graph's own; may be repeated");
+}
+
 void add_common(CLI::App& verb, Session& session, bool json_is_file = false) {
   static const std::map<std::string, ColorMode> modes{
       {"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}};
@@ -94,6 +110,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--profiles", options.profiles,
                         "Folder of profiles that captures name [configs/profiles]")
             ->type_name("DIR");
+        add_parts(verb, options.parts);
         verb.add_option("--sarif", options.sarif,
                         "File for the messages as SARIF 2.1.0, - for standard output")
             ->type_name("FILE");
@@ -117,6 +134,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--unbound", options.unbound, "Optional slots that the host leaves out")
             ->type_name("NAME")
             ->delimiter(',');
+        add_parts(verb, options.parts);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
       });
@@ -130,6 +148,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->excludes("--json");
         add_size(verb, options.size);
         add_settings(verb, options.settings);
+        add_parts(verb, options.parts);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
       });
@@ -142,6 +161,9 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("PATH");
         verb.add_flag("--update", options.update,
                       "State what is found now, in the files; review the change before you commit it");
+        add_root(verb, options.roots,
+                 "Folder of included files and of overlays that cases name, beside the graph's own and the "
+                 "folders given; may be repeated");
         verb.add_option("--junit", options.junit, "File for the results as JUnit XML")->type_name("FILE");
       });
 }
@@ -178,6 +200,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
                         "Pixels of the last frame compared with the truth; 0: none [4096]")
             ->check(CLI::Range(0u, max_subset));
         add_settings(verb, options.settings);
+        add_parts(verb, options.parts);
         const char* group = "Model, for scenes that show one";
         verb.add_option("--model", options.model.model, "glTF file")->type_name("FILE")->group(group);
         verb.add_option("--albedo", options.model.albedo, "Picture, sRGB")->type_name("FILE")->group(group);
@@ -204,6 +227,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--repeat", options.repeat, "Times each frame is run; times are medians [1]")
             ->check(CLI::Range(1u, max_repeat));
         add_settings(verb, options.settings);
+        add_parts(verb, options.parts);
       });
   add_verb<ReferenceOptions>(
       app, invocation, "reference", "Compute the exact scattered light of captured frames",

@@ -238,7 +238,7 @@ struct Bench {
     std::sort(files.begin(), files.end());
     std::vector<LoadedGraph> loaded;
     for (const std::string& file : files) {
-      std::optional<LoadedGraph> graph = load_graph(file, diagnostics);
+      std::optional<LoadedGraph> graph = load_graph(file, {}, diagnostics);
       if (!graph) return false;
       loaded.push_back(std::move(*graph));
     }

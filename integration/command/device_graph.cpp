@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <deque>
+
 namespace dermis::tools {
 namespace {
 
@@ -62,6 +64,20 @@ demo::Result<dermis_context> create_context(const demo::VulkanHost& host) {
   return context;
 }
 
+// Keeps the texts that it delivers until the call that asks for them is over.
+struct Includes {
+  const OpenFile& open;
+  std::deque<FileText> delivered = {};
+};
+
+uint32_t DERMIS_CALL deliver_include(void* user, const char* name, dermis_source* source) {
+  auto& includes = *static_cast<Includes*>(user);
+  const FileText& file = includes.delivered.emplace_back(includes.open(name));
+  if (!file.problem.empty()) return 0;
+  *source = source_of(file.name, file.text);
+  return 1;
+}
+
 demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGraphRequest& request) {
   std::vector<dermis_profile> profiles;
   for (const DeviceGraphRequest::Profile& one : request.profiles) {
@@ -91,6 +107,14 @@ demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGrap
   desc.unbound_count = static_cast<uint32_t>(unbound.size());
   desc.formats = formats.data();
   desc.format_count = static_cast<uint32_t>(formats.size());
+  std::vector<dermis_source> overlays;
+  for (const auto& [name, text] : request.overlays)
+    overlays.push_back(source_of(name, text));
+  desc.overlays = overlays.data();
+  desc.overlay_count = static_cast<uint32_t>(overlays.size());
+  Includes includes{request.open};
+  if (request.open) desc.include = deliver_include;
+  desc.include_user = &includes; // never asked again: graphs of the command are not reloaded
   dermis_graph graph = nullptr;
   dermis_report report = nullptr;
   const dermis_result result = dermis_graph_create(context, &desc, &graph, &report);

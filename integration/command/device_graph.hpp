@@ -2,6 +2,7 @@
 // A graph on a device through the C interface alone: images for its slots, frames run one at a time and
 // waited for.
 
+#include "framegraph/compose/compose.hpp"
 #include "integration/demo_engine/vulkan_image.hpp"
 
 #include <dermis/dermis.h>
@@ -15,8 +16,10 @@
 namespace dermis::tools {
 
 struct DeviceGraphRequest {
-  std::string graph_name, graph_text; // file name for messages, JSON
-  uint32_t width = 0, height = 0;     // allocated size, pixels
+  std::string graph_name, graph_text;                        // file name for messages, JSON
+  std::vector<std::pair<std::string, std::string>> overlays; // the same
+  OpenFile open;                                             // what graph and overlays include
+  uint32_t width = 0, height = 0;                            // allocated size, pixels
   struct Profile {
     uint32_t id = 0;
     std::string name, text; // for messages, JSON

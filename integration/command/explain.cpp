@@ -47,16 +47,18 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
     return deliver(session, options.out, describe_code(*info, session.json));
 
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, diagnostics);
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings, options.unbound);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   print_diagnostics(session, diagnostics);
-  return deliver(session, options.out,
-                 session.json ? plan_json(loaded->graph, loaded->kinds, *compiled)
-                              : plan_text(loaded->graph, loaded->kinds, *compiled));
+  return deliver(
+      session, options.out,
+      session.json
+          ? plan_json(loaded->graph, loaded->kinds, *compiled, {loaded->changes, diagnostics.files})
+          : plan_text(loaded->graph, loaded->kinds, *compiled, {loaded->changes, diagnostics.files}));
 }
 
 } // namespace dermis::tools

@@ -4,9 +4,13 @@ namespace dermis::tools {
 namespace {
 
 constexpr FileKind kinds[] = {
-    {"dermis", "graph", 1},           {"dermis_profile", "profile", 1},
-    {"dermis_scene", "scene", 1},     {"dermis_expect", "expectations", 1},
+    {"dermis", "graph", 1},
+    {"dermis_profile", "profile", 1},
+    {"dermis_scene", "scene", 1},
+    {"dermis_expect", "expectations", 1},
     {"dermis_capture", "capture", 1},
+    {"dermis_overlay", "overlay", 1},
+    {"dermis_fragment", "fragment", 1},
 };
 
 } // namespace

@@ -9,7 +9,7 @@ namespace dermis::tools {
 
 ExitCode graph(const Session& session, const GraphOptions& options) {
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, diagnostics);
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
@@ -17,7 +17,8 @@ ExitCode graph(const Session& session, const GraphOptions& options) {
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   print_diagnostics(session, diagnostics);
   const std::string problem =
-      deliver_text(options.out, session.json ? plan_json(loaded->graph, loaded->kinds, *compiled)
+      deliver_text(options.out, session.json ? plan_json(loaded->graph, loaded->kinds, *compiled,
+                                                         {loaded->changes, diagnostics.files})
                                              : plan_dot(loaded->graph, loaded->kinds, *compiled));
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }

@@ -3,6 +3,7 @@
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
+#include "integration/files/roots.hpp"
 #include "passes/subsurface/kinds.hpp"
 
 #include <fmt/format.h>
@@ -89,6 +90,15 @@ std::string unknown(std::string_view what, std::string_view name, const Declarat
                      suggestion.empty() ? "it has " + list_words(names) : suggestion);
 }
 
+std::optional<LoadedGraph> read_composed(std::optional<Composition> composed, Diagnostics& diagnostics) {
+  if (!composed) return std::nullopt;
+  LoadedGraph loaded{subsurface::make_kinds(), {}, std::move(composed->changes), {}};
+  std::optional<Graph> graph = read_graph(composed->document, loaded.kinds, diagnostics);
+  if (!graph) return std::nullopt;
+  loaded.graph = std::move(*graph);
+  return loaded;
+}
+
 } // namespace
 
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics) {
@@ -96,17 +106,43 @@ std::optional<Document> read_input(const std::string& path, Diagnostics& diagnos
                      : read_document(path, diagnostics);
 }
 
-std::optional<LoadedGraph> load_graph(const std::string& path, Diagnostics& diagnostics) {
-  const std::optional<Document> document = read_input(path, diagnostics);
-  return document ? load_graph(*document, diagnostics) : std::nullopt;
+OpenFile open_beside(const std::string& path, const std::vector<std::string>& roots) {
+  std::vector<std::filesystem::path> folders(roots.begin(), roots.end());
+  if (path != "-") folders.insert(folders.begin(), std::filesystem::path(path).parent_path());
+  return open_below(std::move(folders));
 }
 
-std::optional<LoadedGraph> load_graph(const Document& document, Diagnostics& diagnostics) {
-  LoadedGraph loaded{subsurface::make_kinds(), {}};
-  std::optional<Graph> graph = read_graph(document, loaded.kinds, diagnostics);
-  if (!graph) return std::nullopt;
-  loaded.graph = std::move(*graph);
+std::optional<std::vector<Document>> read_overlays(const std::vector<std::string>& paths,
+                                                   Diagnostics& diagnostics) {
+  std::vector<Document> read;
+  for (const std::string& path : paths)
+    if (auto one = read_document(path, diagnostics)) read.push_back(std::move(*one));
+  return read.size() == paths.size() ? std::optional(std::move(read)) : std::nullopt;
+}
+
+std::optional<LoadedGraph> load_graph(const std::string& path, const GraphParts& parts,
+                                      Diagnostics& diagnostics) {
+  std::optional<Document> document = read_input(path, diagnostics);
+  auto overlays = read_overlays(parts.overlays, diagnostics);
+  if (!document || !overlays) return std::nullopt;
+  return load_graph(std::move(*document), std::move(*overlays), open_beside(path, parts.roots), diagnostics);
+}
+
+std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
+                                      Diagnostics& diagnostics) {
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const Document& overlay : overlays) {
+    const SourceFile& file = diagnostics.files[overlay.file.value];
+    texts.emplace_back(file.name, file.text);
+  }
+  auto loaded =
+      read_composed(compose(std::move(document), std::move(overlays), open, diagnostics), diagnostics);
+  if (loaded) loaded->overlays = std::move(texts);
   return loaded;
+}
+
+std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics) {
+  return read_composed(compose_fragment(std::move(document), open, diagnostics), diagnostics);
 }
 
 CompileChoices read_choices(const Graph& graph, std::span<const NamedValue> settings,

@@ -2,6 +2,7 @@
 // Graph files for verbs that need no device: read, then compiled with the generic device profile.
 
 #include "framegraph/compile/compile.hpp"
+#include "framegraph/compose/compose.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/command/verbs.hpp"
 
@@ -14,14 +15,26 @@ namespace dermis::tools {
 struct LoadedGraph {
   KindRegistry kinds;
   Graph graph;
+  std::vector<Change> changes;                               // what included files and overlays did
+  std::vector<std::pair<std::string, std::string>> overlays; // name and text of each, for the C interface
 };
 
 inline constexpr Size default_size{1920, 1080}; // where nobody says one
 
 // `path` "-" is standard input. nullopt with errors in `diagnostics`.
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics);
-std::optional<LoadedGraph> load_graph(const Document& document, Diagnostics& diagnostics);
-std::optional<LoadedGraph> load_graph(const std::string& path, Diagnostics& diagnostics);
+// Opens what graph files may include: below the folder of `path`, then below each of `roots`.
+OpenFile open_beside(const std::string& path, const std::vector<std::string>& roots);
+// The graph of a document or file with its overlays and included files.
+std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
+                                      Diagnostics& diagnostics);
+// Overlay files by their paths; nullopt when one of them cannot be read.
+std::optional<std::vector<Document>> read_overlays(const std::vector<std::string>& paths,
+                                                   Diagnostics& diagnostics);
+std::optional<LoadedGraph> load_graph(const std::string& path, const GraphParts& parts,
+                                      Diagnostics& diagnostics);
+// A fragment as a graph of its own.
+std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics);
 
 // What --set and --unbound say, in the graph's terms. `problem` not empty: a usage error, nothing else is
 // filled.

@@ -172,17 +172,24 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   bool textured = false;
   if (options.graph != no_graph) {
     Diagnostics diagnostics;
-    const std::optional<LoadedGraph> loaded = load_graph(options.graph, diagnostics);
+    const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
     if (!loaded) return fail_graph(session, options.graph, diagnostics);
     const CompileChoices choices = read_choices(loaded->graph, options.settings);
     if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
     if (!compile_generic(*loaded, options.size, choices, diagnostics))
       return fail_graph(session, options.graph, diagnostics);
     engine.graph = options.graph;
+    for (const auto& [name, text] : loaded->overlays)
+      engine.overlays.push_back({name, text});
+    engine.include = [open = open_beside(options.graph, options.parts.roots)](
+                         const std::string& name) -> std::optional<demo::NamedText> {
+      const FileText file = open(name);
+      return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+    };
     engine.settings = settings_as_json(loaded->graph, options.settings);
     textured = textured_before(loaded->graph, choices);
-  } else if (!options.settings.empty()) {
-    return fail(session, ExitCode::usage, "--set needs a graph");
+  } else if (!options.settings.empty() || !options.parts.overlays.empty()) {
+    return fail(session, ExitCode::usage, "--set and --overlay need a graph");
   }
 
   Run run{.session = session,

@@ -18,6 +18,7 @@ namespace {
 std::vector<std::pair<std::string_view, std::string>> all_schemas() {
   std::vector<std::pair<std::string_view, std::string>> all;
   all.emplace_back("graph", graph_schema(subsurface::make_kinds()));
+  all.emplace_back("fragment", fragment_schema(subsurface::make_kinds()));
   for (const NamedSchema& one : written_schemas())
     all.emplace_back(one.name, std::string(one.text));
   return all;
@@ -39,7 +40,7 @@ ExitCode write_all(const Session& session, const std::string& path) {
 } // namespace
 
 std::string schema_names() {
-  std::string names = "graph";
+  std::string names = "graph, fragment";
   for (const NamedSchema& one : written_schemas())
     names += fmt::format(", {}", one.name);
   return names;

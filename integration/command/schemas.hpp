@@ -11,7 +11,8 @@ struct NamedSchema {
   std::string_view name, text;
 };
 
-// Those that are written by hand in configs/schema/; the graph's follows from the pass kinds.
+// Those that are written by hand in configs/schema/; those of graphs and fragments follow from the pass
+// kinds.
 std::span<const NamedSchema> written_schemas();
 
 // "graph, profile, ...": for help.

@@ -91,7 +91,27 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
           diff_lines(facts_json(*expected.facts), facts_json(found)) + joined(observed.messages)};
 }
 
-Run run_file(const std::string& path, bool update) {
+// The graph with the overlays of a case; nullopt with `observation` filled where that cannot be had.
+std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase& one, const OpenFile& open,
+                                     Observation& observation) {
+  Diagnostics diagnostics;
+  std::optional<Document> graph = read_document(path, diagnostics);
+  std::vector<Document> overlays;
+  for (const std::string& name : one.overlays) {
+    FileText file = open(name);
+    if (!file.problem.empty()) observation.problem = fmt::format("overlay '{}': {}", name, file.problem);
+    if (!file.problem.empty()) return std::nullopt;
+    if (auto overlay = parse_document(file.name, std::move(file.text), diagnostics))
+      overlays.push_back(std::move(*overlay));
+  }
+  std::optional<LoadedGraph> loaded;
+  if (graph && overlays.size() == one.overlays.size())
+    loaded = load_graph(std::move(*graph), std::move(overlays), open, diagnostics);
+  if (!loaded) observation = observe_messages(diagnostics);
+  return loaded;
+}
+
+Run run_file(const std::string& path, bool update, const std::vector<std::string>& roots) {
   Run run;
   run.suite.name = path;
   const std::optional<Document> document = read_document(path, run.diagnostics);
@@ -99,16 +119,15 @@ Run run_file(const std::string& path, bool update) {
   const auto cases = read_expectations(*document, run.diagnostics);
   if (!cases) return run;
   const std::string graph_path = path.substr(0, path.size() - suffix.size()) + ".json";
-  Diagnostics graph_diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(graph_path, graph_diagnostics);
+  const OpenFile open = open_beside(graph_path, roots);
   std::error_code ignored;
   std::vector<std::optional<Facts>> fresh(cases->size());
   for (size_t i = 0; i < cases->size(); ++i) {
     Observation observed;
     if (!files::is_regular_file(graph_path, ignored))
       observed.problem = fmt::format("there is no graph '{}' beside it", graph_path);
-    else
-      observed = loaded ? observe(*loaded, (*cases)[i]) : observe_messages(graph_diagnostics);
+    else if (const auto loaded = load_case(graph_path, (*cases)[i], open, observed))
+      observed = observe(*loaded, (*cases)[i]);
     run.suite.results.push_back(judge((*cases)[i], observed, update, fresh[i]));
     run.updated += fresh[i].has_value();
   }
@@ -173,9 +192,13 @@ ExitCode test(const Session& session, const TestOptions& options) {
   std::string problem;
   const std::vector<std::string> paths = find_files(options.paths, problem);
   if (!problem.empty()) return fail(session, ExitCode::problems, problem);
+  std::vector<std::string> roots = options.roots;
+  std::error_code ignored;
+  for (const std::string& path : options.paths)
+    if (files::is_directory(path, ignored)) roots.push_back(path);
   std::vector<Run> runs;
   for (const std::string& path : paths) {
-    runs.push_back(run_file(path, options.update));
+    runs.push_back(run_file(path, options.update, roots));
     if (runs.back().rewritten) problem = deliver_text(path, runs.back().text);
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
     tell(session, runs.back());

@@ -21,8 +21,12 @@
 namespace dermis::tools {
 namespace {
 
-bool check_graph(const Document& document, Diagnostics& diagnostics) {
-  const std::optional<LoadedGraph> loaded = load_graph(document, diagnostics);
+bool check_graph(const Document& document, const std::string& path, const GraphParts& parts,
+                 Diagnostics& diagnostics) {
+  auto overlays = read_overlays(parts.overlays, diagnostics);
+  if (!overlays) return false;
+  const std::optional<LoadedGraph> loaded =
+      load_graph(document, std::move(*overlays), open_beside(path, parts.roots), diagnostics);
   if (!loaded) return false;
   const CompileChoices choices = read_choices(loaded->graph);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, default_size, choices, diagnostics);
@@ -70,7 +74,7 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
   CheckedFile checked{path, file_kinds()[static_cast<size_t>(kind)].name};
   switch (kind) {
   case FileKindId::graph:
-    checked.good = check_graph(*document, diagnostics);
+    checked.good = check_graph(*document, path, options.parts, diagnostics);
     break;
   case FileKindId::profile:
     checked.good = check_profile(*document, diagnostics);
@@ -83,6 +87,12 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
     break;
   case FileKindId::capture:
     checked.good = check_capture(*document, path, options.profiles, diagnostics);
+    break;
+  case FileKindId::overlay:
+    checked.good = check_overlay(*document, diagnostics);
+    break;
+  case FileKindId::fragment:
+    checked.good = load_fragment(*document, open_beside(path, options.parts.roots), diagnostics).has_value();
     break;
   }
   return checked;
@@ -116,6 +126,11 @@ ExitCode validate(const Session& session, const ValidateOptions& options) {
     const std::string problem = deliver_text(options.sarif, format_as_sarif(diagnostics, version));
     if (!problem.empty()) return fail(session, ExitCode::environment, problem, &diagnostics);
   }
+  const std::string_view graph_kind = file_kinds()[static_cast<size_t>(FileKindId::graph)].name;
+  const bool has_graph =
+      std::any_of(files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == graph_kind; });
+  if (!options.parts.overlays.empty() && !has_graph && !diagnostics.has_errors())
+    return fail(session, ExitCode::usage, "--overlay needs a graph among the files");
   const bool all_good =
       std::all_of(files.begin(), files.end(), [](const CheckedFile& one) { return one.good; });
   print_diagnostics(session, diagnostics);

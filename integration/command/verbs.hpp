@@ -17,10 +17,17 @@ struct Size {
 // name=value as given to --set; the value is JSON text, or the bare text of a JSON string.
 using NamedValue = std::pair<std::string, std::string>;
 
+// What is put together with a graph file.
+struct GraphParts {
+  std::vector<std::string> overlays; // files, applied in this order
+  std::vector<std::string> roots;    // folders that included files are read from, beside the graph's own
+};
+
 struct ValidateOptions {
   std::vector<std::string> files; // of any kind, told apart by their version key; or folders of captures
   std::string profiles;           // folder of the profiles that captures name
   std::string sarif;              // file for the messages as SARIF, - for standard output; "": none
+  GraphParts parts;               // of the graphs among the files
 };
 ExitCode validate(const Session& session, const ValidateOptions& options);
 
@@ -32,6 +39,7 @@ ExitCode upgrade(const Session& session, const UpgradeOptions& options);
 
 struct ExplainOptions {
   std::string graph; // or the code of a diagnostic: "D0103"
+  GraphParts parts;
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports that the host leaves out
@@ -41,6 +49,7 @@ ExitCode explain(const Session& session, const ExplainOptions& options);
 
 struct GraphOptions {
   std::string graph;
+  GraphParts parts;
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::string out = "-"; // DOT, or JSON with --json
@@ -51,6 +60,7 @@ struct TestOptions {
   std::vector<std::string> paths; // expectation files, or folders that hold some at any depth
   bool update = false;            // state what is observed instead of comparing
   std::string junit;              // file for results; "": none
+  std::vector<std::string> roots; // folders of included files and of overlays that cases name
 };
 ExitCode test(const Session& session, const TestOptions& options);
 
@@ -71,12 +81,14 @@ struct RenderOptions {
   uint32_t frames = 8;
   uint32_t subset = 4096; // pixels of a frame that are compared with the truth; 0: no comparison
   std::vector<NamedValue> settings;
+  GraphParts parts;
   ModelOptions model;
 };
 ExitCode render(const Session& session, const RenderOptions& options);
 
 struct ApplyOptions {
   std::string graph, frames, out, profiles;
+  GraphParts parts;
   std::vector<NamedValue> settings;
   uint32_t repeat = 1; // times each frame is run; times are medians
 };

@@ -204,8 +204,8 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   desc.view = {options.width, options.height, options.reversed_depth, options.jitter};
   DermisHandle dermis;
   if (!options.graph.empty()) {
-    auto made = create_dermis_host(
-        **host, {options.graph, info.profiles, options.settings, options.width, options.height});
+    auto made = create_dermis_host(**host, {options.graph, info.profiles, options.settings, options.width,
+                                            options.height, options.overlays, options.include});
     if (!made) return made.error();
     dermis = made.take();
     desc.more_usage = usage_for_graph(*dermis);

@@ -27,9 +27,15 @@ struct CameraPlace {
   double vertical_fov = 25.0;                 // degrees, 1..150
 };
 
+struct NamedText {
+  std::string name, text; // name: of the file, for messages
+};
+
 struct RenderOptions {
   std::string scene; // scene file
   std::string graph; // graph file; "" = without Dermis: light times albedo, as an engine has it before
+  std::vector<NamedText> overlays;                                          // of the graph, in order
+  std::function<std::optional<NamedText>(const std::string& name)> include; // opens what the graph includes
   ModelOptions model;
   uint32_t width = 640, height = 360; // pixels, 1..16384
   uint32_t first_frame = 0, frames = 1;

@@ -49,7 +49,7 @@ TEST_F(Expectations, EveryShippedGraphHasSomeAndMeetsThem) {
   EXPECT_GE(graphs, 2u);
   const Outcome outcome = run({"test", "configs/"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("configs/graphs/burley.expect.json: 5 cases as expected"));
+  EXPECT_THAT(outcome.out, HasSubstr("configs/graphs/burley.expect.json: 6 cases as expected"));
 }
 
 TEST_F(Expectations, OnlyWhatIsStatedIsHeld) {
@@ -165,7 +165,7 @@ TEST_F(Expectations, ResultsAreWrittenForBuildServersAndPrograms) {
   wrong.replace(wrong.find("\"least\""), 7, "\"a<b & c\"");
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
   const std::string file = burley(wrong);
-  const Outcome outcome = run({"test", file, "configs/graphs", "--junit", path("results.xml"), "--json"});
+  const Outcome outcome = run({"test", file, "configs", "--junit", path("results.xml"), "--json"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
   EXPECT_THAT(outcome.out, StartsWith("{\n  \"ok\": false,"));
@@ -173,8 +173,36 @@ TEST_F(Expectations, ResultsAreWrittenForBuildServersAndPrograms) {
               AllOf(StartsWith("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites"),
                     HasSubstr("failures=\"1\""), HasSubstr("name=\"a&lt;b &amp; c\""),
                     HasSubstr("&quot;history_bytes&quot;: 5"), HasSubstr("burley.expect.json")));
-  const Outcome unwritable = run({"test", "configs/graphs", "--junit", path("no/such/results.xml")});
+  const Outcome unwritable = run({"test", "configs", "--junit", path("no/such/results.xml")});
   EXPECT_EQ(unwritable.exit_code, 3);
+}
+
+TEST_F(Expectations, OverlaysOfACaseComeFromDeclaredFoldersOnly) {
+  const std::string file = burley(R"({ "dermis_expect": 1, "cases": [
+  { "case": "changed", "overlays": ["changes/less.json"], "unbound": ["scattered_light"],
+    "expect": { "passes": ["classify", "list", "setup", "scatter"] } } ] })");
+  std::filesystem::create_directories(path("other/changes"));
+  const std::string overlay = R"({ "dermis_overlay": 1, "edits": [ { "remove": "/passes/combine" },
+    { "set": "/passes/scatter/write/scattered", "to": "lighting" } ] })";
+  write("other/changes/less.json", overlay);
+  const Outcome nowhere = run({"test", file});
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_THAT(nowhere.err, AllOf(HasSubstr("overlay 'changes/less.json': there is no such file in"),
+                                 HasSubstr("--root declares further folders")));
+  const Outcome declared = run({"test", file, "--root", path("other")});
+  EXPECT_THAT(declared.err, Not(HasSubstr("no such file")));
+  std::filesystem::create_directories(path("changes"));
+  std::filesystem::create_symlink(path("other/changes/less.json"), path("changes/less.json"));
+  EXPECT_EQ(run({"test", file}).exit_code, declared.exit_code) << "a link inside of the folder";
+  std::filesystem::remove(path("changes/less.json"));
+  std::filesystem::create_symlink(DERMIS_SOURCE_DIR "/configs/overlays/full_precision.json",
+                                  path("changes/less.json"));
+  const Outcome outside = run({"test", file});
+  EXPECT_EQ(outside.exit_code, 1);
+  EXPECT_THAT(outside.err, HasSubstr("leads out of"));
+  const std::string escaping =
+      burley(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "overlays": ["../x.json"] } ] })");
+  EXPECT_THAT(run({"test", escaping}).err, AllOf(HasSubstr(escaping + ":1:"), HasSubstr("D0115")));
 }
 
 } // namespace

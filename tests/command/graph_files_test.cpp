@@ -206,5 +206,58 @@ TEST_F(GraphFiles, UpgradeHasNothingToDoForTheNewestVersionAndRefusesUnknownOnes
                                  HasSubstr("\"kind\": \"graph\", \"version\": 1, \"changed\": false")));
 }
 
+TEST_F(GraphFiles, OverlaysApplyInOrderAndExplainTellsWhoSetWhat) {
+  const std::string first = write("first.json", R"({ "dermis_overlay": 1, "edits": [
+    { "set": "/settings/samples/int", "to": 8 }, { "remove": "/passes/hand_out" },
+    { "remove": "/exports/scattered_light" }, { "remove": "/resources/scattered_light" } ] })");
+  const std::string second = write("second.json", R"({ "dermis_overlay": 1, "edits": [
+    { "set": "/settings/samples/int", "to": 16 } ] })");
+  for (const char* verb : {"validate", "explain", "graph"}) {
+    const Outcome outcome = run({verb, burley, "--overlay", first, "--overlay", second});
+    EXPECT_EQ(outcome.exit_code, 0) << verb << outcome.err;
+  }
+  const Outcome text = run({"explain", burley, "--overlay", first, "--overlay", second});
+  EXPECT_THAT(text.out, AllOf(HasSubstr("remove   /passes/hand_out  (" + first + ":2:62)"),
+                              HasSubstr("set      /settings/samples/int  (" + second + ":2:14)")));
+  const Outcome json = run({"explain", burley, "--json", "--overlay", second, "--overlay", first});
+  ASSERT_TRUE(is_json(json.out));
+  EXPECT_THAT(json.out,
+              AllOf(HasSubstr("\"name\": \"samples\", \"type\": \"int\", \"value\": 8"),
+                    HasSubstr("{ \"did\": \"set\", \"at\": \"/settings/samples/int\", \"file\": \"" + first +
+                              "\", \"line\": 2, \"column\": 14 }")));
+}
+
+TEST_F(GraphFiles, AMistakeOfAnOverlayIsToldInTheOverlay) {
+  const std::string wrong = write("wrong.json", R"({ "dermis_overlay": 1,
+  "edits": [ { "set": "/settings/samples/int", "to": 1 } ] })");
+  for (const char* verb : {"validate", "explain", "graph"}) {
+    const Outcome outcome = run({verb, burley, "--overlay", wrong});
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(wrong + ":2:54: error[D0223"), HasSubstr("burley.json:")));
+  }
+  EXPECT_EQ(run({"validate", wrong}).exit_code, 0) << "by itself it is an overlay";
+  EXPECT_EQ(run({"validate", wrong, "--overlay", wrong}).exit_code, 2) << "there is no graph";
+  const Outcome none = run({"explain", burley, "--overlay", path("none.json")});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("none.json"));
+}
+
+TEST_F(GraphFiles, IncludedFilesAreReadBelowTheGraphsFolderAndDeclaredRoots) {
+  const std::string classify = R"({ "pass": "classify", "kind": "subsurface.classify",
+      "read": { "material": "material", "depth": "depth", "scatter_scale": "scatter_scale" },
+      "write": { "classes": "classes" } })";
+  const std::string graph =
+      write("graphs/mine.json", burley_with(classify, R"({ "include": "parts/classify.json" })"));
+  const Outcome missing = run({"validate", graph});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, AllOf(HasSubstr("D0109"), HasSubstr("there is no such file in")));
+  write("shared/parts/classify.json", "{ \"dermis_fragment\": 1, \"passes\": [ " + classify + " ] }");
+  const Outcome good = run({"validate", graph, "--root", path("shared")});
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  const Outcome alone = run({"validate", path("shared/parts/classify.json")});
+  EXPECT_EQ(alone.exit_code, 1) << "it does not declare what it uses";
+  EXPECT_THAT(alone.err, HasSubstr("classify.json:2:29: error[D0203"));
+}
+
 } // namespace
 } // namespace dermis::test

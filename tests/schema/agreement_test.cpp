@@ -2,8 +2,10 @@
 // than one place of the file (names that refer to each other, expressions, sizes in strings) is the parser's
 // alone.
 
+#include "framegraph/compose/compose.hpp"
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/schema/graph_schema.hpp"
+#include "integration/command/expect/expectation.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
 #include "integration/files/capture.hpp"
 #include "passes/subsurface/kinds.hpp"
@@ -33,10 +35,29 @@ constexpr DiagnosticId structural[] = {
 
 using Reader = void (*)(const std::string& text, Diagnostics& diagnostics);
 
-void read_graph_text(const std::string& text, Diagnostics& diagnostics) {
+// Whatever is included is there and empty.
+FileText open_nothing(std::string_view name) {
+  return {std::string(name), R"({ "dermis_fragment": 1 })", ""};
+}
+void read_composition(const std::optional<Composition>& composition, Diagnostics& diagnostics) {
   static const KindRegistry kinds = subsurface::make_kinds();
-  if (const auto document = parse_document("graph.json", text, diagnostics))
-    read_graph(*document, kinds, diagnostics);
+  if (composition) read_graph(composition->document, kinds, diagnostics);
+}
+void read_graph_text(const std::string& text, Diagnostics& diagnostics) {
+  if (auto document = parse_document("graph.json", text, diagnostics))
+    read_composition(compose(std::move(*document), {}, open_nothing, diagnostics), diagnostics);
+}
+void read_fragment_text(const std::string& text, Diagnostics& diagnostics) {
+  if (auto document = parse_document("fragment.json", text, diagnostics))
+    read_composition(compose_fragment(std::move(*document), open_nothing, diagnostics), diagnostics);
+}
+void read_overlay_text(const std::string& text, Diagnostics& diagnostics) {
+  if (const auto document = parse_document("overlay.json", text, diagnostics))
+    check_overlay(*document, diagnostics);
+}
+void read_expectation_text(const std::string& text, Diagnostics& diagnostics) {
+  if (const auto document = parse_document("graph.expect.json", text, diagnostics))
+    tools::read_expectations(*document, diagnostics);
 }
 void read_profile_text(const std::string& text, Diagnostics& diagnostics) {
   if (const auto document = parse_document("profile.json", text, diagnostics))
@@ -72,11 +93,11 @@ json parse(const std::string& text) {
   return json::parse(text, nullptr, true, true);
 }
 
-std::vector<fs::path> files_in(const char* folder) {
+std::vector<fs::path> files_in(const char* folder, bool expectations = false) {
   std::vector<fs::path> out;
   for (const auto& entry : fs::directory_iterator(fs::path(DERMIS_SOURCE_DIR) / folder)) {
     const std::string name = entry.path().filename().string();
-    if (entry.path().extension() == ".json" && name.find(".expect.") == std::string::npos)
+    if (entry.path().extension() == ".json" && (name.find(".expect.") != std::string::npos) == expectations)
       out.push_back(entry.path());
   }
   std::sort(out.begin(), out.end());
@@ -186,9 +207,9 @@ void expect_agreement(const char* schema_path, Reader reader, const std::vector<
   EXPECT_GT(refused, mutations / 4) << "hardly any mutation damages anything";
 }
 
-std::vector<json> read_all(const char* folder) {
+std::vector<json> read_all(const char* folder, bool expectations = false) {
   std::vector<json> out;
-  for (const fs::path& path : files_in(folder))
+  for (const fs::path& path : files_in(folder, expectations))
     out.push_back(parse(text_of(path)));
   return out;
 }
@@ -215,13 +236,45 @@ constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 1, "name": 
   "passes": [
     { "pass": "classify", "kind": "subsurface.classify", "when": "mirror and samples > 8",
       "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" }, "set": {},
-      "otherwise": { "classes": "list" }, "after": [{ "pass": "classify", "reason": "r", "note": "n" }] } ],
+      "otherwise": { "classes": "list" }, "after": [{ "pass": "classify", "reason": "r", "note": "n" }] },
+    { "include": "parts/more.json", "note": "n" } ],
   "exports": ["fixed"] })";
 
 TEST(Schema, OfGraphsAgreesWithTheParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/graphs");
   files.push_back(parse(every_feature));
   expect_agreement("configs/schema/graph.schema.json", read_graph_text, files, 10000);
+}
+
+TEST(Schema, OfFragmentsAgreesWithTheParserOnMutatedFiles) {
+  json fragment = parse(every_feature);
+  fragment.erase("dermis");
+  fragment.erase("name");
+  fragment["dermis_fragment"] = 1;
+  const json small = parse(R"({ "dermis_fragment": 1, "passes": [ { "include": "a.json" } ] })");
+  expect_agreement("configs/schema/fragment.schema.json", read_fragment_text, {fragment, small}, 3000);
+}
+
+TEST(Schema, OfOverlaysAgreesWithTheParserOnMutatedFiles) {
+  std::vector<json> files = read_all("configs/overlays");
+  files.push_back(parse(R"({ "$schema": "x", "dermis_overlay": 1, "note": "n", "edits": [
+    { "insert_before": "combine", "passes": [ { "pass": "a", "kind": "k" } ], "note": "n" },
+    { "insert_after": "combine", "passes": [ { "include": "a.json" } ] },
+    { "replace": "combine", "passes": [ { "pass": "a" }, { "pass": "b" } ] },
+    { "remove": "/passes/combine/otherwise" }, { "set": "/exports/-", "to": "x", "note": "n" } ] })"));
+  expect_agreement("configs/schema/overlay.schema.json", read_overlay_text, files, 3000);
+}
+
+TEST(Schema, OfExpectationsAgreesWithTheParserOnMutatedFiles) {
+  std::vector<json> files = read_all("configs/graphs", true);
+  files.push_back(
+      parse(R"({ "$schema": "x", "dermis_expect": 1, "note": "n", "cases": [ { "case": "all", "note": "n",
+    "size": [640, 360], "overlays": ["a.json"], "set": { "a": true, "b": 1.5, "c": "x", "d": 3 }, "unbound": ["u"],
+    "host_formats": { "x": "rgba16f" },
+    "device": { "unsupported_formats": ["r32f"], "max_image_dimension": 4096, "note": "n" },
+    "expect": { "passes": ["p"], "culled": { "q": "why" }, "barriers": 1, "batches": 2, "transient_bytes": 3,
+                "history_bytes": 4, "diagnostics": ["D0301"], "note": "n" } } ] })"));
+  expect_agreement("configs/schema/expectation.schema.json", read_expectation_text, files, 6000);
 }
 
 TEST(Schema, OfProfilesAgreesWithTheParserOnMutatedFiles) {
@@ -258,6 +311,9 @@ TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
 TEST(Schema, OfGraphsIsTheOneThatTheKindsGive) {
   EXPECT_EQ(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/schema/graph.schema.json"),
             graph_schema(subsurface::make_kinds()))
+      << "write it again: dermis schema --out configs/schema";
+  EXPECT_EQ(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/schema/fragment.schema.json"),
+            fragment_schema(subsurface::make_kinds()))
       << "write it again: dermis schema --out configs/schema";
 }
 

@@ -49,7 +49,7 @@ demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHos
                                                                  std::span<const CaptureProfile> profiles,
                                                                  std::span<const float> sap_tables) {
   Diagnostics diagnostics;
-  std::optional<LoadedGraph> loaded = load_graph(request.graph, diagnostics);
+  std::optional<LoadedGraph> loaded = load_graph(request.graph, {}, diagnostics);
   if (!loaded) return input_error(request.graph, text_of(diagnostics));
   const CompileChoices choices = read_choices(loaded->graph, request.set);
   if (!choices.problem.empty()) return input_error(request.graph, choices.problem);

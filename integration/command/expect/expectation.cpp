@@ -1,6 +1,8 @@
 #include "integration/command/expect/expectation.hpp"
 
+#include "framegraph/compose/compose.hpp"
 #include "framegraph/text/json_writer.hpp"
+#include "framegraph/text/limits.hpp"
 #include "framegraph/text/reader.hpp"
 #include "integration/command/graph_input.hpp"
 
@@ -79,6 +81,15 @@ struct CaseReader {
     }
   }
 
+  void overlays(NodeId list, ExpectedCase& out) {
+    if (!list.valid()) return;
+    for (const NodeId node : children(document, list)) {
+      const auto name = read_string(document, node, "the name of an overlay", diagnostics);
+      ok &= name && check_file_name(*name, fmt::format("'{}'", *name), document.where(node), diagnostics);
+      if (name) out.overlays.emplace_back(*name);
+    }
+  }
+
   void device(NodeId node, ExpectedCase& out) {
     if (!node.valid()) return;
     ObjectReader object(document, node, fmt::format("'device' of case '{}'", out.name), diagnostics);
@@ -137,6 +148,7 @@ struct CaseReader {
       for (const NodeId one : children(document, formats))
         if (const auto found = format(one, "'host_formats'"))
           out.host_formats.emplace(document.key(one), *found);
+    overlays(object.array("overlays", 0, limits::graph_files, Need::optional), out);
     device(object.object("device", Need::optional), out);
     out.facts_node = object.object("expect", Need::optional);
     if (out.facts_node.valid()) out.facts = facts(out.facts_node, out.name);

@@ -28,6 +28,7 @@ struct Facts {
 struct ExpectedCase {
   std::string name;
   Size size;
+  std::vector<std::string> overlays; // names of files, applied in this order
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports
   std::map<std::string, Format> host_formats;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <optional>
 
 namespace demo {
@@ -95,6 +96,21 @@ Result<> query_slots(DermisHost& host) {
   return success();
 }
 
+// Keeps the texts that it delivers until the call that asks for them is over.
+struct Includes {
+  const DermisDesc& desc;
+  std::deque<NamedText> delivered = {};
+};
+
+uint32_t DERMIS_CALL deliver_include(void* user, const char* name, dermis_source* source) {
+  auto& includes = *static_cast<Includes*>(user);
+  std::optional<NamedText> file = includes.desc.include(name);
+  if (!file) return 0;
+  const NamedText& kept = includes.delivered.emplace_back(std::move(*file));
+  *source = source_of(kept.name, kept.text);
+  return 1;
+}
+
 // Builds the graph; `unbound` and the formats may only name slots that it has.
 Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& sources,
                      const std::vector<std::string>& unbound) {
@@ -127,6 +143,14 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
   info.unbound_count = static_cast<uint32_t>(unbound_names.size());
   info.formats = formats.data();
   info.format_count = static_cast<uint32_t>(formats.size());
+  std::vector<dermis_source> overlays;
+  for (const NamedText& overlay : desc.overlays)
+    overlays.push_back(source_of(overlay.name, overlay.text));
+  info.overlays = overlays.data();
+  info.overlay_count = static_cast<uint32_t>(overlays.size());
+  Includes includes{desc};
+  if (desc.include) info.include = deliver_include;
+  info.include_user = &includes; // never asked again: this engine reloads no graph
   Report report;
   dermis_graph graph = nullptr;
   const dermis_result result = dermis_graph_create(host.context, &info, &graph, &report.handle);

@@ -16,6 +16,8 @@ struct DermisDesc {
   std::vector<ScatteringProfile> profiles;
   std::vector<std::pair<std::string, std::string>> settings;
   uint32_t width = 1, height = 1;
+  std::vector<NamedText> overlays = {};
+  std::function<std::optional<NamedText>(const std::string& name)> include = {};
 };
 
 struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h

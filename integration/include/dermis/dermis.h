@@ -6,7 +6,7 @@
  *   - put every image back into the state that you ask for.
  * DERMIS DOES NOT
  *   - create an instance, a device or a queue; submit; wait; present; make a thread; print; open a file;
- *   - touch an image that you did not bind, or keep a pointer of yours after a call returns.
+ *   - touch an image that you did not bind, or keep a pointer of yours after a call returns, but for callbacks.
  *
  * STEP BY STEP
  *   1. dermis_context_create       once per device, with the device's functions
@@ -221,6 +221,11 @@ typedef struct dermis_slot_format {
 } dermis_slot_format;
 #define DERMIS_SLOT_FORMAT_INIT {sizeof(dermis_slot_format), NULL, VK_FORMAT_UNDEFINED, 0}
 
+/* Delivers a file that a graph, a fragment or an overlay includes: fills *source and returns 1, or returns 0 if there
+ * is none. `name` is relative, with '/' between folders and without "..". What *source points into must last until the
+ * Dermis call ends. Must not call Dermis. Called during dermis_graph_create and dermis_graph_reload only. */
+typedef uint32_t(DERMIS_CALL* dermis_include_fn)(void* user, const char* name, dermis_source* source);
+
 typedef struct dermis_graph_desc {
   size_t struct_size;
   dermis_source source;
@@ -232,11 +237,16 @@ typedef struct dermis_graph_desc {
   const dermis_slot_format* formats; /* formats of the images to be bound; others: first declared */
   uint32_t format_count;
   uint32_t reserved;               /* 0 */
+  const dermis_source* overlays;   /* applied to the graph one after the other, also at each reload */
+  uint32_t overlay_count;
+  uint32_t reserved_too;           /* 0 */
+  dermis_include_fn include;       /* NULL: nothing can be included; else callable as long as the graph lives */
+  void* include_user;
 } dermis_graph_desc;
 #define DERMIS_GRAPH_DESC_INIT \
-  {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0}
+  {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0, NULL, 0, 0, NULL, NULL}
 
-/* Checks a graph without a device. *report (may be NULL) gets the messages. Thread: any.
+/* Checks a graph, which includes no other file, without a device. *report (may be NULL) gets the messages. Thread: any.
  * Errors: ARGUMENT, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source, dermis_report* report);
 /* Parses, checks, compiles and allocates. *graph is NULL on failure. *report (may be NULL) gets the messages and

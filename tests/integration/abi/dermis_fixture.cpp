@@ -124,6 +124,13 @@ dermis_result DermisTest::create_graph(const GraphOptions& options, dermis_graph
   desc.unbound_count = static_cast<uint32_t>(unbound.size());
   desc.formats = formats.data();
   desc.format_count = static_cast<uint32_t>(formats.size());
+  std::vector<dermis_source> overlays;
+  for (const std::string& overlay : options.overlays)
+    overlays.push_back(source_of(overlay, "overlay.json"));
+  desc.overlays = overlays.data();
+  desc.overlay_count = static_cast<uint32_t>(overlays.size());
+  desc.include = options.include;
+  desc.include_user = options.include_user;
   return dermis_graph_create(context, &desc, graph, report);
 }
 

@@ -34,6 +34,9 @@ struct GraphOptions {
   uint32_t width = 64, height = 64;
   std::vector<std::string> unbound{"albedo", "scatter_scale", "scattered_light"};
   std::vector<std::pair<std::string, VkFormat>> formats{{"depth", VK_FORMAT_R32_SFLOAT}};
+  std::vector<std::string> overlays; // texts
+  dermis_include_fn include = nullptr;
+  void* include_user = nullptr;
 };
 
 struct DermisTest : testing::Test {

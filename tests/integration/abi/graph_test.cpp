@@ -34,7 +34,8 @@ struct GraphLife : DermisTest {
 };
 
 TEST(Validate, AcceptsTheShippedGraphsWithoutADevice) {
-  for (const char* path : {"configs/graphs/burley.json", "configs/graphs/separable.json", "configs/graphs/sap.json"}) {
+  for (const char* path :
+       {"configs/graphs/burley.json", "configs/graphs/separable.json", "configs/graphs/sap.json"}) {
     const std::string text = read_text(path);
     const dermis_source source = source_of(text, path);
     dermis_report report = nullptr;
@@ -176,6 +177,72 @@ TEST_F(GraphLife, DescriptionsAreWholeOrIncomplete) {
   EXPECT_EQ(std::string(small.data(), small.size()), "kept");
   EXPECT_EQ(dermis_graph_describe(graph, static_cast<dermis_describe_format>(3), &size, nullptr),
             DERMIS_ERROR_ARGUMENT);
+}
+
+TEST_F(GraphLife, OverlaysApplyAtCreationAndAtEachReload) {
+  GraphOptions options;
+  options.overlays = {read_text("configs/overlays/full_precision.json")};
+  const dermis_graph wide = make_graph(options), narrow = make_graph();
+  ASSERT_NE(wide, nullptr);
+  const auto transient_bytes = [](dermis_graph graph) {
+    dermis_memory memory = DERMIS_MEMORY_INIT;
+    EXPECT_EQ(dermis_graph_memory(graph, &memory), DERMIS_OK);
+    return memory.transient_bytes;
+  };
+  EXPECT_GT(transient_bytes(wide), transient_bytes(narrow));
+  EXPECT_THAT(described(wide, DERMIS_DESCRIBE_TEXT),
+              HasSubstr("set      /resources/light/format  (overlay.json:7:14)"));
+  const dermis_source source = source_of(burley, "graph.json");
+  EXPECT_EQ(dermis_graph_reload(wide, &source, nullptr), DERMIS_OK);
+  EXPECT_GT(transient_bytes(wide), transient_bytes(narrow));
+
+  options.overlays = {"{ \"dermis_overlay\": 1, \"edits\": [ { \"remove\": \"/passes/none\" } ] }"};
+  dermis_graph graph = nullptr;
+  dermis_report report = nullptr;
+  EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_THAT(take(report).all, AllOf(HasSubstr("overlay.json:1:"), HasSubstr("'none'")));
+}
+
+struct Delivery {
+  std::string text;
+  uint32_t calls = 0;
+};
+uint32_t DERMIS_CALL deliver(void* user, const char* name, dermis_source* source) {
+  auto& delivery = *static_cast<Delivery*>(user);
+  ++delivery.calls;
+  if (std::string(name) != "parts/classify.json") return 0;
+  source->text = delivery.text.data();
+  source->length = delivery.text.size();
+  return 1;
+}
+
+TEST_F(GraphLife, IncludedFilesComeFromTheHostOncePerCreationAndReload) {
+  const size_t begin = burley.find("{ \"pass\": \"classify\"");
+  const size_t end = burley.find("} }", begin) + 3;
+  ASSERT_LT(end, burley.size());
+  Delivery delivery{"{ \"dermis_fragment\": 1, \"passes\": [ " + burley.substr(begin, end - begin) + " ] }"};
+  std::string including = burley;
+  including.replace(begin, end - begin, "{ \"include\": \"parts/classify.json\" }");
+  GraphOptions options;
+  options.text = including;
+  dermis_graph graph = nullptr;
+  dermis_report report = nullptr;
+  EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_THAT(take(report).all, AllOf(HasSubstr("graph.json:"), HasSubstr("no include function")));
+  options.include = deliver;
+  options.include_user = &delivery;
+  graph = make_graph(options);
+  ASSERT_NE(graph, nullptr);
+  EXPECT_EQ(delivery.calls, 1u);
+  EXPECT_EQ(dermis_graph_resize(graph, 32, 32, nullptr), DERMIS_OK);
+  EXPECT_EQ(delivery.calls, 1u) << "not asked again";
+  const dermis_source source = source_of(including, "graph.json");
+  EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK);
+  EXPECT_EQ(delivery.calls, 2u);
+  delivery.text.clear();
+  EXPECT_EQ(dermis_graph_reload(graph, &source, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_THAT(take(report).all, HasSubstr("parts/classify.json"));
+  EXPECT_EQ(dermis_graph_resize(graph, 64, 64, nullptr), DERMIS_OK) << "the running graph kept its own";
 }
 
 TEST_F(GraphLife, MemoryIsThatOfThePlan) {

@@ -1,0 +1,128 @@
+#include "framegraph/compose/compose.hpp"
+
+#include "framegraph/compose/composer.hpp"
+#include "framegraph/text/limits.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+// Entries of the graph's own passes that stand for files give way to those files' passes.
+void expand_graph(Composer& composer) {
+  const ItemId passes = composer.tree.find({0}, "passes");
+  if (!passes.valid() || composer.tree.kind(passes) != NodeKind::array) return; // the graph's reader says so
+  std::vector<ItemId> expanded;
+  const std::vector<ItemId> entries = composer.tree[passes].children;
+  for (const ItemId entry : entries) {
+    const NodeId node = composer.tree[entry].node;
+    if (is_include(composer.tree.documents.front(), node))
+      expand_pass(composer, 0, node, Change::What::include, expanded);
+    else
+      expanded.push_back(entry);
+  }
+  composer.tree[passes].children = std::move(expanded);
+}
+
+bool has_includes(const Document& graph) {
+  const NodeId passes = graph.find(graph.root(), "passes");
+  if (!passes.valid()) return false;
+  const std::vector<NodeId> entries = children(graph, passes);
+  return std::any_of(entries.begin(), entries.end(), [&](NodeId entry) { return is_include(graph, entry); });
+}
+
+} // namespace
+
+std::string_view change_name(Change::What what) {
+  constexpr std::string_view names[] = {"include", "insert", "replace", "remove", "set"};
+  return names[static_cast<size_t>(what)];
+}
+
+std::string Provenance::place(const Change& change) const {
+  const uint32_t file = change.where.file.value;
+  return fmt::format("{}:{}:{}", file < files.size() ? files[file].name : std::string(), change.where.line,
+                     change.where.column);
+}
+
+bool check_file_name(std::string_view name, std::string_view what, const SourceLocation& where,
+                     Diagnostics& diagnostics) {
+  std::string problem;
+  if (name.empty() || name.size() > limits::file_name_bytes)
+    problem = fmt::format("it has {} bytes, not 1 .. {}", name.size(), limits::file_name_bytes);
+  else if (name.front() == '/')
+    problem = "it is absolute";
+  else if (name.find_first_of("\\:") != std::string_view::npos)
+    problem = "it holds '\\' or ':'";
+  for (size_t begin = 0; problem.empty() && begin <= name.size();) {
+    const size_t end = std::min(name.find('/', begin), name.size());
+    const std::string_view step = name.substr(begin, end - begin);
+    if (step.empty() || step == "." || step == "..") problem = fmt::format("it has the step '{}'", step);
+    begin = end + 1;
+  }
+  if (problem.empty()) return true;
+  diagnostics.add(DiagnosticId::bad_file_name, where,
+                  fmt::format("{} is no name of a file to read: {}", what, problem));
+  return false;
+}
+
+bool add_document(Composer& composer, Document document, const SourceLocation& where) {
+  composer.bytes += composer.diagnostics.files[document.file.value].text.size();
+  composer.nodes += document.nodes.size();
+  std::string limit;
+  if (composer.tree.documents.size() >= limits::graph_files)
+    limit = fmt::format("{} files", limits::graph_files);
+  else if (composer.bytes > limits::file_bytes)
+    limit = fmt::format("{} bytes", limits::file_bytes);
+  else if (composer.nodes > limits::nodes)
+    limit = fmt::format("{} values", limits::nodes);
+  if (!limit.empty()) {
+    composer.error(DiagnosticId::limit_exceeded, where,
+                   fmt::format("the graph is put together from more than {}", limit));
+    return false;
+  }
+  composer.tree.documents.push_back(std::move(document));
+  return true;
+}
+
+std::optional<Composition> compose(Document graph, std::vector<Document> overlays, const OpenFile& open,
+                                   Diagnostics& diagnostics) {
+  if (overlays.empty() && !has_includes(graph)) return Composition{std::move(graph), {}};
+  const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
+  const uint64_t errors_before = errors();
+  Composer composer{open, diagnostics};
+  const SourceLocation root = graph.where(graph.root());
+  if (!add_document(composer, std::move(graph), root)) return std::nullopt;
+  composer.tree.graft(0, composer.tree.documents.front().root());
+  expand_graph(composer);
+  for (Document& overlay : overlays) {
+    const SourceLocation where = overlay.where(overlay.root());
+    if (!add_document(composer, std::move(overlay), where)) break;
+    apply_overlay(composer, static_cast<uint32_t>(composer.tree.documents.size() - 1));
+  }
+  if (errors() != errors_before) return std::nullopt;
+  return Composition{flatten(std::move(composer.tree)), std::move(composer.changes)};
+}
+
+std::optional<Composition> compose_fragment(Document fragment, const OpenFile& open,
+                                            Diagnostics& diagnostics) {
+  const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
+  const uint64_t errors_before = errors();
+  const SourceLocation where = fragment.where(fragment.root());
+  auto graph =
+      parse_document("<a graph of the fragment alone>",
+                     R"({ "dermis": 1, "name": "fragment", "passes": [], "exports": [] })", diagnostics);
+  Composer composer{open, diagnostics};
+  if (!graph || !add_document(composer, std::move(*graph), where) ||
+      !add_document(composer, std::move(fragment), where))
+    return std::nullopt;
+  composer.tree.graft(0, composer.tree.documents.front().root());
+  std::vector<ItemId> passes;
+  join_fragment(composer, 1, passes);
+  if (errors() != errors_before) return std::nullopt;
+  composer.tree[composer.tree.find({0}, "passes")].children = std::move(passes);
+  return Composition{flatten(std::move(composer.tree)), std::move(composer.changes)};
+}
+
+} // namespace dermis

@@ -1,0 +1,156 @@
+// { "include": "file" } among passes: the passes of a fragment, whose settings, images and buffers join the
+// graph's.
+
+#include "framegraph/compose/composer.hpp"
+#include "framegraph/text/limits.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+constexpr int64_t fragment_version = 1;
+constexpr std::string_view sections[] = {"settings", "imports", "resources"};
+
+// "'a' includes 'b' includes 'a'".
+std::string chain_text(const Composer& composer, std::string_view name) {
+  std::string text;
+  for (const Composer::Included& one : composer.chain)
+    if (!text.empty() || one.name == name) text += fmt::format("'{}' includes ", one.name);
+  return text + fmt::format("'{}'", name);
+}
+
+// The document of a file; invalid index after an error at `where`.
+std::optional<uint32_t> open_fragment(Composer& composer, const std::string& name,
+                                      const SourceLocation& where) {
+  if (!composer.open) {
+    composer.error(DiagnosticId::file_unreadable, where,
+                   fmt::format("'{}' cannot be included: nothing here opens files", name));
+    return std::nullopt;
+  }
+  FileText file = composer.open(name);
+  if (!file.problem.empty()) {
+    composer.error(DiagnosticId::file_unreadable, where,
+                   fmt::format("'{}' cannot be included: {}", name, file.problem));
+    return std::nullopt;
+  }
+  auto document = parse_document(file.name.empty() ? name : std::move(file.name), std::move(file.text),
+                                 composer.diagnostics);
+  if (!document) return std::nullopt;
+  if (!add_document(composer, std::move(*document), where)) return std::nullopt;
+  return static_cast<uint32_t>(composer.tree.documents.size() - 1);
+}
+
+// Members of an object of the fragment become members of the graph's object of that name.
+void join_section(Composer& composer, std::string_view section, uint32_t document, NodeId list) {
+  EditTree& tree = composer.tree;
+  ItemId into = tree.find({0}, section);
+  if (!into.valid()) { // the first members, under the key of the fragment's section
+    into = tree.graft(document, list);
+    tree[into].children.clear();
+    tree[{0}].children.push_back(into);
+  }
+  if (tree.kind(into) != NodeKind::object) return; // the graph's reader says so
+  for (const NodeId node : children(tree.documents[document], list)) {
+    const ItemId fresh = tree.graft(document, node);
+    const std::string key = tree[fresh].key;
+    const ItemId known = tree.find(into, key);
+    if (!known.valid()) {
+      tree[into].children.push_back(fresh);
+      composer.changes.push_back(
+          {Change::What::include, fmt::format("/{}/{}", section, key), tree.where_key(fresh)});
+    } else if (!same_value(tree, known, fresh)) {
+      composer
+          .error(DiagnosticId::duplicate_name, tree.where_key(fresh),
+                 fmt::format("'{}' of \"{}\" is declared in two files, and not alike", key, section))
+          .related.emplace_back(tree.where_key(known), "first declared here");
+    }
+  }
+}
+
+void join_exports(Composer& composer, uint32_t document, NodeId list) {
+  EditTree& tree = composer.tree;
+  const ItemId into = tree.find({0}, "exports");
+  if (!into.valid() || tree.kind(into) != NodeKind::array) return; // the graph's reader says so
+  for (const NodeId node : children(tree.documents[document], list)) {
+    const ItemId fresh = tree.graft(document, node);
+    const std::vector<ItemId>& known = tree[into].children;
+    if (tree.kind(fresh) == NodeKind::string && std::any_of(known.begin(), known.end(), [&](ItemId one) {
+          return tree.kind(one) == NodeKind::string && tree.text(one) == tree.text(fresh);
+        }))
+      continue;
+    composer.changes.push_back(
+        {Change::What::include, fmt::format("/exports/{}", tree.text(fresh)), tree.where(fresh)});
+    tree[into].children.push_back(fresh);
+  }
+}
+
+void include(Composer& composer, uint32_t document, NodeId entry, std::vector<ItemId>& out) {
+  const Document& from = composer.tree.documents[document];
+  ObjectReader reader(from, entry, "an include", composer.diagnostics);
+  const auto text = reader.string("include");
+  const SourceLocation where = from.where(from.find(entry, "include"));
+  if (!reader.finish() || !text ||
+      !check_file_name(*text, fmt::format("'{}'", *text), where, composer.diagnostics))
+    return;
+  const std::string name(*text);
+  const auto named = [&](const Composer::Included& one) { return one.name == name; };
+  if (const auto open = std::find_if(composer.chain.begin(), composer.chain.end(), named);
+      open != composer.chain.end()) {
+    composer
+        .error(DiagnosticId::include_cycle, where,
+               fmt::format("files include each other: {}", chain_text(composer, name)))
+        .related.emplace_back(open->where, fmt::format("'{}' is included here", name));
+    return;
+  }
+  // A fragment that several others need is there once, where it is included first.
+  if (std::any_of(composer.included.begin(), composer.included.end(), named)) return;
+  if (composer.chain.size() >= limits::include_nesting) {
+    composer.error(DiagnosticId::limit_exceeded, where,
+                   fmt::format("files include each other more than {} deep", limits::include_nesting));
+    return;
+  }
+  composer.included.push_back({name, where});
+  const std::optional<uint32_t> fragment = open_fragment(composer, name, where);
+  if (!fragment) return;
+  composer.chain.push_back({name, where});
+  join_fragment(composer, *fragment, out);
+  composer.chain.pop_back();
+}
+
+} // namespace
+
+void join_fragment(Composer& composer, uint32_t document, std::vector<ItemId>& out) {
+  const Document& fragment = composer.tree.documents[document];
+  if (!check_version(fragment, "dermis_fragment", fragment_version, composer.diagnostics)) return;
+  ObjectReader reader(fragment, fragment.root(), "the fragment", composer.diagnostics);
+  reader.any("dermis_fragment");
+  for (const std::string_view section : sections)
+    if (const NodeId list = reader.object(section, Need::optional); list.valid())
+      join_section(composer, section, document, list);
+  if (const NodeId list = reader.array("exports", 0, limits::resources, Need::optional); list.valid())
+    join_exports(composer, document, list);
+  const NodeId passes = reader.array("passes", 0, limits::passes, Need::optional);
+  if (reader.finish() && passes.valid())
+    for (const NodeId pass : children(fragment, passes))
+      expand_pass(composer, document, pass, Change::What::include, out);
+}
+
+bool is_include(const Document& document, NodeId entry) {
+  return document.find(entry, "include").valid() && !document.find(entry, "pass").valid();
+}
+
+void expand_pass(Composer& composer, uint32_t document, NodeId node, Change::What what,
+                 std::vector<ItemId>& out) {
+  if (is_include(composer.tree.documents[document], node)) return include(composer, document, node, out);
+  const ItemId pass = composer.tree.graft(document, node);
+  const ItemId name = composer.tree.find(pass, "pass");
+  composer.changes.push_back(
+      {what, fmt::format("/passes/{}", name.valid() ? composer.tree.text(name) : std::string_view()),
+       composer.tree.where(pass)});
+  out.push_back(pass);
+}
+
+} // namespace dermis

@@ -1,0 +1,237 @@
+// The edits of an overlay, applied one after the other to the graph as the edits before left it.
+
+#include "framegraph/compose/composer.hpp"
+#include "framegraph/compose/path.hpp"
+#include "framegraph/text/limits.hpp"
+#include "framegraph/text/suggest.hpp"
+#include "framegraph/text/utf8.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <iterator>
+
+namespace dermis {
+
+namespace {
+
+constexpr int64_t overlay_version = 1;
+constexpr std::string_view verbs[] = {"insert_before", "insert_after", "replace", "remove", "set"};
+enum class Verb : uint8_t { insert_before, insert_after, replace, remove, set, none };
+
+std::string shown(std::string_view text) {
+  std::string out;
+  append_printable(out, text, limits::key_bytes);
+  return out;
+}
+
+struct Edit {
+  Composer& composer;
+  uint32_t overlay; // its document
+  NodeId target_node;
+  std::string what; // for messages: "'set' of edit 3"
+
+  EditTree& tree() const { return composer.tree; }
+  SourceLocation target_place() const { return tree().documents[overlay].where(target_node); }
+
+  void refuse(std::string text, std::string suggestion, std::string_view path) const {
+    Diagnostic& one = composer.error(DiagnosticId::edit_target, target_place(), std::move(text));
+    one.suggestion = std::move(suggestion);
+    for (const Change& change : composer.changes) {
+      const bool took = change.what == Change::What::remove || change.what == Change::What::replace;
+      const bool covers =
+          path.starts_with(change.at) && (path.size() == change.at.size() || path[change.at.size()] == '/');
+      if (took && covers)
+        one.related.emplace_back(change.where, fmt::format("'{}' is removed here", shown(change.at)));
+    }
+  }
+
+  void log(Change::What did, std::string at) const {
+    composer.changes.push_back({did, std::move(at), target_place()});
+  }
+
+  // The list of the graph's passes and the position of the one that is named; -1 after an error.
+  std::pair<ItemId, int> named_pass(std::string_view name) const {
+    const ItemId passes = tree().find({0}, "passes");
+    const bool list = passes.valid() && tree().kind(passes) == NodeKind::array;
+    const int at = list ? find_pass(tree(), passes, name) : -1;
+    if (at < 0)
+      refuse(fmt::format("{} names the pass '{}', which the graph does not have here", what, shown(name)),
+             list ? did_you_mean(name, steps_into(tree(), passes)) : std::string(),
+             fmt::format("/passes/{}", name));
+    return {passes, at};
+  }
+
+  void place_passes(Verb verb, std::string_view name, NodeId list) const {
+    const auto [passes, at] = named_pass(name);
+    if (at < 0) return;
+    std::vector<ItemId> fresh;
+    if (verb == Verb::replace) log(Change::What::replace, fmt::format("/passes/{}", name));
+    for (const NodeId pass : children(tree().documents[overlay], list))
+      expand_pass(composer, overlay, pass, Change::What::insert, fresh);
+    std::vector<ItemId>& all = tree()[passes].children;
+    auto place = all.begin() + at;
+    if (verb == Verb::replace) place = all.erase(place);
+    if (verb == Verb::insert_after) ++place;
+    all.insert(place, fresh.begin(), fresh.end());
+  }
+
+  // The item that all steps of the path but the last lead to; invalid after an error. `depth`: of that item.
+  ItemId parent_of(std::string_view path, const std::vector<std::string>& steps, uint32_t& depth) const {
+    if (steps.empty()) {
+      refuse(fmt::format("{} gives '{}'; a path begins with '/'", what, shown(path)), "", path);
+      return {};
+    }
+    ItemId at{0};
+    for (depth = 1; depth < steps.size(); ++depth) {
+      const int child = find_step(tree(), at, steps[depth - 1]);
+      if (child < 0) {
+        missing(at, path, steps[depth - 1]);
+        return {};
+      }
+      at = tree()[at].children[static_cast<size_t>(child)];
+    }
+    return at;
+  }
+
+  void missing(ItemId parent, std::string_view path, std::string_view step) const {
+    refuse(fmt::format("{} names '{}', but there is no '{}' here", what, shown(path), shown(step)),
+           did_you_mean(step, steps_into(tree(), parent)), path);
+  }
+
+  void remove(std::string_view path) const {
+    const std::vector<std::string> steps = split_path(path);
+    uint32_t depth = 0;
+    const ItemId parent = parent_of(path, steps, depth);
+    if (!parent.valid()) return;
+    const int at = find_step(tree(), parent, steps.back());
+    if (at < 0) return missing(parent, path, steps.back());
+    std::vector<ItemId>& all = tree()[parent].children;
+    all.erase(all.begin() + at);
+    log(Change::What::remove, std::string(path));
+  }
+
+  void set(std::string_view path, NodeId value) const {
+    const std::vector<std::string> steps = split_path(path);
+    uint32_t depth = 0;
+    const ItemId parent = parent_of(path, steps, depth);
+    if (!parent.valid()) return;
+    const bool array = tree().kind(parent) == NodeKind::array;
+    const int at = find_step(tree(), parent, steps.back());
+    if (at < 0 && (array ? steps.back() != "-" : tree().kind(parent) != NodeKind::object))
+      return missing(parent, path, steps.back());
+    const ItemId fresh = tree().graft(overlay, value);
+    if (depth + height_of(tree(), fresh) > limits::nesting) {
+      composer.error(DiagnosticId::limit_exceeded, target_place(),
+                     fmt::format("{} nests objects and arrays more than {} deep", what, limits::nesting));
+      return;
+    }
+    if (!array && steps.back().size() > limits::key_bytes) {
+      composer.error(DiagnosticId::limit_exceeded, target_place(),
+                     fmt::format("{} gives a key of more than {} bytes", what, limits::key_bytes));
+      return;
+    }
+    tree()[fresh].key = array ? std::string() : steps.back();
+    tree()[fresh].key_node = target_node;
+    std::vector<ItemId>& all = tree()[parent].children;
+    if (at < 0)
+      all.push_back(fresh);
+    else
+      all[static_cast<size_t>(at)] = fresh;
+    log(Change::What::set, std::string(path));
+  }
+};
+
+Verb verb_of(const Document& document, NodeId node) {
+  for (size_t i = 0; i < std::size(verbs); ++i)
+    if (document.find(node, verbs[i]).valid()) return static_cast<Verb>(i);
+  return Verb::none;
+}
+
+// No verb is there; one of the keys may be meant to be.
+void report_no_verb(const Document& document, NodeId node, const std::string& what,
+                    Diagnostics& diagnostics) {
+  const std::string text =
+      fmt::format("{} does nothing: it needs one of the keys {}", what, list_words(verbs));
+  for (const std::string_view verb : verbs)
+    if (const NodeId misspelt = find_misspelt(document, node, verb); misspelt.valid()) {
+      diagnostics.add(DiagnosticId::unknown_key, document.where_key(misspelt), text).suggestion =
+          fmt::format("did you mean '{}'?", verb);
+      return;
+    }
+  diagnostics.add(DiagnosticId::missing_key, document.where(node), text);
+}
+
+struct EditDeclaration {
+  Verb verb = Verb::none;
+  NodeId target, operand; // operand: passes, or what is set; invalid for remove
+};
+
+std::optional<EditDeclaration> read_edit(const Document& document, NodeId node, const std::string& what,
+                                         Diagnostics& diagnostics) {
+  ObjectReader reader(document, node, what, diagnostics);
+  if (!reader.ok()) return std::nullopt;
+  EditDeclaration edit;
+  edit.verb = verb_of(document, node);
+  if (edit.verb == Verb::none) {
+    report_no_verb(document, node, what, diagnostics);
+    return std::nullopt;
+  }
+  const std::string_view key = verbs[static_cast<size_t>(edit.verb)];
+  edit.target = document.find(node, key);
+  bool ok = reader.string(key).has_value();
+  if (edit.verb == Verb::set) edit.operand = reader.any("to");
+  if (edit.verb < Verb::remove) {
+    edit.operand = reader.array("passes", 1, limits::passes);
+    if (edit.operand.valid())
+      for (const NodeId pass : children(document, edit.operand))
+        ok &= expect_kind(document, pass, fmt::format("a pass of {}", what), NodeKind::object, diagnostics);
+  }
+  return reader.finish() && ok ? std::optional(edit) : std::nullopt;
+}
+
+std::string edit_name(size_t index) {
+  return fmt::format("edit {}", index + 1);
+}
+
+// By their order; those with errors are absent. Empty when the overlay itself has errors.
+std::vector<std::optional<EditDeclaration>> read_edits(const Document& document, Diagnostics& diagnostics) {
+  std::vector<std::optional<EditDeclaration>> out;
+  if (!check_version(document, "dermis_overlay", overlay_version, diagnostics)) return out;
+  ObjectReader reader(document, document.root(), "the overlay", diagnostics);
+  reader.any("dermis_overlay");
+  const NodeId edits = reader.array("edits", 1, limits::edits);
+  reader.finish();
+  if (edits.valid())
+    for (const NodeId edit : children(document, edits))
+      out.push_back(read_edit(document, edit, edit_name(out.size()), diagnostics));
+  return out;
+}
+
+} // namespace
+
+bool check_overlay(const Document& document, Diagnostics& diagnostics) {
+  const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
+  const uint64_t before = errors();
+  read_edits(document, diagnostics);
+  return errors() == before;
+}
+
+void apply_overlay(Composer& composer, uint32_t overlay) {
+  const Document& document = composer.tree.documents[overlay];
+  const auto edits = read_edits(document, composer.diagnostics);
+  for (size_t i = 0; i < edits.size() && !composer.diagnostics.full(); ++i) {
+    if (!edits[i]) continue;
+    const EditDeclaration& declared = *edits[i];
+    const std::string_view key = verbs[static_cast<size_t>(declared.verb)];
+    const std::string_view target = document.text(declared.target);
+    const Edit edit{composer, overlay, declared.target, fmt::format("'{}' of {}", key, edit_name(i))};
+    if (declared.verb == Verb::set)
+      edit.set(target, declared.operand);
+    else if (declared.verb == Verb::remove)
+      edit.remove(target);
+    else
+      edit.place_passes(declared.verb, target, declared.operand);
+  }
+}
+
+} // namespace dermis

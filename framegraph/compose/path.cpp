@@ -1,0 +1,66 @@
+#include "framegraph/compose/path.hpp"
+
+#include <charconv>
+
+namespace dermis {
+
+namespace {
+
+// What stands for an element of an array; "" for those that go by their index.
+std::string_view element_name(const EditTree& tree, ItemId element) {
+  if (tree.kind(element) == NodeKind::string) return tree.text(element);
+  const ItemId pass = tree.find(element, "pass");
+  return pass.valid() ? tree.text(pass) : std::string_view();
+}
+
+} // namespace
+
+std::vector<std::string> split_path(std::string_view path) {
+  std::vector<std::string> steps;
+  if (path.empty() || path.front() != '/') return steps;
+  for (size_t i = 0; i < path.size(); ++i) {
+    if (path[i] == '/') {
+      steps.emplace_back();
+    } else if (path[i] == '~' && i + 1 < path.size() && (path[i + 1] == '0' || path[i + 1] == '1')) {
+      steps.back() += path[++i] == '0' ? '~' : '/';
+    } else {
+      steps.back() += path[i];
+    }
+  }
+  return steps;
+}
+
+int find_step(const EditTree& tree, ItemId parent, std::string_view step) {
+  const std::vector<ItemId>& children = tree[parent].children;
+  const bool array = tree.kind(parent) == NodeKind::array;
+  for (size_t i = 0; i < children.size(); ++i)
+    if (!step.empty() && (array ? element_name(tree, children[i]) : tree[children[i]].key) == step)
+      return static_cast<int>(i);
+  size_t index = 0;
+  const auto read = std::from_chars(step.data(), step.data() + step.size(), index);
+  const bool number = read.ec == std::errc() && read.ptr == step.data() + step.size();
+  return array && number && index < children.size() && element_name(tree, children[index]).empty()
+             ? static_cast<int>(index)
+             : -1;
+}
+
+std::vector<std::string_view> steps_into(const EditTree& tree, ItemId parent) {
+  constexpr size_t most_steps = 4096; // a hostile object may have hundreds of thousands of members
+  std::vector<std::string_view> out;
+  for (const ItemId child : tree[parent].children)
+    if (out.size() < most_steps)
+      out.push_back(tree.kind(parent) == NodeKind::object ? std::string_view(tree[child].key)
+                                                          : element_name(tree, child));
+  return out;
+}
+
+int find_pass(const EditTree& tree, ItemId passes, std::string_view name) {
+  const std::vector<ItemId>& children = tree[passes].children;
+  for (size_t i = 0; i < children.size(); ++i) {
+    const ItemId key = tree.find(children[i], "pass");
+    if (key.valid() && tree.text(key) == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+} // namespace dermis

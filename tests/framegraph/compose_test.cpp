@@ -1,0 +1,326 @@
+// Graphs put together from fragments and overlays: what comes of it, and that every message points into the
+// file that set the value.
+
+#include "framegraph/compose/compose.hpp"
+#include "framegraph/text/limits.hpp"
+#include "tests/framegraph/model_support.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace dermis {
+namespace {
+
+using namespace dermis::testing;
+using Id = DiagnosticId;
+
+using Files = std::map<std::string, std::string, std::less<>>;
+
+struct Composed {
+  Diagnostics diagnostics;
+  std::optional<Composition> composition;
+  std::optional<Graph> graph;
+};
+
+Composed put_together(const std::string& graph, const std::vector<std::string>& overlays,
+                      const Files& files = {}) {
+  Composed out;
+  std::vector<Document> read;
+  auto document = parse_document("graph.json", graph, out.diagnostics);
+  for (size_t i = 0; i < overlays.size(); ++i)
+    if (auto overlay = parse_document(fmt::format("overlay{}.json", i), overlays[i], out.diagnostics))
+      read.push_back(std::move(*overlay));
+  EXPECT_TRUE(document && read.size() == overlays.size()) << all_messages(out.diagnostics);
+  const OpenFile open = [&](std::string_view name) {
+    const auto found = files.find(name);
+    return found == files.end() ? FileText{"", "", "it is not there"}
+                                : FileText{std::string(name), found->second, ""};
+  };
+  out.composition = compose(std::move(*document), std::move(read), open, out.diagnostics);
+  if (out.composition) out.graph = read_graph(out.composition->document, kinds(), out.diagnostics);
+  return out;
+}
+
+std::string overlay(const std::string& edits) {
+  return "{ \"dermis_overlay\": 1, \"edits\": [\n" + edits + " ] }";
+}
+
+std::vector<std::string> pass_names(const Composed& composed) {
+  std::vector<std::string> out;
+  if (!composed.graph)
+    ADD_FAILURE() << all_messages(composed.diagnostics);
+  else
+    for (const PassDeclaration& pass : composed.graph->passes)
+      out.push_back(pass.name);
+  return out;
+}
+
+std::string file_of(const Composed& composed, const SourceLocation& where) {
+  return composed.diagnostics.files[where.file.value].name;
+}
+
+// The only message: its id, its file and what it says.
+void expect_one(const Composed& composed, Id id, const std::string& place,
+                const std::vector<std::string>& words) {
+  EXPECT_FALSE(composed.graph);
+  ASSERT_EQ(composed.diagnostics.list.size(), 1u) << all_messages(composed.diagnostics);
+  const Diagnostic& one = composed.diagnostics.list[0];
+  EXPECT_EQ(diagnostic_info(one.id).name, diagnostic_info(id).name);
+  const std::string whole = format_for_people(composed.diagnostics, one);
+  EXPECT_EQ(whole.rfind(place, 0), 0u) << whole;
+  for (const std::string& word : words)
+    EXPECT_NE(whole.find(word), std::string::npos) << word << "\n" << whole;
+}
+
+constexpr const char* copy_pass =
+    R"({ "pass": "again", "kind": "test.blur", "read": { "source": "half" }, "write": { "target": "fixed" } })";
+
+TEST(Compose, AGraphWithoutIncludesAndOverlaysIsLeftAsItIs) {
+  const Composed composed = put_together(whole_graph(), {});
+  ASSERT_TRUE(composed.composition);
+  EXPECT_TRUE(composed.composition->document.sources.empty());
+  EXPECT_TRUE(composed.graph);
+}
+
+TEST(Overlay, PassesAreInsertedReplacedAndRemovedByName) {
+  const std::string fresh = R"({ "pass": "fresh", "kind": "test.list", "read": { "mask": "material" }, )"
+                            R"("write": { "tiles": "list" } })";
+  EXPECT_EQ(pass_names(put_together(whole_graph(), {overlay(R"({ "remove": "/passes/copy" },
+      { "set": "/resources/fixed", "to": { "format": "rgba16f", "size": "view" } },
+      { "remove": "/exports/fixed" })")})),
+            (std::vector<std::string>{"find", "blur", "mix"}));
+  EXPECT_EQ(
+      pass_names(put_together(
+          whole_graph(), {overlay(fmt::format(R"({{ "replace": "copy", "passes": [{}] }})", copy_pass))})),
+      (std::vector<std::string>{"find", "blur", "again", "mix"}));
+  const std::string without_find = R"({ "remove": "/passes/copy/after" }, { "remove": "/passes/find" },)";
+  EXPECT_EQ(
+      pass_names(put_together(
+          whole_graph(),
+          {overlay(without_find + fmt::format(R"({{ "insert_before": "blur", "passes": [{}] }})", fresh))})),
+      (std::vector<std::string>{"fresh", "blur", "copy", "mix"}));
+  EXPECT_EQ(
+      pass_names(put_together(
+          whole_graph(),
+          {overlay(without_find + fmt::format(R"({{ "insert_after": "mix", "passes": [{}] }})", fresh))})),
+      (std::vector<std::string>{"blur", "copy", "mix", "fresh"}));
+}
+
+TEST(Overlay, StackInTheGivenOrderAndTheLastOneCounts) {
+  const std::string first = overlay(R"({ "set": "/settings/samples/int", "to": 20 },
+    { "set": "/settings/extra", "to": { "bool": true } })");
+  const std::string second = overlay(R"({ "set": "/settings/samples/int", "to": 30 })");
+  const Composed composed = put_together(whole_graph(), {first, second});
+  ASSERT_TRUE(composed.graph) << all_messages(composed.diagnostics);
+  EXPECT_EQ(composed.graph->settings[1].default_value.integer, 30);
+  EXPECT_EQ(composed.graph->settings.back().name, "extra");
+  EXPECT_EQ(file_of(composed, composed.graph->settings.back().where), "overlay0.json");
+  EXPECT_EQ(file_of(composed, composed.graph->settings[1].where), "graph.json");
+  const std::vector<Change>& changes = composed.composition->changes;
+  ASSERT_EQ(changes.size(), 3u);
+  EXPECT_EQ(changes[0].at, "/settings/samples/int");
+  EXPECT_EQ(change_name(changes[0].what), "set");
+  EXPECT_EQ(file_of(composed, changes[2].where), "overlay1.json");
+  EXPECT_EQ(put_together(whole_graph(), {second, first}).graph->settings[1].default_value.integer, 20);
+}
+
+TEST(Overlay, ElementsOfArraysGoByNameOrIndexAndDashAppends) {
+  const Composed composed =
+      put_together(whole_graph(), {overlay(R"({ "set": "/imports/light/format/rgba32f", "to": "r32f" },
+    { "set": "/resources/fixed/size/1", "to": 48 }, { "set": "/settings/style/enum/-", "to": "odd" },
+    { "set": "/passes/blur/set/radius", "to": 3 })")});
+  ASSERT_TRUE(composed.graph) << all_messages(composed.diagnostics);
+  EXPECT_EQ(composed.graph->resources[0].formats, (std::vector<Format>{Format::rgba16f, Format::r32f}));
+  EXPECT_EQ(composed.graph->resources[5].size.y.numerator, 48);
+  EXPECT_EQ(composed.graph->settings[4].options.size(), 3u);
+  EXPECT_EQ(composed.graph->passes[1].settings.size(), 4u);
+}
+
+TEST(Overlay, AValueThatIsWrongIsToldInTheFileThatSetIt) {
+  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/settings/samples/int", "to": 99 })")}),
+             Id::setting_range, "overlay0.json:2:41", {"99", "graph.json:4:", "the range ends here"});
+  expect_one(
+      put_together(whole_graph(), {overlay(R"({ "set": "/passes/blur/when", "to": "samples > qality" })")}),
+      Id::unknown_setting, "overlay0.json:2:48", {"'qality'"});
+  expect_one(
+      put_together(whole_graph(), {overlay(R"({ "set": "/resources/halff", "to": { "format": "r32f" } })")}),
+      Id::missing_key, "overlay0.json:2:36", {"'halff'"});
+}
+
+TEST(Overlay, AnEditNamesWhatIsThere) {
+  expect_one(put_together(whole_graph(), {overlay(R"({ "remove": "/passes/blurr" })")}), Id::edit_target,
+             "overlay0.json:2:13", {"'remove' of edit 1", "'blurr'", "did you mean 'blur'?"});
+  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/resource/half/mips", "to": 1 })")}),
+             Id::edit_target, "overlay0.json:2:10", {"'resource'", "did you mean 'resources'?"});
+  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "name", "to": "x" })")}), Id::edit_target,
+             "overlay0.json:2:10", {"a path begins with '/'"});
+  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/exports/7", "to": "x" })")}), Id::edit_target,
+             "overlay0.json:2:10", {"'7'"});
+  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/name/of", "to": "x" })")}), Id::edit_target,
+             "overlay0.json:2:10", {"'of'"});
+  expect_one(
+      put_together(whole_graph(),
+                   {overlay(fmt::format(R"({{ "insert_after": "mixx", "passes": [{}] }})", copy_pass))}),
+      Id::edit_target, "overlay0.json:2:19", {"did you mean 'mix'?"});
+}
+
+TEST(Overlay, WhatAnEarlierOneRemovedIsNamed) {
+  const Composed composed =
+      put_together(whole_graph(), {overlay(R"({ "remove": "/passes/copy" })"),
+                                   overlay(R"({ "set": "/passes/copy/set/radius", "to": 1 })")});
+  expect_one(composed, Id::edit_target, "overlay1.json:2:10",
+             {"no 'copy' here", "overlay0.json:2:13", "'/passes/copy' is removed here"});
+}
+
+TEST(Overlay, ItsOwnMistakesAreToldOnceEach) {
+  expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 2, \"edits\": [] }"}),
+             Id::unsupported_version, "overlay0.json:1:21", {});
+  expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 1, \"edit\": [] }"}), Id::unknown_key,
+             "overlay0.json:1:24", {"did you mean 'edits'?"});
+  expect_one(put_together(whole_graph(), {overlay("{ \"sett\": \"/name\", \"to\": 1 }")}), Id::unknown_key,
+             "overlay0.json:2:3", {"did you mean 'set'?"});
+  expect_one(put_together(whole_graph(), {overlay("{ \"note\": \"n\" }")}), Id::missing_key,
+             "overlay0.json:2:1", {"'insert_before'"});
+  expect_one(put_together(whole_graph(), {overlay("{ \"remove\": \"/name\", \"to\": 1 }")}), Id::unknown_key,
+             "overlay0.json:2:22", {"'to'"});
+  expect_one(put_together(whole_graph(), {overlay("{ \"replace\": \"mix\", \"passes\": [1] }")}),
+             Id::wrong_type, "overlay0.json:2:32", {"a pass of edit 1"});
+}
+
+TEST(Overlay, NestingStaysInsideTheLimitHoweverManyEditsBuildIt) {
+  std::string deep = "1", edits, path = "/x";
+  for (int i = 0; i < 40; ++i)
+    deep = "{ \"a\": " + deep + " }";
+  edits = fmt::format(R"({{ "set": "/x", "to": {} }},)", deep);
+  for (int i = 0; i < 39; ++i)
+    path += "/a";
+  edits += fmt::format("\n{{ \"set\": \"{}\", \"to\": {} }}", path, deep);
+  expect_one(put_together(whole_graph(), {overlay(edits)}), Id::limit_exceeded, "overlay0.json:3:10",
+             {"64 deep"});
+}
+
+constexpr const char* tiles_fragment = R"({ "dermis_fragment": 1, "note": "finds tiles",
+  "imports": { "material": { "size": "view", "format": "r8_uint", "note": "the same in other words" } },
+  "resources": { "list": { "buffer": { "stride": 4, "count": "view/8", "extra": 4 } } },
+  "passes": [ { "pass": "find", "kind": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } } ] })";
+
+// whole_graph with its first pass and its buffer in a fragment.
+std::string including_graph(const std::string& include = R"({ "include": "parts/tiles.json" })") {
+  std::string text = damaged(
+      ",\n    \"list\": { \"buffer\": { \"stride\": 4, \"count\": \"view/8\", \"extra\": 4 } } }", " }");
+  const std::string pass =
+      R"({ "pass": "find", "kind": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } })";
+  return text.replace(text.find(pass), pass.size(), include);
+}
+
+TEST(Include, AFragmentsPassesStandWhereItIsIncludedAndItsOtherMembersJoin) {
+  const Composed composed = put_together(including_graph(), {}, {{"parts/tiles.json", tiles_fragment}});
+  EXPECT_EQ(pass_names(composed), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
+  EXPECT_EQ(composed.graph->resources.back().name, "list");
+  EXPECT_EQ(file_of(composed, composed.graph->passes[0].where), "parts/tiles.json");
+  EXPECT_EQ(composed.graph->passes[0].where.pointer, "/passes/0/pass");
+  EXPECT_EQ(composed.graph->resources.size(), read(whole_graph()).graph->resources.size());
+}
+
+TEST(Include, AFileThatSeveralNeedIsThereOnce) {
+  const std::string outer =
+      R"({ "dermis_fragment": 1, "passes": [ { "include": "parts/tiles.json" } ], "exports": ["light"] })";
+  const Composed composed = put_together(
+      including_graph(
+          R"({ "include": "a.json" }, { "include": "b.json" }, { "include": "parts/tiles.json" })"),
+      {}, {{"a.json", outer}, {"b.json", outer}, {"parts/tiles.json", tiles_fragment}});
+  EXPECT_EQ(pass_names(composed), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
+}
+
+TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
+  std::string wrong = tiles_fragment;
+  wrong.replace(wrong.find("view/8"), 6, "vieww/8");
+  expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", wrong}}), Id::unknown_resource,
+             "parts/tiles.json:3:", {"'vieww'"});
+  expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", "{ \"dermis\": 1 }"}}),
+             Id::missing_key, "parts/tiles.json:1:1", {"dermis_fragment"});
+}
+
+TEST(Include, TwoFilesMayDeclareANameAlikeButNotDifferently) {
+  std::string other = tiles_fragment;
+  other.replace(other.find("r8_uint"), 7, "r16_uint");
+  expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", other}}), Id::duplicate_name,
+             "parts/tiles.json:2:16",
+             {"'material' of \"imports\"", "not alike", "graph.json:", "first declared here"});
+}
+
+TEST(Include, OverlaysSeeWhatWasIncludedAndMayIncludeThemselves) {
+  const Composed changed =
+      put_together(including_graph(), {overlay(R"({ "set": "/resources/list/buffer/extra", "to": 8 })")},
+                   {{"parts/tiles.json", tiles_fragment}});
+  ASSERT_TRUE(changed.graph) << all_messages(changed.diagnostics);
+  EXPECT_EQ(changed.graph->resources.back().extra_elements, 8u);
+  const Composed including =
+      put_together(including_graph(R"({ "pass": "gone", "kind": "test.list" })"),
+                   {overlay(R"({ "replace": "gone", "passes": [{ "include": "parts/tiles.json" }] })")},
+                   {{"parts/tiles.json", tiles_fragment}});
+  EXPECT_EQ(pass_names(including), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
+}
+
+TEST(Include, NamesLeadNowhereElse) {
+  for (const char* name : {"/etc/passwd", "../x.json", "a/../../x.json", "a/./x.json", "a//x.json", "a/", "",
+                           "C:/x.json", "a\\\\x.json"}) {
+    Files files{{name, tiles_fragment}};
+    expect_one(put_together(including_graph(fmt::format(R"({{ "include": "{}" }})", name)), {}, files),
+               Id::bad_file_name, "graph.json:18:18", {"no name of a file to read"});
+  }
+  expect_one(
+      put_together(including_graph(fmt::format(R"({{ "include": "{}" }})", std::string(257, 'a'))), {}),
+      Id::bad_file_name, "graph.json:18:18", {"257 bytes"});
+}
+
+TEST(Include, AFileThatIsNotThereIsNamedAtTheInclude) {
+  expect_one(put_together(including_graph(), {}), Id::file_unreadable, "graph.json:18:18",
+             {"'parts/tiles.json'", "it is not there"});
+  Diagnostics diagnostics;
+  auto document = parse_document("graph.json", including_graph(), diagnostics);
+  EXPECT_FALSE(compose(std::move(*document), {}, {}, diagnostics));
+  EXPECT_EQ(diagnostics.list[0].id, Id::file_unreadable);
+}
+
+TEST(Include, CyclesAreRefusedWithTheWholeChain) {
+  const auto including = [](const char* name) {
+    return fmt::format(R"({{ "dermis_fragment": 1, "passes": [ {{ "include": "{}" }} ] }})", name);
+  };
+  expect_one(put_together(including_graph(R"({ "include": "a.json" })"), {},
+                          {{"a.json", including("b.json")}, {"b.json", including("a.json")}}),
+             Id::include_cycle, "b.json:1:50",
+             {"'a.json' includes 'b.json' includes 'a.json'", "graph.json:18:18"});
+  expect_one(
+      put_together(including_graph(R"({ "include": "a.json" })"), {}, {{"a.json", including("a.json")}}),
+      Id::include_cycle, "a.json:1:50", {"'a.json' includes 'a.json'"});
+}
+
+TEST(Include, DepthAndNumberOfFilesAreLimited) {
+  Files chain, many;
+  std::string includes;
+  for (int i = 0; i < 70; ++i) {
+    chain[fmt::format("{}.json", i)] =
+        fmt::format(R"({{ "dermis_fragment": 1, "passes": [ {{ "include": "{}.json" }} ] }})", i + 1);
+    many[fmt::format("{}.json", i)] = R"({ "dermis_fragment": 1 })";
+    includes += fmt::format("{}{{ \"include\": \"{}.json\" }}", i == 0 ? "" : ", ", i);
+  }
+  expect_one(put_together(including_graph(R"({ "include": "0.json" })"), {}, chain), Id::limit_exceeded,
+             "7.json:1:50", {"8 deep"});
+  const Composed composed = put_together(including_graph(includes), {}, many);
+  ASSERT_FALSE(composed.diagnostics.list.empty());
+  EXPECT_EQ(composed.diagnostics.list[0].id, Id::limit_exceeded);
+  EXPECT_NE(composed.diagnostics.list[0].text.find("64 files"), std::string::npos);
+}
+
+TEST(Include, AFragmentCanBeCheckedAlone) {
+  Diagnostics diagnostics;
+  auto document = parse_document("tiles.json", tiles_fragment, diagnostics);
+  const auto alone = compose_fragment(std::move(*document), {}, diagnostics);
+  ASSERT_TRUE(alone) << all_messages(diagnostics);
+  EXPECT_TRUE(read_graph(alone->document, kinds(), diagnostics)) << all_messages(diagnostics);
+}
+
+} // namespace
+} // namespace dermis
