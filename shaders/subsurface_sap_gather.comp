@@ -22,7 +22,7 @@ void main() {
   float confidence = 1.0;
   if (!copy_only && own.id != 0u) {
     vec3 d_px = sap_d_px(own);
-    vec3 centre = sap_lookup(settings.variant, 0, d_px), tent = sap_lookup(settings.variant, 1, d_px);
+    vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
     sap_sum near = sap_sum(light, vec3(own.mass));
     if (max(tent.r, max(tent.g, tent.b)) >= least_share)
       near = sap_tent(pixel, 0, own);
@@ -30,7 +30,9 @@ void main() {
     rest.mass *= 1.0 - centre - tent;
     uint widest = profiles[min(own.id, 255u)].widest;
     confidence = mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
-    light = sap_blend(centre * own.mass, light, tent * near.mass, near.light, rest).light;
+    vec3 direct = profile_direct(own.id); // what never scatters needs no surface around
+    vec3 mean = sap_blend((centre - direct) * own.mass, light, tent * near.mass, near.light, rest).light;
+    light = mix(mean, light, direct);
   }
   imageStore(scattered_image, texel, round_to_half(vec4(light, confidence)));
 }

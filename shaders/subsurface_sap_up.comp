@@ -22,7 +22,7 @@ void main() {
   vec3 mass = vec3(0.0);
   if (own.id != 0u) {
     bool last = !has_coarse_scattered();
-    vec3 share = last ? vec3(1.0) : sap_lookup(settings.variant, level + 1, sap_d_px(own));
+    vec3 share = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
     sap_sum here = sap_sum(texelFetch(light_image, address, 0).rgb, vec3(own.mass));
     if (settings.variant == VARIANT_SMOOTH && max(share.r, max(share.g, share.b)) >= least_share)
       here = sap_tent(at, level, own);

@@ -1,6 +1,6 @@
 #version 460
 // One pass along an axis of the kernel centre * delta + (1 - centre) * a(x) a(y): passes/subsurface/separable_kernel.hpp
-// fits and tabulates it. Taps of another profile are left out and the rest renormalised; a tap at another depth counts
+// fits and tabulates it, or jimenez_kernel.hpp. Taps of another profile are left out and the rest renormalised; a tap at another depth counts
 // by the profile at its true distance over that at its distance across the view.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -10,6 +10,7 @@
 #include "radius.glsl"
 #include "constants.glsl"
 #include "half.glsl"
+#include "profile.glsl"
 
 const int side_taps[3] = int[3](5, 8, 12); // of 11, 17, 25 taps
 const int rows_per_node[3] = int[3](5 + 2, 8 + 2, 12 + 2);
@@ -40,19 +41,12 @@ vec4 separable_row(kernel_place place, int row) {
   return value;
 }
 
-// The profile's radial density over radius, up to a constant: (e^{-r/d} + e^{-r/3d}) / r.
-vec3 falloff(float r, vec3 inverse_d) {
-  vec3 e = exp(-r * inverse_d * (1.0 / 3.0));
-  return (e * e * e + e) / r;
-}
-
-vec3 axis_pass(ivec2 pixel, uint id, float depth, vec4 d, uint row, vec3 own) {
+vec3 axis_pass(ivec2 pixel, uint id, float depth, scatter_profile profile, uint row, vec3 own) {
   bool vertical = settings.axis == AXIS_VERTICAL;
   ivec2 axis = vertical ? ivec2(0, 1) : ivec2(1, 0);
   vec2 footprints = pixel_footprint(depth);
   float footprint = vertical ? footprints.y : footprints.x;
-  kernel_place place = find_kernel(row, settings.taps, d.w / footprint);
-  vec3 inverse_d = 1.0 / max(d.rgb, vec3(1e-30));
+  kernel_place place = find_kernel(row, settings.taps, profile.d.w / footprint);
 
   vec3 weight = separable_row(place, 0).rgb;
   vec3 sum = weight * own, total = weight;
@@ -77,8 +71,8 @@ vec3 axis_pass(ivec2 pixel, uint id, float depth, vec4 d, uint row, vec3 own) {
         continue;
       float across = distance_px * footprint;
       float rise = tap_depth - depth;
-      vec3 nearness = abs(rise) > 1e-4 * across ? falloff(sqrt(across * across + rise * rise), inverse_d) /
-                                                      max(falloff(across, inverse_d), vec3(1e-37))
+      vec3 nearness = abs(rise) > 1e-4 * across ? profile_falloff(profile, sqrt(across * across + rise * rise)) /
+                                                      max(profile_falloff(profile, across), vec3(1e-37))
                                                 : vec3(1.0);
       vec3 w = tap.rgb * share * nearness;
       sum += w * (vertical ? texelFetch(blurred_image, texel, 0).rgb : texelFetch(light_image, texel, 0).rgb);
@@ -100,17 +94,18 @@ void main() {
     return;
   vec3 light = texelFetch(light_image, texel, 0).rgb;
   vec3 result = light;
-  profile_entry profile = profiles[min(id, 255u)];
+  uint row = profiles[min(id, 255u)].separable_row;
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
-  vec4 d = profile.d_mm * scale;
-  if (!copy_only && depth > 0.0 && profile.separable_row != 0xffffffffu && projected_d(d.w, depth) >= copy_below_d_px) {
+  scatter_profile profile = find_profile(id, scale);
+  if (!copy_only && depth > 0.0 && row != 0xffffffffu && projected_d(profile.d.w, depth) >= copy_below_d_px) {
+    row += uint(settings.kernel * separable_rows_per_kernel);
     bool vertical = settings.axis == AXIS_VERTICAL;
     vec3 own = vertical && has_blurred() ? texelFetch(blurred_image, texel, 0).rgb : light;
-    result = axis_pass(pixel, id, depth, d, profile.separable_row, own);
+    result = axis_pass(pixel, id, depth, profile, row, own);
     if (vertical) {
       vec2 footprints = pixel_footprint(depth);
-      kernel_place place = find_kernel(profile.separable_row, settings.taps, d.w / footprints.y);
+      kernel_place place = find_kernel(row, settings.taps, profile.d.w / footprints.y);
       vec3 centre = separable_row(place, side_taps[settings.taps] + 1).rgb;
       result = mix(result, light, centre);
     }

@@ -95,15 +95,18 @@ vulkan::Error make_executor(dermis_context_t& context, const ProgramInput& input
   const auto separable = subsurface::make_separable_table(
       with_separable ? std::span<const subsurface::NumberedProfile>(input.profiles)
                      : std::span<const subsurface::NumberedProfile>());
-  const auto sap = subsurface::make_sap_tables(subsurface::uses_sap(program.graph, context.kinds));
-  const std::array<vulkan::EnvironmentBinding, 5> environment{{
+  const auto sap =
+      subsurface::make_sap_tables(subsurface::pyramid_use(program.graph, context.kinds), input.profiles);
+  const auto radial = subsurface::make_radial_table(input.profiles);
+  const std::array<vulkan::EnvironmentBinding, 6> environment{{
       {vulkan::EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(profiles).size(), bytes_of(profiles)},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(separable).size(), bytes_of(separable)},
       {vulkan::EnvironmentType::linear_sampler, 0, {}},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(sap).size(), bytes_of(sap)},
+      {vulkan::EnvironmentType::storage_buffer, bytes_of(radial).size(), bytes_of(radial)},
   }};
-  static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 5);
+  static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 6);
   vulkan::ExecutorInput executor;
   executor.device = &context.device;
   executor.graph = &program.graph;

@@ -59,17 +59,11 @@ std::optional<CapturedFrame> load_frame(const CapturedSequence& sequence, size_t
 
 std::string profile_as_json(const subsurface::Profile& profile) {
   JsonWriter file;
-  const auto three = [&](std::string_view key, const std::array<double, 3>& values) {
-    file.key(key).open_array(true);
-    for (const double value : values)
-      file.value(value);
-    file.close();
-  };
   file.open_object().member("dermis_profile", 1).member("name", profile.name);
-  three("dmfp_mm", profile.dmfp_mm);
-  three("albedo", profile.albedo);
   file.member("source", profile.source).close();
-  return std::move(file).finish();
+  std::string text = std::move(file).finish();
+  text.insert(text.rfind('}'), ", " + subsurface::profile_members(profile));
+  return text;
 }
 
 dermis_frame c_frame(const FrameDescription& frame) {

@@ -38,8 +38,10 @@ bool check_graph(const Document& document, const std::string& path, const GraphP
   return objections.empty();
 }
 
-bool check_profile(const Document& document, Diagnostics& diagnostics) {
-  return subsurface::read_profile(document, diagnostics).has_value();
+bool check_profile(const Document& document, Diagnostics& diagnostics, std::string& about) {
+  const std::optional<subsurface::Profile> profile = subsurface::read_profile(document, diagnostics);
+  if (profile) about = subsurface::describe_profile(*profile);
+  return profile.has_value();
 }
 
 bool check_scene(const Document& document, Diagnostics& diagnostics) {
@@ -65,6 +67,7 @@ struct CheckedFile {
   std::string path;
   std::string_view kind = "unreadable";
   bool good = false;
+  std::string about = {}; // a line on what the file holds
 };
 
 CheckedFile check_file(const std::string& path, const ValidateOptions& options, Diagnostics& diagnostics) {
@@ -77,7 +80,7 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
     checked.good = check_graph(*document, path, options.parts, diagnostics);
     break;
   case FileKindId::profile:
-    checked.good = check_profile(*document, diagnostics);
+    checked.good = check_profile(*document, diagnostics, checked.about);
     break;
   case FileKindId::scene:
     checked.good = check_scene(*document, diagnostics);
@@ -136,16 +139,16 @@ ExitCode validate(const Session& session, const ValidateOptions& options) {
   print_diagnostics(session, diagnostics);
   for (const CheckedFile& one : files)
     if (one.good && options.sarif != "-")
-      say(session, fmt::format("{}: {}, no problems\n", one.path, one.kind));
+      say(session, fmt::format("{}: {}, no problems\n{}", one.path, one.kind,
+                               one.about.empty() ? "" : fmt::format("  {}\n", one.about)));
   if (session.json) {
     JsonWriter answer;
     answer.open_object().member("ok", all_good).key("files").open_array();
-    for (const CheckedFile& one : files)
-      answer.open_object(true)
-          .member("file", one.path)
-          .member("kind", one.kind)
-          .member("ok", one.good)
-          .close();
+    for (const CheckedFile& one : files) {
+      answer.open_object(true).member("file", one.path).member("kind", one.kind).member("ok", one.good);
+      if (!one.about.empty()) answer.member("about", one.about);
+      answer.close();
+    }
     answer.close().key("diagnostics").json(format_as_json(diagnostics)).close();
     print(std::move(answer).finish());
   }

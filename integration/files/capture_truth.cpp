@@ -22,7 +22,7 @@ std::vector<T> crop(const std::vector<T>& values, uint32_t width, const Rectangl
 } // namespace
 
 subsurface::TruthInput TruthFrame::input() const {
-  return {width, height, rays, light, depth, profile, scatter_scale, d_m};
+  return {width, height, rays, light, depth, profile, scatter_scale, d_m, shapes};
 }
 
 TruthFrame make_truth_frame(const CapturedFrame& frame) {
@@ -35,10 +35,13 @@ TruthFrame make_truth_frame(const CapturedFrame& frame) {
                     .depth = crop(frame.depth.values, description.width, part, 1),
                     .scatter_scale = crop(frame.scatter_scale.values, description.width, part, 1),
                     .profile = crop(frame.profile, description.width, part, 1),
-                    .d_m = std::vector<subsurface::PerChannel>(256)};
+                    .d_m = std::vector<subsurface::PerChannel>(256),
+                    .shapes = std::vector<subsurface::ProfileShape>(256)};
   for (const CaptureProfile& known : description.profiles)
-    for (size_t c = 0; c < 3; ++c)
+    for (size_t c = 0; c < 3; ++c) {
       result.d_m[known.id][c] = known.profile.d_mm[c] * metres_per_mm;
+      result.shapes[known.id][c] = subsurface::scaled(known.profile.shape_mm[c], metres_per_mm);
+    }
   return result;
 }
 

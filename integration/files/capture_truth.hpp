@@ -12,6 +12,7 @@ struct TruthFrame {
   std::vector<float> light, depth, scatter_scale;
   std::vector<uint8_t> profile;
   std::vector<subsurface::PerChannel> d_m;
+  std::vector<subsurface::ProfileShape> shapes; // of the same ids, metres
 
   // Refers to this object's arrays.
   subsurface::TruthInput input() const;

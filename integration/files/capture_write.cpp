@@ -53,9 +53,8 @@ std::string describe_frame(const FrameDescription& f) {
       "  \"jitter_px\": [{}, {}],\n  \"frame_index\": {},\n  \"exposure\": {},\n  \"profiles\": [",
       f.jitter_px[0], f.jitter_px[1], f.frame_index, f.exposure);
   for (size_t i = 0; i < f.profiles.size(); ++i) {
-    const subsurface::Profile& p = f.profiles[i].profile;
-    text += fmt::format("{}\n    {{ \"id\": {}, \"dmfp_mm\": [{}], \"albedo\": [{}] }}", i == 0 ? "" : ",",
-                        f.profiles[i].id, fmt::join(p.dmfp_mm, ", "), fmt::join(p.albedo, ", "));
+    text += fmt::format("{}\n    {{ \"id\": {}, {} }}", i == 0 ? "" : ",", f.profiles[i].id,
+                        subsurface::profile_members(f.profiles[i].profile));
   }
   return text + "\n  ]\n}\n";
 }

@@ -1,6 +1,7 @@
 // Build tool: writes one GLSL header a kernel from its signature, so that bindings and push constants are
 // written once. Usage: write_bindings <output folder>
 #include "passes/subsurface/kinds.hpp"
+#include "passes/subsurface/profiles/radial_table.hpp"
 #include "passes/subsurface/sap_weights.hpp"
 #include "passes/subsurface/separable_kernel.hpp"
 #include "passes/subsurface/truth/surface.hpp"
@@ -78,14 +79,24 @@ std::string shared_constants() {
                      "const int separable_nodes = {}; // separable_kernel.hpp\n"
                      "const float separable_first_log2_d = {:.1f};\n"
                      "const float separable_log2_d_step = {:.1f};\n"
+                     "const int separable_rows_per_kernel = {};\n"
                      "const int sap_levels = {}; // sap_weights.hpp\n"
+                     "const int sap_variants = {};\n"
+                     "const int sap_plain = {};\n"
                      "const int sap_nodes = {};\n"
                      "const float sap_nodes_per_octave = {:.1f};\n"
-                     "const float sap_log2_d_first = {};\n\n#endif\n",
+                     "const float sap_log2_d_first = {};\n"
+                     "const int radial_nodes = {}; // profiles/radial_table.hpp\n"
+                     "const float radial_log2_r_first = {:.1f};\n"
+                     "const float radial_nodes_per_octave = {:.1f};\n"
+                     "const float radial_inverse_nodes_per_unit = {:.1f};\n\n#endif\n",
                      subsurface::copy_below_d_px, subsurface::min_patch_cosine, subsurface::separable_nodes,
                      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
-                     subsurface::sap_level_count, subsurface::sap_node_count,
-                     double(subsurface::sap_nodes_per_octave), subsurface::sap_log2_d_first);
+                     subsurface::separable_rows_per_profile, subsurface::sap_level_count,
+                     subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::plain),
+                     subsurface::sap_node_count, double(subsurface::sap_nodes_per_octave),
+                     subsurface::sap_log2_d_first, subsurface::radial_nodes, subsurface::radial_log2_r_first,
+                     subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit);
 }
 
 bool write(const std::string& path, const std::string& text) {

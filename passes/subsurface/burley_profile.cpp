@@ -16,6 +16,10 @@ double clamp_survival(double u) {
   return u >= burley_min_survival ? std::min(u, 1.0) : burley_min_survival; // a NaN becomes the minimum
 }
 
+double clamp_albedo(double albedo) {
+  return std::isnan(albedo) ? scaling_centre : std::clamp(albedo, 0.0, 1.0);
+}
+
 } // namespace
 
 double burley_R(double r, double d) {
@@ -54,8 +58,29 @@ double burley_sample_weight(double u) {
   return 0.75 * (1 + s * s) * ds;
 }
 
+double burley_approximate_survival(double u, double d) {
+  const double x = clamp_survival(u);
+  return std::max(0.0, d * ((2 - burley_approximate_c) * (1 - x) - 2) * std::log(x));
+}
+
+double burley_approximate_weight(double u) {
+  const double x = clamp_survival(u), slope = 2 - burley_approximate_c;
+  const double dr = slope * std::log(x) - (slope * (1 - x) - 2) / x; // dr / d xi, in d
+  return burley_pdf(burley_approximate_survival(x, 1), 1) * dr;
+}
+
+double burley_scaling_searchlight(double albedo) {
+  const double a = clamp_albedo(albedo), e = std::abs(a - 0.8);
+  return 1.85 - a + 7 * e * e * e;
+}
+
+double burley_scaling_diffuse(double albedo) {
+  const double a = clamp_albedo(albedo), e = a - 0.8;
+  return 1.9 - a + 3.5 * e * e;
+}
+
 double burley_scaling_dmfp(double albedo) {
-  const double a = std::isnan(albedo) ? scaling_centre : std::clamp(albedo, 0.0, 1.0);
+  const double a = clamp_albedo(albedo);
   const double e = (a - scaling_centre) * (a - scaling_centre);
   return 3.5 + 100 * e * e;
 }

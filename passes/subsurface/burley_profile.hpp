@@ -32,8 +32,21 @@ double burley_sample_survival(double u, double d);
 // = 3/4 (1 + s^2) s'(u). Within 1.25 % of 1, and its mean over u is 1. Independent of d.
 double burley_sample_weight(double u);
 
+// The slide's approximate inverse (Golubev 2019): r = d ((2 - c) xi - 2) ln(1 - xi), c = 2.5715, of the cdf's
+// value xi = 1 - u, not of the survival u. Its mean radius is 2.9 % short; u as above.
+inline constexpr double burley_approximate_c = 2.5715;
+double burley_approximate_survival(double u, double d);
+// pdf(r) over the approximate sampler's density at r: .945 at least, growing without bound in the tail; its
+// mean over u is 1. Independent of d.
+double burley_approximate_weight(double u);
+
+// s(A) for a mean free path l of light that enters at one point: 1.85 - A + 7 |A - 0.8|^3, and of diffuse
+// light over the whole surface: 1.9 - A + 3.5 (A - 0.8)^2 (Christensen & Burley 2015, eq. 5 and 6). d = l /
+// s.
+double burley_scaling_searchlight(double albedo);
+double burley_scaling_diffuse(double albedo);
 // s(A) for a diffuse mean free path on the surface: 3.5 + 100 (A - 0.33)^4 (Christensen & Burley 2015, eq.
-// 8). A is clamped to [0, 1]; NaN counts as 0.33.
+// 8). In all three A is clamped to [0, 1]; NaN counts as 0.33.
 double burley_scaling_dmfp(double albedo);
 // Shape parameter d = dmfp / s(A), in dmfp's unit. 0 (no scattering) for dmfp <= 0 and for NaN.
 double burley_d_from_dmfp(double dmfp, double albedo);

@@ -1,5 +1,6 @@
 #include "passes/subsurface/environment.hpp"
 
+#include "passes/subsurface/jimenez_kernel.hpp"
 #include "passes/subsurface/sap_weights.hpp"
 
 #include <algorithm>
@@ -13,6 +14,10 @@ constexpr uint32_t tile_pixels = 8;
 
 int32_t tiles_of(uint32_t pixels) {
   return static_cast<int32_t>((pixels + tile_pixels - 1) / tile_pixels);
+}
+// Burley's profile has closed forms and tables of its own; every other one brings them.
+bool has_own_tables(const NumberedProfile& numbered) {
+  return numbered.profile.model != ProfileModel::burley;
 }
 } // namespace
 
@@ -50,25 +55,48 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
 std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles, bool with_separable) {
   ProfileEntry none{};
   none.separable_row = no_separable_row;
+  none.radial_row = no_radial_row;
   std::vector<ProfileEntry> table(profile_capacity, none);
+  uint32_t others = 0; // profiles that are not Burley's so far
   for (size_t i = 0; i < profiles.size(); ++i) {
     const NumberedProfile& numbered = profiles[i];
-    if (numbered.id == 0 || numbered.id >= profile_capacity) continue;
-    ProfileEntry& entry = table[numbered.id];
-    entry.widest = static_cast<uint32_t>(numbered.profile.widest);
-    for (size_t c = 0; c < 3; ++c)
-      entry.d_mm[c] = static_cast<float>(numbered.profile.d_mm[c]);
-    entry.d_max_mm = entry.d_mm[entry.widest];
-    if (with_separable) entry.separable_row = static_cast<uint32_t>(i) * separable_rows_per_profile;
+    const bool other = has_own_tables(numbered);
+    if (numbered.id != 0 && numbered.id < profile_capacity) {
+      ProfileEntry& entry = table[numbered.id];
+      entry.widest = static_cast<uint32_t>(numbered.profile.widest);
+      for (size_t c = 0; c < 3; ++c) {
+        entry.d_mm[c] = static_cast<float>(numbered.profile.d_mm[c]);
+        entry.direct[c] = static_cast<float>(numbered.profile.shape_mm[c].direct);
+      }
+      entry.d_max_mm = entry.d_mm[entry.widest];
+      if (with_separable) entry.separable_row = static_cast<uint32_t>(i) * separable_kernel_rows_per_profile;
+      if (other) {
+        entry.radial_row = others * radial_rows_per_profile;
+        entry.sap_table = sap_variant_count * (1 + 3 * others);
+      }
+    }
+    others += other ? 1 : 0;
   }
+  return table;
+}
+
+std::vector<RadialRow> make_radial_table(std::span<const NumberedProfile> profiles) {
+  std::vector<RadialRow> table;
+  for (const NumberedProfile& numbered : profiles)
+    if (has_own_tables(numbered)) {
+      const auto rows = make_radial_rows(numbered.profile.shape_mm, numbered.profile.widest);
+      table.insert(table.end(), rows.begin(), rows.end());
+    }
+  if (table.empty()) table.emplace_back();
   return table;
 }
 
 std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles) {
   std::vector<SeparableRow> table;
   for (const NumberedProfile& numbered : profiles) {
-    const std::vector<SeparableRow> rows = make_separable_rows(numbered.profile.d_mm);
-    table.insert(table.end(), rows.begin(), rows.end());
+    for (const auto& rows :
+         {make_separable_rows(numbered.profile.shape_mm), make_jimenez_rows(numbered.profile.shape_mm)})
+      table.insert(table.end(), rows.begin(), rows.end());
   }
   if (table.empty()) table.emplace_back();
   return table;
@@ -80,17 +108,33 @@ bool uses_separable(const Graph& graph, const KindRegistry& kinds) {
                      [&](const PassDeclaration& pass) { return pass.kind == separable; });
 }
 
-bool uses_sap(const Graph& graph, const KindRegistry& kinds) {
-  const KindId gather = kinds.find("subsurface.sap_gather"), up = kinds.find("subsurface.sap_up");
-  return std::any_of(graph.passes.begin(), graph.passes.end(),
-                     [&](const PassDeclaration& pass) { return pass.kind == gather || pass.kind == up; });
+PyramidUse pyramid_use(const Graph& graph, const KindRegistry& kinds) {
+  const auto has = [&](std::string_view kind) {
+    return std::any_of(graph.passes.begin(), graph.passes.end(),
+                       [id = kinds.find(kind)](const PassDeclaration& pass) { return pass.kind == id; });
+  };
+  return {has("subsurface.sap_gather") || has("subsurface.sap_up"), has("subsurface.pyramid_gather")};
 }
 
-std::vector<float> make_sap_tables(bool used) {
-  if (!used) return {0.0f};
-  std::vector<float> tables = make_sap_table(fit_sap_weights(SapVariant::base));
-  const std::vector<float> smooth = make_sap_table(fit_sap_weights(SapVariant::smooth));
-  tables.insert(tables.end(), smooth.begin(), smooth.end());
+std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfile> profiles) {
+  if (!use.surface && !use.plain) return {0.0f};
+  constexpr size_t table_floats = size_t{sap_table_rows} * sap_node_count;
+  std::vector<float> tables;
+  const auto add = [&](SapVariant variant, const ChannelShape& shape) {
+    const bool used = variant == SapVariant::plain ? use.plain : use.surface;
+    const std::vector<float> table =
+        used ? make_sap_table(fit_sap_weights(variant, shape)) : std::vector<float>(table_floats);
+    tables.insert(tables.end(), table.begin(), table.end());
+  };
+  constexpr SapVariant variants[] = {SapVariant::base, SapVariant::smooth, SapVariant::plain};
+  static_assert(std::size(variants) == sap_variant_count);
+  for (const SapVariant variant : variants)
+    add(variant, burley_shape(1));
+  for (const NumberedProfile& numbered : profiles)
+    if (has_own_tables(numbered))
+      for (const SapVariant variant : variants)
+        for (const ChannelShape& shape : numbered.profile.shape_mm)
+          add(variant, shape);
   return tables;
 }
 

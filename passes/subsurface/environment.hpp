@@ -5,6 +5,7 @@
 #include "framegraph/model/graph.hpp"
 #include "passes/subsurface/camera.hpp"
 #include "passes/subsurface/profile.hpp"
+#include "passes/subsurface/profiles/radial_table.hpp"
 #include "passes/subsurface/separable_kernel.hpp"
 
 #include <array>
@@ -21,7 +22,8 @@ enum class EnvironmentSlot : uint32_t {
   separable = 2,
   linear_sampler = 3,
   sap = 4,
-  count = 5
+  radial = 5,
+  count = 6
 };
 
 enum class DepthKind : uint32_t { device = 0, view_units = 1 };
@@ -48,11 +50,15 @@ struct ProfileEntry {
   float d_max_mm;         // of the widest channel
   uint32_t widest;        // channel index
   uint32_t separable_row; // first row of its separable kernels; 0xffffffff: none were made
-  uint32_t unused[2];     // rounds the entry to 32 bytes
+  uint32_t radial_row;    // first row of its radial table; 0xffffffff: Burley's closed forms
+  uint32_t sap_table;     // first of its pyramid tables; 0: the shared ones, which are Burley's
+  float direct[3];        // share of light that never scatters
+  float unused;           // rounds the entry to 48 bytes
 };
-static_assert(sizeof(ProfileEntry) == 32);
+static_assert(sizeof(ProfileEntry) == 48);
 inline constexpr uint32_t profile_capacity = 256;
 inline constexpr uint32_t no_separable_row = 0xffffffffu;
+inline constexpr uint32_t no_radial_row = 0xffffffffu;
 
 struct FrameInput {
   uint32_t rect_x = 0, rect_y = 0, rect_width = 0, rect_height = 0;
@@ -74,18 +80,28 @@ struct NumberedProfile {
   Profile profile;
 };
 
-// profile_capacity entries. Ids outside 1..255 are ignored. Kernels of the i-th profile are expected at row
-// i * separable_rows_per_profile of the separable table.
+// profile_capacity entries. Ids outside 1..255 are ignored. Tables of a profile are expected where
+// make_separable_table, make_radial_table and make_sap_tables put them for the same list.
 std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles, bool with_separable);
-// Rows for all profiles in order; one row of zeros if there are none. About .1 s a profile.
+// For each profile in order the fitted rows (make_separable_rows), then the published kernel's
+// (make_jimenez_rows); one row of zeros if there are none. About .1 s a profile.
 std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles);
 // Does the graph have a pass that reads the separable table?
 bool uses_separable(const Graph& graph, const KindRegistry& kinds);
 
-// Does the graph have a pass of the surface-aware pyramid that reads its table?
-bool uses_sap(const Graph& graph, const KindRegistry& kinds);
-// Both variants' tables (make_sap_table of sap_weights.hpp), base first; a single zero where `used` is false.
-// About .2 s.
-std::vector<float> make_sap_tables(bool used);
+// Radial tables of the profiles that are not Burley's, in order; one row of zeros if there are none.
+std::vector<RadialRow> make_radial_table(std::span<const NumberedProfile> profiles);
+
+// Which of the pyramids' tables a graph's passes read.
+struct PyramidUse {
+  bool surface = false; // base and smooth: the surface-aware pyramid
+  bool plain = false;
+};
+PyramidUse pyramid_use(const Graph& graph, const KindRegistry& kinds);
+// Tables of make_sap_table (sap_weights.hpp): the shared ones, base, smooth, plain; then for each profile
+// that is not Burley's, in order, those of red, green and blue for base, for smooth and for plain. What is
+// not used is 0; a single zero where nothing is. About .1 s a shared table and the same for each channel of
+// another profile.
+std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfile> profiles);
 
 } // namespace dermis::subsurface

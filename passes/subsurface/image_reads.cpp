@@ -31,7 +31,7 @@ constexpr double patch_reads = 4 * 2;
 // The largest of a row of the pyramid's table over the channels.
 double largest_share(const ReadsQuestion& question, int64_t variant, uint32_t row) {
   constexpr size_t table = size_t{sap_table_rows} * sap_node_count;
-  if (question.sap_tables.size() < 2 * table) return 1;
+  if (question.sap_tables.size() < sap_variant_count * table) return 1;
   const auto values = question.sap_tables.subspan(static_cast<size_t>(variant) * table, table);
   double largest = 0;
   for (const double d : question.d_px)
@@ -58,6 +58,11 @@ ImageReads setup(const PassKind& kind, const ReadsQuestion& question) {
 ImageReads burley(const PassKind& kind, const ReadsQuestion& question) {
   const auto samples = static_cast<double>(setting(kind, question, "samples"));
   return {3 + scale_read(kind, question) + 4 * samples, samples};
+}
+
+// As burley, and nothing more for the direct radius: it needs no image.
+ImageReads fixed(const PassKind& kind, const ReadsQuestion& question) {
+  return burley(kind, question);
 }
 
 // Material, light, depth and, on the second axis, the first one's result; at each offset two sides, each
@@ -94,6 +99,30 @@ ImageReads sap_gather(const PassKind& kind, const ReadsQuestion& question) {
   return {2 + (tent ? tent_reads : 0) + coarser_reads};
 }
 
+// subsurface_pyramid_setup.comp: material, light.
+ImageReads pyramid_setup(const PassKind& kind, const ReadsQuestion& question) {
+  const bool textured = setting(kind, question, "texturing") != 0;
+  return {2 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+}
+
+// Four filtered reads.
+ImageReads pyramid_down(const PassKind&, const ReadsQuestion&) {
+  return {4};
+}
+
+// Material, depth, the pixel's own light, and four filtered reads of each level that counts.
+ImageReads pyramid_gather(const PassKind& kind, const ReadsQuestion& question) {
+  constexpr double least_share = 0.001; // subsurface_pyramid_gather.comp
+  const auto variant = static_cast<int64_t>(SapVariant::plain);
+  double reads = 3 + scale_read(kind, question), left = 1;
+  for (uint32_t level = 0; level < sap_level_count; ++level) {
+    const double share = largest_share(question, variant, level + 1);
+    if ((level == 0 ? share : left * share) >= least_share) reads += 4;
+    if (level > 0) left *= 1 - share;
+  }
+  return {reads};
+}
+
 // Material, scattered light, albedo.
 ImageReads combine(const PassKind& kind, const ReadsQuestion& question) {
   return {2 + one_if(kind, question, "albedo", PortSide::read)};
@@ -110,12 +139,21 @@ struct Entry {
   ImageReads (*reads)(const PassKind&, const ReadsQuestion&);
 };
 constexpr Entry entries[] = {
-    {"subsurface.classify", classify},     {"subsurface.tile_list", none},
-    {"subsurface.setup", setup},           {"subsurface.burley", burley},
-    {"subsurface.separable", separable},   {"subsurface.sap_setup", setup},
-    {"subsurface.sap_down", sap_down},     {"subsurface.sap_up", sap_up},
-    {"subsurface.sap_gather", sap_gather}, {"subsurface.combine", combine},
+    {"subsurface.classify", classify},
+    {"subsurface.tile_list", none},
+    {"subsurface.setup", setup},
+    {"subsurface.burley", burley},
+    {"subsurface.separable", separable},
+    {"subsurface.sap_setup", setup},
+    {"subsurface.sap_down", sap_down},
+    {"subsurface.sap_up", sap_up},
+    {"subsurface.sap_gather", sap_gather},
+    {"subsurface.combine", combine},
     {"subsurface.light", light},
+    {"subsurface.fixed", fixed},
+    {"subsurface.pyramid_setup", pyramid_setup},
+    {"subsurface.pyramid_down", pyramid_down},
+    {"subsurface.pyramid_gather", pyramid_gather},
 };
 
 } // namespace

@@ -1,7 +1,6 @@
 #include "passes/subsurface/sap_weights.hpp"
 
 #include "passes/subsurface/nnls.hpp"
-#include "passes/subsurface/truth/analytic.hpp"
 #include "passes/subsurface/truth/planar.hpp"
 
 #include <algorithm>
@@ -53,43 +52,58 @@ double both_axes(const Frequency& f, double spacing, int power) {
   return std::pow(std::cos(pi * f.x * spacing) * std::cos(pi * f.y * spacing), power);
 }
 
-SapWeights basis_at(const Frequency& f, SapVariant variant) {
-  SapWeights basis{1, both_axes(f, 1, 2)};
-  double chain = 1;
-  for (uint32_t level = 1; level < sap_level_count; ++level) {
-    const double spacing = std::ldexp(1.0, static_cast<int>(level));
-    chain *= both_axes(f, spacing / 2, 6);
-    basis[level + 1] = variant == SapVariant::smooth ? chain * both_axes(f, spacing, 2) : chain;
-  }
-  return basis;
-}
-
 double sinc(double x) {
   return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
 }
 
+// A level read through a cubic B-spline at all the places of the view's pixels: its spectrum sinc^4 of the
+// spacing, with the copies that sampling at pixels folds back.
+double spline_axis(double f, double spacing) {
+  double sum = 0;
+  for (int m = -folded_copies; m <= folded_copies; ++m)
+    sum += std::pow(sinc((f + m) * spacing), 4);
+  return sum;
+}
+
+SapWeights basis_at(const Frequency& f, SapVariant variant) {
+  const bool plain = variant == SapVariant::plain;
+  SapWeights basis{1, plain ? spline_axis(f.x, 1) * spline_axis(f.y, 1) : both_axes(f, 1, 2)};
+  double chain = 1;
+  for (uint32_t level = 1; level < sap_level_count; ++level) {
+    const double spacing = std::ldexp(1.0, static_cast<int>(level));
+    chain *= both_axes(f, spacing / 2, plain ? 3 : 6);
+    double filter = 1;
+    if (plain) filter = spline_axis(f.x, spacing) * spline_axis(f.y, spacing);
+    if (variant == SapVariant::smooth) filter = both_axes(f, spacing, 2);
+    basis[level + 1] = chain * filter;
+  }
+  return basis;
+}
+
 // The truth's transfer function at all frequencies: of the summed pixel-integrated kernel, or of its closed
 // form.
-std::vector<double> target_of(const std::vector<Frequency>& frequencies, double d) {
+std::vector<double> target_of(const std::vector<Frequency>& frequencies, const ChannelShape& shape) {
   std::vector<double> target;
-  if (d >= closed_form_from_d) {
+  if (shape.d >= closed_form_from_d) {
     for (const Frequency& f : frequencies) {
       double sum = 0;
       for (int n = -folded_copies; n <= folded_copies; ++n)
         for (int m = -folded_copies; m <= folded_copies; ++m)
-          sum += burley_mtf(2 * pi * std::hypot(f.x + m, f.y + n), d) * sinc(f.x + m) * sinc(f.y + n);
+          sum += shape_transfer(shape, 2 * pi * std::hypot(f.x + m, f.y + n)) * sinc(f.x + m) * sinc(f.y + n);
       target.push_back(sum);
     }
     return target;
   }
-  const auto reach = static_cast<size_t>(std::ceil(truth_radius_in_d * d)) + 1;
+  const double radius = shape_reach(shape) + std::sqrt(0.5);
+  const auto reach = static_cast<size_t>(std::ceil(radius)) + 1;
   std::vector<double> kernel((reach + 1) * (reach + 1));
   double total = 0;
   for (size_t y = 0; y <= reach; ++y)
     for (size_t x = 0; x <= reach; ++x) {
       const double copies = (x > 0 ? 2 : 1) * (y > 0 ? 2 : 1); // the other quadrants
       total += kernel[y * (reach + 1) + x] =
-          copies * planar_weight(1, 1, static_cast<int64_t>(x), static_cast<int64_t>(y), {d, 0, 0})[0];
+          copies * planar_weight(1, 1, static_cast<int64_t>(x), static_cast<int64_t>(y),
+                                 ProfileShape{shape, {}, {}}, radius)[0];
     }
   std::vector<double> wave(reach + 1);
   for (const Frequency& f : frequencies) {
@@ -110,6 +124,10 @@ std::vector<double> target_of(const std::vector<Frequency>& frequencies, double 
 } // namespace
 
 SapFit fit_sap_weights(SapVariant variant) {
+  return fit_sap_weights(variant, burley_shape(1));
+}
+
+SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape) {
   const std::vector<Frequency> frequencies = make_frequencies();
   std::vector<SapWeights> basis;
   NormalEquations<sap_weight_count> equations;
@@ -125,7 +143,7 @@ SapFit fit_sap_weights(SapVariant variant) {
   for (uint32_t k = 0; k < sap_node_count; ++k) {
     SapNode& node = fit.nodes[k];
     node.d_px = std::exp2(sap_log2_d_first + double(k) / sap_nodes_per_octave);
-    const std::vector<double> target = target_of(frequencies, node.d_px);
+    const std::vector<double> target = target_of(frequencies, scaled(shape, node.d_px / shape.d));
     SapWeights right{};
     for (size_t i = 0; i < frequencies.size(); ++i)
       for (uint32_t j = 0; j < sap_weight_count; ++j)
@@ -146,6 +164,9 @@ SapFit fit_sap_weights(SapVariant variant) {
       squares += frequencies[i].weight * error * error;
     }
     node.residual = std::sqrt(squares);
+    for (double& w : node.weights)
+      w *= 1 - shape.direct;
+    node.weights[0] += shape.direct;
   }
   return fit;
 }

@@ -1,6 +1,8 @@
 #pragma once
 // How much of each pyramid level a pixel takes for a given d: weights fitted to the truth's own kernel, so
-// that the surface-aware pyramid (SAP) reproduces Burley's profile on a plane that faces the viewer.
+// that the surface-aware pyramid (SAP) reproduces the profile on a plane that faces the viewer.
+
+#include "passes/subsurface/profiles/shape.hpp"
 
 #include <array>
 #include <cstdint>
@@ -13,8 +15,10 @@ namespace dermis::subsurface {
 // A level l >= 1 is reached by l reductions with [1 3 3 1] / 8 and l bilinear expansions: its transfer
 // function is the product of cos^6(pi f 2^k) over k < l and both axes. `base` takes levels >= 1 as they are;
 // `smooth` filters every level with a 3x3 tent (cos^2(pi f 2^l)) first, which hides the grid's phase. Level 0
-// gives its centre and its tent in both.
-enum class SapVariant : uint8_t { base, smooth };
+// gives its centre and its tent in both. `plain` is the pyramid without surface: each level is read by the
+// pixel itself through a cubic B-spline, level 0 as well (in place of the tent).
+enum class SapVariant : uint8_t { base, smooth, plain };
+inline constexpr uint32_t sap_variant_count = 3;
 
 inline constexpr uint32_t sap_level_count = 9;                    // 0 to 8, spacing 1 to 256 px
 inline constexpr uint32_t sap_weight_count = sap_level_count + 1; // centre, tent of level 0, levels 1 to 8
@@ -39,6 +43,9 @@ struct SapFit {
 
 // Non-negative least squares at each node. Deterministic; tens of milliseconds. Thread: any.
 SapFit fit_sap_weights(SapVariant variant);
+// The same for another profile: `shape` in any unit, nodes by its d in pixels. The share of light that never
+// scatters is part of the centre's weight.
+SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape);
 
 // What a kernel needs of the weights, as shares of what is left at each level: out = mix(coarser, level l,
 // t_l). centre and tent are level 0's weights; share[l] = W_l / sum of W_k over k >= l for l >= 1, share[8]

@@ -30,8 +30,60 @@ constexpr KindSetting burley_settings[] = {
      .doc = "stratified radii, golden angle; the error falls about as n^-0.7"},
 };
 
+constexpr std::string_view inverse_options[] = {"polynomial", "exact", "approximate"};
+constexpr std::string_view weighting_options[] = {"sampler", "profile"};
+constexpr std::string_view normalise_options[] = {"self", "none"};
+constexpr std::string_view direct_options[] = {"inscribed", "circumscribed", "none"};
+constexpr KindSetting fixed_settings[] = {
+    {.name = "samples",
+     .type = SettingType::integer,
+     .default_value = integer_value(16),
+     .minimum = 1,
+     .maximum = 4096,
+     .options = {},
+     .unit = "samples a pixel",
+     .doc = "points of the R2 sequence beyond the direct radius; the error falls about as n^-0.7"},
+    {.name = "inverse",
+     .type = SettingType::enumeration,
+     .default_value = option_value(0),
+     .minimum = 0,
+     .maximum = 0,
+     .options = inverse_options,
+     .unit = "",
+     .doc =
+         "of Burley's distribution: polynomial, within .5 %; exact; approximate, c = 2.5715 (Golubev 2019). "
+         "Other profiles have a table"},
+    {.name = "weighting",
+     .type = SettingType::enumeration,
+     .default_value = option_value(0),
+     .minimum = 0,
+     .maximum = 0,
+     .options = weighting_options,
+     .unit = "",
+     .doc = "divide by the sampler's own density, which is unbiased, or by the profile's, as published"},
+    {.name = "normalise",
+     .type = SettingType::enumeration,
+     .default_value = option_value(0),
+     .minimum = 0,
+     .maximum = 0,
+     .options = normalise_options,
+     .unit = "",
+     .doc = "self: by the sum of weights; none: unbiased, loses what falls outside of the surface"},
+    {.name = "direct",
+     .type = SettingType::enumeration,
+     .default_value = option_value(0),
+     .minimum = 0,
+     .maximum = 0,
+     .options = direct_options,
+     .unit = "",
+     .doc =
+         "radius of the pixel's own light: inscribed in the pixel (unbiased), circumscribed (as published), "
+         "none"},
+};
+
 constexpr std::string_view axis_options[] = {"horizontal", "vertical"};
 constexpr std::string_view taps_options[] = {"11", "17", "25"};
+constexpr std::string_view kernel_options[] = {"fitted", "jimenez"};
 constexpr Port separable_ports[] = {
     light,
     {"blurred",
@@ -64,6 +116,14 @@ constexpr KindSetting separable_settings[] = {
      .options = taps_options,
      .unit = "taps",
      .doc = "reads along the axis"},
+    {.name = "kernel",
+     .type = SettingType::enumeration,
+     .default_value = option_value(0),
+     .minimum = 0,
+     .maximum = 0,
+     .options = kernel_options,
+     .unit = "",
+     .doc = "fitted to each profile for each projected d; jimenez: the published artist-friendly kernel"},
 };
 
 } // namespace
@@ -71,10 +131,21 @@ constexpr KindSetting separable_settings[] = {
 const PassKind burley_kind{
     .name = "subsurface.burley",
     .shader = "subsurface_burley",
-    .doc = "Importance sampling of Burley's normalised diffusion on a disc, weighted by 3-D distance and "
-           "patch area.",
+    .doc = "Importance sampling of the profile at stratified radii, weighted by 3-D distance and patch area.",
     .ports = burley_ports,
     .settings = burley_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind fixed_kind{
+    .name = "subsurface.fixed",
+    .shader = "subsurface_fixed",
+    .doc = "Importance sampling of the widest channel at points of the R2 sequence, weighted by 3-D distance "
+           "and "
+           "patch area.",
+    .ports = burley_ports,
+    .settings = fixed_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
 };
@@ -82,7 +153,8 @@ const PassKind burley_kind{
 const PassKind separable_kind{
     .name = "subsurface.separable",
     .shader = "subsurface_separable",
-    .doc = "One 1-D pass of a delta plus rank-1 kernel fitted to Burley's profile.",
+    .doc =
+        "One 1-D pass of a separable kernel: delta plus rank 1 fitted to the profile, or the published one.",
     .ports = separable_ports,
     .settings = separable_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -26,14 +26,14 @@ struct Frequency {
   double x, y, weight, target = 0; // target: transfer of the truth's kernel
 };
 
-std::vector<Frequency> make_frequencies(double d_px) {
+std::vector<Frequency> make_frequencies(const ChannelShape& shape) {
   std::vector<Frequency> all;
   for (int i = 0; i < radii; ++i) {
     const double f = lowest_frequency * std::pow(highest_frequency / lowest_frequency, (i + 0.5) / radii);
     for (int j = 0; j < angles; ++j) {
       const double angle = (j + 0.5) / angles * pi / 2;
       const double fx = f * std::cos(angle), fy = f * std::sin(angle);
-      if (fx <= 0.5 && fy <= 0.5) all.push_back({fx, fy, 1.0, pixel_kernel_transfer(d_px, fx, fy)});
+      if (fx <= 0.5 && fy <= 0.5) all.push_back({fx, fy, 1.0, pixel_kernel_transfer(shape, fx, fy)});
     }
   }
   return all;
@@ -135,17 +135,20 @@ SeparableFit fit_to(const std::vector<Frequency>& frequencies, double d_px, std:
 } // namespace
 
 double pixel_kernel_transfer(double d_px, double fx, double fy) {
+  return pixel_kernel_transfer(burley_shape(d_px), fx, fy);
+}
+
+double pixel_kernel_transfer(const ChannelShape& shape, double fx, double fy) {
   // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum settles to 1e-4 within 8 periods for d >=
   // 1/16 px.
-  const int reach = std::clamp(static_cast<int>(2 + 2 / d_px), 2, 8);
+  const int reach = shape.d > 0 ? std::clamp(static_cast<int>(2 + 2 / shape.d), 2, 8) : 8;
   double sum = 0;
   for (int my = -reach; my <= reach; ++my)
     for (int mx = -reach; mx <= reach; ++mx) {
       const double gx = fx + mx, gy = fy + my;
-      const double k2 = 4 * pi * pi * (gx * gx + gy * gy) * d_px * d_px;
-      sum += (0.25 / std::sqrt(1 + k2) + 0.75 / std::sqrt(1 + 9 * k2)) * sinc(gx) * sinc(gy);
+      sum += shape_transfer(shape, 2 * pi * std::hypot(gx, gy)) * sinc(gx) * sinc(gy);
     }
-  return sum;
+  return shape.direct + (1 - shape.direct) * sum;
 }
 
 std::vector<double> separable_offsets(double d_px, uint32_t taps) {
@@ -165,25 +168,33 @@ std::vector<double> separable_offsets(double d_px, uint32_t taps) {
 }
 
 SeparableFit fit_separable(double d_px, std::span<const double> offsets) {
-  if (!(d_px > 0)) return {};
-  return fit_to(make_frequencies(d_px), d_px, offsets);
+  return fit_separable(burley_shape(d_px), offsets);
+}
+
+SeparableFit fit_separable(const ChannelShape& shape, std::span<const double> offsets) {
+  if (!(shape.d > 0)) return {};
+  return fit_to(make_frequencies(shape), shape.d, offsets);
 }
 
 std::vector<SeparableRow> make_separable_rows(const std::array<double, 3>& d) {
+  return make_separable_rows(ProfileShape{burley_shape(d[0]), burley_shape(d[1]), burley_shape(d[2])});
+}
+
+std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape) {
   std::vector<SeparableRow> rows(separable_rows_per_profile, SeparableRow{});
-  const double widest = std::max({d[0], d[1], d[2]});
+  const double widest = std::max({shape[0].d, shape[1].d, shape[2].d});
   for (uint32_t node = 0; node < separable_nodes; ++node) {
     const double d_px = std::exp2(separable_first_log2_d + node * separable_log2_d_step);
     for (size_t c = 0; c < 3; ++c) {
-      const double channel_d = widest > 0 ? d_px * d[c] / widest : 0.0;
+      const ChannelShape channel = scaled(shape[c], widest > 0 ? d_px / widest : 0.0);
       const std::vector<Frequency> frequencies =
-          channel_d > 0 ? make_frequencies(channel_d) : std::vector<Frequency>{};
+          channel.d > 0 ? make_frequencies(channel) : std::vector<Frequency>{};
       size_t first = 0;
       for (const uint32_t taps : separable_taps) {
         const uint32_t per_node = separable_rows_per_node(taps);
         SeparableRow* out = &rows[first + size_t{node} * per_node];
         const std::vector<double> offsets = separable_offsets(d_px, taps);
-        const SeparableFit fit = channel_d > 0 ? fit_to(frequencies, channel_d, offsets) : SeparableFit{};
+        const SeparableFit fit = channel.d > 0 ? fit_to(frequencies, channel.d, offsets) : SeparableFit{};
         for (size_t i = 0; i <= offsets.size(); ++i)
           out[i][c] = static_cast<float>(fit.weights[i]);
         for (size_t i = 0; i < offsets.size(); ++i)

@@ -8,6 +8,8 @@
 // natural images. Offsets follow the widest channel; every channel has its own weights at them, so one read
 // serves all three.
 
+#include "passes/subsurface/profiles/shape.hpp"
+
 #include <array>
 #include <cstdint>
 #include <span>
@@ -37,11 +39,14 @@ std::vector<double> separable_offsets(double d_px, uint32_t taps);
 
 // The fit for a channel of d_px at given offsets. d_px >= 0; 0 gives the delta. Below 1 ms. Thread: any.
 SeparableFit fit_separable(double d_px, std::span<const double> offsets);
+SeparableFit fit_separable(const ChannelShape& shape, std::span<const double> offsets); // shape in pixels
 
 // Transfer function of the truth's kernel on the pixel grid (frequencies in cycles per pixel): the continuous
 // transfer 1/4 (1 + k^2 d^2)^-1/2 + 3/4 (1 + 9 k^2 d^2)^-1/2, k = 2 pi |f|, times the pixel's box, summed
 // over aliases.
 double pixel_kernel_transfer(double d_px, double fx, double fy);
+// The same for any profile, shape in pixels. Includes the share of light that never scatters.
+double pixel_kernel_transfer(const ChannelShape& shape, double fx, double fy);
 
 // What a profile needs on the device, for all choices of taps: separable_rows_per_profile rows {r, g, b,
 // offset px}. For each choice of taps in order, for each node, (taps - 1) / 2 + 2 rows: the weight at 0, the
@@ -50,6 +55,8 @@ double pixel_kernel_transfer(double d_px, double fx, double fy);
 // Thread: any.
 using SeparableRow = std::array<float, 4>;
 std::vector<SeparableRow> make_separable_rows(const std::array<double, 3>& d);
+// Of any profile.
+std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape);
 
 constexpr uint32_t separable_rows_per_node(uint32_t taps) {
   return (taps - 1) / 2 + 2;
@@ -57,6 +64,9 @@ constexpr uint32_t separable_rows_per_node(uint32_t taps) {
 inline constexpr uint32_t separable_rows_per_profile =
     separable_nodes *
     (separable_rows_per_node(11) + separable_rows_per_node(17) + separable_rows_per_node(25));
+
+// On the device each profile has two sets of rows, picked by the pass setting `kernel`.
+inline constexpr uint32_t separable_kernel_rows_per_profile = 2 * separable_rows_per_profile;
 
 // Row `row` of a node for a widest channel of d_px, interpolated between nodes; `choice` indexes
 // separable_taps. shaders/subsurface_separable.comp mirrors it.

@@ -29,4 +29,22 @@ float burley_sample_weight(float u) {
   return 0.75 * (1.0 + s * s) * ds;
 }
 
+// Exact inverse (Golubev 2019): s^3 + 3 s = 4 u by the hyperbolic form of Cardano's formula.
+float burley_inverse_survival(float u, float d) {
+  float s = 2.0 * sinh(asinh(2.0 * clamp(u, burley_min_survival, 1.0)) / 3.0);
+  return max(0.0, -3.0 * d * log(s));
+}
+// r = d ((2 - c) xi - 2) ln(1 - xi) with xi = 1 - u, and pdf(r) over its density.
+const float burley_approximate_c = 2.5715;
+float burley_approximate_survival(float u, float d) {
+  u = clamp(u, burley_min_survival, 1.0);
+  return max(0.0, d * ((2.0 - burley_approximate_c) * (1.0 - u) - 2.0) * log(u));
+}
+float burley_approximate_weight(float u) {
+  u = clamp(u, burley_min_survival, 1.0);
+  float slope = 2.0 - burley_approximate_c;
+  float dr = slope * log(u) - (slope * (1.0 - u) - 2.0) / u;
+  return burley_pdf(burley_approximate_survival(u, 1.0), 1.0) * dr;
+}
+
 #endif

@@ -19,11 +19,17 @@ struct profile_entry {
   vec4 d_mm;   // rgb: shape parameter per channel, a: of the widest
   uint widest; // channel
   uint separable_row;
-  uint unused_0, unused_1;
+  uint radial_row; // 0xffffffff: Burley's closed forms
+  uint sap_table;  // 0: the shared ones
+  vec4 direct;     // rgb: share of light that never scatters
 };
 layout(std430, set = 1, binding = 1) readonly buffer profile_block { profile_entry profiles[]; };
 layout(std430, set = 1, binding = 4) readonly buffer sap_block { float sap_table[]; };
+layout(std430, set = 1, binding = 5) readonly buffer radial_block { vec4 radial_rows[]; };
 layout(std430, set = 1, binding = 2) readonly buffer separable_block { vec4 separable_rows[]; };
+
+// Share of the light that never scatters.
+vec3 profile_direct(uint id) { return profiles[min(id, 255u)].direct.rgb; }
 
 const float largest_depth_mm = 1e9; // a thousand kilometres: sky and infinite far planes are beyond
 

@@ -49,9 +49,9 @@ bool sap_inside(ivec2 at, int level) {
 }
 ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at); }
 
-// Row `row` of variant `variant` at d px: sap_lookup of passes/subsurface/sap_weights.cpp.
-float sap_lookup(int variant, int row, float d_px) {
-  int first = (variant * (sap_levels + 1) + row) * sap_nodes;
+// Row `row` of a table at d px: sap_lookup of passes/subsurface/sap_weights.cpp.
+float sap_lookup(int table, int row, float d_px) {
+  int first = (table * (sap_levels + 1) + row) * sap_nodes;
   float position = (log2(max(d_px, 1e-30)) - sap_log2_d_first) * sap_nodes_per_octave;
   if (position < 0.0) { // below the first node all but the centre fades
     float share = d_px / exp2(sap_log2_d_first);
@@ -61,8 +61,11 @@ float sap_lookup(int variant, int row, float d_px) {
   int node = min(int(position), sap_nodes - 2);
   return mix(sap_table[first + node], sap_table[first + node + 1], position - float(node));
 }
-vec3 sap_lookup(int variant, int row, vec3 d_px) {
-  return vec3(sap_lookup(variant, row, d_px.r), sap_lookup(variant, row, d_px.g), sap_lookup(variant, row, d_px.b));
+// Per channel; a profile with tables of its own has one a channel.
+vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {
+  int own = int(profiles[min(id, 255u)].sap_table);
+  ivec3 table = own == 0 ? ivec3(variant) : own + 3 * variant + ivec3(0, 1, 2);
+  return vec3(sap_lookup(table.r, row, d_px.r), sap_lookup(table.g, row, d_px.g), sap_lookup(table.b, row, d_px.b));
 }
 
 #endif

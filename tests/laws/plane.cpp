@@ -22,6 +22,7 @@ std::string read_text(const std::string& path) {
 
 // A profile whose shape parameters are the given ones, in metres: at albedo .33 the scaling is 3.5.
 std::string profile_text(const Plane& plane) {
+  if (!plane.profile_file.empty()) return plane.profile_file;
   auto dmfp = [&](size_t c) {
     return plane.d_px[c] * plane.pixel_pitch_m * 1000 * dermis::subsurface::burley_scaling_dmfp(0.33);
   };
@@ -70,11 +71,17 @@ const std::string& missing() {
 }
 
 Picture run(const std::string& graph, const Plane& plane, const Settings& settings) {
-  Picture picture;
+  Picture result;
+  run_frames(graph, plane, settings, 1, [&](const Picture& picture) { result = picture; });
+  return result;
+}
+
+void run_frames(const std::string& graph, const Plane& plane, const Settings& settings, uint32_t frames,
+                const std::function<void(const Picture&)>& each) {
   auto host = demo::create_vulkan_host({.validation = true, .device = ""});
   if (!host) {
     ADD_FAILURE() << host.error().text;
-    return picture;
+    return;
   }
   dermis::tools::DeviceGraphRequest request;
   request.graph_name = graph + ".json";
@@ -95,7 +102,7 @@ Picture run(const std::string& graph, const Plane& plane, const Settings& settin
     auto device = dermis::tools::DeviceGraph::create(**host, request);
     if (!device) {
       ADD_FAILURE() << device.error().text;
-      return picture;
+      return;
     }
     const Uploads uploads = fill(plane);
     const auto upload = [&](const char* slot, std::span<const float> texels, uint32_t channels) {
@@ -122,19 +129,21 @@ Picture run(const std::string& graph, const Plane& plane, const Settings& settin
     }
     frame.metres_per_unit = 1;
     frame.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
-    const auto ran = (*device)->run(frame);
-    EXPECT_TRUE(ran) << ran.error().text;
-    auto pixels = (*device)->read_rgb("scattered_light");
-    if (!pixels) {
-      ADD_FAILURE() << pixels.error().text;
-      return picture;
+    for (uint32_t i = 0; i < frames; ++i) {
+      if (i > 0) upload("lighting", uploads.light, 3); // the graph has put scattered light there
+      const auto ran = (*device)->run(frame);
+      EXPECT_TRUE(ran) << ran.error().text;
+      auto pixels = (*device)->read_rgb("scattered_light");
+      if (!ran || !pixels) {
+        ADD_FAILURE() << (ran ? pixels.error().text : ran.error().text);
+        return;
+      }
+      each({plane.width, plane.height, std::move(*pixels)});
     }
-    picture = {plane.width, plane.height, std::move(*pixels)};
   }
   const std::lock_guard lock((*host)->log.mutex);
   for (const std::string& message : (*host)->log.messages)
     ADD_FAILURE() << message;
-  return picture;
 }
 
 } // namespace laws

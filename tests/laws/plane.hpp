@@ -26,7 +26,7 @@ struct Plane {
   std::function<float(int x, int y)> depth_m = [](int, int) { return 1.0f; };
   std::function<float(int x, int y)> scatter_scale; // empty: not bound
   std::array<uint32_t, 4> rectangle = {0, 0, 0, 0}; // of the allocated size; width 0: all of it
-  uint64_t frame_index = 1;
+  std::string profile_file; // text of a profile for both ids, in place of d_px; "": Burley with d_px
 };
 
 struct Picture {
@@ -41,6 +41,9 @@ using Settings = std::vector<std::pair<std::string, std::string>>; // name, JSON
 // Runs configs/graphs/<graph>.json under the validation layer and returns `scattered_light`. Fails the test
 // on any error and on any validation message.
 Picture run(const std::string& graph, const Plane& plane, const Settings& settings);
+// The same for many frames, whose indices begin at 1; `each` sees every picture.
+void run_frames(const std::string& graph, const Plane& plane, const Settings& settings, uint32_t frames,
+                const std::function<void(const Picture&)>& each);
 
 // Why tests of this room cannot run here; "" when they can. The answer is found once.
 const std::string& missing();

@@ -18,7 +18,7 @@ const KindRegistry& kinds() {
 // All ports bound, settings at their defaults but for one.
 ImageReads reads_of(std::string_view kind_name, std::string_view setting = "", int64_t value = 0,
                     PerChannel d_px = {4, 2, 1}) {
-  static const std::vector<float> tables = make_sap_tables(true);
+  static const std::vector<float> tables = make_sap_tables({true, true}, {});
   const PassKind& kind = kinds()[kinds().find(kind_name)];
   std::vector<SettingValue> settings;
   for (const KindSetting& one : kind.settings) {
@@ -63,6 +63,13 @@ TEST(ImageReads, OfThePyramidsFirstTentEndWhereItHasNoShare) {
   // Where the profile is a thousandth of a pixel wide, only the pixel itself counts.
   EXPECT_LT(reads_of("subsurface.sap_gather", "", 0, {1e-3, 1e-3, 1e-3}).per_invocation,
             reads_of("subsurface.sap_gather", "", 0, {1, 1, 1}).per_invocation);
+}
+
+TEST(ImageReads, OfThePlainPyramidAreFourForEachLevelThatCounts) {
+  const double wide = reads_of("subsurface.pyramid_gather", "", 0, {8, 8, 8}).per_invocation;
+  const double narrow = reads_of("subsurface.pyramid_gather", "", 0, {0.1, 0.1, 0.1}).per_invocation;
+  EXPECT_LT(narrow, wide);
+  EXPECT_LE(wide, 4 + 9 * 4);
 }
 
 TEST(ImageReads, OfAKindThatNobodyCountedAreNotGuessed) {

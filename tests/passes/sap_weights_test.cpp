@@ -11,7 +11,9 @@ namespace {
 class SapWeightsOf : public ::testing::TestWithParam<SapVariant> {};
 
 INSTANTIATE_TEST_SUITE_P(Variants, SapWeightsOf, ::testing::Values(SapVariant::base, SapVariant::smooth),
-                         [](const auto& tested) { return tested.param == SapVariant::base ? "base" : "smooth"; });
+                         [](const auto& tested) {
+                           return tested.param == SapVariant::base ? "base" : "smooth";
+                         });
 
 TEST_P(SapWeightsOf, AreNonNegativeAndSumToOne) {
   for (const SapNode& node : fit_sap_weights(GetParam()).nodes) {

@@ -30,7 +30,7 @@ constexpr DiagnosticId structural[] = {
     DiagnosticId::out_of_range,        DiagnosticId::limit_exceeded, DiagnosticId::integer_precision,
     DiagnosticId::unsupported_version, DiagnosticId::invalid_value,  DiagnosticId::unknown_kind,
     DiagnosticId::unknown_port,        DiagnosticId::missing_port,   DiagnosticId::unknown_kind_setting,
-    DiagnosticId::port_direction,
+    DiagnosticId::port_direction,      DiagnosticId::profile_keys,
 };
 
 using Reader = void (*)(const std::string& text, Diagnostics& diagnostics);
@@ -278,8 +278,14 @@ TEST(Schema, OfExpectationsAgreesWithTheParserOnMutatedFiles) {
 }
 
 TEST(Schema, OfProfilesAgreesWithTheParserOnMutatedFiles) {
-  expect_agreement("configs/schema/profile.schema.json", read_profile_text, read_all("configs/profiles"),
-                   3000);
+  std::vector<json> files = read_all("configs/profiles");
+  files.push_back(parse(R"({ "dermis_profile": 1, "name": "m", "source": "s", "model": "burley", "note": "n",
+    "mfp_mm": [1, 2, 3], "scaling": "diffuse_surface", "albedo": [0, 0.5, 1] })"));
+  files.push_back(parse(R"({ "dermis_profile": 1, "name": "d", "source": "s", "model": "dipole", "eta": 1.4,
+    "sigma_a_per_mm": [0.032, 0.17, 0.48], "sigma_s_prime_per_mm": [0.74, 0.88, 1.01] })"));
+  files.push_back(parse(R"({ "dermis_profile": 1, "name": "a", "source": "s", "model": "artist",
+    "falloff": [1, 0.37, 0.3], "strength": [0.48, 0.41, 0.28] })"));
+  expect_agreement("configs/schema/profile.schema.json", read_profile_text, files, 6000);
 }
 
 TEST(Schema, OfScenesAgreesWithTheParserOnMutatedFiles) {
@@ -298,7 +304,9 @@ TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
       parse(R"({ "dermis_capture": 1, "width": 256, "height": 128, "projection": "orthographic",
         "pixel_pitch_m": 0.0005, "jitter_px": [0.5, 0], "exposure": 2, "frame_index": 7,
         "render_rectangle": [0, 0, 128, 64],
-        "profiles": [ { "id": 1, "file": "skin", "note": "n" }, { "id": 2, "dmfp_mm": [1, 2, 3], "albedo": [0, 0.5, 1] } ] })"),
+        "profiles": [ { "id": 1, "file": "skin", "note": "n" }, { "id": 2, "dmfp_mm": [1, 2, 3], "albedo": [0, 0.5, 1] },
+                      { "id": 3, "model": "dipole", "sigma_a_per_mm": [1, 2, 3], "sigma_s_prime_per_mm": [1, 1, 1] },
+                      { "id": 4, "model": "artist", "falloff": [1, 2, 3], "strength": [0, 1, 1] } ] })"),
       parse(
           R"({ "dermis_capture": 1, "width": 16, "height": 16, "projection": "perspective", "metres_per_unit": 0.01,
         "clip_from_view": [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0],

@@ -135,7 +135,7 @@ demo::Result<> add_subjects(Bench& bench) {
 }
 
 demo::Result<> add_techniques(Bench& bench) {
-  bench.sap_tables = subsurface::make_sap_tables(true);
+  bench.sap_tables = subsurface::make_sap_tables({true, true}, {});
   for (const TechniqueRequest& request : bench.file.techniques) {
     const std::string name = fmt::format("{} {}", request.technique, request.setting);
     if (!asked_for(bench.options.techniques, request.technique)) continue;

@@ -14,9 +14,9 @@ namespace {
 // Hands light to tools and to hosts that texture later: no part of a technique.
 constexpr std::string_view hand_out_kind = "subsurface.light";
 // What every technique does before and after it scatters.
-constexpr std::array<std::string_view, 5> common_kinds = {"subsurface.classify", "subsurface.tile_list",
-                                                          "subsurface.setup", "subsurface.sap_setup",
-                                                          "subsurface.combine"};
+constexpr std::array<std::string_view, 6> common_kinds = {"subsurface.classify",      "subsurface.tile_list",
+                                                          "subsurface.setup",         "subsurface.sap_setup",
+                                                          "subsurface.pyramid_setup", "subsurface.combine"};
 
 std::string text_of(const Diagnostics& diagnostics) {
   std::string text;

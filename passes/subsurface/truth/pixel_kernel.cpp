@@ -1,7 +1,5 @@
 #include "passes/subsurface/truth/pixel_kernel.hpp"
 
-#include "passes/subsurface/burley_profile.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,12 +8,13 @@ namespace dermis::subsurface {
 
 namespace {
 
-// Beyond this many d both exponentials are below 1e-36: no contribution, and no slow denormal numbers.
+// Beyond this many d Burley's exponentials are below 1e-36, other profiles less than 1e-12 of their peak: no
+// contribution, and no slow denormal numbers.
 constexpr double negligible_in_d = 250;
 
-void add_profile(double r, const PerChannel& d, double scale, PerChannel& sum) {
+void add_profile(double r, const ProfileShape& shape, double scale, PerChannel& sum) {
   for (size_t c = 0; c < 3; ++c)
-    if (r < negligible_in_d * d[c]) sum[c] += scale * burley_R(r, d[c]);
+    if (r < negligible_in_d * shape[c].d) sum[c] += scale * shape_R(shape[c], r);
 }
 
 // Gauss-Legendre, 8 points on [-1, 1] (positive half).
@@ -25,18 +24,18 @@ constexpr std::array<double, 4> gauss_weights = {0.3626837833783620, 0.313706645
                                                  0.1012285362903763};
 
 // Adds the integral over theta in [a, b] of cdf(height / cos theta) / 2 pi.
-void add_wedge(double height, double a, double b, const PerChannel& d, PerChannel& sum) {
+void add_wedge(double height, double a, double b, const ProfileShape& shape, PerChannel& sum) {
   const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
   for (size_t k = 0; k < gauss_nodes.size(); ++k)
     for (const double side : {-1.0, 1.0}) {
       const double rho = height / std::cos(middle + side * half * gauss_nodes[k]);
       for (size_t c = 0; c < 3; ++c)
-        sum[c] += gauss_weights[k] * half * burley_cdf(rho, d[c]) / (2 * std::numbers::pi);
+        sum[c] += gauss_weights[k] * half * shape_cdf(shape[c], rho) / (2 * std::numbers::pi);
     }
 }
 
 // The triangle between the point and one edge, as angles seen from the foot of the perpendicular.
-void add_edge(const Vector3& from, const Vector3& to, const PerChannel& d, PerChannel& sum) {
+void add_edge(const Vector3& from, const Vector3& to, const ProfileShape& shape, PerChannel& sum) {
   const Vector3 edge = to - from;
   const double size = length(edge);
   if (!(size > 0)) return;
@@ -44,37 +43,45 @@ void add_edge(const Vector3& from, const Vector3& to, const PerChannel& d, PerCh
   const double height = std::sqrt(std::max(0.0, dot(from, from) - along_from * along_from));
   const double a = std::atan2(along_from, height), b = std::atan2(along_to, height);
   const double cut = std::clamp(0.0, a, b);
-  if (cut > a) add_wedge(height, a, cut, d, sum);
-  if (b > cut) add_wedge(height, cut, b, d, sum);
+  if (cut > a) add_wedge(height, a, cut, shape, sum);
+  if (b > cut) add_wedge(height, cut, b, shape, sum);
 }
 
 } // namespace
 
+ProfileShape burley_shapes(const PerChannel& d) {
+  return {burley_shape(d[0]), burley_shape(d[1]), burley_shape(d[2])};
+}
+
+double reach_of(const ProfileShape& shape) {
+  return std::max({shape_reach(shape[0]), shape_reach(shape[1]), shape_reach(shape[2])});
+}
+
 PerChannel patch_mean(const PixelRays& rays, const Patch& patch, double x, double y, bool near,
-                      const Vector3& point, const PerChannel& d) {
+                      const Vector3& point, const ProfileShape& shape) {
   PerChannel sum{};
   if (!near) {
-    add_profile(length(patch.position - point), d, 1, sum);
+    add_profile(length(patch.position - point), shape, 1, sum);
     return sum;
   }
   constexpr double step = 1.0 / sub_points, scale = step * step;
   for (int j = 0; j < sub_points; ++j)
     for (int i = 0; i < sub_points; ++i) {
       const Vector3 at = patch_point(rays, patch, x + (i + 0.5) * step - 0.5, y + (j + 0.5) * step - 0.5);
-      add_profile(length(at - point), d, scale, sum);
+      add_profile(length(at - point), shape, scale, sum);
     }
   return sum;
 }
 
 PerChannel centre_integral(const PixelRays& rays, const Patch& patch, double x, double y,
-                           const PerChannel& d) {
+                           const ProfileShape& shape) {
   const std::array<Vector3, 4> corners = {patch_point(rays, patch, x - 0.5, y - 0.5) - patch.position,
                                           patch_point(rays, patch, x + 0.5, y - 0.5) - patch.position,
                                           patch_point(rays, patch, x + 0.5, y + 0.5) - patch.position,
                                           patch_point(rays, patch, x - 0.5, y + 0.5) - patch.position};
   PerChannel sum{};
   for (size_t i = 0; i < corners.size(); ++i)
-    add_edge(corners[i], corners[(i + 1) % corners.size()], d, sum);
+    add_edge(corners[i], corners[(i + 1) % corners.size()], shape, sum);
   return sum;
 }
 

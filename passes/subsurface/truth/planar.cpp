@@ -38,7 +38,7 @@ std::array<Region, 256> find_regions(const TruthInput& input) {
 
 // One convolution serves light and mask: they travel as real and imaginary part through a real kernel.
 void convolve_channel(const TruthInput& input, const Region& region, uint8_t id, size_t channel,
-                      const std::vector<PerChannel>& quadrant, size_t reach_x, size_t reach_y,
+                      double direct, const std::vector<PerChannel>& quadrant, size_t reach_x, size_t reach_y,
                       unsigned threads, std::vector<double>& result) {
   ComplexImage image{
       power_of_two_from(region.width() + reach_x), power_of_two_from(region.height() + reach_y), {}};
@@ -65,8 +65,8 @@ void convolve_channel(const TruthInput& input, const Region& region, uint8_t id,
     image.values[i] *= kernel.values[i].real();
   fft_inverse(image, threads);
   each_pixel([&](size_t i, const std::complex<double>& value) {
-    result[3 * i + channel] =
-        value.real() / value.imag(); // the pixel itself counts: the mask's share is positive
+    double& light = result[3 * i + channel]; // the pixel itself counts: the mask's share is positive
+    light += (1 - direct) * (value.real() / value.imag() - light);
   });
 }
 
@@ -77,15 +77,21 @@ double pixel_reach(const PixelRays& rays, double depth) {
 }
 
 PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy, const PerChannel& d) {
+  const ProfileShape shape = burley_shapes(d);
+  const double radius = reach_of(shape) + 0.5 * std::hypot(pitch_x, pitch_y);
+  return planar_weight(pitch_x, pitch_y, dx, dy, shape, radius);
+}
+
+PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy, const ProfileShape& shape,
+                         double radius) {
   const PixelRays rays{
       .scale_x = pitch_x, .offset_x = 0, .scale_y = -pitch_y, .offset_y = 0, .perspective = false};
   const double x = double(dx), y = double(dy), area = pitch_x * pitch_y;
   const Patch patch{pixel_position(rays, x, y, 0), {0, 0, 1}, area};
-  if (dx == 0 && dy == 0) return centre_integral(rays, patch, 0, 0, d);
-  const double radius = truth_radius_in_d * std::max({d[0], d[1], d[2]}) + pixel_reach(rays, 1);
+  if (dx == 0 && dy == 0) return centre_integral(rays, patch, 0, 0, shape);
   if (length(patch.position) > radius) return {};
   PerChannel weight =
-      patch_mean(rays, patch, x, y, std::max(std::abs(dx), std::abs(dy)) <= near_pixels, {0, 0, 0}, d);
+      patch_mean(rays, patch, x, y, std::max(std::abs(dx), std::abs(dy)) <= near_pixels, {0, 0, 0}, shape);
   for (double& w : weight)
     w *= area;
   return weight;
@@ -109,21 +115,20 @@ std::vector<double> planar_truth(const TruthInput& input, unsigned threads) {
   const double pitch_x = std::abs(input.rays.scale_x), pitch_y = std::abs(input.rays.scale_y);
   for (size_t id = 1; id < std::min(regions.size(), input.d_m.size()); ++id) {
     const Region& region = regions[id];
-    const PerChannel& d = input.d_m[id];
-    const double widest = std::max({d[0], d[1], d[2]});
-    if (region.x0 > region.x1 || !(widest > 0)) continue;
-    const double radius = truth_radius_in_d * widest + pixel_reach(input.rays, 1);
+    const ProfileShape shape = input.shape_of(id);
+    if (region.x0 > region.x1 || !(std::max({shape[0].d, shape[1].d, shape[2].d}) > 0)) continue;
+    const double radius = reach_of(shape) + pixel_reach(input.rays, 1);
     const auto reach_x = static_cast<size_t>(std::min(radius / pitch_x, double(region.width() - 1)));
     const auto reach_y = static_cast<size_t>(std::min(radius / pitch_y, double(region.height() - 1)));
     std::vector<PerChannel> quadrant((reach_x + 1) * (reach_y + 1));
     parallel_for(quadrant.size(), 256, threads, [&](size_t i) {
       quadrant[i] = planar_weight(pitch_x, pitch_y, static_cast<int64_t>(i % (reach_x + 1)),
-                                  static_cast<int64_t>(i / (reach_x + 1)), d);
+                                  static_cast<int64_t>(i / (reach_x + 1)), shape, radius);
     });
     for (size_t c = 0; c < 3; ++c)
-      if (d[c] > 0)
-        convolve_channel(input, region, static_cast<uint8_t>(id), c, quadrant, reach_x, reach_y, threads,
-                         result);
+      if (shape[c].d > 0)
+        convolve_channel(input, region, static_cast<uint8_t>(id), c, shape[c].direct, quadrant, reach_x,
+                         reach_y, threads, result);
   }
   return result;
 }

@@ -43,15 +43,14 @@ PerChannel scatter_at(const TruthInput& input, const Surface& surface, uint32_t 
   const uint8_t id = input.profile[pixel];
   const Patch& here = surface.patches[pixel];
   if (id == 0 || id >= input.d_m.size() || here.area == 0) return result;
-  PerChannel d = input.d_m[id];
+  ProfileShape shape = input.shape_of(id);
   const double scale = input.scatter_scale.empty() ? 1.0 : std::max(0.0f, input.scatter_scale[pixel]);
-  for (double& x : d)
-    x *= scale;
-  const double widest = std::max({d[0], d[1], d[2]});
-  if (!(widest > 0)) return result;
+  for (ChannelShape& channel : shape)
+    channel = scaled(channel, scale);
+  if (!(std::max({shape[0].d, shape[1].d, shape[2].d}) > 0)) return result;
 
   // A pixel's nearest part is at most half a patch's diagonal nearer than its centre.
-  const double radius = truth_radius_in_d * widest + pixel_reach(input.rays, -here.position[2]);
+  const double radius = reach_of(shape) + pixel_reach(input.rays, -here.position[2]);
   const PixelRange range = pixels_within(input, here.position, radius);
   const int64_t px = pixel % input.width, py = pixel / input.width;
   PerChannel sum{}, total{};
@@ -62,12 +61,12 @@ PerChannel scatter_at(const TruthInput& input, const Surface& surface, uint32_t 
       if (input.profile[q] != id || patch.area == 0) continue;
       PerChannel weight;
       if (x == px && y == py) {
-        weight = centre_integral(input.rays, patch, double(x), double(y), d);
+        weight = centre_integral(input.rays, patch, double(x), double(y), shape);
       } else {
         const Vector3 offset = patch.position - here.position;
         if (dot(offset, offset) > radius * radius) continue;
         const bool near = std::max(std::abs(x - px), std::abs(y - py)) <= near_pixels;
-        weight = patch_mean(input.rays, patch, double(x), double(y), near, here.position, d);
+        weight = patch_mean(input.rays, patch, double(x), double(y), near, here.position, shape);
         for (double& w : weight)
           w *= patch.area;
       }
@@ -77,7 +76,7 @@ PerChannel scatter_at(const TruthInput& input, const Surface& surface, uint32_t 
       }
     }
   for (size_t c = 0; c < 3; ++c)
-    if (d[c] > 0 && total[c] > 0) result[c] = sum[c] / total[c];
+    if (shape[c].d > 0 && total[c] > 0) result[c] += (1 - shape[c].direct) * (sum[c] / total[c] - result[c]);
   return result;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 // The truth that every technique is fitted to and judged against: scattered light before albedo, in fp64.
 //
-//   L_c(p) = sum_q K_c a_q B_c(q) / sum_q K_c a_q   over the pixels q with p's profile within 20 d of the
-//   widest channel
+//   L_c(p) = sum_q K_c a_q B_c(q) / sum_q K_c a_q   over the pixels q with p's profile within shape_reach
+//   (20 d for Burley) of the widest channel
 //
-// B is constant over a pixel, K_c is R_c(|P_q - P_p|) averaged over q's patch (pixel_kernel.hpp), a_q the
-// patch's area (surface.hpp). A channel with d = 0 returns its B unchanged, bit for bit.
+// and, for a profile with a share of light that never scatters, L = direct B + (1 - direct) times that. B is
+// constant over a pixel, K_c is R_c(|P_q - P_p|) averaged over q's patch (pixel_kernel.hpp), a_q the patch's
+// area (surface.hpp). A channel with d = 0 returns its B unchanged, bit for bit.
 
 #include "passes/subsurface/camera.hpp"
 #include "passes/subsurface/truth/pixel_kernel.hpp"
@@ -25,6 +26,11 @@ struct TruthInput {
   std::span<const float>
       scatter_scale; // multiplies d of the receiving pixel p (not of q); >= 0; empty: 1 everywhere
   std::span<const PerChannel> d_m; // by profile id: d in metres; an id beyond the end has d = 0
+  // By profile id, metres; as many as d_m, with the same d. Empty: all are Burley's.
+  std::span<const ProfileShape> shapes{};
+
+  // Of an id below d_m.size().
+  ProfileShape shape_of(size_t id) const { return shapes.empty() ? burley_shapes(d_m[id]) : shapes[id]; }
 };
 
 struct TruthOptions {

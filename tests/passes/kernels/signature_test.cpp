@@ -18,6 +18,7 @@ TEST(Kernels, EveryKernelFitsItsSignatureAndTheEnvironment) {
       {EnvironmentType::storage_buffer, any, {}},
       {EnvironmentType::linear_sampler, 0, {}},
       {EnvironmentType::storage_buffer, any, {}},
+      {EnvironmentType::storage_buffer, any, {}},
   };
   const KindRegistry kinds = make_kinds();
   ASSERT_GT(kinds.size(), 0u);

@@ -1,0 +1,30 @@
+#version 460
+// Level 0 of the plain pyramid: light times mask; zeros outside of the rectangle.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "subsurface_pyramid_setup.bindings.glsl"
+#include "environment.glsl"
+#include "half.glsl"
+#include "sanitise.glsl"
+#include "pyramid.glsl"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+
+void main() {
+  ivec2 address = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(address, imageSize(level_0_image))))
+    return;
+  ivec2 pixel = address - pyramid_border;
+  vec4 light = vec4(0.0);
+  if (inside_rect(pixel)) {
+    ivec2 texel = texel_of(pixel);
+    if (texelFetch(material_image, texel, 0).r != 0u) {
+      light = vec4(clean_light(texelFetch(lighting_image, texel, 0).rgb), 1.0);
+      if (settings.texturing != TEXTURING_POST && has_albedo()) {
+        vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
+        light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
+      }
+    }
+  }
+  imageStore(level_0_image, address, round_to_half(light));
+}
