@@ -36,6 +36,8 @@ render() { # scene, graph, folder, more options
 for graph in sap burley separable; do
   render bust "$graph" "bust_$graph"
 done
+render bust sap bust_sap_through --set transmission=true
+say "With light through the ears: out/bust_sap_through"
 say
 build/release/dermis render configs/scenes/bust.json --graph none --size 640x360 --frames 1 --out out/bust_without --quiet
 say "Without scattering, to compare: out/bust_without"

@@ -27,6 +27,8 @@ std::vector<Fillable> fillable_slots() {
       {"velocity", {Format::rg32f, Format::rg16f}},
       {"scatter_scale", {Format::r32f, Format::r16f}},
       {"specular", {Format::rgba32f, Format::rgba16f}},
+      {"thickness", {Format::r32f, Format::r16f}},
+      {"back_lighting", {Format::rgba32f, Format::rgba16f}},
       {"scattered_light", {Format::rgba32f, Format::rgba16f}},
   };
 }
@@ -55,6 +57,8 @@ SlotData data_of(const CapturedFrame& frame, std::string_view slot) {
   if (slot == "albedo") return from(frame.albedo);
   if (slot == "velocity") return from(frame.velocity);
   if (slot == "scatter_scale") return from(frame.scatter_scale);
+  if (slot == "thickness") return from(frame.thickness);
+  if (slot == "back_lighting") return from(frame.back_lighting);
   if (slot == "specular") return from(frame.specular);
   return {std::string(slot), {}, 0};
 }

@@ -170,7 +170,9 @@ demo::Result<> DeviceGraph::create_images() {
     desc.format = slot.format;
     desc.width = slot.width;
     desc.height = slot.height;
-    desc.usage = slot.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    // Sampled as well: an image that the plan leaves unused needs a view like any other.
+    desc.usage = slot.usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     auto image = demo::create_image(host_, desc);
     if (!image) return image.error();
     slots_.push_back({slot, slot.name, image.take(), {}});

@@ -40,6 +40,7 @@ struct Run {
   std::vector<float> last_scattered{};
   CaptureWriter capture{};
   bool textured_before = false;
+  bool transmission = false; // the graph adds light from behind before it scatters
 };
 
 demo::Result<> start(Run& run, const demo::RenderInfo& info) {
@@ -90,6 +91,7 @@ demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
   }
   run.exposure.add(captured->lighting.values, captured->profile);
   run.last = make_truth_frame(*captured);
+  if (run.transmission) add_transmission(*captured, run.last);
   run.last_scattered = frame.scattered.texels;
   run.progress.update(++run.frames);
   return demo::success();
@@ -102,6 +104,13 @@ bool textured_before(const Graph& graph, const CompileChoices& choices) {
     if (setting.name == "texturing" && setting.type == SettingType::enumeration)
       return setting.options[static_cast<size_t>(choices.settings[i].integer)] != "post";
   }
+  return false;
+}
+
+bool transmits(const Graph& graph, const CompileChoices& choices) {
+  for (size_t i = 0; i < graph.settings.size(); ++i)
+    if (graph.settings[i].name == "transmission" && graph.settings[i].type == SettingType::boolean)
+      return choices.settings[i].integer != 0;
   return false;
 }
 
@@ -169,7 +178,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.frames = options.frames;
 
   // The graph is read here first: its messages then come with excerpts and as JSON, and --set is checked.
-  bool textured = false;
+  bool textured = false, transmission = false;
   if (options.graph != no_graph) {
     Diagnostics diagnostics;
     const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
@@ -188,6 +197,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     };
     engine.settings = settings_as_json(loaded->graph, options.settings);
     textured = textured_before(loaded->graph, choices);
+    transmission = transmits(loaded->graph, choices);
   } else if (!options.settings.empty() || !options.parts.overlays.empty()) {
     return fail(session, ExitCode::usage, "--set and --overlay need a graph");
   }
@@ -196,7 +206,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
           .options = options,
           .progress =
               Progress(progress_style(session.quiet, session.json), "render", "frame", options.frames),
-          .textured_before = textured};
+          .textured_before = textured,
+          .transmission = transmission};
   demo::RenderCallbacks callbacks;
   callbacks.on_start = [&](const demo::RenderInfo& info) { return start(run, info); };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) { return take_frame(run, frame); };

@@ -56,6 +56,8 @@ demo::Result<CapturedFrame> captured_frame(const demo::FrameOutputs& frame,
   captured.albedo = to_image(frame.inputs.albedo);
   captured.velocity = to_image(frame.inputs.velocity);
   captured.specular = to_image(frame.inputs.specular);
+  captured.thickness = to_image(frame.inputs.thickness);
+  captured.back_lighting = to_image(frame.inputs.back_lighting);
   captured.profile.reserve(frame.inputs.profile.texels.size());
   for (const float id : frame.inputs.profile.texels)
     captured.profile.push_back(static_cast<uint8_t>(id));

@@ -113,7 +113,8 @@ Result<> read_inputs(VulkanHost& host, const Renderer& renderer, const SceneStat
        {Wanted{Target::lighting, 3, &inputs.lighting}, Wanted{Target::depth, 1, &inputs.depth},
         Wanted{Target::normal, 3, &inputs.normal}, Wanted{Target::albedo, 3, &inputs.albedo},
         Wanted{Target::material, 1, &inputs.profile}, Wanted{Target::velocity, 2, &inputs.velocity},
-        Wanted{Target::specular, 3, &inputs.specular}})
+        Wanted{Target::specular, 3, &inputs.specular}, Wanted{Target::thickness, 1, &inputs.thickness},
+        Wanted{Target::back_lighting, 3, &inputs.back_lighting}})
     if (auto done = read(host, renderer, one.target, one.channels, *one.out); !done) return done;
   const float nothing = renderer.view.reversed_depth ? 0.0f : 1.0f;
   for (float& depth : inputs.depth.texels) {

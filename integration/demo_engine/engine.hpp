@@ -82,6 +82,9 @@ struct GraphInputs {
   FloatImage profile;  // 1: id, 0 = no subsurface
   FloatImage velocity; // 2: pixels, now - previous, +x right, +y down, without jitter
   FloatImage specular; // 3: reflected light, never given to the graph
+  // Of the light that brings most through from behind: its way through the object, metres (1), and its
+  // irradiance on the far side (3).
+  FloatImage thickness, back_lighting;
 };
 
 struct FrameOutputs {

@@ -60,6 +60,9 @@ struct CapturedFrame {
   Image albedo, normal, specular; // 3, optional
   Image velocity;                 // 2, optional: now - previous position, pixels, +x right, +y down
   Image scatter_scale;            // 1, optional: multiplies d
+  // Optional, both or none: way of the light from behind through the material, metres (1), and its irradiance
+  // on the far side, linear (3).
+  Image thickness, back_lighting;
   SanitisedCounts sanitised;
 };
 

@@ -88,6 +88,8 @@ const std::vector<PictureKind>& picture_kinds() {
       {"velocity", &CapturedFrame::velocity, false, true, Names{{"X", "Y"}, {"R", "G"}}},
       {"scatter_scale", &CapturedFrame::scatter_scale, false, false, Names{{"Y"}, {"R"}, {"*"}}},
       {"specular", &CapturedFrame::specular, false, false, Names{{"R", "G", "B"}}},
+      {"thickness", &CapturedFrame::thickness, false, false, Names{{"Y"}, {"R"}, {"*"}}},
+      {"back_lighting", &CapturedFrame::back_lighting, false, false, Names{{"R", "G", "B"}}},
   };
   return kinds;
 }
@@ -114,6 +116,14 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
     mend(*image, kind.signed_values, frame.profile, frame.sanitised);
     frame.*kind.image = std::move(*image);
   }
+  std::error_code code;
+  const bool thickness = fs::exists(folder / "thickness.exr", code);
+  if (thickness != fs::exists(folder / "back_lighting.exr", code))
+    diagnostics.add(
+        DiagnosticId::capture_picture, document.where(document.root()),
+        fmt::format("'thickness.exr' and 'back_lighting.exr' describe one light and come together; "
+                    "'{}' is missing",
+                    (folder / (thickness ? "back_lighting.exr" : "thickness.exr")).string()));
   const SanitisedCounts& counts = frame.sanitised;
   if (counts.not_finite + counts.negative > 0)
     diagnostics.add(

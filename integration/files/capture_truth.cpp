@@ -1,10 +1,13 @@
 #include "integration/files/capture_truth.hpp"
 
+#include <algorithm>
+
 namespace dermis::tools {
 
 namespace {
 
 constexpr double metres_per_mm = 1e-3;
+constexpr double thinnest_m = 1e-9; // a slab; without scattering not even this lets light through
 
 // The rectangle's values out of a picture's.
 template <class T>
@@ -43,6 +46,23 @@ TruthFrame make_truth_frame(const CapturedFrame& frame) {
       result.shapes[known.id][c] = subsurface::scaled(known.profile.shape_mm[c], metres_per_mm);
     }
   return result;
+}
+
+void add_transmission(const CapturedFrame& frame, TruthFrame& truth) {
+  const Rectangle& part = frame.description.render;
+  const std::vector<float> thickness = crop(frame.thickness.values, frame.description.width, part, 1);
+  const std::vector<float> behind = crop(frame.back_lighting.values, frame.description.width, part, 3);
+  if (thickness.empty() || behind.empty()) return;
+  for (size_t i = 0; i < thickness.size(); ++i) {
+    if (truth.profile[i] == 0) continue;
+    const double scale = truth.scatter_scale.empty() ? 1.0 : static_cast<double>(truth.scatter_scale[i]);
+    const double metres = std::max(static_cast<double>(thickness[i]), thinnest_m);
+    for (size_t c = 0; c < 3; ++c) {
+      const subsurface::ChannelShape shape = subsurface::scaled(truth.shapes[truth.profile[i]][c], scale);
+      const double through = (1 - shape.direct) * subsurface::shape_survival(shape, metres);
+      truth.light[3 * i + c] += static_cast<float>(through * static_cast<double>(behind[3 * i + c]));
+    }
+  }
 }
 
 } // namespace dermis::tools

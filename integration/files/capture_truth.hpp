@@ -20,4 +20,8 @@ struct TruthFrame {
 
 TruthFrame make_truth_frame(const CapturedFrame& frame);
 
+// Adds the light from behind that comes through to `truth`'s light, as subsurface.transmission does: the
+// share that the profile carries further than the thickness. Nothing where the frame has no thickness.
+void add_transmission(const CapturedFrame& frame, TruthFrame& truth);
+
 } // namespace dermis::tools

@@ -123,6 +123,11 @@ ImageReads pyramid_gather(const PassKind& kind, const ReadsQuestion& question) {
   return {reads};
 }
 
+// Lighting, material, light behind, thickness.
+ImageReads transmission(const PassKind& kind, const ReadsQuestion& question) {
+  return {4 + scale_read(kind, question)};
+}
+
 // Material, scattered light, albedo.
 ImageReads combine(const PassKind& kind, const ReadsQuestion& question) {
   return {2 + one_if(kind, question, "albedo", PortSide::read)};
@@ -154,6 +159,7 @@ constexpr Entry entries[] = {
     {"subsurface.pyramid_setup", pyramid_setup},
     {"subsurface.pyramid_down", pyramid_down},
     {"subsurface.pyramid_gather", pyramid_gather},
+    {"subsurface.transmission", transmission},
 };
 
 } // namespace

@@ -72,6 +72,25 @@ constexpr Port light_ports[] = {
 };
 constexpr KindSetting light_settings[] = {setting::texturing};
 
+constexpr Port transmission_ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    {"back_lighting",
+     Usage::sampled_image,
+     false,
+     "texture2D",
+     "irradiance on the far side, linear, of the light that thickness is measured along",
+     {}},
+    {"thickness",
+     Usage::sampled_image,
+     false,
+     "texture2D",
+     "way of that light through the material, metres",
+     {}},
+    port::material,
+    port::scatter_scale,
+    {"lit", Usage::storage_image_write, false, "image2D", "lighting with what came through", {}},
+};
+
 } // namespace
 
 const PassKind setup_kind{
@@ -82,6 +101,18 @@ const PassKind setup_kind{
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind transmission_kind{
+    .name = "subsurface.transmission",
+    .shader = "subsurface_transmission",
+    .doc =
+        "Adds light from the far side of thin parts: the share that the profile carries further than their "
+        "thickness.",
+    .ports = transmission_ports,
+    .settings = {},
+    .dispatch = DispatchShape::over_view,
     .side_effects = false,
 };
 

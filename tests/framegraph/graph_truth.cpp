@@ -1,5 +1,7 @@
 #include "tests/framegraph/graph_truth.hpp"
 
+#include "framegraph/model/expression.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +17,9 @@ bool is_slot(const ResourceDeclaration& resource) {
 
 Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames,
                            uint64_t contents) {
+  std::vector<SettingValue> settings;
+  for (const SettingDeclaration& setting : graph.settings)
+    settings.push_back(setting.default_value);
   // contents_of[r][f]: of resource r at the end of frame f, or as far as the frame has come.
   std::vector<std::vector<std::optional<Pixels>>> contents_of(graph.resources.size());
   Interpretation out(frames);
@@ -33,6 +38,11 @@ Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32
     };
     for (uint32_t p = 0; p < graph.passes.size(); ++p) {
       const PassDeclaration& pass = graph.passes[p];
+      if (pass.when.valid() && !evaluate(graph, pass.when, settings)) {
+        for (const PassThrough& one : pass.otherwise) // its readers see this instead
+          contents_of[one.output.value][frame] = contents_of[one.instead.value][frame];
+        continue;
+      }
       std::vector<StandInInput> inputs;
       for (const PortBinding& binding : pass.reads)
         inputs.push_back({binding.port, read(binding)});

@@ -7,7 +7,7 @@
 
 namespace dermis::testing {
 
-// Like interpret() of its plan, for every slot that is exported. The graph has no `when`, all slots are
+// Like interpret() of its plan, for every slot that is exported. Settings have their defaults, all slots are
 // bound, and passes stand behind the producers of what they read, as in random_graph().
 Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames, uint64_t contents);
 

@@ -67,6 +67,8 @@ struct Captures : ::testing::Test {
     frame.velocity = fill(2, -0.25f);
     frame.scatter_scale = fill(1, 0);
     frame.specular = fill(3, 1);
+    frame.thickness = fill(1, 0);
+    frame.back_lighting = fill(3, 0.5f);
     frame.profile.assign(24, 0);
     for (size_t i = 0; i < 24; ++i)
       frame.profile[i] = i % 6 < 3 ? 3 : 0;
@@ -131,8 +133,43 @@ TEST_F(Captures, ReturnWhatWasWrittenBitForBit) {
   EXPECT_EQ(back->profile, frame.profile);
   for (Image CapturedFrame::*image :
        {&CapturedFrame::lighting, &CapturedFrame::depth, &CapturedFrame::albedo, &CapturedFrame::normal,
-        &CapturedFrame::velocity, &CapturedFrame::scatter_scale, &CapturedFrame::specular})
+        &CapturedFrame::velocity, &CapturedFrame::scatter_scale, &CapturedFrame::specular,
+        &CapturedFrame::thickness, &CapturedFrame::back_lighting})
     EXPECT_EQ(((*back).*image).values, (frame.*image).values);
+}
+
+TEST_F(Captures, ThicknessAndTheLightBehindComeTogether) {
+  const fs::path frame = write(sample());
+  fs::remove(frame / "back_lighting.exr");
+  expect_refused(frame, DiagnosticId::capture_picture, "", "'thickness.exr' and 'back_lighting.exr'");
+  EXPECT_EQ(diagnostics.count(Severity::error), 1u);
+}
+
+TEST_F(Captures, TransmissionAddsWhatComesThroughToTheTruthsLight) {
+  CapturedFrame frame = sample();
+  frame.scatter_scale = {};
+  const TruthFrame without = make_truth_frame(frame);
+  TruthFrame with = without;
+  add_transmission(frame, with);
+  const auto& shape = without.shapes[3];
+  bool some = false;
+  for (size_t i = 0; i < without.profile.size(); ++i)
+    for (size_t c = 0; c < 3; ++c) {
+      const double added = double(with.light[3 * i + c]) - double(without.light[3 * i + c]);
+      if (without.profile[i] == 0) {
+        EXPECT_EQ(added, 0);
+        continue;
+      }
+      some = true;
+      const size_t x = i % without.width + frame.description.render.x,
+                   y = i / without.width + frame.description.render.y;
+      const size_t at = y * frame.description.width + x;
+      const double expected =
+          dermis::subsurface::shape_survival(shape[c], double(frame.thickness.values[at])) *
+          double(frame.back_lighting.values[3 * at + c]);
+      EXPECT_NEAR(added, expected, 1e-6 + 1e-7 * double(without.light[3 * i + c])) << i; // fp32 sums
+    }
+  EXPECT_TRUE(some);
 }
 
 TEST_F(Captures, HandMadeOrthographicFramesAreExact) {
@@ -153,6 +190,7 @@ TEST_F(Captures, HandMadeOrthographicFramesAreExact) {
 TEST_F(Captures, OptionalPicturesMayBeAbsentAndRequiredOnesMayNot) {
   CapturedFrame frame = sample();
   frame.albedo = frame.normal = frame.velocity = frame.scatter_scale = frame.specular = {};
+  frame.thickness = frame.back_lighting = {};
   const fs::path folder = write(frame);
   const auto back = read_frame(folder, shipped, diagnostics);
   ASSERT_TRUE(back) << messages();

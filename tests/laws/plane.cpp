@@ -43,7 +43,7 @@ std::array<float, 16> orthographic(double width_m, double height_m) {
 }
 
 struct Uploads {
-  std::vector<float> light, depth, id, scale;
+  std::vector<float> light, depth, id, scale, thickness;
 };
 
 Uploads fill(const Plane& plane) {
@@ -55,6 +55,7 @@ Uploads fill(const Plane& plane) {
       out.light.insert(out.light.end(), {value, value, value});
       out.depth.push_back(plane.depth_m(ix, iy));
       out.id.push_back(plane.profile(ix, iy));
+      if (plane.thickness_m) out.thickness.push_back(plane.thickness_m(ix, iy));
       out.scale.push_back(plane.scatter_scale ? plane.scatter_scale(ix, iy) : 1.0f);
     }
   return out;
@@ -97,6 +98,12 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
     request.formats.emplace_back("scatter_scale", VK_FORMAT_R32_SFLOAT);
   else
     request.unbound.push_back("scatter_scale");
+  if (plane.thickness_m) {
+    request.formats.emplace_back("thickness", VK_FORMAT_R32_SFLOAT);
+    request.formats.emplace_back("back_lighting", VK_FORMAT_R32G32B32A32_SFLOAT);
+  } else {
+    request.unbound.insert(request.unbound.end(), {"thickness", "back_lighting"});
+  }
   request.settings = settings;
   {
     auto device = dermis::tools::DeviceGraph::create(**host, request);
@@ -113,6 +120,8 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
     upload("depth", uploads.depth, 1);
     upload("material", uploads.id, 1);
     upload("scatter_scale", uploads.scale, 1);
+    upload("thickness", uploads.thickness, 1);
+    upload("back_lighting", std::vector<float>(3 * uploads.thickness.size(), 1.0f), 3);
 
     dermis_frame frame = DERMIS_FRAME_INIT;
     const auto& r = plane.rectangle;

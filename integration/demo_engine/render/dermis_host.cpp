@@ -197,10 +197,12 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   for (const dermis_slot& slot : host->slots) {
     if (target_of(slot.name)) continue;
     if (slot.required)
-      return Error{ErrorKind::input,
-                   fmt::format("graph '{}' wants '{}' bound, which the demo engine does not make; it offers "
-                               "lighting, depth, normal, material, albedo, velocity and scattered_light",
-                               desc.graph_file, slot.name)};
+      return Error{
+          ErrorKind::input,
+          fmt::format("graph '{}' wants '{}' bound, which the demo engine does not make; it offers "
+                      "lighting, depth, normal, material, albedo, velocity, thickness, back_lighting and "
+                      "scattered_light",
+                      desc.graph_file, slot.name)};
     unbound.emplace_back(slot.name);
   }
   if (auto done = build_graph(*host, desc, *sources, unbound); !done) return done.error();
@@ -213,6 +215,8 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
     error.kind = ErrorKind::usage; // names and values come from whoever starts the rendering
     return error;
   }
+  // A setting may change what the graph uses; slots and their names belong to the plan that was replaced.
+  if (auto done = query_slots(*host); !done) return done.error();
   return host;
 }
 

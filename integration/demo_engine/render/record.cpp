@@ -19,6 +19,9 @@ constexpr ImageState storage_target = {VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAG
 constexpr std::array gbuffer_targets = {Target::normal,   Target::shading, Target::albedo,
                                         Target::material, Target::finish,  Target::velocity};
 
+constexpr std::array lit_targets = {Target::lighting, Target::specular, Target::thickness,
+                                    Target::back_lighting};
+
 void stamp(Renderer& renderer, VkCommandBuffer commands, Timestamp which) {
   if (renderer.queries.host)
     renderer.host->vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
@@ -193,10 +196,10 @@ void record_scene(Renderer& renderer, VkCommandBuffer commands, const SceneState
   stamp(renderer, commands, after_shadows);
   record_gbuffer(renderer, commands, state);
   stamp(renderer, commands, after_gbuffer);
-  for (const Target target : {Target::lighting, Target::specular})
+  for (const Target target : lit_targets)
     transition(host, commands, renderer[target], resting, storage_target);
   dispatch(renderer, commands, renderer.lighting, renderer.lighting_set);
-  for (const Target target : {Target::lighting, Target::specular})
+  for (const Target target : lit_targets)
     transition(host, commands, renderer[target], storage_target, resting);
   stamp(renderer, commands, after_lighting);
 }

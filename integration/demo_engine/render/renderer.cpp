@@ -30,6 +30,8 @@ constexpr std::array<TargetInfo, target_count> target_infos = {{
     {"", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
     {"scattered_light", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
     {"", VK_FORMAT_R32G32B32A32_SFLOAT, stored},
+    {"thickness", VK_FORMAT_R32_SFLOAT, stored},
+    {"back_lighting", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
 }};
 
 constexpr VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
@@ -117,9 +119,10 @@ Result<> create_pipelines(Renderer& renderer) {
   auto composite = create_compute(host, composite_comp, {bindings});
   if (!composite) return composite.error();
   renderer.composite = composite.take();
-  bindings.resize(8);
-  bindings[6].type = image;
-  bindings[7].type = image;
+  bindings.resize(11, Binding{texture, compute_stage});
+  bindings[8].type = texture;
+  for (const size_t written : {6u, 7u, 9u, 10u})
+    bindings[written].type = image;
   auto lighting = create_compute(host, lighting_comp, {bindings});
   if (!lighting) return lighting.error();
   renderer.lighting = lighting.take();
@@ -158,6 +161,10 @@ Result<> create_sets(Renderer& renderer) {
               renderer.shadow_sampler.handle);
   write(renderer.lighting_set, 6, Target::lighting);
   write(renderer.lighting_set, 7, Target::specular);
+  write_image(host, renderer.lighting_set, 8, texture, renderer.shadow_maps.view, resting.layout,
+              renderer.texel_sampler.handle);
+  write(renderer.lighting_set, 9, Target::thickness);
+  write(renderer.lighting_set, 10, Target::back_lighting);
   read(renderer.composite_set, 1, Target::depth);
   read(renderer.composite_set, 2, Target::lighting);
   read(renderer.composite_set, 3, Target::specular);

@@ -26,8 +26,10 @@ enum class Target : uint8_t {
   specular,
   scattered, // light before albedo, if the graph hands it out
   color,
+  thickness,     // metres, of the light that brings most through from behind
+  back_lighting, // its irradiance on the far side
 };
-inline constexpr size_t target_count = 11;
+inline constexpr size_t target_count = 13;
 
 struct TargetInfo {
   std::string_view slot;

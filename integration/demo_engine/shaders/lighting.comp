@@ -10,6 +10,9 @@ layout(set = 0, binding = 4) uniform sampler2D finish_image;
 layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_maps;
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D lighting_image;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D specular_image;
+layout(set = 0, binding = 8) uniform sampler2DArray shadow_depths; // the same maps, as depths
+layout(set = 0, binding = 9, r32f) uniform writeonly image2D thickness_image;
+layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D back_lighting_image;
 
 // Which of the six faces of a point light sees direction d (world axes of the view): +x -x +y -y +z -z.
 uint cube_face(vec3 d) {
@@ -17,6 +20,38 @@ uint cube_face(vec3 d) {
   if (a.x >= a.y && a.x >= a.z) return d.x > 0.0 ? 0u : 1u;
   if (a.y >= a.z) return d.y > 0.0 ? 2u : 3u;
   return d.z > 0.0 ? 4u : 5u;
+}
+
+// Layer of the light's map that shows p, and p's place in it; false outside of the map or without one.
+bool shadow_place(Light light, vec3 p, out uint layer, out vec3 place) {
+  layer = light.shadow.x;
+  place = vec3(0.0);
+  if (layer == no_shadow) return false;
+  if (uint(light.position.w) == light_point)
+    layer += cube_face(transpose(mat3(frame.view_from_world)) * (p - light.position.xyz));
+  vec4 s = frame.shadow_from_view[layer] * vec4(p, 1.0);
+  if (s.w <= 0.0) return false;
+  place = s.xyz / s.w;
+  return all(lessThan(abs(place.xy), vec2(1.0))) && place.z <= 1.0;
+}
+
+// Metres that light travels inside from where it first meets anything to p: mean of 3x3 texels of the map.
+// Negative: not known.
+float way_through(Light light, vec3 p, vec3 to_light) {
+  uint layer;
+  vec3 place;
+  if (!shadow_place(light, p, layer, place)) return -1.0;
+  mat4 view_from_shadow = inverse(frame.shadow_from_view[layer]);
+  int side = textureSize(shadow_depths, 0).x;
+  float sum = 0.0;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      vec2 at = place.xy + 2.0 * vec2(x, y) / float(side);
+      ivec2 texel = clamp(ivec2((at * 0.5 + 0.5) * float(side)), ivec2(0), ivec2(side - 1));
+      vec4 entry = view_from_shadow * vec4(at, texelFetch(shadow_depths, ivec3(texel, layer), 0).r, 1.0);
+      sum += max(0.0, dot(entry.xyz / entry.w - p, to_light));
+    }
+  return sum / 9.0;
 }
 
 // Share of the light that arrives: 3x3 comparisons, each bilinear.
@@ -58,7 +93,8 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(frame.size.xy)))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
-  vec3 lighting = vec3(0.0), specular = vec3(0.0);
+  vec3 lighting = vec3(0.0), specular = vec3(0.0), back_lighting = vec3(0.0);
+  float thickness = 0.0, most = 0.0;
   if (depth != frame.misc.x) {
     vec3 p = view_position(vec2(pixel) + 0.5, depth);
     vec3 v = frame.misc.w > 0.0 ? vec3(0.0, 0.0, 1.0) : normalize(-p);
@@ -82,6 +118,18 @@ void main() {
       }
       if (type == light_spot)
         falloff *= smoothstep(light.direction.w, light.intensity.w, -dot(l, light.direction.xyz));
+      float behind = -dot(n, l);
+      if (falloff > 0.0 && behind > 0.0) { // of all lights from behind the one that brings most through
+        const float reach = 0.005; // metres; ranks lights, the graph's profile decides what comes through
+        float way = way_through(light, p, l);
+        vec3 arriving = light.intensity.rgb * falloff * behind;
+        float through = dot(arriving, vec3(0.2126, 0.7152, 0.0722)) * exp(-way / reach);
+        if (way >= 0.0 && through > most) {
+          most = through;
+          thickness = way;
+          back_lighting = arriving;
+        }
+      }
       if (falloff <= 0.0 || dot(s, l) <= 0.0 || dot(n, l) <= 0.0) continue;
       vec3 arriving = light.intensity.rgb * falloff * visibility(light, p, n, l) *
                       smoothstep(0.0, 0.1, dot(n, l)); // no bump is lit from behind the surface
@@ -91,4 +139,6 @@ void main() {
   }
   imageStore(lighting_image, pixel, vec4(min(lighting, vec3(60000.0)), 1.0));
   imageStore(specular_image, pixel, vec4(min(specular, vec3(60000.0)), 1.0));
+  imageStore(thickness_image, pixel, vec4(thickness, 0.0, 0.0, 1.0));
+  imageStore(back_lighting_image, pixel, vec4(min(back_lighting, vec3(60000.0)), 1.0));
 }
