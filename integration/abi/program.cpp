@@ -85,26 +85,24 @@ template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& val
   return std::as_bytes(std::span<const T>(values));
 }
 
-vulkan::Error make_executor(dermis_context_t& context, const ProgramInput& input,
-                            vulkan::HistoryReason history, Program& program) {
+vulkan::Error make_executor(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
+                            Program& program) {
   std::vector<vulkan::KernelCode> kernels;
   for (const Kernel& kernel : embedded_kernels())
     kernels.push_back({kernel.shader, kernel.spirv});
-  const bool with_separable = subsurface::uses_separable(program.graph, context.kinds);
-  const auto profiles = subsurface::make_profile_table(input.profiles, with_separable);
-  const auto separable = subsurface::make_separable_table(
-      with_separable ? std::span<const subsurface::NumberedProfile>(input.profiles)
-                     : std::span<const subsurface::NumberedProfile>());
-  const auto sap =
-      subsurface::make_sap_tables(subsurface::pyramid_use(program.graph, context.kinds), input.profiles);
-  const auto radial = subsurface::make_radial_table(input.profiles);
+  const subsurface::TableUse use = subsurface::table_use(program.graph, context.kinds);
+  if (!input.tables || input.tables->use != use)
+    input.tables =
+        std::make_shared<subsurface::KernelTables>(subsurface::make_kernel_tables(use, input.profiles));
+  const subsurface::KernelTables& tables = *input.tables;
   const std::array<vulkan::EnvironmentBinding, 6> environment{{
       {vulkan::EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
-      {vulkan::EnvironmentType::storage_buffer, bytes_of(profiles).size(), bytes_of(profiles)},
-      {vulkan::EnvironmentType::storage_buffer, bytes_of(separable).size(), bytes_of(separable)},
+      {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.profiles).size(), bytes_of(tables.profiles)},
+      {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.separable).size(),
+       bytes_of(tables.separable)},
       {vulkan::EnvironmentType::linear_sampler, 0, {}},
-      {vulkan::EnvironmentType::storage_buffer, bytes_of(sap).size(), bytes_of(sap)},
-      {vulkan::EnvironmentType::storage_buffer, bytes_of(radial).size(), bytes_of(radial)},
+      {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.pyramid).size(), bytes_of(tables.pyramid)},
+      {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.radial).size(), bytes_of(tables.radial)},
   }};
   static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 6);
   vulkan::ExecutorInput executor;

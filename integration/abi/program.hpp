@@ -6,7 +6,7 @@
 #include "framegraph/compose/compose.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/abi/context.hpp"
-#include "passes/subsurface/environment.hpp"
+#include "passes/subsurface/kernel_tables.hpp"
 
 #include <map>
 #include <memory>
@@ -42,6 +42,8 @@ struct ProgramInput {
   std::vector<std::string> unbound;
   std::vector<HostFormat> formats;
   std::vector<HostSetting> settings;
+  std::shared_ptr<const subsurface::KernelTables>
+      tables; // of `profiles`, as the last program used them; or null
 };
 
 // An import or export as the host sees it; `id` is the position in Program::slots.
@@ -70,7 +72,7 @@ struct Program {
 };
 
 // Parses, compiles and allocates. On failure `diagnostics` tells why and `program` is unchanged. Keeps in
-// `input` what the host delivers. Thread: any.
+// `input` what the host delivers and what was fitted. Thread: any.
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
                             Diagnostics& diagnostics, std::unique_ptr<Program>& program);
 

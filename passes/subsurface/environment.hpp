@@ -96,6 +96,7 @@ std::vector<RadialRow> make_radial_table(std::span<const NumberedProfile> profil
 struct PyramidUse {
   bool surface = false; // base and smooth: the surface-aware pyramid
   bool plain = false;
+  bool operator==(const PyramidUse&) const = default;
 };
 PyramidUse pyramid_use(const Graph& graph, const KindRegistry& kinds);
 // Tables of make_sap_table (sap_weights.hpp): the shared ones, base, smooth, plain; then for each profile

@@ -29,17 +29,16 @@ struct FailingDevice : ::testing::TestWithParam<const char*> {
     const std::string profile = "configs/profiles/skin.json";
     return {graph, text_of(graph), profile, text_of(profile), width, height};
   }
-  // From one failing creation to the next. The kernel tables of the other graphs take time at each try.
+  // From one failing creation to the next: a graph that is made anew fits its kernel tables at each try.
   static uint64_t step() {
     return std::string_view(GetParam()) == "burley" ? 1 : dermis::testing::seeds_of_tier(16, 1);
   }
 };
 
 // Calls `change` with its first creation failing, then its second, until none fails.
-void fail_each_creation(tools::CountedHost& host, uint64_t step,
-                        const std::function<dermis_result()>& change) {
-  uint64_t failures = 0; // with a step of 16 some graphs have few
-  for (uint64_t nth = 1; nth < most_creations; nth += step) {
+void fail_each_creation(tools::CountedHost& host, const std::function<dermis_result()>& change) {
+  uint64_t failures = 0;
+  for (uint64_t nth = 1; nth < most_creations; ++nth) {
     const uint64_t alive = host.device().alive(), bytes = host.device().memory_bytes();
     host.device().fail_creation(nth, VK_ERROR_OUT_OF_DEVICE_MEMORY);
     const dermis_result result = change();
@@ -51,7 +50,7 @@ void fail_each_creation(tools::CountedHost& host, uint64_t step,
     EXPECT_EQ(host.device().memory_bytes(), bytes) << "creation " << nth;
     EXPECT_EQ(host.record_frame(), DERMIS_OK) << "creation " << nth;
   }
-  EXPECT_GT(failures, 3u);
+  EXPECT_GT(failures, 10u);
   EXPECT_LT(failures, most_creations - 2);
 }
 
@@ -75,8 +74,7 @@ TEST_P(FailingDevice, AFailedResizeLeavesTheGraphAsItWas) {
   ASSERT_EQ(host.open(input(64, 48)), "");
   ASSERT_EQ(host.record_frame(), DERMIS_OK);
   uint32_t calls = 0; // the size changes each time: a resize to the same size does nothing
-  fail_each_creation(host, step(),
-                     [&] { return dermis_graph_resize(host.graph(), 48 + ++calls % 2, 48, nullptr); });
+  fail_each_creation(host, [&] { return dermis_graph_resize(host.graph(), 48 + ++calls % 2, 48, nullptr); });
 }
 
 TEST_P(FailingDevice, AFailedReloadLeavesTheGraphAsItWas) {
@@ -88,7 +86,7 @@ TEST_P(FailingDevice, AFailedReloadLeavesTheGraphAsItWas) {
   source.name = given.name.c_str();
   source.text = given.graph.data();
   source.length = given.graph.size();
-  fail_each_creation(host, step(), [&] { return dermis_graph_reload(host.graph(), &source, nullptr); });
+  fail_each_creation(host, [&] { return dermis_graph_reload(host.graph(), &source, nullptr); });
 }
 
 TEST_P(FailingDevice, WhatAReloadReplacesIsGoneOnceItsFramesAreDone) {
