@@ -56,7 +56,9 @@ void choose(CompileContext& c) {
           DiagnosticId::setting_value, declared.where,
           fmt::format("setting '{}' cannot be {}", declared.name, setting_text(declared, value)));
     c.settings.push_back(value);
-    c.because(Reason::About::choice, i, given ? Reason::Why::asked_for : Reason::Why::by_default);
+    const bool differs =
+        value.integer != declared.default_value.integer || value.real != declared.default_value.real;
+    c.because(Reason::About::choice, i, differs ? Reason::Why::asked_for : Reason::Why::by_default);
   }
   c.out->plan.setting_values = c.settings;
   constexpr size_t ahead = 8;
