@@ -1,5 +1,6 @@
 #version 460
-// One level down: [1 3 3 1] x [1 3 3 1] over the children that lie on the parent's tangent plane.
+// One level down: [1 3 3 1] x [1 3 3 1] over the children that lie on the parent's tangent plane. A group's 8x8 parents
+// share their 18x18 children.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_sap_down.bindings.glsl"
@@ -11,6 +12,24 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
 const float hysteresis = 1.02;   // the first of equals stays the seed
 const float nearest_share = 0.25; // a plane is not extrapolated nearer than this share of its depth
+
+const int shared_side = 18;
+shared uvec4 shared_surface[shared_side * shared_side];
+shared vec4 shared_light[shared_side * shared_side];
+
+// Reads the children of the group whose first parent is `first`, once each. Every invocation of the group calls it.
+void share_children(ivec2 first, int finer) {
+  for (int i = int(gl_LocalInvocationIndex); i < shared_side * shared_side; i += 64) {
+    ivec2 q = 2 * first - 1 + ivec2(i % shared_side, i / shared_side);
+    shared_surface[i] = sap_inside(q, finer) ? texelFetch(surface_image, sap_address(q, finer), 0) : uvec4(0u);
+    shared_light[i] = shared_surface[i].w != 0u ? texelFetch(light_image, sap_address(q, finer), 0) : vec4(0.0);
+  }
+  barrier();
+}
+int shared_index(int child) {
+  ivec2 local = 2 * ivec2(gl_LocalInvocationID.xy) + ivec2(child & 3, child >> 2);
+  return local.y * shared_side + local.x;
+}
 
 sap_texel children[16];
 
@@ -60,13 +79,11 @@ int find_seed(float spacing) {
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy) - 1;
   int level = settings.level, finer = level - 1;
+  share_children(at - ivec2(gl_LocalInvocationID.xy), finer);
   if (!sap_inside(at, level))
     return;
-  ivec2 first = 2 * at - 1;
-  for (int k = 0; k < 16; ++k) {
-    ivec2 q = first + ivec2(k & 3, k >> 2);
-    children[k] = sap_unpack(sap_inside(q, finer) ? texelFetch(surface_image, sap_address(q, finer), 0) : uvec4(0u));
-  }
+  for (int k = 0; k < 16; ++k)
+    children[k] = sap_unpack(shared_surface[shared_index(k)]);
   float spacing = float(1 << finer);
   vec4 light = vec4(0.0);
   uvec4 bits = uvec4(0u);
@@ -88,7 +105,7 @@ void main() {
         continue;
       float off = (child.depth - depth - sap_rise(depth, slope, offset)) * per_sigma_mm;
       float flat_weight = binomial(k) * exp2(sap_factor(sap_depth_width) * off * off) * child.mass;
-      vec4 tap = texelFetch(light_image, sap_address(first + ivec2(k & 3, k >> 2), finer), 0);
+      vec4 tap = shared_light[shared_index(k)];
       float weight = flat_weight * narrowing * tap.a;
       mass += flat_weight * narrowing;
       total += weight;

@@ -9,23 +9,26 @@
 #include "radius.glsl"
 #include "sap_up.glsl"
 
-const float least_share = 0.002; // below it the tent is not worth its reads
+const float least_share = 0.002; // below it the tent is not worth its time
 
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  bool listed = listed_pixel(pixel, copy_only);
+  if (!copy_only)
+    sap_share(pixel - local_texel(), 0, true, true);
+  if (!listed)
     return;
   ivec2 texel = texel_of(pixel);
-  vec3 light = texelFetch(light_image, texel, 0).rgb;
-  sap_texel own = sap_unpack(texelFetch(surface_image, texel, 0));
+  vec3 light = copy_only ? texelFetch(light_image, texel, 0).rgb : sap_own_light();
   float confidence = 1.0;
+  sap_texel own = sap_own();
   if (!copy_only && own.id != 0u) {
     vec3 d_px = sap_d_px(own);
     vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
     sap_sum near = sap_sum(light, vec3(own.mass));
     if (max(tent.r, max(tent.g, tent.b)) >= least_share)
-      near = sap_tent(pixel, 0, own);
+      near = sap_tent(0, own);
     sap_sum rest = sap_from_coarser(pixel, 0, own, light, confidence);
     rest.mass *= 1.0 - centre - tent;
     uint widest = profiles[min(own.id, 255u)].widest;

@@ -14,10 +14,11 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  share_patches(pixel - ivec2(gl_LocalInvocationID.xy));
   if (!inside_rect(pixel))
     return;
   ivec2 texel = texel_of(pixel);
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = own_profile();
   vec4 light = vec4(0.0);
   uvec4 bits = uvec4(0u);
   if (id != 0u) {
@@ -26,9 +27,9 @@ void main() {
       vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
       light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
     }
-    float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    float depth = own_depth();
     if (depth > 0.0) {
-      surface_patch patch_here = build_patch(pixel, id, depth);
+      surface_patch patch_here = build_patch(pixel);
       vec2 sides = pixel_footprint(depth);
       float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
       float reach = min(sqrt(sqrt(1.0 / patch_here.area)) * scale, largest_half);

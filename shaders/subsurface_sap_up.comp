@@ -9,23 +9,23 @@
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
-const float least_share = 0.004; // below it the tent is not worth its reads
+const float least_share = 0.004; // below it the tent is not worth its time
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy) - 1;
   int level = settings.level;
+  bool smooth_level = settings.variant == VARIANT_SMOOTH, last = !has_coarse_scattered();
+  sap_share(at - local_texel(), level, smooth_level, !last);
   if (!sap_inside(at, level))
     return;
-  ivec2 address = sap_address(at, level);
-  sap_texel own = sap_unpack(texelFetch(surface_image, address, 0));
+  sap_texel own = sap_own();
   vec4 light = vec4(0.0);
   vec3 mass = vec3(0.0);
   if (own.id != 0u) {
-    bool last = !has_coarse_scattered();
     vec3 share = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
-    sap_sum here = sap_sum(texelFetch(light_image, address, 0).rgb, vec3(own.mass));
-    if (settings.variant == VARIANT_SMOOTH && max(share.r, max(share.g, share.b)) >= least_share)
-      here = sap_tent(at, level, own);
+    sap_sum here = sap_sum(sap_own_light(), vec3(own.mass));
+    if (smooth_level && max(share.r, max(share.g, share.b)) >= least_share)
+      here = sap_tent(level, own);
     float confidence = 0.0;
     sap_sum rest = sap_sum(here.light, vec3(0.0));
     if (!last)
@@ -36,6 +36,6 @@ void main() {
     light = vec4(blend.light, mix(confidence, here.mass.r, widest));
     mass = blend.mass;
   }
-  imageStore(scattered_image, address, round_to_half(light));
-  imageStore(mass_image, address, vec4(round_to_half(mass), 1.0));
+  imageStore(scattered_image, sap_address(at, level), round_to_half(light));
+  imageStore(mass_image, sap_address(at, level), vec4(round_to_half(mass), 1.0));
 }

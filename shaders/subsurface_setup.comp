@@ -12,10 +12,12 @@
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  bool listed = listed_pixel(pixel, copy_only);
+  share_patches(pixel - ivec2(gl_LocalInvocationID.xy));
+  if (!listed)
     return;
   ivec2 texel = texel_of(pixel);
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = own_profile();
   vec4 light = vec4(0.0);
   vec2 slope = vec2(0.0);
   if (id != 0u) {
@@ -24,10 +26,10 @@ void main() {
       vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
       light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
     }
-    float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    float depth = own_depth();
     light.a = 1.0;
     if (depth > 0.0 && !copy_only) {
-      surface_patch surface = build_patch(pixel, id, depth);
+      surface_patch surface = build_patch(pixel);
       light.a = surface.area;
       slope = surface.slope;
     }

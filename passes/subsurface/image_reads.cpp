@@ -1,5 +1,6 @@
 #include "passes/subsurface/image_reads.hpp"
 
+#include "passes/subsurface/kinds.hpp"
 #include "passes/subsurface/sap_weights.hpp"
 #include "passes/subsurface/separable_kernel.hpp"
 
@@ -25,8 +26,13 @@ double scale_read(const PassKind& kind, const ReadsQuestion& question) {
   return one_if(kind, question, "scatter_scale", PortSide::read);
 }
 
-// patch.glsl, build_patch: material and depth of four neighbours.
-constexpr double patch_reads = 4 * 2;
+// Reads of an invocation where its group of 8x8 reads `texels` once and shares them.
+constexpr double shared_reads(double texels) {
+  return texels / (8 * 8);
+}
+
+// patch.glsl, share_patches: material and depth of the group's pixels and a ring around them.
+constexpr double patch_reads = shared_reads(10 * 10) * 2;
 
 // The largest of a row of the pyramid's table over the channels.
 double largest_share(const ReadsQuestion& question, int64_t variant, uint32_t row) {
@@ -47,10 +53,10 @@ ImageReads none(const PassKind&, const ReadsQuestion&) {
   return {};
 }
 
-// subsurface_setup.comp and subsurface_sap_setup.comp: material, light, depth, the patch.
+// subsurface_setup.comp and subsurface_sap_setup.comp: light, the patch.
 ImageReads setup(const PassKind& kind, const ReadsQuestion& question) {
   const bool textured = setting(kind, question, "texturing") != 0;
-  return {3 + patch_reads + scale_read(kind, question) +
+  return {1 + patch_reads + scale_read(kind, question) +
           (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
 }
 
@@ -75,28 +81,28 @@ ImageReads separable(const PassKind& kind, const ReadsQuestion& question) {
           sides * 2 * 2 * 3};
 }
 
-// Sixteen children: surface and light.
+// subsurface_sap_down.comp, share_children: surface and light.
 ImageReads sap_down(const PassKind&, const ReadsQuestion&) {
-  return {16 * 2};
+  return {shared_reads(18 * 18) * 2};
 }
 
-constexpr double tent_reads = 9 * 2;    // surface and light
-constexpr double coarser_reads = 4 * 3; // surface, light and mass
+// sap_up.glsl, sap_share: surface and light of the group's texels, with a ring around them where a tent is
+// wanted; surface, light and mass of the 6x6 texels of the coarser level on which they lie.
+constexpr double near_reads(bool ring) {
+  return shared_reads(ring ? 10 * 10 : 8 * 8) * 2;
+}
+constexpr double coarser_reads = shared_reads(6 * 6) * 3;
 
 ImageReads sap_up(const PassKind& kind, const ReadsQuestion& question) {
-  constexpr double least_share = 0.004; // subsurface_sap_up.comp
-  const int64_t variant = setting(kind, question, "variant");
+  const bool smooth = setting(kind, question, "variant") == int64_t(SapVariant::smooth);
   const bool last = one_if(kind, question, "coarse_scattered", PortSide::read) == 0;
-  const auto row = static_cast<uint32_t>(setting(kind, question, "level") + 1);
-  const bool tent = variant == int64_t(SapVariant::smooth) &&
-                    (last || largest_share(question, variant, row) >= least_share);
-  return {2 + (tent ? tent_reads : 0) + (last ? 0 : coarser_reads)};
+  return {near_reads(smooth) + (last ? 0 : coarser_reads)};
 }
 
-ImageReads sap_gather(const PassKind& kind, const ReadsQuestion& question) {
-  constexpr double least_share = 0.002; // subsurface_sap_gather.comp
-  const bool tent = largest_share(question, setting(kind, question, "variant"), 1) >= least_share;
-  return {2 + (tent ? tent_reads : 0) + coarser_reads};
+// Light alone where no pixel scatters further than itself.
+ImageReads sap_gather(const PassKind&, const ReadsQuestion& question) {
+  const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
+  return {widest < copy_below_d_px ? 1 : near_reads(true) + coarser_reads};
 }
 
 // subsurface_pyramid_setup.comp: material, light.
