@@ -7,6 +7,7 @@
 #include "environment.glsl"
 #include "half.glsl"
 #include "sap.glsl"
+#include "tile_packing.glsl"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
@@ -21,7 +22,8 @@ shared vec4 shared_light[shared_side * shared_side];
 void share_children(ivec2 first, int finer) {
   for (int i = int(gl_LocalInvocationIndex); i < shared_side * shared_side; i += 64) {
     ivec2 q = 2 * first - 1 + ivec2(i % shared_side, i / shared_side);
-    shared_surface[i] = sap_inside(q, finer) ? texelFetch(surface_image, sap_address(q, finer), 0) : uvec4(0u);
+    bool written = sap_inside(q, finer) && (!has_classes() || classes_data[sap_tile(q)] != class_none);
+    shared_surface[i] = written ? texelFetch(surface_image, sap_address(q, finer), 0) : uvec4(0u);
     shared_light[i] = shared_surface[i].w != 0u ? texelFetch(light_image, sap_address(q, finer), 0) : vec4(0.0);
   }
   barrier();

@@ -7,6 +7,8 @@
 #include "tiles.glsl"
 #include "half.glsl"
 #include "radius.glsl"
+#include "sap.glsl"
+bool near_written(ivec2 at) { return classes_data[sap_tile(at)] != class_none; }
 #include "sap_up.glsl"
 
 const float least_share = 0.002; // below it the tent is not worth its time
@@ -22,8 +24,8 @@ void main() {
   ivec2 texel = texel_of(pixel);
   vec3 light = copy_only ? texelFetch(light_image, texel, 0).rgb : sap_own_light();
   float confidence = 1.0;
-  sap_texel own = sap_own();
-  if (!copy_only && own.id != 0u) {
+  if (!copy_only && sap_own().id != 0u) {
+    sap_texel own = sap_own();
     vec3 d_px = sap_d_px(own);
     vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
     sap_sum near = sap_sum(light, vec3(own.mass));

@@ -1,21 +1,22 @@
 #version 460
-// Level 0 of the surface-aware pyramid: every pixel of the view, 0 where nothing scatters.
+// Level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 where nothing scatters.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_sap_setup.bindings.glsl"
 #include "environment.glsl"
+#include "tiles.glsl"
 #include "half.glsl"
 #include "sanitise.glsl"
 #include "radius.glsl"
 #include "patch.glsl"
 #include "sap.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
-
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel;
+  bool copy_only;
+  bool listed = listed_pixel(pixel, copy_only);
   share_patches(pixel - ivec2(gl_LocalInvocationID.xy));
-  if (!inside_rect(pixel))
+  if (!listed)
     return;
   ivec2 texel = texel_of(pixel);
   uint id = own_profile();

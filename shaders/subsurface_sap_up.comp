@@ -5,6 +5,7 @@
 #include "subsurface_sap_up.bindings.glsl"
 #include "environment.glsl"
 #include "half.glsl"
+bool near_written(ivec2 at) { return true; }
 #include "sap_up.glsl"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;

@@ -48,6 +48,8 @@ constexpr Port setup_ports[] = {
     port::depth,
     port::scatter_scale,
     port::albedo,
+    port::tiles,
+    port::arguments,
     {"light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
@@ -56,6 +58,12 @@ constexpr KindSetting setup_settings[] = {setting::texturing};
 constexpr Port down_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of the finer level", {}},
     {"surface", Usage::sampled_image, false, "utexture2D", "of the finer level", surface_formats},
+    {"classes",
+     Usage::storage_buffer_read,
+     true,
+     "uint",
+     "as subsurface.classify writes them; bound where the finer level is 0, which holds listed tiles only",
+     {}},
     {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
@@ -84,6 +92,7 @@ constexpr Port gather_ports[] = {
     {"coarse_surface", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
     {"coarse_scattered", Usage::sampled_image, false, "texture2D", "of level 1", {}},
     {"coarse_mass", Usage::sampled_image, false, "texture2D", "of level 1", {}},
+    {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
     port::tiles,
     port::arguments,
     {"scattered", Usage::storage_image_write, false, "image2D",
@@ -96,10 +105,10 @@ constexpr KindSetting gather_settings[] = {variant};
 const PassKind sap_setup_kind{
     .name = "subsurface.sap_setup",
     .shader = "subsurface_sap_setup",
-    .doc = "Level 0 of the surface-aware pyramid: light and surface of every pixel of the view.",
+    .doc = "Level 0 of the surface-aware pyramid: light and surface of every pixel of listed tiles.",
     .ports = setup_ports,
     .settings = setup_settings,
-    .dispatch = DispatchShape::over_view,
+    .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
 };
 

@@ -47,6 +47,8 @@ bool sap_inside(ivec2 at, int level) {
   int border = level > 0 ? 1 : 0;
   return all(greaterThanEqual(at, ivec2(-border))) && all(lessThan(at, sap_level_size(level) + border));
 }
+// Tile of the view that a pixel lies in. Level 0 is written in tiles with subsurface only.
+int sap_tile(ivec2 pixel) { return (pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3); }
 ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at); }
 
 // Row `row` of a table at d px: sap_lookup of passes/subsurface/sap_weights.cpp.

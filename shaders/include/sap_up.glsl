@@ -1,6 +1,7 @@
 // One texel on the way up: its own level, tent-filtered, and what the coarser level hands down. Groups are 8x8 texels,
 // which share what they read: up to nine invocations need a texel of their level, up to sixteen one of the coarser.
-// Include after bindings with `light`, `surface`, `coarse_surface`, `coarse_scattered` and `coarse_mass`.
+// Include after bindings with `light`, `surface`, `coarse_surface`, `coarse_scattered` and `coarse_mass`, and after
+// `near_written`, which says whether a texel of the level that is inside was written.
 #ifndef DERMIS_SAP_UP_GLSL
 #define DERMIS_SAP_UP_GLSL
 
@@ -24,7 +25,7 @@ void sap_share(ivec2 first, int level, bool with_ring, bool with_coarser) {
   for (int i = int(gl_LocalInvocationIndex); i < near_side * near_side; i += 64) {
     ivec2 local = ivec2(i % near_side, i / near_side), at = first + local - 1;
     bool ring = any(equal(local, ivec2(0))) || any(equal(local, ivec2(near_side - 1)));
-    bool needed = (with_ring || !ring) && sap_inside(at, level);
+    bool needed = (with_ring || !ring) && sap_inside(at, level) && near_written(at);
     near_surface[i] = needed ? texelFetch(surface_image, sap_address(at, level), 0) : uvec4(0u);
     near_light[i] = near_surface[i].w != 0u ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0);
   }

@@ -43,7 +43,7 @@ std::array<float, 16> orthographic(double width_m, double height_m) {
 }
 
 struct Uploads {
-  std::vector<float> light, depth, id, scale, thickness;
+  std::vector<float> light, depth, id, earlier_id, scale, thickness;
 };
 
 Uploads fill(const Plane& plane) {
@@ -55,6 +55,7 @@ Uploads fill(const Plane& plane) {
       out.light.insert(out.light.end(), {value, value, value});
       out.depth.push_back(plane.depth_m(ix, iy));
       out.id.push_back(plane.profile(ix, iy));
+      if (plane.earlier_profile) out.earlier_id.push_back(plane.earlier_profile(ix, iy));
       if (plane.thickness_m) out.thickness.push_back(plane.thickness_m(ix, iy));
       out.scale.push_back(plane.scatter_scale ? plane.scatter_scale(ix, iy) : 1.0f);
     }
@@ -139,6 +140,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
     frame.metres_per_unit = 1;
     frame.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
     for (uint32_t i = 0; i < frames; ++i) {
+      if (plane.earlier_profile) upload("material", i + 1 < frames ? uploads.earlier_id : uploads.id, 1);
       if (i > 0) upload("lighting", uploads.light, 3); // the graph has put scattered light there
       const auto ran = (*device)->run(frame);
       EXPECT_TRUE(ran) << ran.error().text;

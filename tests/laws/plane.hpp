@@ -23,6 +23,7 @@ struct Plane {
     return 1.0f;
   }; // pixel centres: integers
   std::function<uint8_t(int x, int y)> profile = [](int, int) { return uint8_t{1}; };
+  std::function<uint8_t(int x, int y)> earlier_profile; // of all frames but the last; empty: as `profile`
   std::function<float(int x, int y)> depth_m = [](int, int) { return 1.0f; };
   std::function<float(int x, int y)> scatter_scale; // empty: not bound
   std::array<uint32_t, 4> rectangle = {0, 0, 0, 0}; // of the allocated size; width 0: all of it
