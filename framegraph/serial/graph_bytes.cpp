@@ -1,0 +1,143 @@
+// What compiling reads of a graph, in order, so that equal bytes mean equal plans.
+
+#include "framegraph/serial/plan_fields.hpp"
+
+#include <algorithm>
+
+namespace dermis {
+namespace {
+
+struct GraphWriter {
+  const Graph& graph;
+  const KindRegistry& kinds;
+  serial::Writer out = {};
+
+  void text(std::string_view value) { out.text("", value, 0); }
+  void number(uint64_t value) { out.number("", value); }
+  template <class Enum> void word(Enum value) { number(static_cast<uint64_t>(value)); }
+  void value(const SettingValue& value) { serial::fields(out, value); }
+  template <class Tag> void index(Index<Tag> id) { number(id.value); }
+  template <class List, class Each> void all(const List& list, Each each) {
+    number(list.size());
+    for (const auto& one : list)
+      each(one);
+  }
+
+  void size(const SizeExpression& size) {
+    word(size.base);
+    index(size.resource);
+    for (const Rational& factor : {size.x, size.y}) {
+      number(static_cast<uint64_t>(factor.numerator));
+      number(static_cast<uint64_t>(factor.denominator));
+    }
+    word(size.rounding);
+    number(size.align);
+    number(size.border);
+  }
+
+  void setting(const SettingDeclaration& setting) {
+    text(setting.name);
+    word(setting.type);
+    value(setting.default_value);
+    out.real("", setting.minimum);
+    out.real("", setting.maximum);
+    all(setting.options, [&](const std::string& option) { text(option); });
+    number(setting.by_budget);
+  }
+
+  void resource(const ResourceDeclaration& resource) {
+    text(resource.name);
+    word(resource.type);
+    word(resource.origin);
+    number(resource.exported);
+    number(resource.optional);
+    all(resource.formats, [&](Format format) { word(format); });
+    size(resource.size);
+    number(resource.mips);
+    number(resource.layers);
+    number(resource.stride);
+    number(resource.extra_elements);
+    serial::fields(out, resource.history);
+  }
+
+  void expression(const Expression& expression) {
+    word(expression.op);
+    value(expression.literal);
+    index(expression.setting);
+    index(expression.left);
+    index(expression.right);
+    all(expression.list, [&](const SettingValue& one) { value(one); });
+  }
+
+  void bindings(const std::vector<PortBinding>& bindings) {
+    all(bindings, [&](const PortBinding& binding) {
+      number(binding.port);
+      index(binding.resource);
+      number(binding.frames_back);
+    });
+  }
+
+  void kind(const PassKind& kind) {
+    text(kind.name);
+    all(kind.ports, [&](const Port& port) {
+      text(port.name);
+      word(port.usage);
+      number(port.optional);
+      all(port.formats, [&](Format format) { word(format); });
+      number(port.own_texels);
+    });
+    all(kind.settings, [&](const KindSetting& setting) {
+      text(setting.name);
+      word(setting.type);
+      value(setting.default_value);
+      all(setting.options, [&](std::string_view option) { text(option); });
+    });
+    word(kind.dispatch);
+    number(kind.side_effects);
+  }
+
+  void pass(const PassDeclaration& pass) {
+    text(pass.name);
+    index(pass.kind); // plans hold the number of the kind
+    index(pass.when);
+    bindings(pass.reads);
+    bindings(pass.writes);
+    all(pass.settings, [&](const SettingBinding& binding) {
+      number(binding.setting);
+      index(binding.from);
+      value(binding.literal);
+    });
+    all(pass.otherwise, [&](const PassThrough& through) {
+      index(through.output);
+      index(through.instead);
+    });
+    all(pass.after, [&](const Ordering& ordering) { index(ordering.after); });
+  }
+
+  void used_kinds() {
+    std::vector<KindId> used;
+    for (const PassDeclaration& one : graph.passes)
+      used.push_back(one.kind);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    all(used, [&](KindId id) { kind(kinds[id]); });
+  }
+
+  std::string whole() {
+    text(graph.name);
+    all(graph.settings, [&](const SettingDeclaration& one) { setting(one); });
+    all(graph.resources, [&](const ResourceDeclaration& one) { resource(one); });
+    all(graph.expressions, [&](const Expression& one) { expression(one); });
+    all(graph.passes, [&](const PassDeclaration& one) { pass(one); });
+    used_kinds();
+    return std::move(out).finish();
+  }
+};
+
+} // namespace
+
+std::string graph_bytes(const Graph& graph, const KindRegistry& kinds) {
+  return GraphWriter{graph, kinds}.whole();
+}
+
+} // namespace dermis

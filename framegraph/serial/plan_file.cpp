@@ -1,0 +1,140 @@
+#include "framegraph/serial/plan_file.hpp"
+
+#include "framegraph/serial/plan_fields.hpp"
+#include "framegraph/verify/structure.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis {
+namespace {
+
+constexpr std::string_view magic = "DERMPLAN";
+
+// The value as a graph file would write it; options by name where they are known.
+template <class Options> std::string value_text(const SettingValue& value, const Options& options) {
+  switch (value.type) {
+  case SettingType::boolean:
+    return value.integer != 0 ? "true" : "false";
+  case SettingType::integer:
+    return fmt::format("{}", value.integer);
+  case SettingType::real:
+    return fmt::format("{}", value.real);
+  case SettingType::enumeration:
+  case SettingType::choice:
+    break;
+  }
+  const auto option = static_cast<size_t>(value.integer);
+  return value.integer >= 0 && option < options.size() ? fmt::format("\"{}\"", options[option])
+                                                       : fmt::format("{}", value.integer);
+}
+
+PlanNames names_of(const Graph& graph, const KindRegistry& kinds, const Plan& plan) {
+  PlanNames names;
+  for (const PlanResource& resource : plan.resources)
+    names.resources.push_back(graph.resources[resource.declared.value].name);
+  for (size_t s = 0; s < plan.setting_values.size(); ++s)
+    names.settings.push_back(
+        {graph.settings[s].name, value_text(plan.setting_values[s], graph.settings[s].options)});
+  names.ports.resize(plan.accesses.size());
+  names.pass_settings.resize(plan.settings.size());
+  for (const PlanPass& pass : plan.passes) {
+    const PassKind& kind = kinds[pass.kind];
+    names.passes.push_back(graph.passes[pass.declared.value].name);
+    names.kinds.emplace_back(kind.name);
+    for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a)
+      names.ports[a] = kind.ports[plan.accesses[a].port].name;
+    for (size_t s = 0; s < kind.settings.size(); ++s)
+      names.pass_settings[pass.first_setting + s] = {
+          std::string(kind.settings[s].name),
+          value_text(plan.settings[pass.first_setting + s].value, kind.settings[s].options)};
+  }
+  return names;
+}
+
+// What verify_structure() cannot see: what stands beside the plan, and what only an executor follows.
+std::string first_misfit(const SavedPlan& saved) {
+  const Plan& plan = saved.plan;
+  const PlanNames& names = saved.names;
+  if (names.passes.size() != plan.passes.size() || names.kinds.size() != plan.passes.size() ||
+      names.resources.size() != plan.resources.size() || names.ports.size() != plan.accesses.size() ||
+      names.settings.size() != plan.setting_values.size() ||
+      names.pass_settings.size() != plan.settings.size())
+    return "not everything in the plan has one name";
+  if (saved.key.settings.size() != plan.setting_values.size())
+    return "key and plan differ in their number of settings";
+  if (saved.key.view_width != plan.view_width || saved.key.view_height != plan.view_height ||
+      saved.key.device_profile != plan.device_profile)
+    return "key and plan were made for different views or devices";
+  uint64_t accesses = 0, barriers = 0, settings = 0;
+  for (const PlanPass& pass : plan.passes) {
+    if (pass.first_access != accesses || pass.first_barrier != barriers || pass.first_setting < settings)
+      return "accesses, barriers and settings do not stand in the order of their passes";
+    if (pass.first_setting > plan.settings.size()) return "a pass refers to settings that do not exist";
+    accesses += pass.access_count;
+    barriers += pass.barrier_count;
+    settings = pass.first_setting;
+  }
+  if (plan.first_final_barrier != barriers || barriers + plan.final_barrier_count != plan.barriers.size() ||
+      accesses != plan.accesses.size())
+    return "accesses or barriers belong to no pass";
+  for (const PlanSetting& setting : plan.settings)
+    if (setting.from.valid() && setting.from.value >= plan.setting_values.size())
+      return "a setting of a pass follows one that does not exist";
+  return "";
+}
+
+} // namespace
+
+SavedPlan saved_plan(const CompileInput& input, const Plan& plan) {
+  return {plan_key(input), names_of(*input.graph, *input.kinds, plan), plan};
+}
+
+std::string plan_bytes(const Plan& plan) {
+  serial::Writer writer;
+  serial::fields(writer, plan);
+  return std::move(writer).finish();
+}
+
+std::string write_plan(const SavedPlan& saved) {
+  serial::Writer writer;
+  writer.number("version", plan_file_version);
+  serial::fields(writer, saved.key);
+  serial::fields(writer, saved.names);
+  serial::fields(writer, saved.plan);
+  return std::string(magic) + std::move(writer).finish();
+}
+
+bool is_plan_file(std::string_view bytes) {
+  return bytes.starts_with(magic);
+}
+
+std::optional<SavedPlan> read_plan(const std::string& name, std::string_view bytes,
+                                   Diagnostics& diagnostics) {
+  const SourceLocation where{{static_cast<uint32_t>(diagnostics.files.size())}, 0, 0, ""};
+  diagnostics.files.push_back({name, ""});
+  const auto refuse = [&](const std::string& why) -> std::optional<SavedPlan> {
+    diagnostics.add(DiagnosticId::plan_file, where, why);
+    return std::nullopt;
+  };
+  if (!is_plan_file(bytes)) return refuse(fmt::format("a saved plan begins with {}", magic));
+  if (bytes.size() > limits::file_bytes)
+    return refuse(fmt::format("{} bytes, at most {} are accepted", bytes.size(), limits::file_bytes));
+  serial::Reader reader(bytes.substr(magic.size()), magic.size());
+  uint32_t version = 0;
+  reader.number("version", version);
+  if (reader.problem().empty() && version != plan_file_version)
+    return refuse(
+        fmt::format("the plan has version {}, this program reads version {}", version, plan_file_version));
+  SavedPlan saved;
+  serial::fields(reader, saved.key);
+  serial::fields(reader, saved.names);
+  serial::fields(reader, saved.plan);
+  reader.expect_end();
+  if (!reader.problem().empty()) return refuse(reader.problem());
+  if (const std::string misfit = first_misfit(saved); !misfit.empty()) return refuse(misfit);
+  if (const std::vector<std::string> objections = verify_structure(saved.plan); !objections.empty())
+    return refuse(objections.front());
+  return saved;
+}
+
+} // namespace dermis

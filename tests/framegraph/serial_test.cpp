@@ -1,0 +1,199 @@
+// Saved plans: what is read is what was written, whatever else is in a file is refused in bounded memory.
+
+#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "tests/framegraph/random_graph.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+SavedPlan saved(const CompileInput& input) {
+  Diagnostics diagnostics;
+  const auto compiled = compile(input, diagnostics);
+  EXPECT_TRUE(compiled) << format_as_json(diagnostics);
+  return compiled ? saved_plan(input, compiled->plan) : SavedPlan{};
+}
+
+std::string file_of(uint64_t seed) {
+  const GraphBuilder builder = random_graph(seed);
+  return write_plan(saved(builder.input()));
+}
+
+std::string refusal(std::string_view bytes) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_plan("p.plan", bytes, diagnostics));
+  EXPECT_EQ(diagnostics.list.size(), 1u);
+  if (diagnostics.list.empty()) return "";
+  EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::plan_file);
+  EXPECT_EQ(diagnostics.files[diagnostics.list[0].where.file.value].name, "p.plan");
+  return diagnostics.list[0].text;
+}
+
+TEST(Digest, IsThatOfTheStandard) { // FIPS 180-4's examples of one and two blocks, and of none
+  EXPECT_EQ(digest_text(sha256("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(digest_text(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(digest_text(sha256("")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST(SavedPlan, ReadBackIsWhatWasWritten) {
+  for (uint64_t seed = 0; seed < 300; ++seed) {
+    const GraphBuilder builder = random_graph(seed);
+    const SavedPlan before = saved(builder.input());
+    const std::string bytes = write_plan(before);
+    Diagnostics diagnostics;
+    const auto after = read_plan("p.plan", bytes, diagnostics);
+    ASSERT_TRUE(after) << seed << format_as_json(diagnostics);
+    EXPECT_EQ(write_plan(*after), bytes);
+    EXPECT_EQ(plan_bytes(after->plan), plan_bytes(before.plan));
+    EXPECT_EQ(after->names.passes, before.names.passes);
+    EXPECT_EQ(verify(after->plan), std::vector<std::string>{});
+  }
+}
+
+TEST(SavedPlan, OfTheSameInputHasTheSameBytes) {
+  for (uint64_t seed = 0; seed < 100; ++seed)
+    EXPECT_EQ(file_of(seed), file_of(seed));
+}
+
+TEST(SavedPlan, KeepsNumbersOf64Bits) {
+  const GraphBuilder builder = random_graph(3);
+  SavedPlan plan = saved(builder.input());
+  plan.key.order_seed = 0xfedcba9876543210ull;
+  plan.plan.transient_bytes = 0xffffffff00000001ull;
+  ASSERT_FALSE(plan.plan.barriers.empty());
+  plan.plan.barriers[0].source_stages = 0x8000000800000001ull;
+  Diagnostics diagnostics;
+  const auto after = read_plan("p.plan", write_plan(plan), diagnostics);
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->key.order_seed, plan.key.order_seed);
+  EXPECT_EQ(after->plan.transient_bytes, plan.plan.transient_bytes);
+  EXPECT_EQ(after->plan.barriers[0].source_stages, plan.plan.barriers[0].source_stages);
+}
+
+TEST(SavedPlan, CutAnywhereIsRefused) {
+  const std::string bytes = file_of(5);
+  for (size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_NE(refusal(std::string_view(bytes).substr(0, size)), "") << size;
+  EXPECT_THAT(refusal(bytes + "x"), HasSubstr("1 bytes are left over"));
+}
+
+TEST(SavedPlan, OfAnotherVersionIsRefused) {
+  std::string bytes = file_of(5);
+  bytes[8] = 9;
+  EXPECT_EQ(refusal(bytes), "the plan has version 9, this program reads version 1");
+  EXPECT_EQ(refusal("{}"), "a saved plan begins with DERMPLAN");
+}
+
+TEST(SavedPlan, WithACountBeyondItsEndIsRefusedBeforeMemoryIsTaken) {
+  SavedPlan plan;
+  std::string bytes = write_plan(plan); // its last lists are empty: then 4 + 4 + 8 + 8 bytes
+  const size_t layouts = bytes.size() - 28;
+  bytes.replace(layouts, 4, "\xff\xff\xff\xff");
+  EXPECT_THAT(refusal(bytes), HasSubstr("'history layouts' has 4294967295 entries, the file has room for 6"));
+}
+
+TEST(SavedPlan, WithAnyByteChangedIsRefusedOrIsAnotherPlanThatCanBeFollowed) {
+  size_t accepted = 0, tried = 0;
+  for (const uint64_t seed : {1u, 2u, 8u}) {
+    const std::string bytes = file_of(seed);
+    for (size_t at = 0; at < bytes.size(); ++at)
+      for (const char value : {'\0', '\1', '\x7f', '\xff'}) {
+        std::string damaged = bytes;
+        damaged[at] = value;
+        if (damaged == bytes) continue;
+        Diagnostics diagnostics;
+        const auto plan = read_plan("p.plan", damaged, diagnostics);
+        ++tried;
+        if (!plan) continue;
+        ++accepted;
+        ASSERT_EQ(write_plan(*plan), damaged) << seed << " " << at;
+      }
+  }
+  EXPECT_GT(accepted, 0u);
+  EXPECT_LT(accepted, tried);
+}
+
+TEST(SavedPlan, WhoseIndicesLeadNowhereIsRefused) {
+  const GraphBuilder builder = random_graph(8);
+  const SavedPlan good = saved(builder.input());
+  const auto refused_with = [&](auto&& change) {
+    SavedPlan plan = good;
+    change(plan);
+    return refusal(write_plan(plan));
+  };
+  EXPECT_EQ(refused_with([](SavedPlan& p) { p.names.passes.pop_back(); }),
+            "not everything in the plan has one name");
+  EXPECT_EQ(refused_with([](SavedPlan& p) { p.key.view_width += 1; }),
+            "key and plan were made for different views or devices");
+  EXPECT_THAT(refused_with([](SavedPlan& p) { p.plan.accesses[0].resource = 70000; }),
+              HasSubstr("accesses a resource or an earlier frame that does not exist"));
+  EXPECT_THAT(refused_with([](SavedPlan& p) { p.plan.placements[0].heap = 77; }),
+              HasSubstr("lies in no heap"));
+  EXPECT_THAT(refused_with([](SavedPlan& p) { p.plan.placements[0].last_use = 0xffffffff; }),
+              HasSubstr("alive outside of the frame"));
+  EXPECT_THAT(refused_with([](SavedPlan& p) { p.plan.passes[0].access_count += 1; }),
+              HasSubstr("do not stand in the order of their passes"));
+}
+
+TEST(PlanKey, DiffersWhereverThePlanCould) {
+  GraphBuilder builder = random_graph(8);
+  DeviceProfile other = generic_profile();
+  other.name = "other";
+  std::set<std::string> keys;
+  const auto is_new = [&](auto&& change) {
+    CompileInput input = builder.input();
+    change(input);
+    return keys.insert(key_bytes(plan_key(input))).second;
+  };
+  EXPECT_TRUE(is_new([](CompileInput&) {}));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.view_width += 1; }));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.view_height += 1; }));
+  EXPECT_TRUE(is_new([&](CompileInput& input) { input.device = &other; }));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.order = PassOrder::program; }));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.order = PassOrder::random; }));
+  EXPECT_TRUE(is_new([](CompileInput& input) {
+    input.order = PassOrder::random;
+    input.order_seed = 1;
+  }));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.packing = PackingLevel::fast; }));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.alias = false; }));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.cull = false; }));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.keep_alive = ResourceId{0}; }));
+  EXPECT_TRUE(is_new([&](CompileInput& input) {
+    input.host_formats.assign(builder.graph.resources.size(), Format::undefined);
+    input.host_formats[0] = Format::r32f;
+  }));
+  builder.graph.resources[0].size.x.numerator += 1;
+  EXPECT_TRUE(is_new([](CompileInput&) {})) << "the graph is part of the key";
+  builder.graph.resources[0].note = "another";
+  builder.graph.resources[0].where.line = 99;
+  EXPECT_FALSE(is_new([](CompileInput&) {})) << "notes and places in the file are not";
+  EXPECT_FALSE(is_new([](CompileInput& input) { input.reasons = false; }));
+  EXPECT_FALSE(is_new([](CompileInput& input) { input.order_seed = 4; })) << "nothing is drawn";
+}
+
+TEST(PlanKey, FillsInWhatIsLeftOut) {
+  GraphBuilder builder = random_graph(8);
+  builder.boolean("flag", true);
+  const std::string key = key_bytes(plan_key(builder.input()));
+  CompileInput input = builder.input();
+  for (const SettingDeclaration& setting : builder.graph.settings)
+    input.settings.push_back(setting.default_value);
+  input.bound.assign(builder.graph.resources.size(), true);
+  input.host_formats.assign(builder.graph.resources.size(), Format::undefined);
+  EXPECT_EQ(key_bytes(plan_key(input)), key);
+  input.settings.back().integer = 0;
+  EXPECT_NE(key_bytes(plan_key(input)), key);
+}
+
+} // namespace
+} // namespace dermis::testing
