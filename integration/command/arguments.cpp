@@ -33,17 +33,18 @@ std::string check_named_value(const std::string& text) {
              : "";
 }
 
-CLI::Option* add_size(CLI::App& verb, Size& size) {
+CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size") {
   return verb
       .add_option_function<std::string>(
-          "--size", [&size](const std::string& text) { parse_size(text, size.width, size.height); },
-          fmt::format("Pixels, WIDTHxHEIGHT, each 1..{} [{}x{}]", max_side, size.width, size.height))
+          name, [&size](const std::string& text) { parse_size(text, size.width, size.height); },
+          fmt::format("Pixels, WIDTHxHEIGHT, each 1..{}{}", max_side,
+                      size.width == 0 ? "" : fmt::format(" [{}x{}]", size.width, size.height)))
       ->check(CLI::Validator(check_size, "WxH"));
 }
 
-void add_settings(CLI::App& verb, std::vector<NamedValue>& settings) {
+void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set") {
   verb.add_option_function<std::vector<std::string>>(
-          "--set",
+          name,
           [&settings](const std::vector<std::string>& all) {
             for (const std::string& one : all) {
               const size_t equals = one.find('=');
@@ -165,6 +166,63 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
                  "Folder of included files and of overlays that cases name, beside the graph's own and the "
                  "folders given; may be repeated");
         verb.add_option("--junit", options.junit, "File for the results as JUnit XML")->type_name("FILE");
+      });
+}
+
+void add_unbound(CLI::App& verb, std::vector<std::string>& unbound, const char* name = "--unbound") {
+  verb.add_option(name, unbound, "Optional slots that the host leaves out")
+      ->type_name("NAME")
+      ->delimiter(',');
+}
+
+void add_plan_verbs(CLI::App& app, Invocation& invocation) {
+  CLI::App& plan = *app.add_subcommand("plan", "Save plans, verify saved ones, compare two");
+  plan.require_subcommand(1);
+  add_verb<PlanDiffOptions>(
+      plan, invocation, "diff",
+      "What differs between the plans of two graphs, of one graph, or two saved plans",
+      "dermis plan diff configs/graphs/burley.json configs/graphs/sap.json\n"
+      "  dermis plan diff configs/graphs/burley.json --b-size 960x540 --b-unbound velocity\n"
+      "  dermis plan diff before.plan configs/graphs/burley.json --exit-code",
+      plan_diff, [](CLI::App& verb, PlanDiffOptions& options) {
+        verb.add_option(
+                "files", options.files,
+                "Two graphs or saved plans, A and B; one graph stands for both, told apart by --b-...")
+            ->required()
+            ->expected(1, 2)
+            ->type_name("FILE");
+        add_parts(verb, options.parts);
+        add_size(verb, options.size);
+        add_settings(verb, options.settings);
+        add_unbound(verb, options.unbound);
+        verb.add_flag("--exit-code", options.exit_code, "Exit with 1 where the plans differ");
+        const char* group = "Of B alone, after what both have in common";
+        add_size(verb, options.b_size, "--b-size")->group(group);
+        add_settings(verb, options.b_settings, "--b-set");
+        verb.get_option("--b-set")->group(group);
+        add_unbound(verb, options.b_unbound, "--b-unbound");
+        verb.get_option("--b-unbound")->group(group);
+        verb.add_option("--b-overlay", options.b_overlays, "Overlay to apply to the graph; may be repeated")
+            ->type_name("FILE")
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+            ->group(group);
+      });
+  add_verb<PlanSaveOptions>(
+      plan, invocation, "save", "Compile a graph and write its plan to a file",
+      "dermis plan save configs/graphs/burley.json --size 1280x720 --out burley.plan", plan_save,
+      [](CLI::App& verb, PlanSaveOptions& options) {
+        verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
+        add_parts(verb, options.parts);
+        add_size(verb, options.size);
+        add_settings(verb, options.settings);
+        add_unbound(verb, options.unbound);
+        verb.add_option("--out,-o", options.out, "File to write")->required()->type_name("FILE");
+      });
+  add_verb<PlanVerifyOptions>(
+      plan, invocation, "verify", "Prove saved plans free of hazards, from nothing but the file",
+      "dermis plan verify burley.plan", plan_verify, [](CLI::App& verb, PlanVerifyOptions& options) {
+        verb.add_option("files", options.files, "Saved plans")->required()->type_name("FILE");
       });
 }
 
@@ -384,6 +442,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
              "output or\n"
              "missing package; 4 a defect of the program.");
   add_text_verbs(app, invocation);
+  add_plan_verbs(app, invocation);
   add_schema_verb(app, invocation);
   add_picture_verbs(app, invocation);
   add_bench_verbs(app, invocation);

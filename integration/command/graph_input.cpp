@@ -183,9 +183,8 @@ std::vector<NamedValue> settings_as_json(const Graph& graph, std::span<const Nam
   return all;
 }
 
-std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Size& size,
-                                            const CompileChoices& choices, Diagnostics& diagnostics) {
-  const DeviceProfile device = generic_profile();
+CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& device, const Size& size,
+                           const CompileChoices& choices) {
   CompileInput input;
   input.graph = &loaded.graph;
   input.kinds = &loaded.kinds;
@@ -194,7 +193,13 @@ std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Siz
   input.view_height = size.height;
   input.settings = choices.settings;
   input.bound = choices.bound;
-  return compile(input, diagnostics);
+  return input;
+}
+
+std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Size& size,
+                                            const CompileChoices& choices, Diagnostics& diagnostics) {
+  const DeviceProfile device = generic_profile();
+  return compile(compile_input(loaded, device, size, choices), diagnostics);
 }
 
 ExitCode fail_graph(const Session& session, const std::string& path, const Diagnostics& diagnostics) {

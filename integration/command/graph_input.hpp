@@ -48,6 +48,10 @@ CompileChoices read_choices(const Graph& graph, std::span<const NamedValue> sett
 // The settings that --set gives as JSON text, for the C interface. Values must have passed read_choices.
 std::vector<NamedValue> settings_as_json(const Graph& graph, std::span<const NamedValue> settings);
 
+// Refers to `loaded` and `device`.
+CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& device, const Size& size,
+                           const CompileChoices& choices);
+
 // nullopt with errors in `diagnostics`.
 std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Size& size,
                                             const CompileChoices& choices, Diagnostics& diagnostics);

@@ -56,6 +56,35 @@ struct GraphOptions {
 };
 ExitCode graph(const Session& session, const GraphOptions& options);
 
+struct PlanDiffOptions {
+  std::vector<std::string> files; // one or two: graphs or saved plans; one graph stands for both sides
+  GraphParts parts;               // of the graphs on both sides
+  Size size{1920, 1080};
+  std::vector<NamedValue> settings;
+  std::vector<std::string> unbound;
+  std::vector<std::string> b_overlays; // of the second side, after the common ones
+  Size b_size{};                       // 0x0: as the first side
+  std::vector<NamedValue> b_settings;
+  std::vector<std::string> b_unbound;
+  bool exit_code = false; // fail where the plans differ
+};
+ExitCode plan_diff(const Session& session, const PlanDiffOptions& options);
+
+struct PlanSaveOptions {
+  std::string graph;
+  GraphParts parts;
+  Size size{1920, 1080};
+  std::vector<NamedValue> settings;
+  std::vector<std::string> unbound;
+  std::string out; // file
+};
+ExitCode plan_save(const Session& session, const PlanSaveOptions& options);
+
+struct PlanVerifyOptions {
+  std::vector<std::string> files; // saved plans
+};
+ExitCode plan_verify(const Session& session, const PlanVerifyOptions& options);
+
 struct TestOptions {
   std::vector<std::string> paths; // expectation files, or folders that hold some at any depth
   bool update = false;            // state what is observed instead of comparing

@@ -105,7 +105,8 @@ TEST_F(Usage, ColourIsUsedWhenAskedForAndNeverOnAFile) {
 }
 
 TEST_F(Usage, SchemasArePrintedOneByOneOrWrittenTogether) {
-  for (const char* name : {"graph", "fragment", "overlay", "expectation", "profile", "scene", "capture"}) {
+  for (const char* name :
+       {"graph", "fragment", "overlay", "expectation", "profile", "scene", "capture", "plan"}) {
     const Outcome outcome = run({"schema", name});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_TRUE(is_json(outcome.out)) << name;

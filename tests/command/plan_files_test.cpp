@@ -1,0 +1,127 @@
+// dermis plan: what is saved can be verified alone and compared with what the graph gives now.
+
+#include "tests/command/command_fixture.hpp"
+
+#include <fstream>
+
+namespace dermis::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+using PlanFiles = CommandTest;
+
+constexpr const char* burley = "configs/graphs/burley.json";
+
+std::string contents(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST_F(PlanFiles, HelpOfEveryVerbShowsAnExample) {
+  for (const std::string verb : {"diff", "save", "verify"}) {
+    const Outcome outcome = run({"plan", verb, "--help"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("Example:\n  dermis plan " + verb));
+  }
+  EXPECT_EQ(run({"plan"}).exit_code, 2);
+}
+
+TEST_F(PlanFiles, TheSameGraphIsSavedAsTheSameBytesAndVerifiesAlone) {
+  for (const char* file : {"a.plan", "b.plan"}) {
+    const Outcome outcome = run({"plan", "save", burley, "--size", "640x360", "--out", path(file)});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("passes"));
+  }
+  EXPECT_EQ(contents(path("a.plan")), contents(path("b.plan")));
+  EXPECT_THAT(files(), testing::ElementsAre("a.plan", "b.plan"));
+  const Outcome verified = run({"plan", "verify", path("a.plan")});
+  EXPECT_EQ(verified.exit_code, 0) << verified.err;
+  EXPECT_THAT(verified.out, HasSubstr("no hazard"));
+  const Outcome json = run({"plan", "save", burley, "--json", "--out", path("c.plan")});
+  EXPECT_TRUE(is_json(json.out)) << json.out;
+  EXPECT_THAT(json.out, HasSubstr("\"sha256\""));
+  EXPECT_EQ(run({"plan", "save", path("a.plan"), "--out", path("d.plan")}).exit_code, 2);
+  EXPECT_EQ(run({"plan", "save", burley}).exit_code, 2) << "no --out";
+  EXPECT_EQ(run({"plan", "save", burley, "--out", path("no/such/folder/a.plan")}).exit_code, 3);
+}
+
+TEST_F(PlanFiles, ADamagedPlanIsRefusedWithTheByte) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const std::string whole = contents(path("a.plan"));
+  const std::string cut = write("cut.plan", whole.substr(0, whole.size() - 9));
+  const Outcome outcome = run({"plan", "verify", cut});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("cut.plan"), HasSubstr("D0321 plan_file"), HasSubstr("byte "),
+                                 HasSubstr("the file ends inside of")));
+  EXPECT_EQ(run({"plan", "diff", cut, burley}).exit_code, 1);
+  EXPECT_THAT(run({"plan", "verify", burley}).err, HasSubstr("a saved plan begins with DERMPLAN"));
+  EXPECT_THAT(run({"plan", "verify", path("none.plan")}).err, HasSubstr("does not exist"));
+  EXPECT_TRUE(is_json(run({"plan", "verify", cut, "--json"}).out));
+}
+
+// The stages that the first barrier waits for are set to none: its bytes are found by what differs.
+TEST_F(PlanFiles, APlanWithAHazardIsRefusedWithTheNamesOfPassAndResource) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const std::string whole = contents(path("a.plan"));
+  // Every barrier from compute to compute has these 16 bytes: source and destination stages.
+  const std::string stages("\0\x08\0\0\0\0\0\0\0\x08\0\0\0\0\0\0", 16);
+  const size_t at = whole.find(stages);
+  ASSERT_NE(at, std::string::npos);
+  std::string bad = whole;
+  bad[at + 1] = '\0';
+  const Outcome outcome = run({"plan", "verify", write("bad.plan", bad)});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0322 plan_refused"), HasSubstr("is '")));
+}
+
+TEST_F(PlanFiles, AGraphDoesNotDifferFromItsSavedPlan) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const Outcome same = run({"plan", "diff", path("a.plan"), burley, "--exit-code"});
+  EXPECT_EQ(same.exit_code, 0) << same.out;
+  EXPECT_THAT(same.out, AllOf(HasSubstr("the plans are the same"), Not(HasSubstr("barriers\n"))));
+}
+
+TEST_F(PlanFiles, TwoGraphsDifferByThePassesThatEachHasAlone) {
+  const Outcome diff = run({"plan", "diff", burley, "configs/graphs/separable.json"});
+  EXPECT_EQ(diff.exit_code, 0) << "differences are no failure unless asked for";
+  EXPECT_THAT(diff.out, AllOf(HasSubstr("the plans differ"), HasSubstr("- scatter: subsurface.burley"),
+                              HasSubstr("+ "), HasSubstr("subsurface.separable"), HasSubstr("totals")));
+  EXPECT_EQ(run({"plan", "diff", burley, "configs/graphs/separable.json", "--exit-code"}).exit_code, 1);
+  const Outcome json = run({"plan", "diff", burley, "configs/graphs/separable.json", "--json"});
+  EXPECT_TRUE(is_json(json.out)) << json.out;
+  EXPECT_THAT(json.out, HasSubstr("\"same\": false"));
+  EXPECT_THAT(json.err, IsEmpty());
+}
+
+TEST_F(PlanFiles, OneGraphIsComparedUnderTwoSetsOfOptions) {
+  const Outcome size = run({"plan", "diff", burley, "--b-size", "960x540"});
+  EXPECT_EQ(size.exit_code, 0) << size.err;
+  EXPECT_THAT(size.out, AllOf(HasSubstr("~ view: 1920x1080 -> 960x540"), HasSubstr("transients ")));
+  const Outcome set = run({"plan", "diff", burley, "--set", "samples=16", "--b-set", "samples=8"});
+  EXPECT_THAT(set.out, HasSubstr("~ samples: 16 -> 8"));
+  const Outcome overlay =
+      run({"plan", "diff", burley, "--b-overlay", "configs/overlays/full_precision.json", "--exit-code"});
+  EXPECT_EQ(overlay.exit_code, 1) << overlay.err;
+  EXPECT_THAT(overlay.out, HasSubstr("rgba32f"));
+  const Outcome slot = run({"plan", "diff", burley, "--b-unbound", "scatter_scale", "--exit-code"});
+  EXPECT_EQ(slot.exit_code, 1) << slot.err;
+  EXPECT_THAT(slot.out, HasSubstr("unbound slots: none -> resources"));
+}
+
+TEST_F(PlanFiles, WhatCannotBeComparedIsAUsageError) {
+  EXPECT_THAT(run({"plan", "diff", burley}).err, HasSubstr("name two plans"));
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const Outcome saved = run({"plan", "diff", burley, path("a.plan"), "--b-set", "samples=8"});
+  EXPECT_EQ(saved.exit_code, 2);
+  EXPECT_THAT(saved.err, HasSubstr("is a saved plan"));
+  const Outcome unknown = run({"plan", "diff", burley, "--b-set", "sample=8"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'samples'?"));
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,91 @@
+// The schema of plans accepts what the compiler writes, and tells where something else stands there.
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/explain/plan_json.hpp"
+#include "framegraph/model/read_graph.hpp"
+#include "passes/subsurface/kinds.hpp"
+#include "tests/schema/validator.hpp"
+
+#include <filesystem>
+#include <gtest/gtest.h>
+
+namespace dermis::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct PlanSchema : ::testing::Test {
+  SchemaFile schema{"configs/schema/plan.schema.json"};
+  KindRegistry kinds = subsurface::make_kinds();
+  DeviceProfile device = generic_profile();
+
+  // The plan as JSON, with every optional slot bound or with none.
+  json plan_of(const std::string& path, bool bound) {
+    Diagnostics diagnostics;
+    const auto document = read_document(path, diagnostics);
+    const auto graph = document ? read_graph(*document, kinds, diagnostics) : std::nullopt;
+    EXPECT_TRUE(graph) << path;
+    if (!graph) return {};
+    CompileInput input;
+    input.graph = &*graph;
+    input.kinds = &kinds;
+    input.device = &device;
+    input.view_width = 640;
+    input.view_height = 360;
+    input.bound.assign(graph->resources.size(), bound);
+    const auto compiled = compile(input, diagnostics);
+    EXPECT_TRUE(compiled) << path << format_as_json(diagnostics);
+    return compiled ? json::parse(plan_json(*graph, kinds, *compiled)) : json();
+  }
+};
+
+TEST_F(PlanSchema, AcceptsThePlanOfEveryShippedGraph) {
+  uint32_t plans = 0;
+  for (const auto& entry : fs::directory_iterator(DERMIS_SOURCE_DIR "/configs/graphs")) {
+    const std::string path = entry.path().string();
+    if (!path.ends_with(".json") || path.ends_with(".expect.json")) continue;
+    for (const bool bound : {true, false}) {
+      EXPECT_EQ(schema.first_problem(plan_of(path, bound)), "") << path << " bound: " << bound;
+      ++plans;
+    }
+  }
+  EXPECT_GE(plans, 4u);
+}
+
+// Every object of a plan is closed and complete: without any one of its keys, or with one more, it is none.
+void expect_closed(const SchemaFile& schema, const json& whole, json& part, const json& copy,
+                   const std::string& where, uint32_t& tried) {
+  if (part.is_array()) {
+    if (!part.empty()) expect_closed(schema, whole, part[0], copy[0], where + "/0", tried);
+    return;
+  }
+  if (!part.is_object()) return;
+  for (auto it = copy.begin(); it != copy.end(); ++it) {
+    expect_closed(schema, whole, part[it.key()], it.value(), where + "/" + it.key(), tried);
+    if (it.key() == "name" && where.starts_with("/reasons")) continue; // not every reason has one
+    part.erase(it.key());
+    EXPECT_FALSE(schema.accepts(whole)) << "without " << where << "/" << it.key();
+    part[it.key() + "x"] = it.value();
+    EXPECT_FALSE(schema.accepts(whole)) << "renamed " << where << "/" << it.key();
+    part.erase(it.key() + "x");
+    part[it.key()] = json::array({1});
+    if (!it.value().is_array()) {
+      EXPECT_FALSE(schema.accepts(whole)) << "an array at " << where << "/" << it.key();
+    }
+    part[it.key()] = it.value();
+    ++tried;
+  }
+}
+
+TEST_F(PlanSchema, RefusesAPlanThatLacksAnythingOrHasMore) {
+  json whole = plan_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json", true);
+  const json copy = whole;
+  uint32_t tried = 0;
+  expect_closed(schema, whole, whole, copy, "", tried);
+  EXPECT_EQ(schema.first_problem(whole), "");
+  EXPECT_GT(tried, 80u);
+}
+
+} // namespace
+} // namespace dermis::testing
