@@ -30,8 +30,8 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   Diagnostics diagnostics;
   if (const dermis_result result = read_graph_desc(log, desc, graph->input, diagnostics); result != DERMIS_OK)
     return result;
-  dermis_result result =
-      build_program(*context, graph->input, vulkan::HistoryReason::first_frame, diagnostics, graph->next);
+  dermis_result result = build_program(*context, graph->input, vulkan::HistoryReason::first_frame,
+                                       graph->plans, diagnostics, graph->next);
   if (result == DERMIS_OK && diagnostics.has_errors()) result = DERMIS_ERROR_CONFIG; // of a profile
   result = conclude(log, result, std::move(diagnostics), report);
   if (result == DERMIS_OK) *out = graph.release();
@@ -44,7 +44,8 @@ dermis_result replace(dermis_graph_t& graph, ProgramInput&& input, vulkan::Histo
   Diagnostics diagnostics;
   std::unique_ptr<Program> candidate;
   const vulkan::HistoryReason history = graph.last_frame == 0 ? vulkan::HistoryReason::first_frame : reason;
-  const dermis_result built = build_program(*graph.context, input, history, diagnostics, candidate);
+  const dermis_result built =
+      build_program(*graph.context, input, history, graph.plans, diagnostics, candidate);
   const dermis_result result = conclude(graph.context->log, built, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
   graph.next = std::move(candidate); // one that waited was never recorded

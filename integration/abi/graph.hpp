@@ -14,6 +14,7 @@ struct dermis_graph_t {
 
   dermis_context context = nullptr;
   dermis::abi::ProgramInput input;               // of the newest program
+  dermis::PlanCache plans;                       // of programs built before: what a setting flips back to
   std::unique_ptr<dermis::abi::Program> running; // recorded last; null before the first record
   std::unique_ptr<dermis::abi::Program> next;    // takes over at the next record; null: none
   // Replaced programs, until the frame they were recorded with last has completed. Each was replaced at a

@@ -121,7 +121,7 @@ vulkan::Error make_executor(dermis_context_t& context, ProgramInput& input, vulk
 } // namespace
 
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            Diagnostics& diagnostics, std::unique_ptr<Program>& program) {
+                            PlanCache& plans, Diagnostics& diagnostics, std::unique_ptr<Program>& program) {
   auto composition = compose_sources(input, diagnostics);
   if (!composition) return DERMIS_ERROR_CONFIG;
   auto graph = read_graph(composition->document, context.kinds, diagnostics);
@@ -142,7 +142,7 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   compile_input.settings = candidate->settings;
   compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);
   compile_input.host_formats = host_formats(candidate->graph, input.formats, diagnostics);
-  auto compiled = compile(compile_input, diagnostics);
+  auto compiled = compile(compile_input, plans, diagnostics);
   if (!compiled || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
   candidate->compiled = std::move(*compiled);
   candidate->slots = make_slots(candidate->graph, candidate->compiled.plan);

@@ -4,6 +4,7 @@
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/compose/compose.hpp"
+#include "framegraph/serial/plan_cache.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/abi/context.hpp"
 #include "passes/subsurface/kernel_tables.hpp"
@@ -71,10 +72,11 @@ struct Program {
   uint64_t last_frame = 0; // frame_index it was recorded with last; 0: never
 };
 
-// Parses, compiles and allocates. On failure `diagnostics` tells why and `program` is unchanged. Keeps in
-// `input` what the host delivers and what was fitted. Thread: any.
+// Parses, compiles (or takes the plan from `plans`, where it then is) and allocates. On failure `diagnostics`
+// tells why and `program` is unchanged. Keeps in `input` what the host delivers and what was fitted. Thread:
+// any.
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            Diagnostics& diagnostics, std::unique_ptr<Program>& program);
+                            PlanCache& plans, Diagnostics& diagnostics, std::unique_ptr<Program>& program);
 
 // The value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
 std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,
