@@ -21,10 +21,11 @@ vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < settings.samples; ++i, direction = turn * direction) {
     radial_sample drawn = profile_sample(profile, 1.0 - (float(i) + random.x) / float(settings.samples));
-    vec3 weight, light;
+    vec3 weight;
+    vec4 light;
     if (!take_tap(point, profile, vec2(point.pixel) + direction * drawn.r * pixels_per_mm, drawn, weight, light))
       continue;
-    sum += weight * light;
+    sum += weight * light.rgb;
     total += weight;
   }
   bvec3 scattered = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(0.0))));

@@ -9,27 +9,9 @@
 #include "radius.glsl"
 #include "half.glsl"
 #include "hash.glsl"
+#include "sequence.glsl"
 #include "tap.glsl"
-
-// R2 (Roberts 2018): multiples of 1/g and 1/g^2 with g^3 = g + 1, in 32-bit fixed point so that no index loses digits.
-const uvec2 r2_step = uvec2(3242174889u, 2447445414u);
-
-// The sampler that the settings ask for. Burley's profile alone has a choice of inverses; other models are sampled by
-// their table with its own density.
-radial_sample draw(scatter_profile profile, float survival) {
-  if (profile.row != no_radial_row || settings.inverse == INVERSE_POLYNOMIAL) {
-    radial_sample drawn = profile_sample(profile, survival);
-    if (settings.weighting == WEIGHTING_PROFILE && profile.row == no_radial_row)
-      drawn.density = burley_pdf(drawn.r, profile.d.w);
-    return drawn;
-  }
-  bool exact = settings.inverse == INVERSE_EXACT;
-  float r = exact ? burley_inverse_survival(survival, profile.d.w) : burley_approximate_survival(survival, profile.d.w);
-  float density = burley_pdf(r, profile.d.w);
-  if (!exact && settings.weighting == WEIGHTING_SAMPLER)
-    density /= burley_approximate_weight(survival);
-  return radial_sample(r, density);
-}
+#include "radial_draw.glsl"
 
 vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own) {
   vec2 footprint = pixel_footprint(point.depth);
@@ -43,18 +25,19 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own)
   if (settings.direct != DIRECT_NONE) {
     float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y) : 0.5 * length(footprint);
     beyond = profile_survival(profile, r0)[widest];
-    r0 = draw(profile, beyond).r;
+    r0 = radial_draw(profile, beyond).r;
     direct = 1.0 - profile_survival(profile, r0 * sqrt(area));
   }
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < settings.samples; ++i) {
-    vec2 unit = (vec2((hash.xy + uint(i) * r2_step) >> 8) + 0.5) * (1.0 / 16777216.0);
-    radial_sample drawn = draw(profile, unit.x * beyond);
+    vec2 unit = unit_from_fixed(r2_point(hash.xy, uint(i)));
+    radial_sample drawn = radial_draw(profile, unit.x * beyond);
     vec2 offset = drawn.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi));
-    vec3 weight, light;
+    vec3 weight;
+    vec4 light;
     if (!take_tap(point, profile, vec2(point.pixel) + offset / footprint, drawn, weight, light))
       continue;
-    sum += weight * light;
+    sum += weight * light.rgb;
     total += weight;
   }
   float each = beyond / float(settings.samples);

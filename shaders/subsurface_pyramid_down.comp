@@ -1,5 +1,6 @@
 #version 460
-// One level down: [1 3 3 1] x [1 3 3 1] as four reads between texels, each with weights 1/4 and 3/4 per axis.
+// One level down: [1 3 3 1] x [1 3 3 1] as four reads between texels, each with weights 1/4 and 3/4 per axis;
+// or the mean of 2x2 as one.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_pyramid_down.bindings.glsl"
@@ -14,7 +15,14 @@ void main() {
   if (any(greaterThanEqual(address, size)))
     return;
   vec2 centre = 2.0 * vec2(address - pyramid_border) + 0.5; // in texels of the finer level
-  vec4 sum = pyramid_read(fine_image, centre + vec2(-0.75, -0.75)) + pyramid_read(fine_image, centre + vec2(0.75, -0.75)) +
-             pyramid_read(fine_image, centre + vec2(-0.75, 0.75)) + pyramid_read(fine_image, centre + vec2(0.75, 0.75));
-  imageStore(coarse_image, address, round_to_half(0.25 * sum));
+  vec4 mean;
+  if (settings.halving == HALVING_BOX)
+    mean = pyramid_read(fine_image, centre);
+  else
+    mean = 0.25 *
+           (pyramid_read(fine_image, centre + vec2(-0.75, -0.75)) + pyramid_read(fine_image, centre + vec2(0.75, -0.75)) +
+            pyramid_read(fine_image, centre + vec2(-0.75, 0.75)) + pyramid_read(fine_image, centre + vec2(0.75, 0.75)));
+  if (spreads_mixed(mean.a))
+    mean.a = mixed_mask;
+  imageStore(coarse_image, address, round_to_half(mean));
 }

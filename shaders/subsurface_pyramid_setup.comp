@@ -10,6 +10,19 @@
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
+bool beside_another_profile(ivec2 pixel, uint id) {
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      ivec2 q = pixel + ivec2(x, y);
+      if (!inside_rect(q))
+        continue;
+      uint other = texelFetch(material_image, texel_of(q), 0).r;
+      if (other != 0u && other != id)
+        return true;
+    }
+  return false;
+}
+
 void main() {
   ivec2 address = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(address, imageSize(level_0_image))))
@@ -18,12 +31,15 @@ void main() {
   vec4 light = vec4(0.0);
   if (inside_rect(pixel)) {
     ivec2 texel = texel_of(pixel);
-    if (texelFetch(material_image, texel, 0).r != 0u) {
+    uint id = texelFetch(material_image, texel, 0).r;
+    if (id != 0u) {
       light = vec4(clean_light(texelFetch(lighting_image, texel, 0).rgb), 1.0);
       if (settings.texturing != TEXTURING_POST && has_albedo()) {
         vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
         light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
       }
+      if (settings.profiles == PROFILES_APART)
+        light.a = beside_another_profile(pixel, id) ? mixed_mask : apart_scale;
     }
   }
   imageStore(level_0_image, address, round_to_half(light));

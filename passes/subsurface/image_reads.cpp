@@ -105,15 +105,24 @@ ImageReads sap_gather(const PassKind&, const ReadsQuestion& question) {
   return {widest < copy_below_d_px ? 1 : near_reads(true) + coarser_reads};
 }
 
-// subsurface_pyramid_setup.comp: material, light.
-ImageReads pyramid_setup(const PassKind& kind, const ReadsQuestion& question) {
-  const bool textured = setting(kind, question, "texturing") != 0;
-  return {2 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+// As fixed; a sample reads its levels beside that, two of them or one.
+ImageReads afis(const PassKind& kind, const ReadsQuestion& question) {
+  ImageReads reads = burley(kind, question);
+  constexpr double levels[] = {2, 1, 0}; // trilinear, whole, none
+  reads.per_invocation += levels[setting(kind, question, "mips")] * reads.samples;
+  return reads;
 }
 
-// Four filtered reads.
-ImageReads pyramid_down(const PassKind&, const ReadsQuestion&) {
-  return {4};
+// subsurface_pyramid_setup.comp: material, light, and the materials around if profiles are kept apart.
+ImageReads pyramid_setup(const PassKind& kind, const ReadsQuestion& question) {
+  const bool textured = setting(kind, question, "texturing") != 0;
+  return {2 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0) +
+          (setting(kind, question, "profiles") != 0 ? 9 : 0)};
+}
+
+// Filtered reads: four, or one of a box.
+ImageReads pyramid_down(const PassKind& kind, const ReadsQuestion& question) {
+  return {setting(kind, question, "halving") != 0 ? 1.0 : 4.0};
 }
 
 // Material, depth, the pixel's own light, and four filtered reads of each level that counts.
@@ -166,6 +175,7 @@ constexpr Entry entries[] = {
     {"subsurface.pyramid_down", pyramid_down},
     {"subsurface.pyramid_gather", pyramid_gather},
     {"subsurface.transmission", transmission},
+    {"subsurface.afis", afis},
 };
 
 } // namespace

@@ -7,13 +7,9 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr std::string_view level_doc =
-    "rgb light times mask, a = mask: the share of the texel with subsurface";
-constexpr Format level_formats[] = {Format::rgba16f, Format::rgba32f};
-
-constexpr Port level_port(std::string_view name) {
-  return {name, Usage::sampled_image, false, "texture2D", level_doc, level_formats};
-}
+using port::level_doc;
+using port::level_formats;
+using port::level_port;
 
 constexpr Port setup_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
@@ -21,11 +17,34 @@ constexpr Port setup_ports[] = {
     port::albedo,
     {"level_0", Usage::storage_image_write, false, "image2D", level_doc, level_formats},
 };
-constexpr KindSetting setup_settings[] = {setting::texturing};
+constexpr std::string_view profiles_options[] = {"merged", "apart"};
+constexpr KindSetting setup_settings[] = {
+    setting::texturing,
+    {.name = "profiles",
+     .type = SettingType::enumeration,
+     .default_value = option_value(0),
+     .minimum = 0,
+     .maximum = 0,
+     .options = profiles_options,
+     .unit = "",
+     .doc = "apart: for subsurface.afis; masks are scaled, and mark texels that mix profiles"},
+};
 
 constexpr Port down_ports[] = {
     level_port("fine"),
     {"coarse", Usage::storage_image_write, false, "image2D", level_doc, level_formats},
+};
+
+constexpr std::string_view halving_options[] = {"binomial", "box"};
+constexpr KindSetting down_settings[] = {
+    {.name = "halving",
+     .type = SettingType::enumeration,
+     .default_value = option_value(0),
+     .minimum = 0,
+     .maximum = 0,
+     .options = halving_options,
+     .unit = "",
+     .doc = "binomial: [1 3 3 1], four filtered reads; box: the mean of 2x2, one"},
 };
 
 constexpr Port gather_ports[] = {
@@ -66,9 +85,9 @@ const PassKind pyramid_setup_kind{
 const PassKind pyramid_down_kind{
     .name = "subsurface.pyramid_down",
     .shader = "subsurface_pyramid_down",
-    .doc = "Halves a level of the plain pyramid with [1 3 3 1]: four filtered reads.",
+    .doc = "Halves a level of the plain pyramid with [1 3 3 1] or a box.",
     .ports = down_ports,
-    .settings = {},
+    .settings = down_settings,
     .dispatch = DispatchShape::over_written,
     .side_effects = false,
 };

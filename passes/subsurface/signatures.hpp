@@ -9,6 +9,7 @@ namespace dermis::subsurface {
 extern const PassKind classify_kind, tile_list_kind;                               // tile_signatures.cpp
 extern const PassKind setup_kind, combine_kind, light_kind, transmission_kind;     // light_signatures.cpp
 extern const PassKind burley_kind, fixed_kind, separable_kind;                     // scatter_signatures.cpp
+extern const PassKind afis_kind;                                                   // afis_signatures.cpp
 extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind;  // pyramid_signatures.cpp
 extern const PassKind sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind; // sap_signatures.cpp
 
@@ -43,6 +44,13 @@ inline constexpr Port arguments{"arguments",
                                 "uint",
                                 "group counts x, y, z of an indirect dispatch over the tiles",
                                 {}};
+inline constexpr std::string_view level_doc =
+    "rgb light times mask, a = mask: the share of the texel with subsurface";
+inline constexpr Format level_formats[] = {Format::rgba16f, Format::rgba32f};
+// A level of the plain pyramid to read.
+constexpr Port level_port(std::string_view name) {
+  return {name, Usage::sampled_image, false, "texture2D", level_doc, level_formats};
+}
 } // namespace port
 
 constexpr SettingValue integer_value(int64_t value) {

@@ -17,9 +17,10 @@ struct scatter_point {
 
 // The sample at `at` (pixels of the rectangle, integers are centres), drawn at radius r across the view with a density
 // of the radius. weight_c = R_c(distance) * area / density on the plane; its mean is the share of the kernel that
-// meets the surface. False where no surface of the pixel's profile lies.
-bool take_tap(scatter_point point, scatter_profile profile, vec2 at, radial_sample drawn, out vec3 weight, out vec3 light) {
-  weight = light = vec3(0.0);
+// meets the surface. light: rgb, a = area. False where no surface of the pixel's profile lies.
+bool take_tap(scatter_point point, scatter_profile profile, vec2 at, radial_sample drawn, out vec3 weight, out vec4 light) {
+  weight = vec3(0.0);
+  light = vec4(0.0);
   ivec2 q = ivec2(round(clamp(at, vec2(-1.0), vec2(frame.rect.zw))));
   if (!inside_rect(q))
     return false;
@@ -29,15 +30,14 @@ bool take_tap(scatter_point point, scatter_profile profile, vec2 at, radial_samp
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   if (depth <= 0.0)
     return false;
-  vec4 tap_light = texelFetch(light_image, texel, 0);
+  light = texelFetch(light_image, texel, 0);
   vec2 slope = texelFetch(slope_image, texel, 0).rg;
   // The sample's own point on the patch, not the patch's centre: the truth averages over the patch.
   float point_depth = depth + dot(slope * pixel_footprint(depth), at - vec2(q));
   float distance_3d = max(length(view_position(at, point_depth) - point.position), 1e-12);
   // Density on the view plane at the pixel's depth: that of the radius / (2 pi r).
   float zoom = is_perspective() ? depth / point.depth : 1.0;
-  weight = profile_falloff(profile, distance_3d) * (drawn.r / drawn.density * tap_light.a * zoom * zoom);
-  light = tap_light.rgb;
+  weight = profile_falloff(profile, distance_3d) * (drawn.r / drawn.density * light.a * zoom * zoom);
   return true;
 }
 

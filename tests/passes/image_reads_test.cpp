@@ -59,6 +59,12 @@ TEST(ImageReads, OfSamplersGrowByFourASample) {
   EXPECT_EQ(few.samples, 8);
 }
 
+TEST(ImageReads, OfFilteredSamplesAreTwoMoreASampleBetweenLevelsAndOneAtWholeLevels) {
+  const double none = reads_of("subsurface.afis", "mips", 2).per_invocation;
+  EXPECT_EQ(reads_of("subsurface.afis", "mips", 0).per_invocation - none, 2 * 16);
+  EXPECT_EQ(reads_of("subsurface.afis", "mips", 1).per_invocation - none, 16);
+}
+
 TEST(ImageReads, OfThePyramidsFirstTentEndWhereItHasNoShare) {
   // Where the profile is a thousandth of a pixel wide, only the pixel itself counts.
   EXPECT_LT(reads_of("subsurface.sap_gather", "", 0, {1e-3, 1e-3, 1e-3}).per_invocation,
