@@ -41,6 +41,8 @@ say "With light through the ears: out/bust_sap_through"
 say
 build/release/dermis render configs/scenes/bust.json --graph none --size 640x360 --frames 1 --out out/bust_without --quiet
 say "Without scattering, to compare: out/bust_without"
+say
+build/release/dermis sheet --size 240x135 --out out/sheet.png
 
 say
 if [[ -z "$head" ]]; then

@@ -33,6 +33,18 @@ int shared_index(int child) {
   return local.y * shared_side + local.x;
 }
 
+// Whether the group whose first parent is `first` can have children at all: they lie in 3x3 tiles of level 0. The same
+// for the whole group.
+bool has_listed_children(ivec2 first) {
+  for (int i = 0; i < 9; ++i) {
+    ivec2 tile = ((2 * first - 1) >> 3) + ivec2(i % 3, i / 3);
+    if (all(greaterThanEqual(tile, ivec2(0))) && all(lessThan(tile, frame.tiles)) &&
+        classes_data[tile.y * frame.tiles.x + tile.x] != class_none)
+      return true;
+  }
+  return false;
+}
+
 sap_texel children[16];
 
 vec2 offset_of(int child, float spacing) { return (vec2(child & 3, child >> 2) - 1.5) * spacing; }
@@ -81,9 +93,17 @@ int find_seed(float spacing) {
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy) - 1;
   int level = settings.level, finer = level - 1;
-  share_children(at - ivec2(gl_LocalInvocationID.xy), finer);
+  ivec2 first = at - ivec2(gl_LocalInvocationID.xy);
+  bool empty = has_classes() && !has_listed_children(first);
+  if (!empty)
+    share_children(first, finer);
   if (!sap_inside(at, level))
     return;
+  if (empty) {
+    imageStore(coarse_light_image, sap_address(at, level), vec4(0.0));
+    imageStore(coarse_surface_image, sap_address(at, level), uvec4(0u));
+    return;
+  }
   for (int k = 0; k < 16; ++k)
     children[k] = sap_unpack(shared_surface[shared_index(k)]);
   float spacing = float(1 << finer);

@@ -272,6 +272,23 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->check(CLI::Range(1e-3, 1e3))
             ->group(group);
       });
+  add_verb<SheetOptions>(
+      app, invocation, "sheet", "Render a scene with every technique and material into one picture",
+      "dermis sheet --out out/sheet.png", sheet, [](CLI::App& verb, SheetOptions& options) {
+        verb.add_option("scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
+        verb.add_option("--out,-o", options.out, "Picture, PNG")->required()->type_name("FILE");
+        verb.add_option("--graphs", options.graphs,
+                        "Graph files, one row each, below one without a graph [those that ship]")
+            ->delimiter(',')
+            ->type_name("FILE ...");
+        verb.add_option(
+                "--profiles", options.profiles,
+                "Profile files, one column each, for all objects that scatter [skin, jade, marble, wax, "
+                "ketchup, milk]")
+            ->delimiter(',')
+            ->type_name("FILE ...");
+        add_size(verb, options.size);
+      });
   add_verb<ApplyOptions>(
       app, invocation, "apply", "Run a graph on captured frames",
       "dermis apply --graph configs/graphs/burley.json --frames capture/ --out out/", apply,

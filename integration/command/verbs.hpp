@@ -115,6 +115,13 @@ struct RenderOptions {
 };
 ExitCode render(const Session& session, const RenderOptions& options);
 
+struct SheetOptions {
+  std::string scene = "configs/scenes/bust.json", out;
+  std::vector<std::string> graphs, profiles; // files; empty: those that ship
+  Size size{320, 180};                       // of one picture
+};
+ExitCode sheet(const Session& session, const SheetOptions& options);
+
 struct ApplyOptions {
   std::string graph, frames, out, profiles;
   GraphParts parts;

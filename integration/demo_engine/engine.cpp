@@ -200,7 +200,8 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   info.credits = model.credits;
   info.warnings = model.warnings;
   for (const SceneProfile& profile : scene->profiles)
-    info.profiles.push_back({static_cast<uint32_t>(info.profiles.size()) + 1, profile.name, profile.file});
+    info.profiles.push_back({static_cast<uint32_t>(info.profiles.size()) + 1, profile.name,
+                             options.profile.empty() ? profile.file : options.profile});
   RendererDesc desc;
   desc.view = {options.width, options.height, options.reversed_depth, options.jitter};
   DermisHandle dermis;

@@ -37,6 +37,7 @@ struct RenderOptions {
   std::vector<NamedText> overlays;                                          // of the graph, in order
   std::function<std::optional<NamedText>(const std::string& name)> include; // opens what the graph includes
   ModelOptions model;
+  std::string profile; // file that takes the place of each of the scene's profiles; "" = as the scene says
   uint32_t width = 640, height = 360; // pixels, 1..16384
   uint32_t first_frame = 0, frames = 1;
   bool reversed_depth = false; // far plane at depth 0

@@ -15,7 +15,7 @@ constexpr const char* graph = "configs/graphs/burley.json";
 
 TEST_F(Usage, HelpOfEveryVerbShowsAnExampleAndSucceeds) {
   for (const std::string verb :
-       {"validate", "upgrade", "test", "explain", "graph", "render", "apply", "reference"}) {
+       {"validate", "upgrade", "test", "explain", "graph", "render", "sheet", "apply", "reference"}) {
     const Outcome outcome = run({verb, "--help"});
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_THAT(outcome.out, HasSubstr("Example:\n  dermis " + verb)) << verb;
