@@ -33,6 +33,7 @@ for preset in "${presets[@]}"; do
 done
 if [[ $fuzz == yes ]]; then
   build_preset fuzz
+  tests/digests/compare.sh || fail 1 "plans depend on the compiler"
   tests/fuzz/run.sh "$fuzz_seconds" || fail 1 "a fuzz target has a finding; it is kept in build/fuzz/findings"
   presets+=(fuzz)
 else

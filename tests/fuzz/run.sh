@@ -7,9 +7,9 @@ cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 seconds=${1:-10}
 shift || true
 targets=("$@")
-[[ ${#targets[@]} -gt 0 ]] || targets=(graph profile scene capture exr)
+[[ ${#targets[@]} -gt 0 ]] || targets=(graph overlay profile scene capture exr plan)
 
-declare -A shipped=([graph]=configs/graphs [profile]=configs/profiles [scene]=configs/scenes)
+declare -A shipped=([graph]=configs/graphs [overlay]=configs/overlays [profile]=configs/profiles [scene]=configs/scenes)
 findings=build/fuzz/findings
 mkdir -p "$findings"
 failed=()

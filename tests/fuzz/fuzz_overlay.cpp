@@ -1,0 +1,39 @@
+// Any bytes as an overlay on a small graph: diagnostics, or a graph with every change located.
+
+#include "framegraph/compose/compose.hpp"
+#include "framegraph/model/read_graph.hpp"
+#include "passes/subsurface/kinds.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
+
+namespace {
+
+constexpr const char* base = R"({ "dermis": 1, "name": "base",
+  "settings": { "samples": { "int": 16, "min": 4, "max": 64 } },
+  "imports": { "material": { "format": "r8_uint", "size": "view" }, "depth": { "format": "depth", "size": "view" } },
+  "resources": { "classes": { "buffer": { "stride": 4, "count": "view/8" } } },
+  "passes": [ { "pass": "classify", "kind": "subsurface.classify",
+    "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" } } ] })";
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace dermis;
+  static const KindRegistry kinds = subsurface::make_kinds();
+  Diagnostics diagnostics;
+  auto graph = parse_document("base.json", base, diagnostics);
+  auto overlay = parse_document("input.json", fuzz::text_of(data, size), diagnostics);
+  if (!overlay) return fuzz::demand_error(diagnostics);
+  std::vector<Document> overlays;
+  overlays.push_back(std::move(*overlay));
+  const auto composition = compose(
+      std::move(*graph), std::move(overlays),
+      [](std::string_view name) {
+        return FileText{std::string(name), R"({ "dermis_fragment": 1 })", ""};
+      },
+      diagnostics);
+  if (!composition) return fuzz::demand_error(diagnostics);
+  for (const Change& change : composition->changes)
+    fuzz::demand(change.where.file.value < diagnostics.files.size(), "a change comes from no file");
+  if (!read_graph(composition->document, kinds, diagnostics)) return fuzz::demand_error(diagnostics);
+  return 0;
+}

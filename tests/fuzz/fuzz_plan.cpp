@@ -1,0 +1,19 @@
+// Any bytes as a saved plan: a refusal with an error, or a plan that is written as the same bytes, verified
+// and compared without a step outside of its memory.
+
+#include "framegraph/explain/plan_diff.hpp"
+#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace dermis;
+  const std::string bytes = fuzz::text_of(data, size);
+  Diagnostics diagnostics;
+  const auto saved = read_plan("input.plan", bytes, diagnostics);
+  if (!saved) return fuzz::demand_error(diagnostics);
+  fuzz::demand(write_plan(*saved) == bytes, "a plan that was read is written as other bytes");
+  verify(saved->plan);
+  fuzz::demand(diff_plans(*saved, *saved).same, "a plan differs from itself");
+  return 0;
+}
