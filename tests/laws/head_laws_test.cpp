@@ -1,5 +1,5 @@
 // Laws of the surface-aware pyramid on heads: the sculpted bust always, a scanned head where DERMIS_HEAD
-// names its folder. Figures are in units of the exposed scene's light.
+// names its folder or one lies in ../shared/data/head. Figures are in units of the exposed scene's light.
 #include "tests/laws/plane.hpp"
 
 #include "integration/command/bench/reference.hpp"
@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 namespace {
 
@@ -38,9 +39,11 @@ protected:
     if (IsSkipped()) return;
     SubjectOptions options{320, 180, {}};
     if (GetParam().head) {
-      const char* folder = std::getenv("DERMIS_HEAD");
-      if (folder == nullptr) GTEST_SKIP() << "no scanned head: DERMIS_HEAD names no folder";
-      options.model = {std::string(folder) + "/LeePerrySmith.glb", "", "", "", 0.426};
+      const char* named = std::getenv("DERMIS_HEAD");
+      const std::string folder = named != nullptr ? named : root + "/../shared/data/head";
+      if (named == nullptr && !std::filesystem::exists(folder))
+        GTEST_SKIP() << "no scanned head: DERMIS_HEAD names no folder, and " << folder << " is not there";
+      options.model = {folder + "/LeePerrySmith.glb", "", "", "", 0.426};
     }
     const std::string scene =
         root + (GetParam().head ? "/configs/scenes/head_study.json" : "/configs/scenes/bust.json");
