@@ -1,5 +1,5 @@
 #version 460
-// One pass along an axis of the kernel centre * delta + (1 - centre) * a(x) a(y): passes/subsurface/separable_kernel.hpp
+// One pass along an axis of the kernel centre * delta + (1 - centre) * a(x) a(y): passes/subsurface/separable/separable_kernel.hpp
 // fits and tabulates it, or jimenez_kernel.hpp. Taps of another profile are left out and the rest renormalised; a tap at another depth counts
 // by the profile at its true distance over that at its distance across the view.
 #extension GL_GOOGLE_include_directive : require

@@ -3,6 +3,7 @@
 // (Sethi and Ullman 1970, with bytes for registers). O((n + e) log n).
 
 #include "framegraph/compile/phases.hpp"
+#include "framegraph/model/splitmix.hpp"
 
 #include <algorithm>
 
@@ -175,14 +176,7 @@ struct Orderer {
 
   // Any legal order: of the passes that wait for nothing more, one drawn at random.
   void shuffle() {
-    uint64_t state = c.input->order_seed;
-    const auto draw = [&](size_t limit) { // SplitMix64 (Steele, Lea, Flood 2014)
-      state += 0x9e3779b97f4a7c15ull;
-      uint64_t z = state;
-      z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-      z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-      return (z ^ (z >> 31)) % limit;
-    };
+    SplitMix64 random{c.input->order_seed};
     std::vector<std::vector<uint32_t>> followers(passes);
     std::vector<uint32_t> waits(passes, 0), ready;
     for (const PassId pass : c.order)
@@ -194,7 +188,7 @@ struct Orderer {
       if (waits[pass.value] == 0) ready.push_back(pass.value);
     c.order.clear();
     while (!ready.empty()) {
-      std::swap(ready[draw(ready.size())], ready.back());
+      std::swap(ready[random.below(ready.size())], ready.back());
       const uint32_t pass = ready.back();
       ready.pop_back();
       c.order.push_back(PassId{pass});

@@ -1,6 +1,7 @@
 // Dynamic storage allocation: intervals in time get places in one range of bytes.
 
 #include "framegraph/compile/pack.hpp"
+#include "framegraph/model/splitmix.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -18,18 +19,6 @@ constexpr uint64_t unlimited = UINT64_MAX;
 uint64_t align_up(uint64_t value, uint64_t alignment) {
   return (value + alignment - 1) & ~(alignment - 1);
 }
-
-// SplitMix64 (Steele, Lea, Flood 2014): the same numbers from every standard library.
-struct Random {
-  uint64_t state;
-  size_t below(size_t limit) {
-    state += 0x9e3779b97f4a7c15ull;
-    uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return static_cast<size_t>((z ^ (z >> 31)) % limit);
-  }
-};
 
 // Indices of `count` items in the order of key(i), equal ones in their own order.
 template <class Key>
@@ -263,7 +252,7 @@ void Packer::try_orders(Packing& out) {
 // from the best when that leads nowhere.
 void Packer::search(uint64_t steps, Packing& out) {
   constexpr uint32_t patience = 200; // moves without a smaller result
-  Random random{items_.size()};
+  SplitMix64 random{items_.size()};
   const uint64_t end = steps_ + steps;
   std::vector<uint32_t>& current = order_;
   current = best_order_;

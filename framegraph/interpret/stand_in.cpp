@@ -1,14 +1,12 @@
 #include "framegraph/interpret/stand_in.hpp"
 
+#include "framegraph/model/splitmix.hpp"
+
 namespace dermis {
 namespace {
 
-// SplitMix64 (Steele, Lea, Flood 2014), its output function.
 uint64_t scramble(uint64_t z) {
-  z += 0x9e3779b97f4a7c15ull;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return z ^ (z >> 31);
+  return splitmix_scramble(z + splitmix_step);
 }
 
 uint64_t mix(uint64_t sum, uint64_t value) {

@@ -1,7 +1,7 @@
 #include "integration/command/arguments.hpp"
 
 #include "framegraph/text/suggest.hpp"
-#include "integration/command/schemas.hpp"
+#include "integration/command/inspect/schemas.hpp"
 #include "integration/command/verbs.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,7 @@
 #include "integration/files/png.hpp"
 
 #include "integration/files/bytes.hpp"
+#include "integration/files/stb.hpp"
 
 #include <fmt/format.h>
 
@@ -8,17 +9,6 @@
 #include <climits>
 #include <cmath>
 #include <cstdlib>
-
-// Private copies: a program may carry another stb beside this one.
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#include <stb/stb_image.h>
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#include <stb/stb_image_write.h>
 
 namespace dermis::tools {
 

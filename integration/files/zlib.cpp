@@ -1,18 +1,9 @@
 #include "integration/files/zlib.hpp"
 
+#include "integration/files/stb.hpp"
+
 #include <climits>
 #include <cstdlib>
-
-// Private copies: a program may carry another stb beside this one.
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#include <stb/stb_image.h>
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#include <stb/stb_image_write.h>
 
 namespace dermis::tools {
 

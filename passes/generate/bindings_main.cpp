@@ -2,8 +2,8 @@
 // written once. Usage: write_bindings <output folder>
 #include "passes/subsurface/kinds.hpp"
 #include "passes/subsurface/profiles/radial_table.hpp"
-#include "passes/subsurface/sap_weights.hpp"
-#include "passes/subsurface/separable_kernel.hpp"
+#include "passes/subsurface/sap/sap_weights.hpp"
+#include "passes/subsurface/separable/separable_kernel.hpp"
 #include "passes/subsurface/truth/surface.hpp"
 
 #include <fmt/format.h>

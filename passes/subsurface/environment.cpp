@@ -1,7 +1,7 @@
 #include "passes/subsurface/environment.hpp"
 
-#include "passes/subsurface/jimenez_kernel.hpp"
-#include "passes/subsurface/sap_weights.hpp"
+#include "passes/subsurface/sap/sap_weights.hpp"
+#include "passes/subsurface/separable/jimenez_kernel.hpp"
 
 #include <algorithm>
 #include <cmath>

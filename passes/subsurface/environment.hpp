@@ -6,7 +6,7 @@
 #include "passes/subsurface/camera.hpp"
 #include "passes/subsurface/profile.hpp"
 #include "passes/subsurface/profiles/radial_table.hpp"
-#include "passes/subsurface/separable_kernel.hpp"
+#include "passes/subsurface/separable/separable_kernel.hpp"
 
 #include <array>
 #include <cstdint>

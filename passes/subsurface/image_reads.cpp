@@ -1,8 +1,8 @@
 #include "passes/subsurface/image_reads.hpp"
 
 #include "passes/subsurface/kinds.hpp"
-#include "passes/subsurface/sap_weights.hpp"
-#include "passes/subsurface/separable_kernel.hpp"
+#include "passes/subsurface/sap/sap_weights.hpp"
+#include "passes/subsurface/separable/separable_kernel.hpp"
 
 #include <algorithm>
 #include <cmath>

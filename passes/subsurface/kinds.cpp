@@ -1,6 +1,6 @@
 #include "passes/subsurface/kinds.hpp"
 
-#include "passes/subsurface/signatures.hpp"
+#include "passes/subsurface/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
 

@@ -1,4 +1,4 @@
-// The surface-aware pyramid (SAP): what its kernels share. passes/subsurface/sap_twin.cpp mirrors these functions.
+// The surface-aware pyramid (SAP): what its kernels share. passes/subsurface/sap/sap_twin.cpp mirrors these functions.
 #ifndef DERMIS_SAP_GLSL
 #define DERMIS_SAP_GLSL
 
@@ -6,7 +6,7 @@
 #include "environment.glsl"
 
 const float sap_sigma = 0.8660254; // of [1 3 3 1] in its own spacings: sqrt(3)/2
-// Widths of the weights in sigmas, by measurement (passes/subsurface/sap_levels.hpp).
+// Widths of the weights in sigmas, by measurement (passes/subsurface/sap/sap_levels.hpp).
 const float sap_depth_width = 2.0;      // distance from the tangent plane: stops at depth steps
 const float sap_tilt_width_down = 2.5;  // depth along the tangent plane: narrows the kernel on slopes
 const float sap_tilt_width_up = 4.0;
@@ -51,7 +51,7 @@ bool sap_inside(ivec2 at, int level) {
 int sap_tile(ivec2 pixel) { return (pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3); }
 ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at); }
 
-// Row `row` of a table at d px: sap_lookup of passes/subsurface/sap_weights.cpp.
+// Row `row` of a table at d px: sap_lookup of passes/subsurface/sap/sap_weights.cpp.
 float sap_lookup(int table, int row, float d_px) {
   int first = (table * (sap_levels + 1) + row) * sap_nodes;
   float position = (log2(max(d_px, 1e-30)) - sap_log2_d_first) * sap_nodes_per_octave;

@@ -1,9 +1,9 @@
 // Reports of benches: what every format keeps, and the figures in them.
-#include "integration/command/bench/html.hpp"
-#include "integration/command/bench/pareto.hpp"
-#include "integration/command/bench/report.hpp"
+#include "integration/command/bench/report/html.hpp"
+#include "integration/command/bench/report/pareto.hpp"
+#include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/subject.hpp"
-#include "integration/command/truth_run.hpp"
+#include "integration/command/run/truth_run.hpp"
 #include "integration/files/capture_truth.hpp"
 #include "tests/command/command_fixture.hpp"
 

@@ -1,21 +1,14 @@
 #include "tests/framegraph/random_graph.hpp"
 
+#include "framegraph/model/splitmix.hpp"
+
 #include <fmt/format.h>
 
 namespace dermis::testing {
 namespace {
 
-// SplitMix64 (Steele, Lea, Flood 2014): the same numbers from every standard library.
-struct Random {
-  uint64_t state;
-  uint64_t next() {
-    state += 0x9e3779b97f4a7c15ull;
-    uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return z ^ (z >> 31);
-  }
-  uint32_t below(size_t limit) { return static_cast<uint32_t>(next() % limit); }
+struct Random : SplitMix64 {
+  uint32_t below(size_t limit) { return static_cast<uint32_t>(SplitMix64::below(limit)); }
   bool chance(uint32_t percent) { return below(100) < percent; }
 };
 

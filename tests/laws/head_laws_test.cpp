@@ -7,7 +7,7 @@
 #include "integration/command/bench/subject.hpp"
 #include "integration/command/bench/technique.hpp"
 #include "integration/files/capture_truth.hpp"
-#include "passes/subsurface/sap_twin.hpp"
+#include "passes/subsurface/sap/sap_twin.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "tests/laws/plane.hpp"
 
-#include "integration/command/device_graph.hpp"
+#include "integration/command/run/device_graph.hpp"
 #include "passes/subsurface/burley_profile.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // Laws of the surface-aware pyramid, on its CPU twin.
-#include "passes/subsurface/sap_twin.hpp"
+#include "passes/subsurface/sap/sap_twin.hpp"
 
 #include <gtest/gtest.h>
 

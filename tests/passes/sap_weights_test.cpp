@@ -1,4 +1,4 @@
-#include "passes/subsurface/sap_weights.hpp"
+#include "passes/subsurface/sap/sap_weights.hpp"
 
 #include <gtest/gtest.h>
 

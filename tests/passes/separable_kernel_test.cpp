@@ -1,4 +1,4 @@
-#include "passes/subsurface/separable_kernel.hpp"
+#include "passes/subsurface/separable/separable_kernel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // dermis bench error-time: run time against error of every technique at every still scene, in one run.
 
-#include "integration/command/bench/heat_map.hpp"
-#include "integration/command/bench/pareto.hpp"
 #include "integration/command/bench/plan_file.hpp"
 #include "integration/command/bench/reference.hpp"
-#include "integration/command/bench/report.hpp"
+#include "integration/command/bench/report/heat_map.hpp"
+#include "integration/command/bench/report/pareto.hpp"
+#include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/still_error.hpp"
 #include "integration/command/bench/technique.hpp"
 #include "integration/command/interrupt.hpp"
-#include "integration/command/truth_run.hpp"
+#include "integration/command/run/truth_run.hpp"
 #include "integration/files/capture_truth.hpp"
 #include "passes/subsurface/environment.hpp"
 

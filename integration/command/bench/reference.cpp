@@ -1,6 +1,6 @@
 #include "integration/command/bench/reference.hpp"
 
-#include "integration/command/truth_run.hpp"
+#include "integration/command/run/truth_run.hpp"
 #include "integration/files/bytes.hpp"
 #include "integration/files/capture_truth.hpp"
 

@@ -1,8 +1,8 @@
 // Scenes that the demo engine renders, seen as a graph would see them.
 
 #include "integration/command/bench/subject.hpp"
-#include "integration/command/rendered_frame.hpp"
-#include "integration/command/truth_run.hpp"
+#include "integration/command/run/rendered_frame.hpp"
+#include "integration/command/run/truth_run.hpp"
 #include "integration/files/capture_truth.hpp"
 
 #include <algorithm>

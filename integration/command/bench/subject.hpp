@@ -1,7 +1,7 @@
 #pragma once
 // What benches measure: still frames by the names of their scene and framing, rendered or generated.
 
-#include "integration/command/bench/report.hpp"
+#include "integration/command/bench/report/report.hpp"
 #include "integration/demo_engine/engine.hpp"
 #include "integration/files/capture.hpp"
 

@@ -1,6 +1,6 @@
 #include "integration/command/bench/technique.hpp"
 
-#include "integration/command/captured.hpp"
+#include "integration/command/run/captured.hpp"
 #include "passes/subsurface/image_reads.hpp"
 
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 #pragma once
 // One technique at one setting, ready to run on still frames.
 
-#include "integration/command/apply_slots.hpp"
 #include "integration/command/bench/plan_file.hpp"
-#include "integration/command/device_graph.hpp"
-#include "integration/command/graph_input.hpp"
+#include "integration/command/inspect/graph_input.hpp"
+#include "integration/command/run/apply_slots.hpp"
+#include "integration/command/run/device_graph.hpp"
 #include "passes/subsurface/truth/truth.hpp"
 
 #include <memory>

@@ -4,7 +4,7 @@
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/reader.hpp"
-#include "integration/command/graph_input.hpp"
+#include "integration/command/inspect/graph_input.hpp"
 
 #include <fmt/format.h>
 

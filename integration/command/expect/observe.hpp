@@ -2,7 +2,7 @@
 // Compiles a graph under the inputs of a case and says what came of it.
 
 #include "integration/command/expect/expectation.hpp"
-#include "integration/command/graph_input.hpp"
+#include "integration/command/inspect/graph_input.hpp"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // Plans for the verbs of `dermis plan`: saved ones read, graphs compiled with the generic device profile.
 
 #include "framegraph/serial/plan_file.hpp"
-#include "integration/command/graph_input.hpp"
+#include "integration/command/inspect/graph_input.hpp"
 
 #include <optional>
 #include <span>

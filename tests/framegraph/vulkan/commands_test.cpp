@@ -1,5 +1,5 @@
 // What is recorded, seen through a function table that records calls instead of making them.
-#include "tests/framegraph/vulkan/count_allocations.hpp"
+#include "integration/command/bench/record/allocation_count.hpp"
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -145,12 +145,12 @@ TEST_F(CommandsTest, RecordingAllocatesNothing) {
   g.pass("mix", "test.add", {{"a", "count"}}, {{"target", "light"}});
   make_executor(g, 64, 64);
   bind(g, "light", {});
-  const uint64_t before = allocations_of_this_thread();
+  const uint64_t before = tools::allocations_of_this_thread();
   for (int i = 0; i < 5; ++i) {
     const vulkan::RecordResult result = record();
     if (result) break;
   }
-  EXPECT_EQ(allocations_of_this_thread(), before);
+  EXPECT_EQ(tools::allocations_of_this_thread(), before);
   EXPECT_EQ(frame_index, 5u);
 }
 

@@ -1,7 +1,7 @@
 // A device that refuses: whichever object or allocation it is, the call says so, what ran before runs on and
 // nothing is left behind.
 
-#include "integration/command/bench/counted_host.hpp"
+#include "integration/command/bench/record/counted_host.hpp"
 #include "tests/framegraph/test_tier.hpp"
 
 #include <gtest/gtest.h>

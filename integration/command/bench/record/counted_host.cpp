@@ -1,0 +1,103 @@
+#include "integration/command/bench/record/counted_host.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis::tools {
+namespace {
+
+dermis_source source_of(const std::string& name, const std::string& text) {
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = name.c_str();
+  source.text = text.data();
+  source.length = text.size();
+  return source;
+}
+
+// A perspective camera looking down -z: focal length 2, half the height being 1; near plane at .1 units.
+void set_camera(dermis_frame& frame) {
+  for (float* matrix : {frame.clip_from_view, frame.previous_clip_from_view}) {
+    matrix[0] = 2.0F;
+    matrix[5] = -2.0F;
+    matrix[10] = matrix[14] = -1.0F;
+    matrix[11] = -0.1F;
+  }
+  for (float* matrix : {frame.view_from_world, frame.previous_view_from_world})
+    matrix[0] = matrix[5] = matrix[10] = matrix[15] = 1.0F;
+}
+
+} // namespace
+
+CountedHost::~CountedHost() {
+  dermis_graph_destroy(graph_);
+  dermis_context_destroy(context_);
+}
+
+std::string CountedHost::open(const CountedInput& input) {
+  dermis_context_desc context = DERMIS_CONTEXT_DESC_INIT;
+  context.flags = DERMIS_CONTEXT_TIMINGS;
+  context.frames_in_flight = image_sets;
+  context.instance = device_.instance();
+  context.physical_device = device_.physical();
+  context.device = device_.device();
+  context.get_instance_proc_addr = NullDevice::loader();
+  if (dermis_context_create(&context, &context_) != DERMIS_OK) return dermis_last_error();
+
+  dermis_profile profile = DERMIS_PROFILE_INIT;
+  profile.id = 1;
+  profile.source = source_of(input.profile_name, input.profile);
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(input.name, input.graph);
+  desc.width = input.width;
+  desc.height = input.height;
+  desc.profiles = &profile;
+  desc.profile_count = 1;
+  dermis_report report = nullptr;
+  const dermis_result result = dermis_graph_create(context_, &desc, &graph_, &report);
+  const std::string text = dermis_report_text(report);
+  dermis_report_destroy(report);
+  if (result != DERMIS_OK) return text;
+  return bind();
+}
+
+std::string CountedHost::bind() {
+  uint32_t count = 0;
+  if (dermis_graph_slots(graph_, &count, nullptr) != DERMIS_OK) return dermis_last_error();
+  std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
+  if (dermis_graph_slots(graph_, &count, slots.data()) != DERMIS_OK) return dermis_last_error();
+  for (std::vector<dermis_image_binding>& set : bindings_)
+    for (const dermis_slot& slot : slots) {
+      if (slot.bound == 0) continue;
+      dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
+      binding.slot = slot.id;
+      binding.format = slot.format;
+      binding.width = slot.width;
+      binding.height = slot.height;
+      binding.image = device_.make_image();
+      binding.view = device_.make_view();
+      binding.before = {VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
+                        VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+      binding.after = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_QUEUE_FAMILY_IGNORED,
+                       VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+      set.push_back(binding);
+    }
+  frame_.command_buffer = device_.command_buffer();
+  set_camera(frame_);
+  return "";
+}
+
+dermis_result CountedHost::record_frame() {
+  ++frame_.frame_index;
+  frame_.completed_frame_index = frame_.frame_index - 1;
+  const std::vector<dermis_image_binding>& set = bindings_[frame_.frame_index % image_sets];
+  frame_.bindings = set.data();
+  frame_.binding_count = static_cast<uint32_t>(set.size());
+  return dermis_graph_record(graph_, &frame_);
+}
+
+uint32_t CountedHost::passes() const {
+  uint32_t count = 0;
+  return dermis_graph_timings(graph_, frame_.completed_frame_index, &count, nullptr) == DERMIS_OK ? count : 0;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,26 @@
+// dermis graph: the graph with its plan as a picture for Graphviz, or as JSON.
+
+#include "framegraph/explain/plan_dot.hpp"
+#include "framegraph/explain/plan_json.hpp"
+#include "integration/command/inspect/graph_input.hpp"
+#include "integration/command/output.hpp"
+
+namespace dermis::tools {
+
+ExitCode graph(const Session& session, const GraphOptions& options) {
+  Diagnostics diagnostics;
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  if (!loaded) return fail_graph(session, options.graph, diagnostics);
+  const CompileChoices choices = read_choices(loaded->graph, options.settings);
+  if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+  const std::optional<CompiledPlan> compiled = compile_generic(*loaded, options.size, choices, diagnostics);
+  if (!compiled) return fail_graph(session, options.graph, diagnostics);
+  print_diagnostics(session, diagnostics);
+  const std::string problem =
+      deliver_text(options.out, session.json ? plan_json(loaded->graph, loaded->kinds, *compiled,
+                                                         {loaded->changes, diagnostics.files})
+                                             : plan_dot(loaded->graph, loaded->kinds, *compiled));
+  return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,157 @@
+// dermis apply: a graph on captured frames, through the C interface; scattered light and combined colour as
+// EXR.
+
+#include "framegraph/text/json_writer.hpp"
+#include "integration/command/inspect/graph_input.hpp"
+#include "integration/command/interrupt.hpp"
+#include "integration/command/output.hpp"
+#include "integration/command/run/apply_slots.hpp"
+#include "integration/command/run/captured.hpp"
+#include "integration/command/run/device_graph.hpp"
+#include "integration/command/run/pass_times.hpp"
+#include "integration/files/exr.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+const ChannelNames rgb_names = {"R", "G", "B"};
+
+struct Run {
+  const Session& session;
+  const ApplyOptions& options;
+  const LoadedGraph& loaded;
+  std::string graph_text;
+  demo::VulkanHost& host;
+  std::unique_ptr<DeviceGraph> device; // made for one size and one choice of slots
+  DeviceGraphRequest request;
+  PassTimes times;
+};
+
+// A frame that has another size or other images than the one before needs a graph of its own; history starts
+// anew.
+bool fits(const DeviceGraphRequest& a, const DeviceGraphRequest& b) {
+  return a.width == b.width && a.height == b.height && a.formats == b.formats && a.unbound == b.unbound &&
+         a.profiles == b.profiles;
+}
+
+demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& slots) {
+  DeviceGraphRequest request;
+  request.graph_name = run.options.graph;
+  request.graph_text = run.graph_text;
+  request.overlays = run.loaded.overlays;
+  request.open = open_beside(run.options.graph, run.options.parts.roots);
+  request.width = frame.description.width;
+  request.height = frame.description.height;
+  request.settings = settings_as_json(run.loaded.graph, run.options.settings);
+  request.unbound = slots.unbound;
+  for (const auto& [slot, format] : slots.formats)
+    request.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
+  for (const auto& one : frame.description.profiles)
+    request.profiles.push_back({one.id, one.profile.name, profile_as_json(one.profile)});
+  if (run.device != nullptr && fits(request, run.request)) return demo::success();
+  run.device.reset();
+  auto made = DeviceGraph::create(run.host, request);
+  if (!made) return made.error();
+  run.device = made.take();
+  run.request = std::move(request);
+  return demo::success();
+}
+
+// What the host does with what comes back: scattered light is there already times albedo where there is a
+// profile.
+Image combine(const CapturedFrame& frame, const std::vector<float>& lighting) {
+  Image combined = Image::sized(frame.lighting.width, frame.lighting.height, 3);
+  for (size_t i = 0; i < combined.values.size(); ++i) {
+    const float albedo =
+        frame.albedo.values.empty() || frame.profile[i / 3] != 0 ? 1.0f : frame.albedo.values[i];
+    const float specular = frame.specular.values.empty() ? 0.0f : frame.specular.values[i];
+    combined.values[i] = lighting[i] * albedo + specular;
+  }
+  return combined;
+}
+
+demo::Result<> write_frame(const CapturedFrame& frame, const std::string& name, DeviceGraph& device,
+                           OutputFolder& out) {
+  if (const std::string problem = out.open_below(name); !problem.empty())
+    return demo::Error{demo::ErrorKind::environment, problem};
+  const auto write = [&](const char* file, const Image& image) -> demo::Result<> {
+    std::string problem;
+    if (write_exr(out.path_of(name + "/" + file), image, rgb_names, problem)) return demo::success();
+    return demo::Error{demo::ErrorKind::environment, problem};
+  };
+  auto lighting = device.read_rgb("lighting");
+  if (!lighting) return lighting.error();
+  if (auto written = write("combined.exr", combine(frame, *lighting)); !written) return written;
+  if (!device.has("scattered_light")) return demo::success();
+  auto scattered = device.read_rgb("scattered_light");
+  if (!scattered) return scattered.error();
+  return write("scattered.exr", {frame.lighting.width, frame.lighting.height, 3, scattered.take()});
+}
+
+demo::Result<> apply_frame(Run& run, const CapturedFrame& frame, const std::string& name, OutputFolder& out) {
+  const SlotChoice slots = choose_slots(run.loaded.graph, frame);
+  if (!slots.problem.empty()) return demo::Error{demo::ErrorKind::input, slots.problem};
+  if (auto ready = prepare(run, frame, slots); !ready) return ready;
+  for (uint32_t i = 0; i < run.options.repeat; ++i) {
+    if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+    for (const SlotData& data : slots.data) // also on repeats: the graph may write into what it was given
+      if (auto given = run.device->upload(data.slot, data.texels, data.channels); !given) return given;
+    if (auto ran = run.device->run(c_frame(frame.description)); !ran) return ran;
+    for (const DeviceGraph::PassTime& time : run.device->times())
+      run.times.add(time.pass, time.milliseconds);
+  }
+  return write_frame(frame, name, *run.device, out);
+}
+
+ExitCode report(const Run& run, const CapturedSequence& sequence) {
+  if (!run.times.empty()) say(run.session, format_times(run.times, "pass"));
+  say(run.session, fmt::format("{} frames are in {}\n", sequence.folders.size(), run.options.out));
+  if (run.session.json) {
+    JsonWriter answer;
+    answer.open_object().member("ok", true).member("graph", run.options.graph);
+    answer.member("device", std::string_view(run.host.properties.deviceName));
+    answer.member("frames", static_cast<uint64_t>(sequence.folders.size())).member("out", run.options.out);
+    answer.member("sanitised_values", sequence.sanitised_values).key("passes");
+    write_times(answer, run.times);
+    answer.member("device_ms", run.times.total()).close();
+    print(std::move(answer).finish());
+  }
+  return ExitCode::ok;
+}
+
+} // namespace
+
+ExitCode apply(const Session& session, const ApplyOptions& options) {
+  Diagnostics diagnostics;
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  if (!loaded) return fail_graph(session, options.graph, diagnostics);
+  const CompileChoices choices = read_choices(loaded->graph, options.settings);
+  if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+  const std::optional<CapturedSequence> sequence = check_sequence(session, options.frames, options.profiles);
+  if (!sequence) return ExitCode::problems;
+
+  auto host = demo::create_vulkan_host({});
+  if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
+  OutputFolder out;
+  if (const std::string problem = out.open(options.out); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
+
+  Run run{session, options, *loaded, diagnostics.files.front().text, **host, nullptr, {}, {}};
+  Progress progress(progress_style(session.quiet, session.json), "apply", "frame", sequence->folders.size());
+  for (size_t i = 0; i < sequence->folders.size(); ++i) {
+    const std::optional<CapturedFrame> frame = load_frame(*sequence, i);
+    if (!frame) return fail(session, ExitCode::problems, "the capture changed while it was read");
+    const auto done = apply_frame(run, *frame, sequence->names[i], out);
+    if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+    if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
+    progress.update(i + 1);
+  }
+  return report(run, *sequence);
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,223 @@
+// dermis render: a scene through the demo engine and a graph; pictures, device times, and the error against
+// the truth.
+
+#include "framegraph/text/json_writer.hpp"
+#include "integration/command/inspect/graph_input.hpp"
+#include "integration/command/interrupt.hpp"
+#include "integration/command/output.hpp"
+#include "integration/command/run/pass_times.hpp"
+#include "integration/command/run/rendered_frame.hpp"
+#include "integration/command/run/truth_run.hpp"
+#include "integration/files/capture_truth.hpp"
+#include "integration/files/exr.hpp"
+#include "integration/files/png.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace dermis::tools {
+namespace {
+
+constexpr std::string_view no_graph = "none"; // for --graph: as the engine looks without Dermis
+const ChannelNames rgb_names = {"R", "G", "B"};
+
+demo::Error cannot_write(std::string problem) {
+  return {demo::ErrorKind::environment, std::move(problem)};
+}
+
+// Everything that the frames leave behind while they pass.
+struct Run {
+  const Session& session;
+  const RenderOptions& options;
+  Progress progress;
+  OutputFolder out{};
+  demo::RenderInfo info{};
+  std::vector<CaptureProfile> profiles{};
+  PassTimes graph_times{}, host_times{};
+  ExposureMeter exposure{};
+  uint32_t frames = 0;
+  TruthFrame last{}; // with what came out for it:
+  std::vector<float> last_scattered{};
+  CaptureWriter capture{};
+  bool textured_before = false;
+  bool transmission = false; // the graph adds light from behind before it scatters
+};
+
+demo::Result<> start(Run& run, const demo::RenderInfo& info) {
+  run.info = info;
+  for (const std::string& warning : info.warnings)
+    spdlog::warn("{}", warning);
+  for (const std::string& credit : info.credits)
+    say(run.session, credit + "\n");
+  auto profiles = read_profiles(info.profiles);
+  if (!profiles) return profiles.error();
+  run.profiles = profiles.take();
+  if (const std::string problem = run.out.open(run.options.out); !problem.empty())
+    return cannot_write(problem);
+  std::string problem;
+  if (!run.options.capture.empty() && !run.capture.begin(run.options.capture, problem))
+    return cannot_write(problem);
+  return demo::success();
+}
+
+demo::Result<> write_pictures(Run& run, const demo::FrameOutputs& frame) {
+  std::string problem;
+  const auto name = [&](const char* what, const char* extension) {
+    return run.out.path_of(fmt::format("{}_{:04}.{}", what, frame.frame, extension));
+  };
+  if (!write_png(name("frame", "png"), frame.color.width, frame.color.height, frame.display, problem) ||
+      !write_exr(name("color", "exr"), to_image(frame.color), rgb_names, problem))
+    return cannot_write(problem);
+  if (!frame.scattered.texels.empty() &&
+      !write_exr(name("scattered", "exr"), to_image(frame.scattered), rgb_names, problem))
+    return cannot_write(problem);
+  return demo::success();
+}
+
+demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
+  if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+  if (auto written = write_pictures(run, frame); !written) return written;
+  auto captured = captured_frame(frame, run.profiles);
+  if (!captured) return captured.error();
+  std::string problem;
+  if (!run.options.capture.empty() && !run.capture.add(*captured, problem)) return cannot_write(problem);
+
+  // The first frame of several warms the caches up.
+  if (frame.frame > 0 || run.options.frames == 1) {
+    for (const demo::PassTime& time : frame.dermis_times)
+      run.graph_times.add(time.pass, time.milliseconds);
+    for (const demo::PassTime& time : frame.host_times)
+      run.host_times.add(time.pass, time.milliseconds);
+  }
+  run.exposure.add(captured->lighting.values, captured->profile);
+  run.last = make_truth_frame(*captured);
+  if (run.transmission) add_transmission(*captured, run.last);
+  run.last_scattered = frame.scattered.texels;
+  run.progress.update(++run.frames);
+  return demo::success();
+}
+
+// Light that carries albedo is another quantity than the truth, which is before albedo.
+bool textured_before(const Graph& graph, const CompileChoices& choices) {
+  for (size_t i = 0; i < graph.settings.size(); ++i) {
+    const SettingDeclaration& setting = graph.settings[i];
+    if (setting.name == "texturing" && setting.type == SettingType::enumeration)
+      return setting.options[static_cast<size_t>(choices.settings[i].integer)] != "post";
+  }
+  return false;
+}
+
+bool transmits(const Graph& graph, const CompileChoices& choices) {
+  for (size_t i = 0; i < graph.settings.size(); ++i)
+    if (graph.settings[i].name == "transmission" && graph.settings[i].type == SettingType::boolean)
+      return choices.settings[i].integer != 0;
+  return false;
+}
+
+// Nothing to compare with: no scattered light handed out, no subsurface pixel, or not asked for.
+std::string why_no_error(const Run& run) {
+  if (run.textured_before) return "'texturing' puts albedo into the light that is scattered";
+  if (run.options.graph == no_graph) return "rendered without a graph";
+  if (run.options.subset == 0) return "not asked for (--subset 0)";
+  if (run.last_scattered.empty()) return "the graph does not export 'scattered_light'";
+  if (subsurface_pixels(run.last.profile) == 0) return "no pixel of the last frame has a profile";
+  return "";
+}
+
+ExitCode report(Run& run) {
+  std::string text, error_json = "null";
+  if (!run.graph_times.empty()) text += format_times(run.graph_times, "pass of the graph") + '\n';
+  if (!run.host_times.empty()) text += format_times(run.host_times, "pass of the engine") + '\n';
+  const std::string no_error = why_no_error(run);
+  if (no_error.empty()) {
+    const TruthFrame& last = run.last;
+    const subsurface::TruthInput input = last.input();
+    const std::vector<uint32_t> pixels =
+        subsurface::stratified_subset(last.width, last.height, last.profile, run.options.subset);
+    const auto truth = run_truth(run.session, "truth", input, pixels);
+    if (!truth) return fail(run.session, ExitCode::interrupted, "stopped");
+    const double exposure = run.exposure.result();
+    const uint64_t population = subsurface_pixels(last.profile);
+    const ErrorFigures figures = measure_error(run.last_scattered, *truth, pixels, exposure, population);
+    const double d_px = median_d_px(input);
+    text += format_error(figures, fmt::format("frame {}", run.frames - 1), population, exposure, d_px);
+    error_json = error_as_json(figures, population, exposure, d_px);
+  } else {
+    text += fmt::format("error of the scattered light: not measured, {}\n", no_error);
+  }
+  say(run.session, text + fmt::format("\n{} frames are in {}\n", run.frames, run.options.out));
+  if (run.session.json) {
+    JsonWriter answer;
+    answer.open_object()
+        .member("ok", true)
+        .member("scene", run.info.scene)
+        .member("graph", run.options.graph);
+    answer.member("device", run.info.device).member("frames", run.frames).member("out", run.options.out);
+    answer.member("width", run.options.size.width).member("height", run.options.size.height).key("passes");
+    write_times(answer, run.graph_times);
+    write_times(answer.key("engine_passes"), run.host_times);
+    answer.member("device_ms", run.graph_times.total()).key("error").json(error_json);
+    answer.key("credits").open_array();
+    for (const std::string& credit : run.info.credits)
+      answer.value(credit);
+    answer.close().close();
+    print(std::move(answer).finish());
+  }
+  return ExitCode::ok;
+}
+
+} // namespace
+
+ExitCode render(const Session& session, const RenderOptions& options) {
+  demo::RenderOptions engine;
+  engine.scene = options.scene;
+  engine.model = {options.model.model, options.model.albedo, options.model.normal, options.model.specular,
+                  options.model.height};
+  engine.width = options.size.width;
+  engine.height = options.size.height;
+  engine.frames = options.frames;
+
+  // The graph is read here first: its messages then come with excerpts and as JSON, and --set is checked.
+  bool textured = false, transmission = false;
+  if (options.graph != no_graph) {
+    Diagnostics diagnostics;
+    const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+    if (!loaded) return fail_graph(session, options.graph, diagnostics);
+    const CompileChoices choices = read_choices(loaded->graph, options.settings);
+    if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+    if (!compile_generic(*loaded, options.size, choices, diagnostics))
+      return fail_graph(session, options.graph, diagnostics);
+    engine.graph = options.graph;
+    for (const auto& [name, text] : loaded->overlays)
+      engine.overlays.push_back({name, text});
+    engine.include = [open = open_beside(options.graph, options.parts.roots)](
+                         const std::string& name) -> std::optional<demo::NamedText> {
+      const FileText file = open(name);
+      return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+    };
+    engine.settings = settings_as_json(loaded->graph, options.settings);
+    textured = textured_before(loaded->graph, choices);
+    transmission = transmits(loaded->graph, choices);
+  } else if (!options.settings.empty() || !options.parts.overlays.empty()) {
+    return fail(session, ExitCode::usage, "--set and --overlay need a graph");
+  }
+
+  Run run{.session = session,
+          .options = options,
+          .progress =
+              Progress(progress_style(session.quiet, session.json), "render", "frame", options.frames),
+          .textured_before = textured,
+          .transmission = transmission};
+  demo::RenderCallbacks callbacks;
+  callbacks.on_start = [&](const demo::RenderInfo& info) { return start(run, info); };
+  callbacks.on_frame = [&](const demo::FrameOutputs& frame) { return take_frame(run, frame); };
+  const auto summary = demo::render(engine, callbacks);
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  if (!summary) return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+  std::string problem;
+  if (!options.capture.empty() && !run.capture.finish(problem))
+    return fail(session, ExitCode::environment, problem);
+  return report(run);
+}
+
+} // namespace dermis::tools

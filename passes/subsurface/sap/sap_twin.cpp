@@ -1,0 +1,167 @@
+#include "passes/subsurface/sap/sap_twin.hpp"
+
+#include "passes/subsurface/kinds.hpp"
+#include "passes/subsurface/sap/sap_levels.hpp"
+#include "passes/subsurface/truth/parallel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::subsurface {
+
+namespace {
+
+// Under these shares the tent is not worth its reads (level 0, coarser levels).
+constexpr double least_share_fine = 0.002, least_share_coarse = 0.004;
+
+template <class Real> using Color = std::array<Real, 3>;
+
+// Scattered light of a level and the coarser ones, the share of the kernel that met the surface, and
+// confidence.
+template <class Real> struct Scattered {
+  Color<Real> light{}, mass{};
+  Real confidence = 0;
+};
+
+template <class Real> struct SapClimb {
+  const TruthInput& input;
+  std::span<const float> table;
+  SapVariant variant;
+  SapPyramid<Real> pyramid;
+  std::vector<std::vector<Scattered<Real>>> scattered{};
+
+  Scattered<Real> tent(const SapLevel<Real>& level, int x, int y, const SapTexel<Real>& own) const {
+    const Real per_sigma = 1 / (Real(sap_sigma) * level.spacing),
+               per_metre = per_sigma / pyramid.footprint(own.depth);
+    Color<Real> sum{};
+    Real total = 0, mass = 0, all_weight = 0;
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        const Real ox = Real(i) * level.spacing, oy = Real(j) * level.spacing;
+        const Real tilt = own.slope(ox, oy) * per_sigma;
+        Real weight = Real((2 - std::abs(i)) * (2 - std::abs(j))) * sap_falloff(tilt, sap_tilt_width_tent);
+        all_weight += weight;
+        const SapTexel<Real>* tap = level.find(x + i, y + j, own.id);
+        if (!tap) continue;
+        weight *=
+            sap_falloff((tap->depth - own.depth - pyramid.rise(own, ox, oy)) * per_metre, sap_depth_width) *
+            tap->mass;
+        mass += weight;
+        total += weight * tap->area;
+        for (size_t c = 0; c < 3; ++c)
+          sum[c] += weight * tap->area * tap->light[c];
+      }
+    Scattered<Real> result;
+    for (size_t c = 0; c < 3; ++c)
+      result.light[c] = sum[c] / total;
+    result.mass.fill(mass / all_weight);
+    return result;
+  }
+
+  Scattered<Real> from_coarser(size_t fine, int x, int y, const SapTexel<Real>& own,
+                               const Color<Real>& fallback) const {
+    const SapLevel<Real>& coarse = pyramid.levels[fine + 1];
+    const Real spacing = pyramid.levels[fine].spacing;
+    const Real per_sigma = 1 / (Real(sap_sigma) * spacing),
+               per_metre = per_sigma / pyramid.footprint(own.depth);
+    Scattered<Real> result;
+    Color<Real> sum{};
+    Real all_weight = 0;
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i) {
+        const int qx = ((x - 1) >> 1) + i, qy = ((y - 1) >> 1) + j;
+        const Real ox = (Real(2 * qx - x) + Real(.5)) * spacing, oy = (Real(2 * qy - y) + Real(.5)) * spacing;
+        const Real bilinear =
+            Real(std::abs(ox) < spacing ? .75 : .25) * Real(std::abs(oy) < spacing ? .75 : .25);
+        const Real weight = bilinear * sap_falloff(own.slope(ox, oy) * per_sigma, sap_tilt_width_up);
+        all_weight += weight;
+        const SapTexel<Real>* tap = coarse.find(qx, qy, own.id);
+        if (!tap) continue;
+        const Real from_own = tap->depth - own.depth - pyramid.rise(own, ox, oy);
+        const Real from_tap = own.depth - tap->depth + pyramid.rise(*tap, ox, oy);
+        const Real kept =
+            sap_falloff(std::min(std::abs(from_own), std::abs(from_tap)) * per_metre, sap_depth_width);
+        const Scattered<Real>& theirs = scattered[fine + 1][coarse.index(qx, qy)];
+        for (size_t c = 0; c < 3; ++c) {
+          const Real mass = weight * kept * theirs.mass[c];
+          result.mass[c] += mass;
+          sum[c] += mass * theirs.light[c];
+        }
+        result.confidence += bilinear * kept * kept * kept * kept * theirs.confidence;
+      }
+    for (size_t c = 0; c < 3; ++c) {
+      const bool found = result.mass[c] > Real(sap_negligible);
+      result.light[c] = found ? sum[c] / result.mass[c] : fallback[c];
+      result.mass[c] /= all_weight;
+    }
+    return result;
+  }
+
+  Scattered<Real> climb(size_t l, int x, int y, const SapTexel<Real>& own) const {
+    const PerChannel& d = input.d_m[own.id];
+    const size_t widest = static_cast<size_t>(std::max_element(d.begin(), d.end()) - d.begin());
+    const bool last = l + 1 == sap_level_count;
+    Color<Real> centre{}, share{};
+    for (size_t c = 0; c < 3; ++c) {
+      const Real d_px = Real(d[c]) * own.reach / pyramid.footprint(own.depth);
+      if (l == 0) centre[c] = sap_lookup<Real>(table, 0, d_px);
+      share[c] = last ? Real(1) : sap_lookup<Real>(table, static_cast<uint32_t>(l + 1), d_px);
+    }
+    Scattered<Real> here{own.light, {own.mass, own.mass, own.mass}, 0};
+    const Real least = Real(l == 0 ? least_share_fine : least_share_coarse);
+    if ((l == 0 || variant == SapVariant::smooth) && *std::max_element(share.begin(), share.end()) >= least)
+      here = tent(pyramid.levels[l], x, y, own);
+    const Scattered<Real> rest =
+        last ? Scattered<Real>{here.light, {}, 0} : from_coarser(l, x, y, own, here.light);
+    Scattered<Real> result;
+    for (size_t c = 0; c < 3; ++c) {
+      const Real near = centre[c] * own.mass, mid = share[c] * here.mass[c],
+                 far = (1 - centre[c] - share[c]) * rest.mass[c];
+      const Real total = near + mid + far, scale = 1 / std::max(total, Real(sap_negligible));
+      result.light[c] = rest.light[c] + near * scale * (own.light[c] - rest.light[c]) +
+                        mid * scale * (here.light[c] - rest.light[c]);
+      result.mass[c] = total;
+    }
+    result.confidence = centre[widest] * own.mass + share[widest] * here.mass[widest] +
+                        (1 - centre[widest] - share[widest]) * rest.confidence;
+    return result;
+  }
+};
+
+} // namespace
+
+template <class Real>
+SapResult<Real> sap_scatter(const TruthInput& input, std::span<const float> table,
+                            const SapOptions& options) {
+  SapClimb<Real> climb{input, table, options.variant, build_sap_pyramid<Real>(input, options.threads)};
+  climb.scattered.resize(sap_level_count);
+  for (size_t l = sap_level_count; l-- > 0;) {
+    const SapLevel<Real>& level = climb.pyramid.levels[l];
+    climb.scattered[l].resize(level.texels.size());
+    parallel_for(static_cast<size_t>(level.height + 2 * level.border), 4, options.threads, [&](size_t row) {
+      const int y = static_cast<int>(row) - level.border;
+      for (int x = -level.border; x < level.width + level.border; ++x) {
+        const SapTexel<Real>& own = level.texels[level.index(x, y)];
+        if (own.id != 0) climb.scattered[l][level.index(x, y)] = climb.climb(l, x, y, own);
+      }
+    });
+  }
+  SapResult<Real> result{{input.light.begin(), input.light.end()},
+                         std::vector<Real>(size_t{input.width} * input.height, 1)};
+  for (size_t i = 0; i < result.confidence.size(); ++i) {
+    const SapTexel<Real>& own = climb.pyramid.levels[0].texels[i];
+    if (own.id == 0) continue;
+    const PerChannel& d = input.d_m[own.id];
+    const double widest = *std::max_element(d.begin(), d.end());
+    const double scale = input.scatter_scale.empty() ? 1.0 : double(std::max(0.0f, input.scatter_scale[i]));
+    if (widest * scale < copy_below_d_px * double(climb.pyramid.smallest_side(own.depth))) continue;
+    for (size_t c = 0; c < 3; ++c)
+      if (d[c] > 0) result.light[3 * i + c] = climb.scattered[0][i].light[c];
+    result.confidence[i] = climb.scattered[0][i].confidence;
+  }
+  return result;
+}
+template SapResult<float> sap_scatter<float>(const TruthInput&, std::span<const float>, const SapOptions&);
+template SapResult<double> sap_scatter<double>(const TruthInput&, std::span<const float>, const SapOptions&);
+
+} // namespace dermis::subsurface

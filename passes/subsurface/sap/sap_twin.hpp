@@ -1,0 +1,27 @@
+#pragma once
+// The surface-aware pyramid on the CPU: the same steps as the kernels subsurface_sap_*.comp, on plain arrays,
+// so that accuracy is judged without a device and the kernels are checked against it.
+
+#include "passes/subsurface/sap/sap_weights.hpp"
+#include "passes/subsurface/truth/truth.hpp"
+
+namespace dermis::subsurface {
+
+struct SapOptions {
+  SapVariant variant = SapVariant::smooth;
+  unsigned threads = 0; // 0: one a hardware thread; the result does not depend on it
+};
+
+template <class Real> struct SapResult {
+  std::vector<Real> light;      // 3 per pixel; pixels without profile return their light
+  std::vector<Real> confidence; // in [0, 1]: the share of the widest channel's kernel that met the pixel's
+                                // own surface under weights four times as strict; 1 where nothing scatters
+};
+
+// Scatters the whole input. `table` comes from make_sap_table for the same variant. Each pixel's result is a
+// convex mean of light of its own profile: constant light stays constant, nothing leaks from other profiles.
+// Differs from the kernels by their fp16 storage. Real: float or double.
+template <class Real>
+SapResult<Real> sap_scatter(const TruthInput& input, std::span<const float> table, const SapOptions& options);
+
+} // namespace dermis::subsurface

@@ -1,0 +1,133 @@
+// Light on its way into scattering and out of it.
+
+#include "passes/subsurface/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr std::string_view result_options[] = {"color", "light"};
+
+constexpr Port setup_ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    port::material,
+    port::depth,
+    port::albedo,
+    port::tiles,
+    port::arguments,
+    {"light",
+     Usage::storage_image_write,
+     false,
+     "image2D",
+     "rgb scatterable light, a = area of the pixel's surface patch over its projected area; 0 outside",
+     {}},
+    {"slope",
+     Usage::storage_image_write,
+     true,
+     "image2D",
+     "change of depth from pixel to pixel over the pixel's size, x and y",
+     {}},
+};
+constexpr KindSetting setup_settings[] = {setting::texturing};
+
+constexpr Port combine_ports[] = {
+    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light", {}},
+    port::material,
+    port::albedo,
+    port::tiles,
+    port::arguments,
+    {"lighting",
+     Usage::storage_image_write,
+     false,
+     "image2D",
+     "written where there is subsurface, untouched elsewhere; alpha becomes 1 there",
+     {}},
+};
+constexpr KindSetting combine_settings[] = {
+    setting::texturing,
+    setting::choice(
+        "result", result_options,
+        "color: scattered light times albedo; light: scattered light alone, for hosts that texture later"),
+};
+
+constexpr Port light_ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light", {}},
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::albedo,
+    {"light",
+     Usage::storage_image_write,
+     false,
+     "image2D",
+     "scattered light before albedo; the input light where nothing scatters, in full precision",
+     {}},
+};
+constexpr KindSetting light_settings[] = {setting::texturing};
+
+constexpr Port transmission_ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    {"back_lighting",
+     Usage::sampled_image,
+     false,
+     "texture2D",
+     "irradiance on the far side, linear, of the light that thickness is measured along",
+     {}},
+    {"thickness",
+     Usage::sampled_image,
+     false,
+     "texture2D",
+     "way of that light through the material, metres",
+     {}},
+    port::material,
+    port::scatter_scale,
+    {"lit", Usage::storage_image_write, false, "image2D", "lighting with what came through", {}},
+};
+
+} // namespace
+
+const PassKind setup_kind{
+    .name = "subsurface.setup",
+    .shader = "subsurface_setup",
+    .doc = "Takes the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to "
+           "nearest even.",
+    .ports = setup_ports,
+    .settings = setup_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind transmission_kind{
+    .name = "subsurface.transmission",
+    .shader = "subsurface_transmission",
+    .doc =
+        "Adds light from the far side of thin parts: the share that the profile carries further than their "
+        "thickness.",
+    .ports = transmission_ports,
+    .settings = {},
+    .dispatch = DispatchShape::over_view,
+    .side_effects = false,
+};
+
+const PassKind combine_kind{
+    .name = "subsurface.combine",
+    .shader = "subsurface_combine",
+    .doc = "Puts scattered light back into the host's lighting. Specular stays with the host.",
+    .ports = combine_ports,
+    .settings = combine_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind light_kind{
+    .name = "subsurface.light",
+    .shader = "subsurface_light",
+    .doc = "Hands out scattered light before albedo for every pixel, for tools and hosts that texture later.",
+    .ports = light_ports,
+    .settings = light_settings,
+    .dispatch = DispatchShape::over_view,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

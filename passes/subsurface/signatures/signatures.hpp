@@ -1,0 +1,91 @@
+#pragma once
+// One signature a kernel; kinds.cpp lists them. Split by what they serve: tiles, light in and out,
+// scattering.
+
+#include "framegraph/model/pass_kind.hpp"
+
+namespace dermis::subsurface {
+
+extern const PassKind classify_kind, tile_list_kind;                               // tile_signatures.cpp
+extern const PassKind setup_kind, combine_kind, light_kind, transmission_kind;     // light_signatures.cpp
+extern const PassKind burley_kind, fixed_kind, separable_kind;                     // scatter_signatures.cpp
+extern const PassKind afis_kind;                                                   // afis_signatures.cpp
+extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind;  // pyramid_signatures.cpp
+extern const PassKind sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind; // sap_signatures.cpp
+
+// Ports that several kinds declare with the same meaning.
+namespace port {
+inline constexpr Port material{
+    "material", Usage::sampled_image, false, "utexture2D", "profile id per pixel, 0 = no subsurface", {}};
+inline constexpr Port depth{"depth",
+                            Usage::sampled_image,
+                            false,
+                            "texture2D",
+                            "device depth or view-space distance, as the frame says",
+                            {}};
+inline constexpr Port scatter_scale{"scatter_scale",
+                                    Usage::sampled_image,
+                                    true,
+                                    "texture2D",
+                                    "factor on d per pixel, 0 = diffuse; unbound = 1",
+                                    {}};
+inline constexpr Port albedo{
+    "albedo", Usage::sampled_image, true, "texture2D", "diffuse albedo, linear; unbound = 1", {}};
+inline constexpr Port tiles{
+    "tiles",
+    Usage::storage_buffer_read,
+    false,
+    "uint",
+    "element 0 = number of tiles; then packed tiles: x in bits 0-14, y in bits 15-29, bit 31 = copy only",
+    {}};
+inline constexpr Port arguments{"arguments",
+                                Usage::indirect_arguments,
+                                false,
+                                "uint",
+                                "group counts x, y, z of an indirect dispatch over the tiles",
+                                {}};
+inline constexpr Port scattered{"scattered",
+                                Usage::storage_image_write,
+                                false,
+                                "image2D",
+                                "scattered light where there is subsurface, undefined elsewhere",
+                                {}};
+inline constexpr std::string_view level_doc =
+    "rgb light times mask, a = mask: the share of the texel with subsurface";
+inline constexpr Format level_formats[] = {Format::rgba16f, Format::rgba32f};
+// A level of the plain pyramid to read.
+constexpr Port level_port(std::string_view name) {
+  return {name, Usage::sampled_image, false, "texture2D", level_doc, level_formats};
+}
+} // namespace port
+
+constexpr SettingValue integer_value(int64_t value) {
+  return {SettingType::integer, value, 0.0};
+}
+constexpr SettingValue option_value(int64_t index) {
+  return {SettingType::enumeration, index, 0.0};
+}
+
+namespace setting {
+// One of `options`; options[standard] where a graph says nothing.
+constexpr KindSetting choice(std::string_view name, std::span<const std::string_view> options,
+                             std::string_view doc, int64_t standard = 0) {
+  return {.name = name,
+          .type = SettingType::enumeration,
+          .default_value = option_value(standard),
+          .minimum = 0,
+          .maximum = 0,
+          .options = options,
+          .unit = "",
+          .doc = doc};
+}
+
+// Settings that several kinds declare with the same meaning.
+inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre"};
+inline constexpr KindSetting texturing =
+    choice("texturing", texturing_options,
+           "where albedo is applied: after scattering (keeps texture detail), "
+           "its square root on both sides, or before");
+} // namespace setting
+
+} // namespace dermis::subsurface

@@ -1,0 +1,42 @@
+#pragma once
+// A damage to the good graph of model_support.hpp, and the law that it gives exactly one diagnostic, at the
+// place of the damage, naming both sides.
+
+#include "tests/framegraph/model_support.hpp"
+
+#include <algorithm>
+
+namespace dermis::testing {
+
+struct Damage {
+  const char* law; // also the name of the test
+  const char *from, *to;
+  DiagnosticId id;
+  const char* at; // the damaged text has this once, and the diagnostic points at its beginning
+  std::vector<std::string> words;
+};
+
+inline void PrintTo(const Damage& damage, std::ostream* out) {
+  *out << damage.to;
+}
+
+inline std::string law_of(const ::testing::TestParamInfo<Damage>& one) {
+  return one.param.law;
+}
+
+// `damage` gives one diagnostic, at its place.
+inline void expect_one_diagnostic(const Damage& damage) {
+  const std::string text = damaged(damage.from, damage.to);
+  const size_t at = text.find(damage.at);
+  ASSERT_NE(at, std::string::npos);
+  ASSERT_EQ(text.find(damage.at, at + 1), std::string::npos) << "ambiguous";
+  const std::string before = text.substr(0, at);
+  const auto line = static_cast<uint32_t>(1 + std::count(before.begin(), before.end(), '\n'));
+  const auto column =
+      static_cast<uint32_t>(at - (before.rfind('\n') + 1) + 1); // npos + 1 = 0 on the first line
+  const Read result = read(text);
+  EXPECT_FALSE(result.graph);
+  expect_only(result.diagnostics, damage.id, line, column, damage.words);
+}
+
+} // namespace dermis::testing

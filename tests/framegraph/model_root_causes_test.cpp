@@ -1,0 +1,93 @@
+// Root causes are told, all in one run; their consequences are not.
+
+#include "framegraph/text/limits.hpp"
+#include "tests/framegraph/model_support.hpp"
+
+namespace dermis {
+namespace {
+
+using namespace dermis::testing;
+using Id = DiagnosticId;
+
+std::string small_graph(const std::string& passes) {
+  return R"({ "dermis": 1, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+"resources": { "x": { "format": "rgba16f", "size": "view" } }, "exports": ["a"], "passes": [)" +
+         passes + "] }";
+}
+
+TEST(GraphErrors, TwoPassesThatAlwaysRunDoNotWriteTheSameResource) {
+  const Read result = read(small_graph(R"(
+{ "pass": "one", "kind": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } },
+{ "pass": "two", "kind": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } })"));
+  EXPECT_FALSE(result.graph);
+  expect_only(result.diagnostics, Id::two_producers, 4, 87,
+              {"'one' and 'two'", "'x'", "'one' writes it here"});
+}
+
+TEST(GraphErrors, WhatPassesOnlyUpdateHasNoContents) {
+  const Read result = read(small_graph(R"(
+{ "pass": "one", "kind": "test.mix", "read": { "source": "a" }, "write": { "target": "x" } })"));
+  EXPECT_FALSE(result.graph);
+  expect_only(result.diagnostics, Id::no_producer, 3, 86, {"pass 'one' updates 'x'", "only update"});
+}
+
+TEST(GraphErrors, WhatNoPassWritesCannotBeRead) {
+  const Read result = read(small_graph(R"(
+{ "pass": "one", "kind": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } },
+{ "pass": "two", "kind": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } })"));
+  EXPECT_FALSE(result.graph);
+  expect_only(result.diagnostics, Id::no_producer, 3, 58, {"pass 'one' reads 'x'", "declared here"});
+}
+
+TEST(GraphErrors, AllRootCausesAreReportedInOneRunAndTheirConsequencesAreNot) {
+  std::string text = damaged("\"r8_uint\"", "\"r8uint\""); // readers of material stay silent
+  const auto also = [&](std::string_view from, std::string_view to) {
+    ASSERT_NE(text.find(from), std::string::npos);
+    text.replace(text.find(from), from.size(), to);
+  };
+  also("\"int\": 16", "\"int\": 1.5");                         // "$samples" stays silent
+  also("\"kind\": \"test.list\"", "\"kind\": \"test.lisst\""); // the reader of list stays silent
+  also("\"kept@-2\"", "\"keptt@-2\"");
+  const Read result = read(text);
+  EXPECT_FALSE(result.graph);
+  ASSERT_EQ(result.diagnostics.list.size(), 4u) << all_messages(result.diagnostics);
+  EXPECT_EQ(result.diagnostics.list[0].id, Id::wrong_type);
+  EXPECT_EQ(result.diagnostics.list[1].id, Id::invalid_value);
+  EXPECT_EQ(result.diagnostics.list[2].id, Id::unknown_kind);
+  EXPECT_EQ(result.diagnostics.list[3].id, Id::unknown_resource);
+}
+
+TEST(GraphErrors, SectionsOfTheWrongTypeSilenceWhatReferredToThem) {
+  for (const char* section : {"settings", "imports", "resources", "passes"}) {
+    std::string text = whole_graph();
+    const std::string key = std::string("  \"") + section + "\": ";
+    const size_t at = text.find(key) + key.size();
+    text.insert(at, "7, \"note_moved\": ");
+    const Read result = read(text);
+    EXPECT_FALSE(result.graph);
+    ASSERT_EQ(result.diagnostics.list.size(), 2u) << section << "\n" << all_messages(result.diagnostics);
+    EXPECT_EQ(result.diagnostics.list[0].id, Id::wrong_type);
+    EXPECT_EQ(result.diagnostics.list[1].id, Id::unknown_key);
+  }
+}
+
+TEST(GraphErrors, CountsBeyondTheLimitsAreRefused) {
+  std::string many_passes, many_resources, many_settings;
+  for (size_t i = 0; i <= limits::passes; ++i)
+    many_passes += (i ? ",{}" : "{}");
+  for (size_t i = 0; i <= limits::resources; ++i)
+    many_resources += (i ? ",\"r" : "\"r") + std::to_string(i) + "\":{}";
+  for (size_t i = 0; i <= limits::settings; ++i)
+    many_settings += (i ? ",\"s" : "\"s") + std::to_string(i) + "\":{}";
+  const std::string start = "{ \"dermis\": 1, \"name\": \"g\", ";
+  expect_only(read(start + "\"exports\": [],\n\"passes\": [" + many_passes + "] }").diagnostics,
+              Id::limit_exceeded, 2, 11, {"4097", "4096"});
+  const std::string rest = "\"exports\": [], \"passes\": [],\n";
+  expect_only(read(start + rest + "\"resources\": {" + many_resources + "} }").diagnostics,
+              Id::limit_exceeded, 2, 14, {"4096"});
+  expect_only(read(start + rest + "\"settings\": {" + many_settings + "} }").diagnostics, Id::limit_exceeded,
+              2, 13, {"256"});
+}
+
+} // namespace
+} // namespace dermis
