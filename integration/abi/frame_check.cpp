@@ -186,8 +186,8 @@ void remove_jitter(subsurface::Matrix4& clip_from_view, int row, double pixels, 
     clip_from_view[row * 4 + c] -= 2.0 * pixels / extent * clip_from_view[12 + c];
 }
 
-bool fill_constants(const dermis_frame& frame, const vulkan::Rectangle& rectangle, bool history_invalid,
-                    subsurface::FrameConstants& constants) {
+bool fill_constants(const dermis_frame& frame, const Program& program, const vulkan::Rectangle& rectangle,
+                    bool history_invalid, subsurface::FrameConstants& constants) {
   subsurface::FrameInput input;
   input.rect_x = rectangle.x;
   input.rect_y = rectangle.y;
@@ -203,6 +203,18 @@ bool fill_constants(const dermis_frame& frame, const vulkan::Rectangle& rectangl
                                                                  : subsurface::DepthKind::device;
   input.frame_index = frame.frame_index;
   input.history_invalid = history_invalid;
+  const vulkan::Rectangle previous = program.executor->previous_rectangle();
+  input.previous_x = previous.x;
+  input.previous_y = previous.y;
+  input.previous_width = previous.width;
+  input.previous_height = previous.height;
+  std::copy(std::begin(frame.previous_clip_from_view), std::end(frame.previous_clip_from_view),
+            input.previous_clip_from_view.begin());
+  std::copy(std::begin(frame.view_from_world), std::end(frame.view_from_world),
+            input.view_from_world.begin());
+  std::copy(std::begin(frame.previous_view_from_world), std::end(frame.previous_view_from_world),
+            input.previous_view_from_world.begin());
+  input.previous_jitter_px = program.last_jitter_px;
   return subsurface::fill_frame_constants(input, constants);
 }
 
@@ -222,7 +234,7 @@ dermis_result check_frame(const dermis_graph_t& graph, Program& program, const d
   bool history_invalid = false;
   for (uint32_t i = 0; i < program.executor->history_count(); ++i)
     history_invalid = history_invalid || !program.executor->history_state(i, reset).valid;
-  if (!fill_constants(frame, checked.input.rectangle, history_invalid, checked.constants))
+  if (!fill_constants(frame, program, checked.input.rectangle, history_invalid, checked.constants))
     return bad_argument(
         log,
         "{}: clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic "

@@ -9,6 +9,7 @@
 #include "integration/abi/context.hpp"
 #include "passes/subsurface/kernel_tables.hpp"
 
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -69,7 +70,8 @@ struct Program {
   std::vector<vulkan::HostImage>
       images; // by slot; filled at each record, so that recording allocates nothing
   std::unique_ptr<vulkan::Executor> executor;
-  uint64_t last_frame = 0; // frame_index it was recorded with last; 0: never
+  uint64_t last_frame = 0;                // frame_index it was recorded with last; 0: never
+  std::array<double, 2> last_jitter_px{}; // of that frame
 };
 
 // Parses, compiles (or takes the plan from `plans`, where it then is) and allocates. On failure `diagnostics`

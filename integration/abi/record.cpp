@@ -41,6 +41,7 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
                 has_slot ? program.slots[static_cast<size_t>(error.slot)].name : "", has_slot ? "')" : "");
   }
   program.last_frame = frame.frame_index;
+  program.last_jitter_px = {frame.jitter_x, frame.jitter_y};
   graph.last_frame = frame.frame_index;
   take_over(graph);
   return DERMIS_OK;

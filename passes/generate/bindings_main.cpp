@@ -4,6 +4,7 @@
 #include "passes/subsurface/profiles/radial_table.hpp"
 #include "passes/subsurface/sap/sap_weights.hpp"
 #include "passes/subsurface/separable/separable_kernel.hpp"
+#include "passes/subsurface/temporal/reproject.hpp"
 #include "passes/subsurface/truth/surface.hpp"
 
 #include <fmt/format.h>
@@ -89,14 +90,22 @@ std::string shared_constants() {
                      "const int radial_nodes = {}; // profiles/radial_table.hpp\n"
                      "const float radial_log2_r_first = {:.1f};\n"
                      "const float radial_nodes_per_octave = {:.1f};\n"
-                     "const float radial_inverse_nodes_per_unit = {:.1f};\n\n#endif\n",
+                     "const float radial_inverse_nodes_per_unit = {:.1f};\n"
+                     "const float reproject_snap_px = {}; // temporal/reproject.hpp\n"
+                     "const float reproject_largest_velocity = {:.1f};\n"
+                     "const float reproject_depth_share = {};\n"
+                     "const float reproject_slope_pixels = {:.1f};\n"
+                     "const float reproject_least_weight = {};\n\n#endif\n",
                      subsurface::copy_below_d_px, subsurface::min_patch_cosine, subsurface::separable_nodes,
                      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
                      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
                      subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::plain),
                      subsurface::sap_node_count, double(subsurface::sap_nodes_per_octave),
                      subsurface::sap_log2_d_first, subsurface::radial_nodes, subsurface::radial_log2_r_first,
-                     subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit);
+                     subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit,
+                     subsurface::reproject_snap_px, subsurface::reproject_largest_velocity,
+                     subsurface::reproject_depth_share, subsurface::reproject_slope_pixels,
+                     subsurface::reproject_least_weight);
 }
 
 bool write(const std::string& path, const std::string& text) {

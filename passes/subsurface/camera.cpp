@@ -31,6 +31,33 @@ std::optional<PixelRays> pixel_rays(const Matrix4& m, uint32_t width, uint32_t h
                    .perspective = perspective};
 }
 
+Matrix4 multiply(const Matrix4& a, const Matrix4& b) {
+  Matrix4 product{};
+  for (size_t r = 0; r < 4; ++r)
+    for (size_t c = 0; c < 4; ++c)
+      for (size_t k = 0; k < 4; ++k)
+        product[4 * r + c] += a[4 * r + k] * b[4 * k + c];
+  return product;
+}
+
+std::optional<Matrix4> invert_affine(const Matrix4& m) {
+  if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return std::nullopt;
+  const auto cofactor = [&](size_t r, size_t c) {
+    const size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+    return m[4 * r1 + c1] * m[4 * r2 + c2] - m[4 * r1 + c2] * m[4 * r2 + c1];
+  };
+  const double determinant = m[0] * cofactor(0, 0) + m[1] * cofactor(0, 1) + m[2] * cofactor(0, 2);
+  if (!std::isfinite(1 / determinant)) return std::nullopt;
+  Matrix4 inverse{};
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 3; ++c) {
+      inverse[4 * r + c] = cofactor(c, r) / determinant;
+      inverse[4 * r + 3] -= inverse[4 * r + c] * m[4 * c + 3];
+    }
+  inverse[15] = 1;
+  return inverse;
+}
+
 DepthDecode depth_decode(const Matrix4& m, double metres_per_unit) {
   // value = (-m[10] depth + m[11]) / (-m[14] depth + m[15]), solved for depth.
   return {.a = -m[15] * metres_per_unit, .b = m[11] * metres_per_unit, .c = -m[14], .e = m[10]};

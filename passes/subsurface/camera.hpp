@@ -11,6 +11,10 @@ namespace dermis::subsurface {
 // A 4x4 matrix, row-major (m[4 * row + column]); it multiplies column vectors: clip = M * view.
 using Matrix4 = std::array<double, 16>;
 
+Matrix4 multiply(const Matrix4& a, const Matrix4& b);
+// Empty where the last row is not 0 0 0 1, or the rest cannot be inverted.
+std::optional<Matrix4> invert_affine(const Matrix4& m);
+
 // View space: x right, y up, looking down -z, in metres. Depth is the distance along the view axis, metres, >
 // 0. Pixel (i, j) counts from the render rectangle's upper left corner; its centre has the view position
 //   x = (scale_x * i + offset_x) * k,  y = (scale_y * j + offset_y) * k,  z = -depth,  k = perspective ?

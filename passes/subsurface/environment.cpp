@@ -19,6 +19,33 @@ int32_t tiles_of(uint32_t pixels) {
 bool has_own_tables(const NumberedProfile& numbered) {
   return numbered.profile.model != ProfileModel::burley;
 }
+
+// The part of `out` about the frame before. False where there was none that can be looked back at.
+bool fill_previous(const FrameInput& input, FrameConstants& out) {
+  const auto rays = pixel_rays(input.previous_clip_from_view, input.previous_width, input.previous_height,
+                               input.metres_per_unit, {0, 0}); // the matrix contains its jitter
+  const auto world_from_view = invert_affine(input.view_from_world);
+  if (!rays || !world_from_view) return false;
+  const Matrix4 moved = multiply(input.previous_view_from_world, *world_from_view);
+  if (!std::all_of(moved.begin(), moved.end(), [](double x) { return std::isfinite(x); })) return false;
+  const double mm_per_unit = input.metres_per_unit * mm_per_metre;
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 4; ++c)
+      out.previous_from_view[r][c] = static_cast<float>(moved[4 * r + c] * (c == 3 ? mm_per_unit : 1.0));
+  const double ray_unit = rays->perspective ? 1.0 : mm_per_metre;
+  out.previous_ray_scale[0] = static_cast<float>(rays->scale_x * ray_unit);
+  out.previous_ray_scale[1] = static_cast<float>(rays->scale_y * ray_unit);
+  out.previous_ray_offset[0] = static_cast<float>(rays->offset_x * ray_unit);
+  out.previous_ray_offset[1] = static_cast<float>(rays->offset_y * ray_unit);
+  out.previous_rect[0] = static_cast<int32_t>(input.previous_x);
+  out.previous_rect[1] = static_cast<int32_t>(input.previous_y);
+  out.previous_rect[2] = static_cast<int32_t>(input.previous_width);
+  out.previous_rect[3] = static_cast<int32_t>(input.previous_height);
+  out.previous_jitter[0] = static_cast<float>(input.previous_jitter_px[0]);
+  out.previous_jitter[1] = static_cast<float>(input.previous_jitter_px[1]);
+  if (rays->perspective) out.flags |= 8u;
+  return true;
+}
 } // namespace
 
 bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
@@ -49,6 +76,7 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.exposure = input.exposure;
   out.jitter[0] = static_cast<float>(input.jitter_px[0]);
   out.jitter[1] = static_cast<float>(input.jitter_px[1]);
+  if (!fill_previous(input, out)) out.flags |= 4u;
   return true;
 }
 

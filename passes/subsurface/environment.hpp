@@ -33,7 +33,8 @@ struct FrameConstants {
   int32_t rect[4];      // x, y, width, height of the render rectangle, pixels
   int32_t tiles[2];     // 8x8 tiles of the rectangle, x and y
   uint32_t frame_index; // low 32 bits
-  uint32_t flags;       // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid
+  uint32_t flags;       // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid,
+                        // bit 3: the frame before was perspective
   float ray_scale[2];   // view x, y = (scale * pixel + offset) * (perspective ? depth : 1); pixel counts from
   float
       ray_offset[2]; // the rectangle's corner, integers at pixel centres; mm (per mm of depth if perspective)
@@ -41,8 +42,14 @@ struct FrameConstants {
   float depth_unit;      // mm per unit of view distance
   float exposure;
   float jitter[2]; // pixels
+  // Of the frame before, where bit 2 of flags is not set:
+  float previous_from_view[3][4]; // rows; its view position of what stands still = M * (view position, 1), mm
+  float previous_ray_scale[2], previous_ray_offset[2]; // as ray_scale and ray_offset
+  int32_t previous_rect[4];
+  float previous_jitter[2]; // pixels
+  float unused[2];          // rounds the block to 16 bytes
 };
-static_assert(sizeof(FrameConstants) == 80);
+static_assert(sizeof(FrameConstants) == 176);
 
 // std430, one per profile id 0..255; entry 0 and undeclared ids have d = 0: light passes through.
 struct ProfileEntry {
@@ -69,6 +76,11 @@ struct FrameInput {
   float exposure = 1.0f;
   uint64_t frame_index = 0;
   bool history_invalid = false;
+  // Of the frame before: its rectangle (width 0: there is none), its matrix as pictures were rendered with
+  // it, jitter included, and that jitter. Where they are no projection, history counts as invalid.
+  uint32_t previous_x = 0, previous_y = 0, previous_width = 0, previous_height = 0;
+  Matrix4 previous_clip_from_view{}, view_from_world{}, previous_view_from_world{};
+  std::array<double, 2> previous_jitter_px{};
 };
 
 // False if the matrix is not an axis-aligned perspective or orthographic projection or a number is not

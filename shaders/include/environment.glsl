@@ -6,13 +6,21 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   ivec4 rect;        // x, y, width, height of the render rectangle, pixels
   ivec2 tiles;       // 8x8 tiles of the rectangle
   uint frame_index;
-  uint flags;        // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid
+  uint flags;        // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid,
+                     // bit 3: the frame before was perspective
   vec2 ray_scale;    // view x, y = (scale * pixel + offset) * (perspective ? depth : 1), mm
   vec2 ray_offset;
   vec4 depth_decode; // depth mm = (a * value + b) / (c * value + e)
   float depth_unit;  // mm per unit of view distance
   float exposure;
   vec2 jitter;       // pixels
+  // Of the frame before, where bit 2 of flags is not set:
+  vec4 previous_from_view[3]; // rows; its view position of what stands still = M * (view position, 1), mm
+  vec2 previous_ray_scale;    // as ray_scale, ray_offset
+  vec2 previous_ray_offset;
+  ivec4 previous_rect;
+  vec2 previous_jitter; // pixels
+  vec2 unused;
 } frame;
 
 struct profile_entry {

@@ -107,7 +107,7 @@ TEST(Environment, FrameConstantsRebuildTheViewPositionOfAProjectedPoint) {
   FrameConstants constants{};
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_EQ(constants.tiles[0], 1);
-  EXPECT_EQ(constants.flags, 1u);
+  EXPECT_EQ(constants.flags, 1u | 4u);
   // View point (1, .5, -2) units: ndc = (.25, -.25), depth value .1 / 2; pixel = (ndc + 1) / 2 * size - 1/2.
   const float pixel[2] = {2.0f, 0.25f};
   const float value = 0.05f;

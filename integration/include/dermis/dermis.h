@@ -358,7 +358,9 @@ typedef enum dermis_depth_kind {
 
 /* One frame. Matrices act on column vectors (clip = clip_from_view * view) and are stored row by row: element
  * [r * 4 + c]. View space: x right, y up, the camera looks down -z. Clip space is Vulkan's: y down, depth 0..1.
- * clip_from_view is without jitter; jitter_x and jitter_y tell how far the picture was shifted by it. */
+ * clip_from_view is what the picture was rendered with; jitter_x and jitter_y tell how many pixels of shift are in it.
+ * The previous matrices are what the frame before had here; where they are no projection (all 0), histories that follow
+ * surfaces begin anew in each frame. */
 typedef struct dermis_frame {
   size_t struct_size;
   VkCommandBuffer command_buffer;  /* recording, outside a render pass, of the context's queue family */
@@ -373,7 +375,7 @@ typedef struct dermis_frame {
   float view_from_world[16];
   float previous_clip_from_view[16];
   float previous_view_from_world[16];
-  float jitter_x, jitter_y;        /* pixels, +x right, +y down: shift of the picture, not in the matrices */
+  float jitter_x, jitter_y;        /* pixels, +x right, +y down: shift of the picture, in clip_from_view */
   float metres_per_unit;           /* 0 = 1 */
   float exposure;                  /* linear factor the host applies later; 0 = 1 */
   float delta_seconds;
