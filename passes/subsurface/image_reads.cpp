@@ -113,6 +113,31 @@ ImageReads afis(const PassKind& kind, const ReadsQuestion& question) {
   return reads;
 }
 
+// Material, light, depth, slope; what history keeps at four places; a sample reads six texels as in afis.
+ImageReads guided(const PassKind& kind, const ReadsQuestion& question) {
+  const double samples = question.sampled_share * static_cast<double>(setting(kind, question, "most"));
+  const double kept =
+      1 + one_if(kind, question, "place", PortSide::read) + one_if(kind, question, "control", PortSide::read);
+  constexpr double levels[] = {2, 1, 0}; // trilinear, whole, none
+  return {4 + scale_read(kind, question) + one_if(kind, question, "velocity", PortSide::read) + 4 * kept +
+              (4 + levels[setting(kind, question, "mips")]) * samples,
+          samples};
+}
+
+// Light; where it is unsure the pixel's own surface and light, and a sample reads its surface and the surface
+// and light of its level.
+ImageReads blend(const PassKind& kind, const ReadsQuestion& question) {
+  const double samples = question.sampled_share * static_cast<double>(setting(kind, question, "samples"));
+  return {1 + 2 * question.sampled_share + 3 * samples, samples};
+}
+
+// As blend; and the velocity, four kept places and ratios.
+ImageReads residual(const PassKind& kind, const ReadsQuestion& question) {
+  ImageReads reads = blend(kind, question);
+  reads.per_invocation += 1 + one_if(kind, question, "velocity", PortSide::read) + 4 * 2;
+  return reads;
+}
+
 // subsurface_pyramid_setup.comp: material, light, and the materials around if profiles are kept apart.
 ImageReads pyramid_setup(const PassKind& kind, const ReadsQuestion& question) {
   const bool textured = setting(kind, question, "texturing") != 0;
@@ -176,6 +201,9 @@ constexpr Entry entries[] = {
     {"subsurface.pyramid_gather", pyramid_gather},
     {"subsurface.transmission", transmission},
     {"subsurface.afis", afis},
+    {"subsurface.guided", guided},
+    {"subsurface.blend", blend},
+    {"subsurface.residual", residual},
 };
 
 } // namespace

@@ -17,7 +17,10 @@ struct ReadsQuestion {
   std::span<const SettingValue> settings; // resolved, one per KindSetting
   std::vector<bool> bound;                // one per port of the kind
   PerChannel d_px{};                      // projected d
-  std::span<const float> sap_tables;      // make_sap_tables({true, true}, {}); only kinds of the pyramid look at them
+  std::span<const float>
+      sap_tables; // make_sap_tables({true, true}, {}); only kinds of the pyramid look at them
+  double sampled_share =
+      1; // of the pixels, those that take samples in this frame, where a kind does not in all
 };
 
 struct ImageReads {

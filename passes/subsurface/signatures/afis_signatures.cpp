@@ -76,7 +76,100 @@ constexpr KindSetting afis_settings[] = {
                     "levels between two, rounded to one, or the pixel under the sample alone"),
 };
 
+constexpr Format guide_formats[] = {Format::rgba16f};
+constexpr Format place_formats[] = {Format::rg16f};
+constexpr Format control_formats[] = {Format::rgba16f, Format::rgba32f};
+constexpr std::string_view guide_doc =
+    "standard deviation of one frame's exposed luminance, mean number of samples; then with split_half depth "
+    "in metres and profile id, else the moving mean of what is watched";
+constexpr std::string_view place_doc = "depth in metres, profile id; not with split_half";
+constexpr std::string_view control_doc =
+    "weight of the control, its standard deviation, means of light and control; with ocv";
+
+constexpr Port guided_ports[] = {
+    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}},
+    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}},
+    port::level_port("level_1"),
+    port::level_port("level_2"),
+    port::level_port("level_3"),
+    port::level_port("level_4"),
+    port::level_port("level_5"),
+    port::level_port("level_6"),
+    port::level_port("level_7"),
+    port::level_port("level_8"),
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::velocity,
+    port::classes_before,
+    {"guide", Usage::sampled_image, false, "texture2D", guide_doc, guide_formats},
+    {"place", Usage::sampled_image, true, "texture2D", place_doc, place_formats},
+    {"control", Usage::sampled_image, true, "texture2D", control_doc, control_formats},
+    port::tiles,
+    port::arguments,
+    port::scattered,
+    {"guide_out", Usage::storage_image_write, false, "image2D", guide_doc, guide_formats},
+    {"place_out", Usage::storage_image_write, true, "image2D", place_doc, place_formats},
+    {"control_out", Usage::storage_image_write, true, "image2D", control_doc, control_formats},
+    port::sampling,
+};
+
+constexpr std::string_view guidance_options[] = {"split_half", "spvg", "ccv", "ocv"};
+constexpr KindSetting count_setting(std::string_view name, int64_t standard, std::string_view doc) {
+  return {.name = name,
+          .type = SettingType::integer,
+          .default_value = integer_value(standard),
+          .minimum = 2,
+          .maximum = 4096,
+          .options = {},
+          .unit = "samples a pixel",
+          .doc = doc};
+}
+
+constexpr KindSetting guided_settings[] = {
+    afis_settings[1],
+    afis_settings[2],
+    afis_settings[3],
+    afis_settings[4],
+    afis_settings[5],
+    afis_settings[6],
+    afis_settings[7],
+    afis_settings[8],
+    afis_settings[9],
+    setting::choice(
+        "guidance", guidance_options,
+        "what is watched: the difference of two half sequences; luminance (spvg); less that of the "
+        "pixel's own light (ccv); less as much of it as follows best (ocv)"),
+    count_setting("least", 8, "at least"),
+    count_setting("most", 64, "at most"),
+    setting::real("sigma2_target", 1e-4, 1e-12, 1e6, "",
+                  "variance of a frame's exposed luminance that is aimed at"),
+    setting::real("kappa", 0.2, 0, 1, "", "how fast a change is followed"),
+    setting::real("eta", 0.2, 0.001, 1, "", "weight of a new frame in moving means"),
+    setting::real("eta_cv", 0.005, 1e-7, 1, "", "weight of a new frame in the control's covariance"),
+    setting::real("eps_alpha", 1e-6, 1e-20, 1, "",
+                  "prior of the control's weight, in exposed luminance squared"),
+    {.name = "full_precision",
+     .type = SettingType::boolean,
+     .default_value = {SettingType::boolean, 0, 0.0},
+     .minimum = 0,
+     .maximum = 0,
+     .options = {},
+     .unit = "",
+     .doc = "control_out has 32 bits a channel"},
+};
+
 } // namespace
+
+const PassKind guided_kind{
+    .name = "subsurface.guided",
+    .shader = "subsurface_guided",
+    .doc = "Filtered importance sampling with as many samples as the spread of earlier frames asks for.",
+    .ports = guided_ports,
+    .settings = guided_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
 
 const PassKind afis_kind{
     .name = "subsurface.afis",

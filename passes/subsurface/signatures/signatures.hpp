@@ -9,9 +9,10 @@ namespace dermis::subsurface {
 extern const PassKind classify_kind, tile_list_kind;                               // tile_signatures.cpp
 extern const PassKind setup_kind, combine_kind, light_kind, transmission_kind;     // light_signatures.cpp
 extern const PassKind burley_kind, fixed_kind, separable_kind;                     // scatter_signatures.cpp
-extern const PassKind afis_kind;                                                   // afis_signatures.cpp
+extern const PassKind afis_kind, guided_kind;                                      // afis_signatures.cpp
 extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind;  // pyramid_signatures.cpp
 extern const PassKind sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind; // sap_signatures.cpp
+extern const PassKind blend_kind, residual_kind;                                   // residual_signatures.cpp
 
 // Ports that several kinds declare with the same meaning.
 namespace port {
@@ -57,6 +58,29 @@ inline constexpr Format level_formats[] = {Format::rgba16f, Format::rgba32f};
 constexpr Port level_port(std::string_view name) {
   return {name, Usage::sampled_image, false, "texture2D", level_doc, level_formats};
 }
+inline constexpr Port velocity{
+    "velocity",
+    Usage::sampled_image,
+    true,
+    "texture2D",
+    "now - before: pixels to the right and down, jitter taken out; in a third channel view depth that the "
+    "camera does not explain, world units. Unbound: what is seen stands still",
+    {}};
+inline constexpr Port classes_before{"classes_before",
+                                     Usage::storage_buffer_read,
+                                     false,
+                                     "uint",
+                                     "what subsurface.classify wrote in the frame before",
+                                     {}};
+inline constexpr Format sampling_formats[] = {Format::rgba16f, Format::rgba32f};
+inline constexpr Port sampling{
+    "sampling",
+    Usage::storage_image_write,
+    true,
+    "image2D",
+    "for tools: samples taken in this frame, samples that history stands for or their mean "
+    "number, confidence or spread, 1 where history was not of this surface",
+    sampling_formats};
 } // namespace port
 
 constexpr SettingValue integer_value(int64_t value) {
@@ -77,6 +101,18 @@ constexpr KindSetting choice(std::string_view name, std::span<const std::string_
           .maximum = 0,
           .options = options,
           .unit = "",
+          .doc = doc};
+}
+
+constexpr KindSetting real(std::string_view name, double standard, double least, double greatest,
+                           std::string_view unit, std::string_view doc) {
+  return {.name = name,
+          .type = SettingType::real,
+          .default_value = {SettingType::real, 0, standard},
+          .minimum = least,
+          .maximum = greatest,
+          .options = {},
+          .unit = unit,
           .doc = doc};
 }
 

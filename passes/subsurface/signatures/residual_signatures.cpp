@@ -1,0 +1,142 @@
+// What mends the surface-aware pyramid where it is unsure: samples of the surface around, read from the
+// pyramid's own levels.
+
+#include "passes/subsurface/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr Format surface_formats[] = {Format::rgba32_uint};
+constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
+constexpr std::string_view light_doc = "as subsurface.sap_down writes it";
+
+constexpr Port light_port(std::string_view name) {
+  return {name, Usage::sampled_image, false, "texture2D", light_doc, light_formats};
+}
+constexpr Port surface_port(std::string_view name) {
+  return {name, Usage::sampled_image, false, "utexture2D", light_doc, surface_formats};
+}
+
+constexpr Port sure_light{"scattered",
+                          Usage::sampled_image,
+                          false,
+                          "texture2D",
+                          "of the pyramid; rgb scattered light, a = confidence",
+                          light_formats};
+constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
+                       "uint",    "as subsurface.classify writes them", {}};
+
+constexpr Port blend_ports[] = {
+    light_port("light"),
+    light_port("light_1"),
+    light_port("light_2"),
+    light_port("light_3"),
+    light_port("light_4"),
+    light_port("light_5"),
+    surface_port("surface"),
+    surface_port("surface_1"),
+    surface_port("surface_2"),
+    surface_port("surface_3"),
+    surface_port("surface_4"),
+    surface_port("surface_5"),
+    sure_light,
+    classes,
+    port::tiles,
+    port::arguments,
+    {"blended", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
+     light_formats},
+    port::sampling,
+};
+
+constexpr Format ratio_formats[] = {Format::rgba16f};
+constexpr Format place_formats[] = {Format::rg16f};
+constexpr std::string_view ratio_doc =
+    "rgb running ratio of sampled light to the pyramid's, a = samples behind it";
+constexpr std::string_view place_doc = "view depth in metres, profile id";
+
+constexpr Port residual_ports[] = {
+    light_port("light"),
+    light_port("light_1"),
+    light_port("light_2"),
+    light_port("light_3"),
+    light_port("light_4"),
+    light_port("light_5"),
+    surface_port("surface"),
+    surface_port("surface_1"),
+    surface_port("surface_2"),
+    surface_port("surface_3"),
+    surface_port("surface_4"),
+    surface_port("surface_5"),
+    sure_light,
+    port::velocity,
+    classes,
+    port::classes_before,
+    {"ratio", Usage::sampled_image, false, "texture2D", ratio_doc, ratio_formats},
+    {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
+    port::tiles,
+    port::arguments,
+    {"mended", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
+     light_formats},
+    {"ratio_out", Usage::storage_image_write, false, "image2D", ratio_doc, ratio_formats},
+    {"place_out", Usage::storage_image_write, false, "image2D", place_doc, place_formats},
+    port::sampling,
+};
+
+constexpr KindSetting samples{.name = "samples",
+                              .type = SettingType::integer,
+                              .default_value = integer_value(16),
+                              .minimum = 1,
+                              .maximum = 4096,
+                              .options = {},
+                              .unit = "samples a pixel",
+                              .doc = "beyond the direct radius, where confidence is low"};
+constexpr KindSetting lod_bias = setting::real(
+    "lod_bias", -1.5, -8, 4, "levels", "on the level whose texels have the area that a sample stands for");
+
+constexpr KindSetting blend_settings[] = {
+    samples,
+    lod_bias,
+    setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel is sampled"),
+    setting::real("share", 0.5, 0, 1, "", "of the samples in the result"),
+};
+
+constexpr KindSetting residual_settings[] = {
+    samples,
+    lod_bias,
+    setting::real("below", 0.95, 0, 2, "", "confidence below which a pixel is sampled"),
+    setting::real("alpha", 0.2, 0.01, 1, "", "weight of what is new in the running ratio, at least"),
+    {.name = "eager",
+     .type = SettingType::integer,
+     .default_value = integer_value(6),
+     .minimum = 0,
+     .maximum = 64,
+     .options = {},
+     .unit = "times samples",
+     .doc = "a pixel with less history takes twice the samples in every frame"},
+};
+
+} // namespace
+
+const PassKind blend_kind{
+    .name = "subsurface.blend",
+    .shader = "subsurface_blend",
+    .doc = "Blends the pyramid's light with samples where its confidence is low. No history.",
+    .ports = blend_ports,
+    .settings = blend_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind residual_kind{
+    .name = "subsurface.residual",
+    .shader = "subsurface_residual",
+    .doc =
+        "Multiplies the pyramid's light by the running ratio of samples to it, where its confidence is low.",
+    .ports = residual_ports,
+    .settings = residual_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

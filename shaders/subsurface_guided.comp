@@ -1,0 +1,129 @@
+#version 460
+// Filtered importance sampling with as many samples as the spread of what a pixel found before asks for.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "subsurface_guided.bindings.glsl"
+#include "environment.glsl"
+#include "tiles.glsl"
+#include "half.glsl"
+#include "afis.glsl"
+#include "guidance.glsl"
+vec2 surface_before(ivec2 pixel);
+#include "reproject.glsl"
+
+const float mm_per_metre = 1000.0;
+const vec3 rec709 = vec3(0.2126, 0.7152, 0.0722);
+const float first_count = 16.0;  // samples where there is no history
+const uint frame_stride = 61u;   // points of the sequence from frame to frame, whatever a pixel takes of them
+
+bool splits() { return settings.guidance == GUIDANCE_SPLIT_HALF; }
+bool has_moments() { return settings.guidance == GUIDANCE_OCV; }
+
+vec4 guide_before(ivec2 pixel) { return texelFetch(guide_image, previous_texel(pixel), 0); }
+
+// The half sequences keep depth (metres) and profile in the guide itself, the others beside it.
+vec2 surface_before(ivec2 pixel) {
+  ivec2 tile = pixel >> 3;
+  int columns = (frame.previous_rect.z + 7) >> 3;
+  if (classes_before_data[tile.y * columns + tile.x] == class_none)
+    return vec2(0.0);
+  vec2 kept = splits() ? guide_before(pixel).ba : texelFetch(place_image, previous_texel(pixel), 0).rg;
+  return vec2(kept.r * mm_per_metre, kept.g);
+}
+
+struct guide_state {
+  float sd, mean_count, mean; // of one frame's exposed luminance; of samples; of what is watched
+  moving_covariance moments;
+  bool lost;
+};
+
+guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
+  guide_state state = guide_state(sqrt(settings.sigma2_target), first_count, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), true);
+  if (!history_usable())
+    return state;
+  previous_place place = has_velocity()
+                             ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+                             : place_before(vec2(pixel), depth);
+  history_taps taps = find_history(place, id, depth_tolerance(place.depth, rise));
+  if (taps.weight == vec4(0.0))
+    return state;
+  vec4 guide = vec4(0.0), control = vec4(0.0);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0) {
+      ivec2 at = taps.first + ivec2(i & 1, i >> 1);
+      guide += taps.weight[i] * guide_before(at);
+      if (has_moments())
+        control += taps.weight[i] * texelFetch(control_image, previous_texel(at), 0);
+    }
+  // The control is kept as weight, sd of g and both means: half floats hold these, not a covariance.
+  float variance_g = control.g * control.g;
+  return guide_state(guide.r, guide.g, guide.b, moving_covariance(control.b, control.a, control.r * variance_g, variance_g),
+                     false);
+}
+
+float exposed(vec3 light) { return min(dot(light, rec709) * frame.exposure, 1e4); }
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  ivec2 texel = texel_of(pixel);
+  uint id = texelFetch(material_image, texel, 0).r;
+  vec4 light = texelFetch(light_image, texel, 0);
+  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  guide_state state = guide_state(0.0, 0.0, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), false);
+  int count = 0;
+  if (id != 0u && !copy_only && depth > 0.0) {
+    float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+    scatter_profile profile = find_profile(id, scale);
+    if (projected_d(profile.d.w, depth) >= copy_below_d_px) {
+      vec2 footprint = pixel_footprint(depth);
+      state = state_before(pixel, depth, id, length(texelFetch(slope_image, texel, 0).rg * footprint));
+      count = clamped_samples(wanted_samples(state.sd * state.sd, state.mean_count));
+      scatter_point point = scatter_point(pixel, id, depth, view_position(vec2(pixel), depth));
+      vec3 own = light.rgb;
+      uint first = frame.frame_index * frame_stride;
+      float variance = state.sd * state.sd;
+      if (splits()) {
+        count += count & 1;
+        vec3 a = scatter(point, profile, light.a, own, sample_set(0u, count / 2, count, first));
+        vec3 b = scatter(point, profile, light.a, own, sample_set(1u, count / 2, count, first));
+        light.rgb = 0.5 * (a + b);
+        float half_way = 0.5 * (exposed(a) - exposed(b));
+        if (!state.lost)
+          variance = mix(variance, half_way * half_way, settings.eta);
+      } else {
+        light.rgb = scatter(point, profile, light.a, own, sample_set(0u, count, count, first));
+        float f = exposed(light.rgb), g = exposed(own);
+        if (state.lost)
+          state.moments = moving_covariance(f, g, 0.0, 0.0);
+        float weight = settings.guidance == GUIDANCE_SPVG ? 0.0 : has_moments() ? control_weight(state.moments) : 1.0;
+        float watched = f - weight * g;
+        moving_variance moments = moving_variance(state.lost ? watched : state.mean, variance);
+        if (!state.lost)
+          moments = add_value(moments, watched, settings.eta);
+        state.mean = moments.mean;
+        variance = moments.variance;
+        if (has_moments() && !state.lost)
+          state.moments = add_values(state.moments, f, g, settings.eta_cv);
+      }
+      state.sd = sqrt(variance);
+      state.mean_count = state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
+    }
+  }
+  imageStore(scattered_image, texel, vec4(round_to_half(light.rgb), 1.0));
+  vec2 place = vec2(depth / mm_per_metre, float(id));
+  imageStore(guide_out_image, texel,
+             round_to_half(splits() ? vec4(state.sd, state.mean_count, place) : vec4(state.sd, state.mean_count, state.mean, 0.0)));
+  if (has_place_out())
+    imageStore(place_out_image, texel, round_to_half(vec4(place, 0.0, 0.0)));
+  if (has_control_out()) {
+    float variance_g = state.moments.variance_g;
+    vec4 control = vec4(variance_g > 0.0 ? state.moments.covariance / variance_g : 1.0, sqrt(variance_g),
+                        state.moments.mean_f, state.moments.mean_g);
+    imageStore(control_out_image, texel, settings.full_precision != 0 ? control : round_to_half(control));
+  }
+  if (has_sampling())
+    imageStore(sampling_image, texel, vec4(float(count), state.mean_count, state.sd, state.lost ? 1.0 : 0.0));
+}
