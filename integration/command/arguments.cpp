@@ -318,6 +318,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       });
 }
 
+constexpr uint32_t most_sequence_frames = 3600, most_supplement_runs = 1u << 20;
+
 void add_bench_verbs(CLI::App& app, Invocation& invocation) {
   CLI::App& bench = *app.add_subcommand("bench", "Measure the library on this machine");
   bench.require_subcommand(1);
@@ -384,6 +386,46 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
         verb.add_option("--file", options.file, "Techniques and tolerances [tests/benchmark/truth.json]")
             ->type_name("FILE");
+      },
+      true);
+  add_verb<BenchDynamicOptions>(
+      bench, invocation, "dynamic", "Samples, time, error and flicker while light, camera or things change",
+      "dermis bench dynamic --json build/dynamic.json --html build/dynamic.html", bench_dynamic,
+      [](CLI::App& verb, BenchDynamicOptions& options) {
+        add_size(verb, options.size);
+        verb.add_option("--frames", options.frames, "Frames of each sequence [as the file says]")
+            ->check(CLI::Range(1u, most_sequence_frames));
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with plots")->type_name("FILE");
+        verb.add_option("--head", options.head, "Folder of the head scan, which takes the bust's place")
+            ->type_name("DIR");
+        verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--framings", options.framings, "Only these framings, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--techniques", options.techniques, "Only these techniques, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--file", options.file, "What is measured [tests/benchmark/dynamic.json]")
+            ->type_name("FILE");
+        verb.add_option("--cache", options.cache, "Folder that keeps references [build/bench_truth]")
+            ->type_name("DIR");
+      },
+      true);
+  add_verb<BenchSupplementOptions>(
+      bench, invocation, "supplement", "Table 1 of the supplement on control variates, from many runs",
+      "dermis bench supplement --json build/supplement.json", bench_supplement,
+      [](CLI::App& verb, BenchSupplementOptions& options) {
+        verb.add_option("--runs", options.runs, "Runs of 100 frames [4096]")
+            ->check(CLI::Range(16u, most_supplement_runs));
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
       },
       true);
 }

@@ -169,4 +169,22 @@ struct BenchTruthOptions {
 };
 ExitCode bench_truth(const Session& session, const BenchTruthOptions& options);
 
+struct BenchDynamicOptions {
+  std::string file = "tests/benchmark/dynamic.json"; // what is measured
+  Size size{320, 180};
+  uint32_t frames = 0;                       // of each sequence; 0: as the file says
+  std::string json, csv, html;               // files to write; "": none
+  std::string head;                          // folder of the head scan, to take the bust's place; "": none
+  std::vector<std::string> scenes, framings; // only these; empty: all
+  std::vector<std::string> techniques;       // likewise
+  std::string cache = "build/bench_truth";   // folder for references; "": none is kept
+};
+ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& options);
+
+struct BenchSupplementOptions {
+  uint32_t runs = 4096;
+  std::string json, html; // files to write; "": none
+};
+ExitCode bench_supplement(const Session& session, const BenchSupplementOptions& options);
+
 } // namespace dermis::tools

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace demo {
 namespace {
@@ -66,6 +67,13 @@ void move_camera(Scene& scene, const CameraPlace& place) {
   scene.camera.position = point(place.position);
   scene.camera.target = point(place.target);
   scene.camera.vertical_fov = Curve<double>(place.vertical_fov);
+}
+
+void zoom_in(Camera& camera, double zoom) {
+  for (auto& key : camera.vertical_fov.keys)
+    key.value = 2.0 * glm::degrees(std::atan(std::tan(0.5 * glm::radians(key.value)) / zoom));
+  for (auto& key : camera.height.keys)
+    key.value /= zoom;
 }
 
 std::array<float, 16> rows_of(const glm::dmat4& m) {
@@ -139,6 +147,7 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
   FrameOutputs out;
   out.frame = frame;
   out.seconds = state.seconds;
+  out.cut = state.cut;
   out.exposure = static_cast<float>(session.scene.exposure);
   out.camera = camera_of(session.scene, state);
   auto done = run_commands(host, [&](VkCommandBuffer commands) {
@@ -181,6 +190,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   auto scene = load(options.scene);
   if (!scene) return scene.error();
   if (options.camera) move_camera(*scene, *options.camera);
+  zoom_in(scene->camera, options.zoom);
   Model model;
   if (!options.model.mesh.empty()) {
     auto loaded = load_model(options.model);

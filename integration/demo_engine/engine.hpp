@@ -45,6 +45,7 @@ struct RenderOptions {
   bool validation = false;     // run under the Khronos validation layer
   std::string device;          // part of the device's name; "" = choose
   std::optional<CameraPlace> camera;
+  double zoom = 1.0; // how many times larger the camera shows things: its field of view shrinks; > 0
   std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text
 };
 
@@ -91,6 +92,7 @@ struct GraphInputs {
 struct FrameOutputs {
   uint32_t frame = 0;   // first_frame .. first_frame + frames - 1
   double seconds = 0.0; // scene time
+  bool cut = false;     // the camera has jumped since the frame before
   float exposure = 1.0f;
   FrameCamera camera;
   GraphInputs inputs;

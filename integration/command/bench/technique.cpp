@@ -90,19 +90,33 @@ demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoic
   return demo::success();
 }
 
-demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& frame) {
+demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& frame, bool follows) {
   const SlotChoice slots = choose_slots(loaded_.graph, frame);
   if (!slots.problem.empty()) return input_error(request_.graph, slots.problem);
   if (auto ready = prepare(frame, slots); !ready) return ready.error();
   for (const SlotData& data : slots.data)
     if (auto given = device_->upload(data.slot, data.texels, data.channels); !given) return given.error();
   frame_ = c_frame(frame.description);
+  if (!follows) frame_.flags |= DERMIS_FRAME_RESET_HISTORY;
   if (auto ran = device_->run(frame_); !ran) return ran.error();
   return device_->read_rgb("scattered_light");
 }
 
+demo::Result<std::vector<float>> TechniqueRun::sampling() {
+  if (!device_->has("sampling")) return std::vector<float>();
+  return device_->read_rgb("sampling");
+}
+
+uint64_t TechniqueRun::history_bytes() {
+  return device_->memory().history_bytes;
+}
+
 demo::Result<TechniqueTimes> TechniqueRun::run_again() {
   if (auto ran = device_->run(frame_); !ran) return ran.error();
+  return times();
+}
+
+demo::Result<TechniqueTimes> TechniqueRun::times() {
   TechniqueTimes times;
   const std::vector<DeviceGraph::PassTime> all = device_->times();
   if (all.empty())
@@ -121,7 +135,8 @@ demo::Result<TechniqueTimes> TechniqueRun::run_again() {
   return times;
 }
 
-TechniqueCounts TechniqueRun::counts(double sampled_share, const subsurface::PerChannel& d_px) {
+TechniqueCounts TechniqueRun::counts(double sampled_share, const subsurface::PerChannel& d_px,
+                                     std::optional<double> taken) {
   TechniqueCounts counts;
   counts.transient_bytes = device_->memory().transient_bytes;
   counts.reads_per_pixel = 0.0;
@@ -137,7 +152,12 @@ TechniqueCounts TechniqueRun::counts(double sampled_share, const subsurface::Per
                                        sap_tables_};
     for (uint32_t i = 0; i < pass.access_count; ++i)
       question.bound[plan.accesses[pass.first_access + i].port] = true;
-    const auto reads = subsurface::image_reads(kind, question);
+    auto reads = subsurface::image_reads(kind, question);
+    if (reads && taken && reads->samples > 0) {
+      question.sampled_share = *taken / reads->samples;
+      reads = subsurface::image_reads(kind, question);
+      counts.mean_spp += reads->samples * (1 - sampled_share); // they were counted over all pixels
+    }
     if (!reads) {
       counts.reads_per_pixel.reset();
       counts.unknown_kind = kind.name;

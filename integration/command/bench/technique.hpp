@@ -37,13 +37,22 @@ public:
                                                             std::span<const CaptureProfile> profiles,
                                                             std::span<const float> sap_tables);
 
-  // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel.
-  demo::Result<std::vector<float>> scatter(const CapturedFrame& frame);
+  // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel. `follows`: it comes
+  // after the frame that was scattered last, so histories go on; otherwise they begin anew.
+  demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false);
+  // Of the last run. Errors: environment (no timestamps).
+  demo::Result<TechniqueTimes> times();
+  // What the last run's kernels say of their sampling, 3 values a pixel: samples, those behind the history,
+  // confidence. Empty where the graph does not hand it out.
+  demo::Result<std::vector<float>> sampling();
+  uint64_t history_bytes();
   // Runs the last frame again, on whatever light is there.
   demo::Result<TechniqueTimes> run_again();
   // Of the last frame. `sampled_share`: of its subsurface pixels, those whose light is scattered at all;
-  // `d_px`: its median d per channel.
-  TechniqueCounts counts(double sampled_share, const subsurface::PerChannel& d_px);
+  // `d_px`: its median d per channel; `taken`: samples a subsurface pixel where they were counted on the
+  // device.
+  TechniqueCounts counts(double sampled_share, const subsurface::PerChannel& d_px,
+                         std::optional<double> taken = {});
 
   const TechniqueRequest& request() const { return request_; }
 

@@ -273,6 +273,7 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
   frame.bindings = bindings.data();
   frame.binding_count = static_cast<uint32_t>(bindings.size());
   frame.frame_index = frame_index;
+  if (state.cut) frame.flags |= DERMIS_FRAME_RESET_HISTORY;
   frame.completed_frame_index = frame_index - 1; // this engine waits for every frame
   const auto put = [](const glm::dmat4& m, float(&rows)[16]) {
     for (int r = 0; r < 4; ++r)

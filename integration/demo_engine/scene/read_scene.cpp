@@ -21,7 +21,8 @@ using dermis::ObjectReader;
 using std::string_view;
 
 constexpr int64_t format_version = 1;
-constexpr size_t most_lights = 8, most_objects = 256, most_profiles = 255;
+constexpr size_t most_lights = 8, most_objects = 256, most_profiles = 255, most_cuts = 256;
+constexpr double longest_seconds = 86400.0;
 constexpr ValueRange places = {-1000.0, 1000.0}; // metres
 constexpr ValueRange degrees = {-3600.0, 3600.0};
 constexpr ValueRange intensities = {0.0, 1e6};
@@ -80,6 +81,18 @@ struct SceneReader {
       diagnostics.add(DiagnosticId::scene_range, document.where(node),
                       fmt::format("the camera's near plane ({} m) must be nearer than its far plane ({} m)",
                                   camera.near_plane, camera.far_plane));
+  }
+
+  void read_cuts(NodeId list) {
+    for (const NodeId node : dermis::children(document, list)) {
+      const auto seconds = dermis::read_number(document, node, fmt::format("cut {}", scene.cuts.size()), 0.0,
+                                               longest_seconds, diagnostics);
+      if (!seconds) return;
+      if (!scene.cuts.empty() && *seconds <= scene.cuts.back())
+        diagnostics.add(DiagnosticId::scene_range, document.where(node),
+                        fmt::format("cut {} is at {} s; times ascend", scene.cuts.size(), *seconds));
+      scene.cuts.push_back(*seconds);
+    }
   }
 
   void read_light(NodeId node) {
@@ -143,11 +156,13 @@ struct SceneReader {
     color(object, "ground", 1000.0, scene.ground);
     const NodeId profiles = object.array("profiles", 0, most_profiles, Need::optional);
     const NodeId camera = object.object("camera");
+    const NodeId cuts = object.array("cuts", 0, most_cuts, Need::optional);
     const NodeId lights = object.array("lights", 0, most_lights, Need::optional);
     const NodeId objects = object.array("objects", 1, most_objects);
     object.finish();
     if (profiles.valid()) read_profiles(profiles);
     if (camera.valid()) read_camera(camera);
+    if (cuts.valid()) read_cuts(cuts);
     if (lights.valid())
       for (const NodeId node : dermis::children(document, lights))
         read_light(node);

@@ -60,6 +60,7 @@ struct Scene {
   glm::dvec3 background{0.0}, sky{0.0}, ground{0.0}; // ambient light from above and below
   std::vector<SceneProfile> profiles;                // at most 255
   Camera camera;
+  std::vector<double> cuts;    // seconds, ascending: the camera jumps there, at most 256
   std::vector<Light> lights;   // at most 8
   std::vector<Object> objects; // at most 256
 };

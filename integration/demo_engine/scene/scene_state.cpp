@@ -111,8 +111,10 @@ uint32_t shadow_layers_of(const Light& light) {
 
 SceneState state_at(const Scene& scene, uint32_t frame, const ViewDesc& desc) {
   SceneState state;
-  const uint32_t before = frame == 0 ? 0 : frame - 1;
   state.seconds = frame / scene.frames_per_second;
+  for (const double cut : scene.cuts)
+    state.cut |= frame > 0 && cut > (frame - 1) / scene.frames_per_second && cut <= state.seconds;
+  const uint32_t before = frame == 0 || state.cut ? frame : frame - 1;
   const double previous_seconds = before / scene.frames_per_second;
   state.now = view_at(scene.camera, state.seconds, frame, desc);
   state.previous = view_at(scene.camera, previous_seconds, before, desc);

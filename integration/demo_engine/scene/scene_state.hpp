@@ -25,6 +25,7 @@ struct ViewState {
 
 struct SceneState {
   double seconds = 0.0;
+  bool cut = false; // the camera has jumped since the frame before
   ViewState now, previous;
   std::vector<glm::dmat4> world, previous_world; // one an object
   std::vector<uint32_t> first_layer;             // one a light; no_layer: no shadow
@@ -38,7 +39,7 @@ inline constexpr uint32_t shadow_map_size = 1024; // texels a side
 // Number of shadow maps that a light takes.
 uint32_t shadow_layers_of(const Light& light);
 
-// Frame 0 has no past: its previous state is its own.
+// Frame 0 has no past, nor has the first after a cut: its previous state is its own.
 SceneState state_at(const Scene& scene, uint32_t frame, const ViewDesc& desc);
 
 // Metres along the view axis of a depth value; any projection of the kind above.
