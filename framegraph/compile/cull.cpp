@@ -59,11 +59,26 @@ struct Culler {
     }
   }
 
+  // A history that nobody writes is never valid: where the port says what it reads then, it always reads
+  // that.
+  bool has_stand_in(const Use& use) const {
+    if (use.when != ReadWhen::history_valid || use.trouble != Use::Trouble::history_unwritten) return false;
+    const Use* next = &use + 1; // the stand-in stands behind it, at the same port
+    const bool last = next == c.uses.data() + c.first_use[use.pass.value + 1];
+    return !last && next->when == ReadWhen::history_invalid && next->port == use.port &&
+           next->trouble == Use::Trouble::none;
+  }
+
   // A port of a pass that runs has nothing behind it: fine for an optional port, except for ambiguity.
   void examine(const Use& use) {
     const Port& port = c.kind(use.pass).ports[use.port];
     const bool missing = use.trouble == Use::Trouble::unbound || use.trouble == Use::Trouble::unwritten ||
                          use.trouble == Use::Trouble::history_unwritten;
+    if (has_stand_in(use)) {
+      c.because(Reason::About::pass, use.pass.value, Reason::Why::always_otherwise, use.port,
+                use.asked.value);
+      return;
+    }
     if (missing && port.optional) {
       c.because(Reason::About::pass, use.pass.value, Reason::Why::port_unbound, use.port, use.asked.value);
       return;

@@ -55,6 +55,7 @@ struct Use {
   uint16_t binding = 0; // into the pass's reads followed by its writes
   uint16_t port = 0;
   Usage usage = Usage::sampled_image;
+  ReadWhen when = ReadWhen::always;
   bool reads = false, writes = false; // what the usage does
   Trouble trouble = Trouble::none;
 };
@@ -99,12 +100,14 @@ struct ObjectState {
   uint32_t last_pass = no_value; // position; in the frame before while `carried`
   uint8_t visible = 0;           // usages that may read without another barrier
   bool touched = false;
-  bool carried = false; // from the frame before
+  bool carried = false;       // from the frame before
+  bool read_for_sure = false; // in every frame: whoever waits for the readers waits for the last write
 };
 
 struct PassTouch { // all accesses of one pass to one object
   uint32_t object = 0, resource = 0, frames_back = 0;
   uint8_t usages = 0;
+  bool certain = false; // in every frame
 };
 
 struct Segment { // bytes of a heap and who had them last in this frame

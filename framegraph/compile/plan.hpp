@@ -55,6 +55,9 @@ struct PlanAccess { // one bound port of one pass
   Access access = 0;
   Layout layout = Layout::undefined;
   bool own_texels = false; // reads only what the same invocation writes: see Port::own_texels
+  // Reads only: in frames in which the earlier frame that this access names is valid, or, behind such an
+  // access of the same port, in those in which that one's is not. Barriers are the same in every frame.
+  ReadWhen when = ReadWhen::always;
 };
 
 // One memory dependency on the whole of one resource: an image barrier over all mips and layers, or a buffer
@@ -130,15 +133,16 @@ struct Reason {
   enum class About : uint8_t { pass, resource, barrier, choice };
   enum class Why : uint8_t {
     // of a pass; a, b: what needs it, as named here
-    off,             // its `when` is false
-    read_by,         // pass a reads its resource b
-    read_later_by,   // pass a reads its resource b in later frames
-    written_over_by, // pass a writes over its resource b
-    writes_export,   // resource a
-    side_effects,    // of its kind
-    culling_off,     // asked for by the caller
-    port_unbound,    // optional port a; nothing provides resource b
-    not_needed,      // culled
+    off,              // its `when` is false
+    read_by,          // pass a reads its resource b
+    read_later_by,    // pass a reads its resource b in later frames
+    written_over_by,  // pass a writes over its resource b
+    writes_export,    // resource a
+    side_effects,     // of its kind
+    culling_off,      // asked for by the caller
+    port_unbound,     // optional port a; nothing provides resource b
+    always_otherwise, // port a has no history b to read: its `otherwise` stands in for it in every frame
+    not_needed,       // culled
     // of a resource
     unbound,            // the host leaves this optional slot alone
     stands_for,         // a by another name, behind pass b, which is off

@@ -144,8 +144,9 @@ struct Synchronizer {
       uint32_t same = 0;
       while (same < c.touches.size() && c.touches[same].object != object)
         ++same;
-      if (same == c.touches.size()) c.touches.push_back({object, resource, use.frames_back, 0});
+      if (same == c.touches.size()) c.touches.push_back({object, resource, use.frames_back, 0, false});
       c.touches[same].usages |= usage;
+      c.touches[same].certain |= use.when == ReadWhen::always;
       c.touch_of_use.back() = same;
     }
   }
@@ -159,8 +160,11 @@ struct Synchronizer {
       const PassTouch& touch = c.touches[touched];
       const Use& use = c.uses[u];
       const UsageSet& usage = sets[size_t{1} << static_cast<uint32_t>(use.usage)];
+      const bool alone = use.when == ReadWhen::history_invalid && // no history to stand in for
+                         c.uses[u - 1].trouble != Use::Trouble::none;
       plan.accesses.push_back({use.port, touch.resource, use.frames_back, usage.stages, usage.access,
-                               layout_of(touch), use.frames_back > 0 && ports[use.port].own_texels});
+                               layout_of(touch), use.frames_back > 0 && ports[use.port].own_texels,
+                               alone ? ReadWhen::always : use.when});
     }
     pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
   }
@@ -235,6 +239,7 @@ struct Synchronizer {
       state.source_access = set.access & all_write_access;
       state.readers = 0;
       state.visible = 0;
+      state.read_for_sure = false;
     }
     if (!set.writes) {
       if (waited) {
@@ -242,6 +247,7 @@ struct Synchronizer {
         state.visible = static_cast<uint8_t>(state.visible | touch.usages);
       }
       state.readers |= set.stages;
+      state.read_for_sure |= touch.certain;
     }
     state.touched = true;
     state.carried = false;
@@ -274,7 +280,8 @@ struct Synchronizer {
     }
     if (!set.writes) return false;
     barrier.why = pending ? PlanBarrier::Why::write_after_write : PlanBarrier::Why::write_after_read;
-    if (!pending) barrier.destination_access = 0; // readers only have to be done: nothing to make visible
+    // Readers only have to be done: nothing to make visible.
+    if (!pending && state.read_for_sure) barrier.destination_access = 0;
     return true;
   }
 

@@ -54,6 +54,7 @@ struct VersionScan {
         use.writes = usage.writes;
         use.resource = use.asked = binding.resource;
         use.frames_back = binding.frames_back;
+        use.when = binding.when;
         use.binding = number++;
         c.uses.push_back(use);
       }

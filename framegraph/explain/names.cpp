@@ -109,6 +109,30 @@ std::string_view why_name(PlanBarrier::Why why) {
   return "unknown";
 }
 
+std::string_view read_when_name(ReadWhen when) {
+  switch (when) {
+  case ReadWhen::always:
+    return "always";
+  case ReadWhen::history_valid:
+    return "history_valid";
+  case ReadWhen::history_invalid:
+    return "history_invalid";
+  }
+  return "unknown";
+}
+
+std::string_view read_when_text(ReadWhen when) {
+  switch (when) {
+  case ReadWhen::always:
+    return "";
+  case ReadWhen::history_valid:
+    return " where it is valid";
+  case ReadWhen::history_invalid:
+    return " else";
+  }
+  return "";
+}
+
 std::string bytes_text(uint64_t bytes) {
   constexpr std::string_view units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   if (bytes < 1024) return fmt::format("{} B", bytes);

@@ -76,8 +76,9 @@ std::string pass_text(const SavedPlan& saved, size_t p) {
   for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
     const PlanAccess& access = saved.plan.accesses[a];
     const bool writes = (access.access & all_write_access) != 0;
-    text += fmt::format(" {}{}{}", saved.names.ports[a],
-                        writes ? "=>" : "<=", object_text(saved, access.resource, access.frames_back));
+    text += fmt::format(" {}{}{}{}", saved.names.ports[a],
+                        writes ? "=>" : "<=", object_text(saved, access.resource, access.frames_back),
+                        read_when_text(access.when));
   }
   const size_t settings_end =
       p + 1 < saved.plan.passes.size() ? saved.plan.passes[p + 1].first_setting : saved.plan.settings.size();

@@ -149,7 +149,7 @@ struct Exporter {
       mask("stages", access.stages, stage_names(access.stages));
       mask("access", access.access, access_names(access.access));
       layout("layout", access.layout);
-      out.member("own_texels", access.own_texels);
+      out.member("own_texels", access.own_texels).member("when", read_when_name(access.when));
       out.close();
     }
     out.close();

@@ -64,8 +64,8 @@ struct TextExporter {
         const PlanAccess& access = plan.accesses[a];
         const UsageInfo& usage = usage_info(kind.ports[access.port].usage);
         const char* arrow = usage.reads && usage.writes ? "<->" : usage.reads ? "<-" : "->";
-        line(fmt::format("       {} {} {}", kind.ports[access.port].name, arrow,
-                         object(access.resource, access.frames_back)));
+        line(fmt::format("       {} {} {}{}", kind.ports[access.port].name, arrow,
+                         object(access.resource, access.frames_back), read_when_text(access.when)));
       }
     }
     if (plan.final_barrier_count > 0) line("   at the end");

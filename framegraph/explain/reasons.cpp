@@ -87,6 +87,9 @@ struct Speaker {
     case Reason::Why::port_unbound:
       return fmt::format("optional port '{}' stays unbound: nothing provides '{}'",
                          port(reason.index, reason.a), resource(reason.b));
+    case Reason::Why::always_otherwise:
+      return fmt::format("port '{}' reads its 'otherwise' in every frame: no pass that is on writes '{}'",
+                         port(reason.index, reason.a), resource(reason.b));
     case Reason::Why::not_needed:
       return not_needed();
     case Reason::Why::unbound:

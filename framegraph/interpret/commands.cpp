@@ -76,15 +76,15 @@ Memory memory_of(const Plan& plan) {
   return memory;
 }
 
-std::vector<Command> record(const Plan& plan, uint32_t frames) {
+std::vector<Command> record(const Plan& plan, uint32_t first, uint32_t end) {
   std::vector<Command> commands;
   uint32_t batch = 0;
-  const auto barriers = [&](uint32_t frame, uint32_t first, uint32_t count) {
-    for (uint32_t b = first; b < first + count; ++b)
+  const auto barriers = [&](uint32_t frame, uint32_t begin, uint32_t count) {
+    for (uint32_t b = begin; b < begin + count; ++b)
       commands.push_back({frame, false, b, batch});
     ++batch;
   };
-  for (uint32_t frame = 0; frame < frames; ++frame) {
+  for (uint32_t frame = first; frame < end; ++frame) {
     for (uint32_t p = 0; p < plan.passes.size(); ++p) {
       barriers(frame, plan.passes[p].first_barrier, plan.passes[p].barrier_count);
       commands.push_back({frame, true, p, 0});

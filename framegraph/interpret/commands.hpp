@@ -26,8 +26,8 @@ struct Command {
   uint32_t batch = 0; // barriers of one batch have the same number and do not wait for each other
 };
 
-// All commands of `frames` frames, in the order in which they are recorded.
-std::vector<Command> record(const Plan& plan, uint32_t frames);
+// All commands of the frames first .. end - 1, in the order in which they are recorded.
+std::vector<Command> record(const Plan& plan, uint32_t first, uint32_t end);
 
 // An order of `commands`, as indices into it, that execution dependencies allow and `seed` picks; seed 0: as
 // recorded. A barrier waits for accesses and barriers before it, in its source scope, on memory that overlaps

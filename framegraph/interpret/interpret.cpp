@@ -48,11 +48,46 @@ struct Interpreter {
     if (barrier.to_host) out[frame][slot] = pieces[piece];
   }
 
+  static bool cut_before(const PlanHistory& history, uint64_t cuts, uint32_t frame) {
+    return history.declaration.on_cut == HistoryDeclaration::OnCut::invalidate && (cuts >> frame & 1u) != 0;
+  }
+
+  // Have as many frames been written since the history began?
+  bool valid(const PlanAccess& access, uint32_t frame) const {
+    for (const PlanHistory& history : plan.histories) {
+      if (history.resource != access.resource) continue;
+      uint32_t age = 0;
+      while (age < frame && !cut_before(history, options.cuts, frame - age))
+        ++age;
+      return age >= access.frames_back;
+    }
+    return false;
+  }
+
+  bool happens(const PlanAccess* accesses, uint32_t a, uint32_t frame) const {
+    switch (accesses[a].when) {
+    case ReadWhen::always:
+      return true;
+    case ReadWhen::history_valid:
+      return valid(accesses[a], frame);
+    case ReadWhen::history_invalid:
+      return !valid(accesses[a - 1], frame);
+    }
+    return true;
+  }
+
+  // As the executor does before such a frame.
+  void restart_histories(uint32_t frame) {
+    for (const PlanHistory& history : plan.histories)
+      for (uint32_t back = 1; cut_before(history, options.cuts, frame) && back <= history.frames; ++back)
+        pieces[memory.piece(plan, history.resource, back, frame)] = Pixels{};
+  }
+
   void run(const PlanPass& pass, uint32_t frame) {
     const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
     std::vector<StandInInput> inputs;
     for (uint32_t a = 0; a < pass.access_count; ++a)
-      if ((accesses[a].access & ~all_write_access) != 0)
+      if ((accesses[a].access & ~all_write_access) != 0 && happens(accesses, a, frame))
         inputs.push_back({accesses[a].port,
                           pieces[memory.piece(plan, accesses[a].resource, accesses[a].frames_back, frame)]});
     std::sort(inputs.begin(), inputs.end(),
@@ -73,13 +108,20 @@ Pixels host_pixels(uint64_t contents, uint32_t frame, uint32_t slot) {
 Interpretation interpret(const Plan& plan, const InterpretOptions& options) {
   Interpreter machine{plan, options, {}, {}, 0, {}};
   machine.prepare();
-  const std::vector<Command> commands = record(plan, options.frames);
-  for (const uint32_t c : legal_order(plan, machine.memory, commands, options.order)) {
-    const Command& command = commands[c];
-    if (command.is_pass)
-      machine.run(plan.passes[command.index], command.frame);
-    else
-      machine.run(plan.barriers[command.index], command.frame);
+  for (uint32_t first = 0; first < options.frames;) { // from cut to cut
+    machine.restart_histories(first);
+    uint32_t end = first + 1;
+    while (end < options.frames && (options.cuts >> end & 1u) == 0)
+      ++end;
+    const std::vector<Command> commands = record(plan, first, end);
+    for (const uint32_t c : legal_order(plan, machine.memory, commands, options.order)) {
+      const Command& command = commands[c];
+      if (command.is_pass)
+        machine.run(plan.passes[command.index], command.frame);
+      else
+        machine.run(plan.barriers[command.index], command.frame);
+    }
+    first = end;
   }
   return std::move(machine.out);
 }

@@ -16,10 +16,12 @@ struct InterpretOptions {
   uint64_t poison = 1;   // seed of contents that mean nothing: never written, discarded, or overwritten
                          // through other memory that overlaps
   uint64_t order = 0;    // 0: commands run as recorded; else seed of another order that the barriers allow
+  uint64_t cuts = 0; // bit f: the camera jumps before frame f, 1 .. 63; nothing of earlier frames runs later
 };
 
 // [frame][slot]: what the host gets back there; nothing for slots that it left unbound. Pixels of a plan that
-// the verifier accepts do not depend on `poison` and `order`. Histories start from zero.
+// the verifier accepts do not depend on `poison` and `order`. Histories start from zero, and anew where a cut
+// invalidates them; what depends on their validity follows from it.
 using Interpretation = std::vector<std::vector<std::optional<Pixels>>>;
 
 // `plan` must pass verify_structure(). Free-threaded.

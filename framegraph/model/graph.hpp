@@ -89,10 +89,17 @@ struct Expression {
   std::vector<SettingValue> list; // for `in`
 };
 
+// In which frames a pass reads what is bound to a port. Whether `name@-N` is valid, N frames having been
+// written since it began or was cut, is known when a frame is recorded; no plan depends on it.
+enum class ReadWhen : uint8_t { always, history_valid, history_invalid };
+
 struct PortBinding {
   uint32_t port = 0; // index into PassKind::ports
   ResourceId resource;
   uint32_t frames_back = 0; // 0: this frame; 1: `name@-1`
+  // history_invalid: this is what the port reads where the history of the binding before this one, at the
+  // same port, is not valid.
+  ReadWhen when = ReadWhen::always;
   SourceLocation where;
 };
 

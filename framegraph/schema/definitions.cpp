@@ -138,13 +138,19 @@ constexpr std::string_view pass_text =
         "pass": { "$ref": "#/definitions/name" },
         "kind": { "enum": [<kinds>] },
         "when": { "type": "string", "maxLength": <expression bytes>, "description": "the pass is off where this is false: quality in ['good', 'best'] and samples > 4" },
-        "read": { "type": "object", "description": "port: resource, or resource@-N of the frame N before" },
+        "read": { "type": "object", "description": "port: resource, or resource@-N of the frame N before, or an object that requires it to be valid" },
         "write": { "type": "object", "description": "port: resource" },
         "set": { "type": "object", "description": "setting of the kind: value, or \"$name\" of the graph's settings" },
         "otherwise": { "type": "object", "additionalProperties": { "type": "string" }, "description": "what readers of an output get when the pass is off" },
         "after": { "type": "array", "maxItems": <passes>, "items": { "type": "object", "required": ["pass", "reason"], "additionalProperties": false, "properties": {
           "pass": { "type": "string" }, "reason": { "type": "string", "minLength": 1 }, <note> } } }, <note> },
       "allOf": [{ "$ref": "#/definitions/pass_of_a_kind" }] })";
+
+constexpr std::string_view source_text =
+    R"({ "anyOf": [{ "type": "string" }, { "type": "object", "required": ["from", "requires"], "additionalProperties": false, "properties": {
+        "from": { "type": "string", "description": "resource@-N" },
+        "requires": { "enum": ["valid"], "description": "read only in frames in which N frames have been written since the history began or was cut" },
+        "otherwise": { "type": "string", "description": "resource that is read in all other frames; without it the port is then unbound, or reads zeros where the history says \"first\": \"clear\"" }, <note> } }] })";
 
 constexpr std::string_view include_text =
     R"({ "type": "object", "required": ["include"], "additionalProperties": false, "properties": {
@@ -230,7 +236,7 @@ SchemaMembers graph_definitions(std::string_view kind_names) {
       {"setting", with_note(setting_definition())},
       {"import", with_note(import_text)},
       {"resource", with_note(resource_definition())},
-      {"source", R"({ "type": "string" })"},
+      {"source", with_note(source_text)},
       {"target", R"({ "type": "string" })"},
       {"pass", with_note(pass_text, kind_names)},
       {"include", with_note(include_text)},

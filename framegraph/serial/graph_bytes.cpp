@@ -74,6 +74,7 @@ struct GraphWriter {
       number(binding.port);
       index(binding.resource);
       number(binding.frames_back);
+      word(binding.when);
     });
   }
 

@@ -89,6 +89,17 @@ struct Checker {
       }
   }
 
+  // Only reads can be left out; what stands in for another stands behind it.
+  bool condition_fits(const PlanPass& pass, uint32_t number) const {
+    const PlanAccess& access = plan.accesses[pass.first_access + number];
+    if (access.when == ReadWhen::always) return true;
+    if ((access.access & all_write_access) != 0) return false;
+    if (access.when == ReadWhen::history_valid) return access.frames_back > 0;
+    if (number == 0) return false;
+    const PlanAccess& before = plan.accesses[pass.first_access + number - 1];
+    return before.when == ReadWhen::history_valid && before.port == access.port;
+  }
+
   void passes() {
     for (size_t p = 0; p < plan.passes.size(); ++p) {
       const PlanPass& pass = plan.passes[p];
@@ -99,6 +110,7 @@ struct Checker {
       for (uint32_t a = 0; accesses && a < pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[pass.first_access + a];
         const bool exists = object_exists(access.resource, access.frames_back);
+        expect(condition_fits(pass, a), "a read depends on a validity that it does not name", p);
         expect(exists, "a pass accesses a resource or an earlier frame that does not exist", p);
         if (!exists || plan.resources[access.resource].first_instance >= plan.placements.size()) continue;
         const Placement& placement = plan.placements[plan.resources[access.resource].first_instance];

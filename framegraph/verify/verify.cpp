@@ -8,7 +8,8 @@
 //          and are those of the frame meant: written that many frames ago, or before the first
 //  write   every earlier access to the same bytes is ordered before it, every earlier write is available, and
 //          the last one visible to it unless it was read since: then the wait for the reader is enough
-//          a pass reads and writes the same thing as two frames of a history only texel by texel
+//          a read that depends on the validity of a history counts as if it happened, but nobody may rely on
+//          it a pass reads and writes the same thing as two frames of a history only texel by texel
 //  layout  equals what the access was planned with; transitions are writes; `undefined` discards the contents
 //  host    a slot is taken over before its first access and handed back, ordered and available, at the end
 
@@ -35,7 +36,8 @@ struct Event {
   Stage stages = 0;  // where it happened; 0 for a layout transition, which only chains
   Access writes = 0; // 0: a read
   bool is_write = false;
-  Stage ordered = 0; // later work at these stages happens after it
+  bool certain = true; // false: a read that some frames leave out
+  Stage ordered = 0;   // later work at these stages happens after it
   bool available = false;
   std::vector<Visible> visible;
 };
@@ -155,6 +157,15 @@ struct Machine {
     if (event.available) event.visible.push_back({barrier.destination_stages, barrier.destination_access});
   }
 
+  // A transition, as a write that its own barrier has made available.
+  static Event left_by(const PlanBarrier& barrier) {
+    Event event;
+    event.is_write = event.available = true;
+    event.ordered = barrier.destination_stages;
+    event.visible = {{barrier.destination_stages, barrier.destination_access}};
+    return event;
+  }
+
   void run(const PlanBarrier& barrier, const std::string& where) {
     const uint32_t index = thing_of(barrier.resource, barrier.frames_back);
     Thing& thing = things[index];
@@ -168,12 +179,7 @@ struct Machine {
       if (!thing.with_host) wrong("is taken over from the host twice");
       thing.with_host = barrier.to_host;
       thing.layout = barrier.new_layout;
-      thing.events = {{0,
-                       0,
-                       true,
-                       barrier.destination_stages,
-                       true,
-                       {{barrier.destination_stages, barrier.destination_access}}}};
+      thing.events = {left_by(barrier)};
       return;
     }
     if (thing.with_host) wrong("has a barrier while it is the host's");
@@ -196,12 +202,7 @@ struct Machine {
     });
     if (!transition) return;
     thing.layout = barrier.new_layout;
-    thing.events = {{0,
-                     0,
-                     true,
-                     barrier.destination_stages,
-                     true,
-                     {{barrier.destination_stages, barrier.destination_access}}}};
+    thing.events = {left_by(barrier)};
     thing.with_host = barrier.to_host;
   }
 
@@ -230,17 +231,19 @@ struct Machine {
         plan.placements[thing.placement].persistent && thing.of_frame != int64_t{frame} - access.frames_back)
       wrong("is read, but holds the contents of another frame");
     for_each_overlapping(index, [&](const Thing& other, bool own) {
-      for (const Event& event : other.events) {
+      bool followed = false; // by an access of every frame
+      for (size_t e = other.events.size(); e-- > 0;) {
+        const Event& event = other.events[e];
         const bool ordered = (access.stages & ~event.ordered) == 0;
         if ((event.is_write || writes) && !ordered) wrong("is touched before an earlier access is done");
         if (writes && event.is_write && !event.available)
           wrong("is written before an earlier write is available");
         if (reads && own && event.is_write && !visible(event, access.stages, as_read))
           wrong("is read where the last write is not visible");
-        // Where it was read since, the wait for the reader is enough.
-        if (writes && event.is_write && &event == &other.events.back() &&
-            !visible(event, access.stages, as_write))
+        // Where it was read since, in this frame whatever is valid, the wait for the reader is enough.
+        if (writes && event.is_write && !followed && !visible(event, access.stages, as_write))
           wrong("is written where the last write is not visible");
+        followed |= event.certain;
       }
     });
   }
@@ -272,7 +275,12 @@ struct Machine {
       thing.defined = true;
       thing.of_frame = int64_t{frame} - access.frames_back;
     }
-    thing.events.push_back({access.stages, writes, writes != 0, 0, false, {}});
+    Event event;
+    event.stages = access.stages;
+    event.writes = writes;
+    event.is_write = writes != 0;
+    event.certain = access.when == ReadWhen::always;
+    thing.events.push_back(event);
   }
 
   void run(const PlanPass& pass, const std::string& where) {

@@ -1,6 +1,7 @@
 // Barriers, layouts and history: what waits for what, and only that.
 
 #include "tests/framegraph/graph_builder.hpp"
+#include "tests/framegraph/hazard_oracle.hpp"
 
 #include "framegraph/verify/verify.hpp"
 
@@ -329,6 +330,50 @@ TEST(History, TheFirstReadWaitsForTheFrameBeforeAndTheNewestReusesTheOldest) {
   EXPECT_EQ(newest.old_layout, Layout::undefined);
   EXPECT_EQ(newest.source_stages, stage::compute_shader); // last read in the frame before
   EXPECT_EQ(newest.source_access, access::none);
+}
+
+// `list` is read only in frames in which `old@-1` is not valid.
+GraphBuilder with_conditional_reader() {
+  GraphBuilder b;
+  b.import("light");
+  b.buffer("list");
+  b.buffer("old").history.frames = 1;
+  b.exported("result");
+  b.pass("fill", "test.list", {{"a", "light"}}, {{"tiles", "list"}});
+  b.pass("keep", "test.list", {{"a", "light"}}, {{"tiles", "old"}});
+  b.pass("use", "test.tiles", {{"tiles", "old@-1?list"}}, {{"out", "result"}});
+  b.pass("count", "test.count", {}, {{"tiles", "list"}});
+  b.pass("again", "test.tiles", {{"tiles", "list"}, {"a", "result"}}, {{"out", "result"}});
+  return b;
+}
+
+// The last pass made to write alone, and to wait for the reader alone, which saw what was written before.
+TEST(Verify, AReaderThatMayBeLeftOutShowsAWriterNothing) {
+  const auto b = with_conditional_reader();
+  Plan plan = compiled(b).plan;
+  for (const PlanPass& pass : plan.passes) {
+    if (pass.declared != b.pass_id("count")) continue;
+    plan.accesses[pass.first_access].access = access::shader_storage_write;
+    ASSERT_EQ(pass.barrier_count, 1u);
+    plan.barriers[pass.first_barrier].source_access = plan.barriers[pass.first_barrier].destination_access = 0;
+  }
+  EXPECT_FALSE(verify(plan).empty());
+  EXPECT_NE(first_hazard(plan), "");
+  for (PlanAccess& access : plan.accesses) // were it always read, that would do
+    access.when = ReadWhen::always;
+  EXPECT_TRUE(verify(plan).empty());
+  EXPECT_EQ(first_hazard(plan), "");
+}
+
+TEST(Synchronize, WhatStandsInForAHistoryThatNobodyWritesIsAlwaysRead) {
+  auto b = with_conditional_reader();
+  b.boolean("keep", false);
+  b.graph.passes[1].when = b.when("keep");
+  const auto plan = compiled(b);
+  for (const PlanAccess& access : plan.plan.accesses)
+    EXPECT_EQ(access.when, ReadWhen::always);
+  EXPECT_NE(reasons(b, plan, Reason::About::pass, 2).find("reads its 'otherwise' in every frame"),
+            std::string::npos);
 }
 
 } // namespace

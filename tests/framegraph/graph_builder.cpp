@@ -44,12 +44,6 @@ PassKind kind(std::string_view name, std::span<const Port> ports) {
   return result;
 }
 
-std::pair<std::string, uint32_t> split_history(const std::string& name) {
-  const auto at = name.find("@-");
-  if (at == std::string::npos) return {name, 0};
-  return {name.substr(0, at), static_cast<uint32_t>(std::stoul(name.substr(at + 2)))};
-}
-
 } // namespace
 
 KindRegistry test_kinds() {
@@ -151,6 +145,16 @@ PassId GraphBuilder::pass_id(const std::string& name) const {
   return {};
 }
 
+PortBinding GraphBuilder::reference(uint32_t port, const std::string& text) {
+  const size_t at = text.find("@-");
+  PortBinding binding;
+  binding.port = port;
+  binding.resource = resource(text.substr(0, at));
+  if (at != std::string::npos) binding.frames_back = static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
+  binding.where = next_line();
+  return binding;
+}
+
 PassDeclaration& GraphBuilder::pass(const std::string& name, const std::string& kind_name,
                                     const Bindings& reads, const Bindings& writes) {
   PassDeclaration declared;
@@ -159,11 +163,16 @@ PassDeclaration& GraphBuilder::pass(const std::string& name, const std::string& 
   EXPECT_TRUE(declared.kind.valid()) << kind_name;
   declared.where = next_line();
   const auto bind = [&](const Bindings& from, std::vector<PortBinding>& to) {
-    for (const auto& [port, full_name] : from) {
-      const auto [resource_name, frames_back] = split_history(full_name);
+    for (const auto& [port, text] : from) {
       const int index = find_port(kinds[declared.kind], port);
       EXPECT_GE(index, 0) << port;
-      to.push_back({static_cast<uint32_t>(index), resource(resource_name), frames_back, next_line()});
+      const size_t condition = text.find('?');
+      to.push_back(reference(static_cast<uint32_t>(index), text.substr(0, condition)));
+      if (condition == std::string::npos) continue;
+      to.back().when = ReadWhen::history_valid;
+      if (condition + 1 == text.size()) continue;
+      to.push_back(reference(static_cast<uint32_t>(index), text.substr(condition + 1)));
+      to.back().when = ReadWhen::history_invalid;
     }
   };
   bind(reads, declared.reads);

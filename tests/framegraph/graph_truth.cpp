@@ -15,8 +15,8 @@ bool is_slot(const ResourceDeclaration& resource) {
 
 } // namespace
 
-Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames,
-                           uint64_t contents) {
+Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames, uint64_t contents,
+                           uint64_t cuts) {
   std::vector<SettingValue> settings;
   for (const SettingDeclaration& setting : graph.settings)
     settings.push_back(setting.default_value);
@@ -30,8 +30,15 @@ Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32
       contents_of[r].push_back(import ? std::optional(host_pixels(contents, frame, slot)) : std::nullopt);
       slot += is_slot(graph.resources[r]) ? 1 : 0;
     }
+    const auto in_history = [&](const PortBinding& binding) { // written since the last cut that counts
+      const HistoryDeclaration& history = graph.resources[binding.resource.value].history;
+      const bool cuts_count = history.on_cut == HistoryDeclaration::OnCut::invalidate;
+      for (uint32_t back = 0; back < binding.frames_back; ++back)
+        if (back == frame || (cuts_count && (cuts >> (frame - back) & 1u) != 0)) return false;
+      return true;
+    };
     const auto read = [&](const PortBinding& binding) {
-      if (binding.frames_back > frame) return Pixels{}; // histories start from zero
+      if (!in_history(binding)) return Pixels{}; // histories start from zero
       const auto& found = contents_of[binding.resource.value][frame - binding.frames_back];
       EXPECT_TRUE(found.has_value()) << graph.resources[binding.resource.value].name;
       return found.value_or(Pixels{});
@@ -44,8 +51,12 @@ Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32
         continue;
       }
       std::vector<StandInInput> inputs;
-      for (const PortBinding& binding : pass.reads)
+      for (size_t i = 0; i < pass.reads.size(); ++i) {
+        const PortBinding& binding = pass.reads[i];
+        if (binding.when == ReadWhen::history_valid && !in_history(binding)) continue;
+        if (binding.when == ReadWhen::history_invalid && in_history(pass.reads[i - 1])) continue;
         inputs.push_back({binding.port, read(binding)});
+      }
       for (const PortBinding& binding : pass.writes)
         if (usage_info(kinds[pass.kind].ports[binding.port].usage).reads)
           inputs.push_back({binding.port, read(binding)});

@@ -9,7 +9,8 @@ namespace dermis::testing {
 
 // Like interpret() of its plan, for every slot that is exported. Settings have their defaults, all slots are
 // bound, and passes stand behind the producers of what they read, as in random_graph().
-Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames, uint64_t contents);
+Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames, uint64_t contents,
+                           uint64_t cuts = 0); // bit f: the camera jumps before frame f
 
 // Slots that `truth` says nothing about may hold anything.
 bool agrees(const Interpretation& found, const Interpretation& truth);

@@ -125,7 +125,9 @@ struct Oracle {
 
   bool read_since(size_t first, size_t second) const {
     for (size_t k = first + 1; k < second; ++k)
-      if (accesses(all[k]) && all[k].step != all[second].step && same_thing(all[k], all[first])) return true;
+      if (accesses(all[k]) && all[k].access->when == ReadWhen::always && all[k].step != all[second].step &&
+          same_thing(all[k], all[first]))
+        return true;
     return false;
   }
 

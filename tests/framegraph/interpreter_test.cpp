@@ -60,6 +60,25 @@ TEST(Interpreter, EveryPlanGivesThePixelsThatTheGraphMeans) {
   EXPECT_GT(compared, random_graphs()); // at least the export that every graph has
 }
 
+// Cuts change which histories are valid, and with that what passes read; the plan stays the same.
+TEST(Interpreter, CutsChangeWhatIsReadAndNothingElse) {
+  uint64_t conditional = 0, changed = 0;
+  for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
+    const auto builder = random_graph(seed);
+    const Plan plan = compiled(builder).plan;
+    const uint64_t cuts = (seed % 31 + 1) << 1u; // every set of the frames 1 .. 5 - 1
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed, cuts);
+    InterpretOptions with_cuts = options(seed, seed, seed % orders);
+    with_cuts.cuts = cuts;
+    ASSERT_TRUE(agrees(interpret(plan, with_cuts), truth)) << "seed " << seed;
+    changed += !agrees(interpret(plan, options(seed)), truth);
+    for (const PlanAccess& access : plan.accesses)
+      conditional += access.when != ReadWhen::always;
+  }
+  EXPECT_GT(conditional, random_graphs() / 4);
+  EXPECT_GT(changed, random_graphs() / 4);
+}
+
 TEST(Interpreter, OrdersThatTheBarriersAllowAndPoisonChangeNothing) {
   uint64_t moved = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {

@@ -194,6 +194,65 @@ INSTANTIATE_TEST_SUITE_P(
     law_of);
 
 INSTANTIATE_TEST_SUITE_P(
+    ValidHistories, DamagedPass,
+    ::testing::Values(
+        Damage{"ThisFrameCannotBeInvalid",
+               "\"history\": \"kept@-2\"",
+               "\"history\": { \"from\": \"kept\", \"requires\": \"valid\" }",
+               Id::bad_requires,
+               "\"kept\", \"requires\"",
+               {"port 'history' of pass 'blur'", "'kept'", "this frame's"}},
+        Damage{"WhatStandsInForAHistoryIsNoHistory",
+               "\"history\": \"kept@-2\"",
+               "\"history\": { \"from\": \"kept@-2\", \"requires\": \"valid\", \"otherwise\": \"kept@-1\" }",
+               Id::bad_requires,
+               "\"kept@-1\" }",
+               {"port 'history' of pass 'blur'", "'kept@-2'"}},
+        Damage{"OnlyValidityCanBeRequired",
+               "\"history\": \"kept@-2\"",
+               "\"history\": { \"from\": \"kept@-2\", \"requires\": \"valld\" }",
+               Id::invalid_value,
+               "\"valld\"",
+               {"'valid'"}},
+        Damage{"ARequirementSaysOfWhat",
+               "\"history\": \"kept@-2\"",
+               "\"history\": { \"requires\": \"valid\" }",
+               Id::missing_key,
+               "{ \"requires\"",
+               {"'from'"}},
+        Damage{"WhatStandsInFitsThePort",
+               "\"history\": \"kept@-2\"",
+               "\"history\": { \"from\": \"kept@-2\", \"requires\": \"valid\", \"otherwise\": \"material\" }",
+               Id::format_mismatch,
+               "\"material\" } },",
+               {"port 'history' of pass 'blur'", "'material'"}}),
+    law_of);
+
+TEST(ValidHistory, APortThatMustBeBoundSaysWhatItReadsElse) {
+  std::string text =
+      damaged("\"source\": \"light\"", "\"source\": { \"from\": \"kept@-1\", \"requires\": \"valid\" }");
+  EXPECT_TRUE(read(text).graph); // zeros: the history is cleared first
+  text.replace(text.find("\"first\": \"clear\", "), std::string("\"first\": \"clear\", ").size(), "");
+  const Read result = read(text);
+  EXPECT_FALSE(result.graph);
+  expect_only(result.diagnostics, Id::bad_requires, 21, 37, {"port 'source' of pass 'blur'", "'kept@-1'"});
+}
+
+TEST(ValidHistory, IsReadAsTwoBindingsOfOnePort) {
+  const Read result =
+      read(damaged("\"history\": \"kept@-2\"", "\"history\": { \"from\": \"kept@-2\", \"requires\": "
+                                               "\"valid\", \"otherwise\": \"light\" }"));
+  ASSERT_TRUE(result.graph) << all_messages(result.diagnostics);
+  const auto& reads = result.graph->passes[1].reads;
+  ASSERT_EQ(reads.size(), 5u);
+  EXPECT_EQ(reads[3].when, ReadWhen::history_valid);
+  EXPECT_EQ(reads[3].frames_back, 2u);
+  EXPECT_EQ(reads[4].when, ReadWhen::history_invalid);
+  EXPECT_EQ(reads[4].port, reads[3].port);
+  EXPECT_EQ(result.graph->resources[reads[4].resource.value].name, "light");
+}
+
+INSTANTIATE_TEST_SUITE_P(
     Relations, DamagedPass,
     ::testing::Values(Damage{"OtherwiseReplacesWhatThePassWrites",
                              "{ \"half\": \"light\" }",

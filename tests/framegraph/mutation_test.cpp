@@ -81,11 +81,15 @@ TEST(Mutation, NoAliasDependencyCanBeLost) {
 }
 
 // A flip that is no hazard (both slots hold older frames) still reads the wrong frame, which the pixels tell
-// once the difference has come through all histories on its way to the host.
+// once the difference has come through all histories on its way to the host. It does not where it leads to a
+// stand-in alone, which is read in frames in which all histories are zeros.
 TEST(Mutation, AFlippedHistorySlotIsRefusedOrChangesThePixels) {
   constexpr uint32_t frames = 14;
   Tally tally;
   for_random_plans(300, 3000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
+    if (std::any_of(plan.accesses.begin(), plan.accesses.end(),
+                    [](const PlanAccess& access) { return access.when == ReadWhen::history_invalid; }))
+      return;
     const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
     for_each_flipped_slot(plan, [&](const Plan& mutant, const std::string& what) {
       if (HasFatalFailure()) return;

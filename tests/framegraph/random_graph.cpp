@@ -31,7 +31,9 @@ struct Draft {
       if (!histories.empty() && random.chance(25)) {
         const auto& history = any(histories);
         const auto frames = b.graph.resources[b.resource(history).value].history.frames;
-        result.emplace_back(ports[i], fmt::format("{}@-{}", history, 1 + random.below(frames)));
+        auto source = fmt::format("{}@-{}", history, 1 + random.below(frames));
+        if (random.chance(40)) source += random.chance(50) ? "?" : "?" + any(readable);
+        result.emplace_back(ports[i], source);
       } else if (random.chance(80)) {
         result.emplace_back(ports[i], any(readable));
       }
@@ -107,7 +109,8 @@ GraphBuilder random_graph(uint64_t seed) {
   const uint32_t histories = draft.random.below(3);
   for (uint32_t i = 0; i < histories; ++i) {
     draft.histories.push_back(draft.fresh("history"));
-    draft.b.history(draft.histories.back(), 1 + draft.random.below(3));
+    auto& history = draft.b.history(draft.histories.back(), 1 + draft.random.below(3)).history;
+    if (draft.random.chance(30)) history.on_cut = HistoryDeclaration::OnCut::keep;
   }
   const uint32_t passes = 2 + draft.random.below(20);
   for (uint32_t i = 0; i < passes; ++i)

@@ -143,5 +143,18 @@ TEST(Verify, RefusesSwappedPasses) {
   }
 }
 
+TEST(Verify, RefusesAConditionOnAWriteOrOnNoHistory) {
+  const auto set_all = [](ReadWhen when, bool writes) {
+    return [=](Plan& plan) {
+      for (PlanAccess& access : plan.accesses)
+        if (((access.access & all_write_access) != 0) == writes && access.frames_back == 0)
+          access.when = when;
+    };
+  };
+  for (const bool writes : {false, true})
+    for (const ReadWhen when : {ReadWhen::history_valid, ReadWhen::history_invalid})
+      expect_refused(set_all(when, writes), "depends on a validity that it does not name");
+}
+
 } // namespace
 } // namespace dermis::testing

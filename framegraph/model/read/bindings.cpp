@@ -71,20 +71,82 @@ public:
 private:
   // False when what is bound could not be read.
   bool read_one(PortSide side, NodeId node) {
-    const SourceLocation where = reader_.document.where(node);
     const int port = find(side, node);
     const std::string what = fmt::format("port '{}' of {}", reader_.document.key(node), object_.what());
+    if (side == PortSide::read && reader_.document[node].kind == NodeKind::object)
+      return read_condition(node, port, what);
+    PortBinding binding;
+    if (!read_reference(side, node, port, what, binding)) return false;
+    keep(side, what, binding);
+    return true;
+  }
+
+  bool read_reference(PortSide side, NodeId node, int port, const std::string& what, PortBinding& binding) {
     const auto text = read_string(reader_.document, node, what, reader_.diagnostics);
     if (!text) return false;
-    PortBinding binding;
-    binding.where = where;
-    if (!parse_reference(*text, what, side, where, binding)) return false;
+    binding.where = reader_.document.where(node);
     // Kept even where the port is unknown: who writes what must be known to judge the readers.
     binding.port = port < 0 ? unknown_port : static_cast<uint32_t>(port);
+    return parse_reference(*text, what, side, binding.where, binding);
+  }
+
+  void keep(PortSide side, const std::string& what, const PortBinding& binding) {
     (side == PortSide::read ? pass_.reads : pass_.writes).push_back(binding);
-    if (port >= 0 && !reader_.broken_resources[binding.resource.value])
+    if (binding.port != unknown_port && !reader_.broken_resources[binding.resource.value])
       check(kind_->ports[binding.port], what, binding);
+  }
+
+  // { "from": "name@-N", "requires": "valid", "otherwise": "name" }
+  bool read_condition(NodeId node, int port, const std::string& what) {
+    ObjectReader object(reader_.document, node, what, reader_.diagnostics);
+    constexpr std::string_view requirements[] = {"valid"};
+    const NodeId from = object.any("from");
+    object.word("requires", requirements);
+    const NodeId otherwise = object.any("otherwise", Need::optional);
+    bool ok = object.finish();
+    PortBinding history, instead;
+    ok &= from.valid() && read_reference(PortSide::read, from, port, "'from' of " + what, history);
+    ok &= !otherwise.valid() ||
+          read_reference(PortSide::read, otherwise, port, "'otherwise' of " + what, instead);
+    if (!ok || !condition_fits(what, history, instead)) return false;
+    const HistoryDeclaration& declared = reader_.graph.resources[history.resource.value].history;
+    const bool zeros = !otherwise.valid() && declared.first == HistoryDeclaration::First::clear;
+    history.when = zeros ? ReadWhen::always : ReadWhen::history_valid;
+    keep(PortSide::read, what, history);
+    if (!otherwise.valid()) return true;
+    instead.when = ReadWhen::history_invalid;
+    keep(PortSide::read, what, instead);
     return true;
+  }
+
+  // `instead` without a resource: the port says nothing of other frames.
+  bool condition_fits(const std::string& what, const PortBinding& history, const PortBinding& instead) {
+    const ResourceDeclaration& resource = reader_.graph.resources[history.resource.value];
+    const auto refuse = [&](const SourceLocation& where, std::string text) {
+      reader_.error(DiagnosticId::bad_requires, where, std::move(text))
+          .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+      return false;
+    };
+    if (history.frames_back == 0)
+      return refuse(history.where,
+                    fmt::format("{} requires '{}' to be valid, which is this frame's", what, resource.name));
+    if (instead.frames_back > 0)
+      return refuse(
+          instead.where,
+          fmt::format("{} reads an earlier frame where '{}@-{}' is not valid, which may not be valid "
+                      "either",
+                      what, resource.name, history.frames_back));
+    if (history.port == unknown_port) return true;
+    const Port& port = kind_->ports[history.port];
+    if (port.usage == Usage::indirect_arguments)
+      return refuse(history.where,
+                    fmt::format("{} holds the size of the dispatch, which is read in every frame", what));
+    const bool says = instead.resource.valid() || port.optional ||
+                      resource.history.first == HistoryDeclaration::First::clear;
+    if (says) return true;
+    return refuse(history.where,
+                  fmt::format("{} must be bound, and nothing says to what where '{}@-{}' is not valid", what,
+                              resource.name, history.frames_back));
   }
 
   int find(PortSide side, NodeId node) {

@@ -25,6 +25,34 @@ Error check_input(const ExecutorInput& input) {
   return {};
 }
 
+uint32_t history_of(const Plan& plan, uint32_t resource) {
+  for (uint32_t h = 0; h < plan.histories.size(); ++h)
+    if (plan.histories[h].resource == resource) return h;
+  return no_index;
+}
+
+void bind_port(const Plan& plan, Pass& pass, uint32_t index) {
+  const PlanAccess& access = plan.accesses[index];
+  PortAccess& port = pass.ports[access.port];
+  const uint32_t bit = uint32_t{1} << access.port;
+  switch (access.when) {
+  case ReadWhen::always:
+    port.access = index;
+    pass.port_mask |= bit;
+    break;
+  case ReadWhen::history_valid:
+    port.access = index;
+    port.history = history_of(plan, access.resource);
+    pass.conditional_ports.push_back(access.port);
+    break;
+  case ReadWhen::history_invalid: // behind the one that it stands in for: the port is bound in every frame
+    port.otherwise = index;
+    pass.port_mask |= bit;
+    pass.conditional_ports.pop_back();
+    break;
+  }
+}
+
 void make_passes(State& state, const ExecutorInput& input) {
   state.passes.resize(state.plan.passes.size());
   for (size_t p = 0; p < state.passes.size(); ++p) {
@@ -32,12 +60,9 @@ void make_passes(State& state, const ExecutorInput& input) {
     const PassKind& kind = (*input.kinds)[planned.kind];
     Pass& pass = state.passes[p];
     pass.name = input.graph->passes[planned.declared.value].name;
-    pass.access_of_port.assign(kind.ports.size(), no_index);
-    for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
-      const uint32_t port = state.plan.accesses[a].port;
-      pass.access_of_port[port] = a;
-      pass.port_mask |= uint32_t{1} << port;
-    }
+    pass.ports.resize(kind.ports.size());
+    for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a)
+      bind_port(state.plan, pass, a);
   }
 }
 
@@ -54,8 +79,7 @@ Error check_passes(const State& state, const KindRegistry& kinds) {
                                   kind.ports.size(), mask_bits));
     if (pass.kernel != no_index) {
       const Kernel& kernel = state.kernels[pass.kernel];
-      if (kernel.dispatch == DispatchShape::over_tiles &&
-          pass.access_of_port[kernel.indirect_port] == no_index)
+      if (kernel.dispatch == DispatchShape::over_tiles && pass.ports[kernel.indirect_port].access == no_index)
         return argument(fmt::format("pass '{}' dispatches over tiles, but its port '{}' is not bound",
                                     pass.name, kind.ports[kernel.indirect_port].name));
       continue;

@@ -18,16 +18,12 @@ void list_ports(State& state, const KindRegistry& kinds) {
       PortWrite write;
       write.pass = p;
       write.port = port;
-      const uint32_t access = pass.access_of_port[port];
-      if (access == no_index) {
+      if ((pass.port_mask >> port & 1u) == 0) {
         write.stand_in = stand_in_for(state, kernel.ports[port]);
         const bool writes = usage_info(kinds[kernel.kind].ports[port].usage).writes;
         if (writes && std::find(pass.writable_stand_ins.begin(), pass.writable_stand_ins.end(),
                                 write.stand_in) == pass.writable_stand_ins.end())
           pass.writable_stand_ins.push_back(write.stand_in);
-      } else {
-        write.resource = state.plan.accesses[access].resource;
-        write.frames_back = state.plan.accesses[access].frames_back;
       }
       state.descriptors.ports.push_back(write);
     }
@@ -50,10 +46,6 @@ void prepare_writes(State& state) {
     write.pImageInfo = &d.images[i];
     write.pBufferInfo = &d.buffers[i];
     d.buffers[i] = {VK_NULL_HANDLE, 0, VK_WHOLE_SIZE};
-    const uint32_t access = pass.access_of_port[port.port];
-    d.images[i].imageLayout = access == no_index // stand-ins rest in GENERAL
-                                  ? VK_IMAGE_LAYOUT_GENERAL
-                                  : static_cast<VkImageLayout>(state.plan.accesses[access].layout);
   }
 }
 
@@ -118,17 +110,21 @@ void write_descriptors(State& state, uint32_t frame_slot, std::span<const HostIm
   for (size_t i = 0; i < d.ports.size(); ++i) {
     const PortWrite& port = d.ports[i];
     d.writes[i].dstSet = d.sets[frame_slot * state.passes.size() + port.pass];
-    if (port.resource == no_index) {
+    const uint32_t index = access_now(state, state.passes[port.pass].ports[port.port]);
+    if (index == no_index) {
       d.images[i].imageView = state.stand_ins[port.stand_in].view;
+      d.images[i].imageLayout = VK_IMAGE_LAYOUT_GENERAL; // stand-ins rest in it
       d.buffers[i].buffer = state.stand_ins[port.stand_in].buffer;
       continue;
     }
-    const PlanResource& resource = state.plan.resources[port.resource];
+    const PlanAccess& access = state.plan.accesses[index];
+    const PlanResource& resource = state.plan.resources[access.resource];
+    d.images[i].imageLayout = static_cast<VkImageLayout>(access.layout);
     if (resource.first_instance == no_instance) {
       d.images[i].imageView = images[static_cast<size_t>(resource.slot)].view;
       continue;
     }
-    const Instance& instance = state.instances[instance_of(state, resource, port.frames_back)];
+    const Instance& instance = state.instances[instance_of(state, resource, access.frames_back)];
     const bool sampled = d.writes[i].descriptorType == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     d.images[i].imageView = sampled ? instance.all_mips : instance.first_mip;
     d.buffers[i].buffer = instance.buffer;

@@ -21,6 +21,12 @@ const char* history_reason_text(HistoryReason reason) {
   return "unknown";
 }
 
+uint32_t access_now(const State& state, const PortAccess& port) noexcept {
+  if (port.history == no_index) return port.access;
+  const bool valid = state.histories[port.history].age >= state.plan.accesses[port.access].frames_back;
+  return valid ? port.access : port.otherwise;
+}
+
 uint32_t Executor::history_count() const noexcept {
   return static_cast<uint32_t>(state_->histories.size());
 }

@@ -64,6 +64,8 @@ void push_settings(State& state, const FrameInput& frame, const PlanPass& planne
                    const Kernel& kernel) {
   const uint32_t words = kernel.push_bytes / static_cast<uint32_t>(sizeof(uint32_t));
   state.push_constants[0] = pass.port_mask;
+  for (const uint32_t port : pass.conditional_ports)
+    if (access_now(state, pass.ports[port]) != no_index) state.push_constants[0] |= uint32_t{1} << port;
   for (uint32_t i = 1; i < words; ++i) {
     const PlanSetting& setting = state.plan.settings[planned.first_setting + i - 1];
     const bool live = setting.from.valid() && setting.from.value < frame.settings.size();
@@ -77,16 +79,17 @@ void push_settings(State& state, const FrameInput& frame, const PlanPass& planne
 }
 
 VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& kernel) {
-  const PlanAccess& access = state.plan.accesses[pass.access_of_port[kernel.indirect_port]];
+  const PlanAccess& access = state.plan.accesses[pass.ports[kernel.indirect_port].access];
   return state.instances[instance_of(state, state.plan.resources[access.resource], access.frames_back)]
       .buffer;
 }
 
 const PlanResource* first_written_image(const State& state, const Pass& pass) {
-  for (const uint32_t index : pass.access_of_port) {
-    if (index == no_index || (state.plan.accesses[index].access & access::shader_storage_write) == 0)
+  for (const PortAccess& port : pass.ports) {
+    if (port.access == no_index ||
+        (state.plan.accesses[port.access].access & access::shader_storage_write) == 0)
       continue;
-    const PlanResource& resource = state.plan.resources[state.plan.accesses[index].resource];
+    const PlanResource& resource = state.plan.resources[state.plan.accesses[port.access].resource];
     if (resource.type == ResourceType::image) return &resource;
   }
   return nullptr;

@@ -57,9 +57,7 @@ struct Environment {             // descriptor set 1
 
 struct PortWrite { // one descriptor that every frame writes
   uint32_t pass = 0, port = 0;
-  uint32_t resource = no_index; // into Plan::resources; none: a stand-in
-  uint32_t frames_back = 0;
-  uint32_t stand_in = no_index; // into State::stand_ins
+  uint32_t stand_in = no_index; // into State::stand_ins: where the port is not bound, or not in every frame
 };
 
 struct Descriptors { // sets 0, by frame slot and pass
@@ -71,11 +69,18 @@ struct Descriptors { // sets 0, by frame slot and pass
   std::vector<VkDescriptorBufferInfo> buffers;
 };
 
+struct PortAccess {              // what stands at a port, into Plan::accesses
+  uint32_t access = no_index;    // none: not bound
+  uint32_t history = no_index;   // into State::histories: `access` counts only where this is valid
+  uint32_t otherwise = no_index; // what stands there else; none: then it is not bound
+};
+
 struct Pass {
   std::string name;
-  uint32_t kernel = no_index;           // into State::kernels; none: clear
-  std::vector<uint32_t> access_of_port; // into Plan::accesses, no_index where the port is not bound
-  uint32_t port_mask = 0;
+  uint32_t kernel = no_index; // into State::kernels; none: clear
+  std::vector<PortAccess> ports;
+  uint32_t port_mask = 0;                   // ports that are bound in every frame
+  std::vector<uint32_t> conditional_ports;  // the others that may be
   std::vector<uint32_t> writable_stand_ins; // into State::stand_ins
 };
 
@@ -148,6 +153,10 @@ void write_frame_constants(State& state, uint32_t frame_slot, std::span<const st
 // ---- kernels.cpp
 Error create_kernels(State& state, const ExecutorInput& input);
 void destroy_kernels(State& state);
+
+// ---- history.cpp
+// What stands at the port in the frame that is being recorded: into Plan::accesses, or no_index.
+uint32_t access_now(const State& state, const PortAccess& port) noexcept;
 
 // ---- descriptors.cpp
 Error create_descriptors(State& state, const KindRegistry& kinds);

@@ -119,8 +119,11 @@ Run run_file(const std::string& path, bool update, const std::vector<std::string
   const auto cases = read_expectations(*document, run.diagnostics);
   if (!cases) return run;
   const std::string graph_path = path.substr(0, path.size() - suffix.size()) + ".json";
-  const OpenFile open = open_beside(graph_path, roots);
   std::error_code ignored;
+  // Overlays usually stand in a folder beside that of the graphs.
+  std::vector<std::string> folders = roots;
+  folders.push_back((files::absolute(graph_path, ignored).parent_path() / "..").lexically_normal().string());
+  const OpenFile open = open_beside(graph_path, folders);
   std::vector<std::optional<Facts>> fresh(cases->size());
   for (size_t i = 0; i < cases->size(); ++i) {
     Observation observed;

@@ -62,6 +62,41 @@ TEST_F(HistoryTest, RenewedInPlaceKeepsCountingAndStartsAnewAfterACut) {
   EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
 }
 
+TEST_F(HistoryTest, WhereAHistoryIsNotValidItsPortReadsWhatTheGraphSays) {
+  SmallGraph g;
+  g.exported("result");
+  g.history("count");
+  g.image("start");
+  g.set(g.pass("begin", "test.fill", {}, {{"target", "start"}}), "value", 10);
+  g.set(g.pass("step", "test.add", {{"a", "count@-1?start"}, {"b", "count@-1?"}}, {{"target", "count"}}),
+        "bias", 1);
+  g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  // From 10 and nothing, then twice the frame before, and one more each time.
+  const float expected[] = {11, 23, 47, 11, 23};
+  for (size_t i = 0; i < std::size(expected); ++i) {
+    ASSERT_FALSE(frame(0.0f, {}, i == 3)); // the camera cuts
+    EXPECT_THAT(read(result), Each(FloatEq(expected[i]))) << "frame " << i;
+  }
+}
+
+TEST_F(HistoryTest, TwoFramesBackIsValidFromTheThirdFrameOn) {
+  SmallGraph g;
+  g.exported("result");
+  g.history("count", 2);
+  g.image("start");
+  g.set(g.pass("begin", "test.fill", {}, {{"target", "start"}}), "value", 10);
+  g.set(g.pass("step", "test.add", {{"a", "count@-2?start"}}, {{"target", "count"}}), "bias", 1);
+  g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  for (const float expected : {11, 11, 12, 12, 13}) {
+    ASSERT_FALSE(frame());
+    EXPECT_THAT(read(result), Each(FloatEq(expected)));
+  }
+}
+
 TEST_F(HistoryTest, AgeGrowsWithEveryFrameAndACutSaysWhy) {
   const SmallGraph g = counter();
   make_executor(g, side, side);

@@ -114,20 +114,29 @@ ResourceDeclaration& SmallGraph::buffer(const std::string& name, uint32_t extra_
   return added;
 }
 
+PortBinding SmallGraph::binding(const PassKind& kind, const std::string& port,
+                                const std::string& text) const {
+  const size_t at = text.find("@-");
+  PortBinding result;
+  result.port = static_cast<uint32_t>(find_port(kind, port));
+  result.frames_back = at == std::string::npos ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
+  for (uint32_t i = 0; i < graph.resources.size(); ++i)
+    if (graph.resources[i].name == text.substr(0, at)) result.resource = ResourceId{i};
+  EXPECT_TRUE(result.resource.valid()) << text;
+  EXPECT_LT(result.port, kind.ports.size()) << port;
+  return result;
+}
+
 std::vector<PortBinding> SmallGraph::bindings(const PassKind& kind, const Ports& ports) const {
   std::vector<PortBinding> result;
   for (const auto& [port, text] : ports) {
-    const size_t at = text.find("@-");
-    const std::string name = text.substr(0, at);
-    PortBinding binding;
-    binding.port = static_cast<uint32_t>(find_port(kind, port));
-    binding.frames_back =
-        at == std::string::npos ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
-    for (uint32_t i = 0; i < graph.resources.size(); ++i)
-      if (graph.resources[i].name == name) binding.resource = ResourceId{i};
-    EXPECT_TRUE(binding.resource.valid()) << text;
-    EXPECT_LT(binding.port, kind.ports.size()) << port;
-    result.push_back(binding);
+    const size_t condition = text.find('?');
+    result.push_back(binding(kind, port, text.substr(0, condition)));
+    if (condition == std::string::npos) continue;
+    result.back().when = ReadWhen::history_valid;
+    if (condition + 1 == text.size()) continue;
+    result.push_back(binding(kind, port, text.substr(condition + 1)));
+    result.back().when = ReadWhen::history_invalid;
   }
   return result;
 }

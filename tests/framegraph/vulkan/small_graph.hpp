@@ -22,7 +22,7 @@ struct SmallFrame { // std140, kernels/frame.glsl
 };
 
 struct SmallGraph {
-  using Ports = std::vector<std::pair<std::string, std::string>>; // port, "resource" or "resource@-1"
+  using Ports = std::vector<std::pair<std::string, std::string>>; // port, source as in Bindings
   Graph graph;
 
   ResourceDeclaration& import(const std::string& name, Format format, bool optional = false);
@@ -43,6 +43,7 @@ struct SmallGraph {
 
 private:
   ResourceDeclaration& resource(const std::string& name, Format format);
+  PortBinding binding(const PassKind& kind, const std::string& port, const std::string& text) const;
   std::vector<PortBinding> bindings(const PassKind& kind, const Ports& ports) const;
 };
 

@@ -39,14 +39,21 @@ struct Draft {
     return {static_cast<uint32_t>(graph.resources.size() - 1)};
   }
 
+  static PortBinding bound(uint32_t port, ResourceId resource) {
+    PortBinding binding;
+    binding.port = port;
+    binding.resource = resource;
+    return binding;
+  }
+
   void pass(const std::vector<ResourceId>& reads, const std::vector<ResourceId>& writes) {
     PassDeclaration declared;
     declared.name = fmt::format("pass{}", graph.passes.size());
     declared.kind = plain;
     for (uint32_t i = 0; i < reads.size(); ++i)
-      declared.reads.push_back({i, reads[i], 0, {}});
+      declared.reads.push_back(bound(i, reads[i]));
     for (uint32_t i = 0; i < writes.size(); ++i)
-      declared.writes.push_back({first_output + i, writes[i], 0, {}});
+      declared.writes.push_back(bound(first_output + i, writes[i]));
     graph.passes.push_back(std::move(declared));
   }
 
