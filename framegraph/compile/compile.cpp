@@ -67,6 +67,7 @@ bool Compiler::compile(const CompileInput& input, Diagnostics& diagnostics, Comp
   for (auto* phase : {
            resolve_sizes,    // how large is each resource, and which slots does the host bind?
            choose,           // what are the settings, and which passes are on?
+           find_parts,       // into which parts do ports divide images?
            resolve_versions, // which version of which resource does each port see?
            cull,             // which passes does something bound need?
            gather_usage,     // how do they use each resource?

@@ -32,7 +32,7 @@ struct Culler {
       }
       const uint32_t resource = use.resource.value;
       if (use.frames_back > 0)
-        need_value(c.final_value[use.asked.value], Reason::Why::read_later_by, pass.value, resource);
+        need_value(c.final_value[use.part], Reason::Why::read_later_by, pass.value, resource);
       need_value(use.read_value, Reason::Why::read_by, pass.value, resource);
       // What is written in place may keep texels of the version before.
       if (use.write_value != no_value)

@@ -28,6 +28,7 @@ struct ResourceFacts {
   bool image = true, imported = false, exported = false, optional = false;
   bool host_owned = false; // its memory comes from the host in this plan
   bool history = false;
+  uint32_t parts = 1; // that ports tell apart
 };
 
 // Size of a resource at the allocated view size.
@@ -44,12 +45,13 @@ struct Value {
   uint32_t previous = no_value; // the version this one is written over, in place
 };
 
-// One bound port of one pass that is on.
+// One bound port of one pass that is on, or one of the parts of an image that it sees.
 struct Use {
   enum class Trouble : uint8_t { none, unbound, unwritten, ambiguous, replaced, history_unwritten };
   PassId pass;
   ResourceId resource;                                    // whose memory is accessed, after `otherwise`
   ResourceId asked;                                       // as bound in the file
+  uint32_t part = 0;                                      // of what is asked for: see CompileContext::parts
   uint32_t read_value = no_value, write_value = no_value; // into CompileContext::values
   uint32_t frames_back = 0;
   uint16_t binding = 0; // into the pass's reads followed by its writes
@@ -108,6 +110,8 @@ struct PassTouch { // all accesses of one pass to one object
   uint32_t object = 0, resource = 0, frames_back = 0;
   uint8_t usages = 0;
   bool certain = false; // in every frame
+  uint32_t part = 0;
+  Layout layout = Layout::undefined;
 };
 
 struct Segment { // bytes of a heap and who had them last in this frame
@@ -118,6 +122,10 @@ struct Segment { // bytes of a heap and who had them last in this frame
 struct Arrival { // a first use whose bytes nothing in this frame had before
   uint64_t begin = 0, end = 0;
   uint32_t heap = 0, barrier = 0, resource = 0;
+};
+
+struct PartArrival { // the first use of a part of an image whose memory another part has taken over
+  uint32_t barrier = 0, resource = 0, object = 0;
 };
 
 struct Answer { // what memory the device wants for one description
@@ -150,16 +158,21 @@ struct CompileContext {
   std::vector<SettingValue> settings;
   std::vector<uint8_t> on;     // by pass: `when` holds
   std::vector<KindId> kind_of; // by pass
+  // parts: images of which ports name parts fall into the fewest that every port sees whole. The first part
+  // of a resource has the number of the resource, the others follow behind all resources.
+  std::vector<uint32_t> further_parts;                    // by resource: number of its second part
+  std::vector<SubresourceRange> parts;                    // by part, where Graph::parts
+  std::vector<std::array<std::vector<uint16_t>, 2>> cuts; // by resource: where parts begin, mips and layers
   // versions
   std::vector<Value> values;
   std::vector<Use> uses;               // sorted by pass, then port
   std::vector<uint32_t> first_use;     // by pass, and one more: into uses
-  std::vector<uint32_t> final_value;   // by resource: its version when the frame ends, no_value if none
-  std::vector<Meaning> current;        // by resource
-  std::vector<uint32_t> last_version;  // by resource: latest value in its own memory
-  std::vector<Definition> definitions; // by resource
-  std::vector<std::pair<uint32_t, ResourceId>> forward; // use -> name to look up when the scan is over
-  bool overwrites = false;                              // some value is written over another
+  std::vector<uint32_t> final_value;   // by part: its version when the frame ends, no_value if none
+  std::vector<Meaning> current;        // by part
+  std::vector<uint32_t> last_version;  // by part: latest value in its own memory
+  std::vector<Definition> definitions; // by part
+  std::vector<std::pair<uint32_t, uint32_t>> forward; // use -> part to look up when the scan is over
+  bool overwrites = false;                            // some value is written over another
   // cull
   std::vector<uint8_t> live;
   std::vector<PassId> pending;
@@ -198,6 +211,10 @@ struct CompileContext {
       batch_of;              // by draft: position of the pass it stands before; then its place in the plan
   size_t reasons_before = 0; // of the other phases
   std::vector<Arrival> arrivals;
+  std::vector<PartArrival> part_arrivals;
+  std::vector<uint32_t> part_after; // by plan resource: scratch
+  std::vector<uint32_t>
+      arrived_after; // by plan resource: last pass that had its memory before it, in this frame
   std::vector<uint32_t>
       arrival_of; // by plan resource: barrier of its first use, unless the host's or a history
 
@@ -209,6 +226,21 @@ struct CompileContext {
     return use.binding < pass.reads.size() ? pass.reads[use.binding]
                                            : pass.writes[use.binding - pass.reads.size()];
   }
+  bool split(ResourceId id) const { return facts[id.value].parts > 1; }
+  uint32_t part_number(ResourceId id, uint32_t index) const {
+    return index == 0 ? id.value : further_parts[id.value] + index - 1;
+  }
+  uint32_t part_index(const Use& use) const {
+    return use.part == use.asked.value ? 0 : use.part - further_parts[use.asked.value] + 1;
+  }
+  // The use of a history that `use` stands in for, at the same port; nullptr if it does not.
+  const Use* history_of(const Use& use) const {
+    if (use.when != ReadWhen::history_invalid) return nullptr;
+    const Use* at = &use;
+    while (at->when == ReadWhen::history_invalid)
+      --at;
+    return at;
+  }
   bool host_owned(ResourceId id) const { return facts[id.value].host_owned; }
   void because(Reason::About about, uint32_t index, Reason::Why why, uint32_t a = 0, uint32_t b = 0,
                uint32_t c = 0) {
@@ -219,6 +251,7 @@ struct CompileContext {
 // The phases, in the order they run. Each adds diagnostics; compile() stops behind a phase that found errors.
 void resolve_sizes(CompileContext& context); // bound slots, extents
 void choose(CompileContext& context);        // values of settings; which passes are on
+void find_parts(CompileContext& context);    // into which parts do ports divide images?
 void resolve_versions(
     CompileContext& context);               // which version each port reads and writes, `otherwise` applied
 void cull(CompileContext& context);         // which passes run: those that something bound needs

@@ -13,6 +13,14 @@ namespace dermis {
 
 inline constexpr uint32_t no_instance = 0xffffffffu;
 
+// As in VkImageSubresourceRange. Buffers have one mip and one layer.
+struct SubresourceRange {
+  uint16_t first_mip = 0, mips = 1;
+  uint16_t first_layer = 0, layers = 1;
+
+  constexpr bool operator==(const SubresourceRange&) const = default;
+};
+
 // A physical image or buffer. Transients have one instance; a history resource of which N earlier frames are
 // read has N+1, or N where a frame may be written into the memory of the oldest. In frame f (counted per view
 // from 0), `frames_back` b of resource r lives in instance first_instance + (f - b) mod instance_count.
@@ -28,6 +36,10 @@ struct PlanResource {
   uint32_t vk_usage = 0;                                // of all its ports; histories: and of a clear
   uint32_t instance_count = 1;
   uint32_t first_instance = no_instance; // into Plan::placements; no_instance: the host's memory
+  // Everything that the resource has.
+  SubresourceRange whole() const {
+    return {0, static_cast<uint16_t>(mips), 0, static_cast<uint16_t>(layers)};
+  }
   int32_t slot =
       -1; // imports and exports, bound or not: running number among them in the order of Graph::resources
 };
@@ -51,6 +63,7 @@ struct PlanAccess { // one bound port of one pass
   uint32_t port = 0;
   uint32_t resource = 0; // into Plan::resources
   uint32_t frames_back = 0;
+  SubresourceRange range;
   Stage stages = 0;
   Access access = 0;
   Layout layout = Layout::undefined;
@@ -60,13 +73,14 @@ struct PlanAccess { // one bound port of one pass
   ReadWhen when = ReadWhen::always;
 };
 
-// One memory dependency on the whole of one resource: an image barrier over all mips and layers, or a buffer
+// One memory dependency on one resource: an image barrier over a range of mips and layers, or a buffer
 // barrier over all bytes (layouts undefined). Source masks name accesses of this frame and of the frames
 // before it on the same queue. Every slot the host binds has one barrier with to_host in the final batch; one
 // that no pass touches has from_host and to_host in it.
 struct PlanBarrier {
   uint32_t resource = 0;
   uint32_t frames_back = 0;
+  SubresourceRange range;
   Stage source_stages = 0, destination_stages = 0;
   Access source_access = 0, destination_access = 0;
   Layout old_layout = Layout::undefined, new_layout = Layout::undefined;

@@ -11,7 +11,10 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <span>
+#include <tuple>
+#include <utility>
 
 namespace dermis {
 namespace {
@@ -68,8 +71,9 @@ struct Synchronizer {
   CompileContext& c;
   Plan& plan;
   const std::array<UsageSet, usage_sets>& sets;
-  bool emit = false;              // barriers; otherwise only how each object ends
-  uint32_t last_batch = no_value; // position of the pass behind it
+  std::vector<std::pair<uint32_t, uint32_t>> pending = {}; // barriers for parts, and what they stand behind
+  bool emit = false;                                       // barriers; otherwise only how each object ends
+  uint32_t last_batch = no_value;                          // position of the pass behind it
 
   void because(uint32_t barrier, Reason::Why why, uint32_t resource, uint32_t b = 0) {
     c.because(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
@@ -81,33 +85,45 @@ struct Synchronizer {
   }
   // Frames of a resource that a frame touches, this one included: each is an object.
   uint32_t roles(uint32_t resource) const { return life(resource).deepest_read + 1; }
+  // Parts of a resource that ports tell apart: each is an object. Histories have one.
+  uint32_t parts(uint32_t resource) const {
+    return c.graph->parts ? c.facts[plan.resources[resource].declared.value].parts : 1;
+  }
   // This frame's and the oldest are one object where the one is written over the other.
-  uint32_t object_of(uint32_t resource, uint32_t frames_back) const {
+  uint32_t object_of(uint32_t resource, uint32_t frames_back, uint32_t part = 0) const {
     const bool oldest = frames_back == 0 && life(resource).updates_oldest;
-    return c.first_object[resource] + (oldest ? life(resource).deepest_read : frames_back);
+    return c.first_object[resource] + (oldest ? life(resource).deepest_read : frames_back) + part;
+  }
+  SubresourceRange range_of(uint32_t resource, uint32_t part) const {
+    if (parts(resource) == 1) return plan.resources[resource].whole();
+    return c.parts[c.part_number(plan.resources[resource].declared, part)];
   }
 
   // Returns whether the plan has histories.
   bool number_objects() {
-    uint32_t objects = 0;
+    uint32_t objects = 0, deepest = 1;
     c.first_object.clear();
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       c.first_object.push_back(objects);
-      objects += roles(r);
+      objects += roles(r) * parts(r);
+      deepest = std::max(deepest, roles(r));
     }
     c.states.assign(objects, {});
-    return objects != plan.resources.size();
+    return deepest > 1;
   }
 
   // Earlier frames of a history start where the frame before left them, one role younger; everything else
   // arrives with its first barrier.
   void carry_over() {
-    for (uint32_t r = 0; r < plan.resources.size(); ++r)
+    for (uint32_t r = 0; r < plan.resources.size(); ++r) {
+      for (uint32_t part = 1; part < parts(r); ++part)
+        c.states[object_of(r, 0, part)] = {};
       for (uint32_t back = roles(r); back-- > 0;) {
         const uint32_t object = c.first_object[r] + back;
         c.states[object] = back == 0 ? ObjectState{} : c.ends[object_of(r, back - 1)];
         c.states[object].carried = back != 0;
       }
+    }
   }
 
   // The oldest instance of a history was one role younger when the frame before ended, and so on.
@@ -139,15 +155,37 @@ struct Synchronizer {
       c.touch_of_use.push_back(no_value);
       if (use.trouble != Use::Trouble::none) continue;
       const uint32_t resource = c.plan_resource[use.resource.value];
-      const uint32_t object = object_of(resource, use.frames_back);
+      const uint32_t part = c.part_index(use);
+      const uint32_t object = object_of(resource, use.frames_back, part);
       const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
       uint32_t same = 0;
       while (same < c.touches.size() && c.touches[same].object != object)
         ++same;
-      if (same == c.touches.size()) c.touches.push_back({object, resource, use.frames_back, 0, false});
+      if (same == c.touches.size())
+        c.touches.push_back({object, resource, use.frames_back, 0, false, part, Layout::undefined});
       c.touches[same].usages |= usage;
       c.touches[same].certain |= use.when == ReadWhen::always;
       c.touch_of_use.back() = same;
+    }
+    for (PassTouch& touch : c.touches)
+      touch.layout = layout_of(touch);
+    if (c.graph->parts) unify_layouts(first_use, end);
+  }
+
+  // A port sees all its parts in one layout: `general` where they would have several.
+  void unify_layouts(uint32_t first_use, uint32_t end) {
+    for (bool again = true; again;) {
+      again = false;
+      uint32_t before = no_value; // touch of the use before
+      for (uint32_t u = first_use; u < end; ++u) {
+        const uint32_t touch = c.touch_of_use[u - first_use];
+        if (touch != no_value && before != no_value && c.uses[u].binding == c.uses[u - 1].binding &&
+            c.touches[touch].layout != c.touches[before].layout) {
+          c.touches[touch].layout = c.touches[before].layout = Layout::general;
+          again = true;
+        }
+        before = touch;
+      }
     }
   }
 
@@ -160,10 +198,19 @@ struct Synchronizer {
       const PassTouch& touch = c.touches[touched];
       const Use& use = c.uses[u];
       const UsageSet& usage = sets[size_t{1} << static_cast<uint32_t>(use.usage)];
-      const bool alone = use.when == ReadWhen::history_invalid && // no history to stand in for
-                         c.uses[u - 1].trouble != Use::Trouble::none;
-      plan.accesses.push_back({use.port, touch.resource, use.frames_back, usage.stages, usage.access,
-                               layout_of(touch), use.frames_back > 0 && ports[use.port].own_texels,
+      const SubresourceRange range = range_of(touch.resource, touch.part);
+      if (u > first_use && use.binding == c.uses[u - 1].binding) { // a further part
+        SubresourceRange& seen = plan.accesses.back().range;
+        seen.mips = static_cast<uint16_t>(std::max(seen.first_mip + seen.mips, range.first_mip + range.mips) -
+                                          seen.first_mip);
+        seen.layers = static_cast<uint16_t>(
+            std::max(seen.first_layer + seen.layers, range.first_layer + range.layers) - seen.first_layer);
+        continue;
+      }
+      const Use* history = c.history_of(use);
+      const bool alone = history && history->trouble != Use::Trouble::none; // nothing to stand in for
+      plan.accesses.push_back({use.port, touch.resource, use.frames_back, range, usage.stages, usage.access,
+                               touch.layout, use.frames_back > 0 && ports[use.port].own_texels,
                                alone ? ReadWhen::always : use.when});
     }
     pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
@@ -208,14 +255,35 @@ struct Synchronizer {
     const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
     collect(first_use, end);
     if (emit) add_accesses(pass, first_use, end);
+    pending.clear();
     for (const PassTouch& touch : c.touches)
       run_touch(touch, position);
+    batch_parts(position);
+  }
+
+  // Barriers for parts of one image stand in one batch, so that they can become one barrier.
+  void batch_parts(uint32_t position) {
+    for (const auto& [index, after] : pending) {
+      uint32_t& latest = c.part_after[c.drafts[index].resource];
+      if (after != no_value) latest = latest == no_value ? after : std::max(latest, after);
+    }
+    for (const auto& [index, after] : pending)
+      batch(index, c.part_after[c.drafts[index].resource], position);
+    for (const auto& [index, after] : pending)
+      c.part_after[c.drafts[index].resource] = no_value;
+  }
+
+  void place(uint32_t index, uint32_t after, uint32_t position) {
+    if (c.graph->parts && parts(c.drafts[index].resource) > 1)
+      pending.emplace_back(index, after);
+    else
+      batch(index, after, position);
   }
 
   void run_touch(const PassTouch& touch, uint32_t position) {
     ObjectState& state = c.states[touch.object];
     const UsageSet& set = sets[touch.usages];
-    const Layout layout = layout_of(touch);
+    const Layout layout = touch.layout;
     bool waited = true;
     if (!state.touched) {
       if (emit) arrive(touch, set, layout, position);
@@ -225,12 +293,13 @@ struct Synchronizer {
       if (waited && emit) {
         barrier.resource = touch.resource;
         barrier.frames_back = touch.frames_back;
+        barrier.range = range_of(touch.resource, touch.part);
         const uint32_t index = draft();
         c.because(Reason::About::barrier, index, Reason::Why::dependency, state.last_pass,
                   state.carried ? 1 : 0, position);
         if (state.carried) barrier.why = PlanBarrier::Why::history;
         c.drafts[index] = barrier;
-        batch(index, state.carried ? no_value : state.last_pass, position);
+        place(index, state.carried ? no_value : state.last_pass, position);
       }
     }
     const bool transition = !state.touched || layout != state.layout;
@@ -298,6 +367,7 @@ struct Synchronizer {
     uint32_t after = no_value;
     barrier.resource = touch.resource;
     barrier.frames_back = touch.frames_back;
+    barrier.range = range_of(touch.resource, touch.part);
     barrier.destination_stages = set.stages;
     barrier.destination_access = set.access;
     barrier.new_layout = layout;
@@ -313,10 +383,28 @@ struct Synchronizer {
       wait_for(barrier, tail(before));
       barrier.why = PlanBarrier::Why::history;
       because(index, Reason::Why::oldest_instance, touch.resource);
+    } else if (parts(touch.resource) > 1 && c.arrival_of[touch.resource] != no_value) {
+      after = c.arrived_after[touch.resource];
+      c.part_arrivals.push_back({index, touch.resource, touch.object});
+      because(index, Reason::Why::first_use, touch.resource);
     } else {
       after = take_over(touch.resource, index);
+      if (parts(touch.resource) > 1) {
+        c.arrived_after[touch.resource] = after;
+        c.part_arrivals.push_back({index, touch.resource, touch.object});
+      }
     }
-    batch(index, after, position);
+    place(index, after, position);
+  }
+
+  // The last pass of this frame that touched any part of the resource.
+  uint32_t last_pass(uint32_t resource) const {
+    uint32_t last = no_value;
+    for (uint32_t part = 0; part < parts(resource); ++part) {
+      const ObjectState& state = c.states[c.first_object[resource] + part];
+      if (state.touched) last = last == no_value ? state.last_pass : std::max(last, state.last_pass);
+    }
+    return last;
   }
 
   // Memory passes from those that had its bytes before in this frame; where there is none, from those that
@@ -336,7 +424,7 @@ struct Synchronizer {
     for (; last != segments.end() && last->begin < end; ++last) {
       if (last->begin > reached) c.arrivals.push_back({reached, last->begin, place.heap, barrier, resource});
       inherit(last->resource, resource, barrier, false);
-      const uint32_t ended = c.states[c.first_object[last->resource]].last_pass;
+      const uint32_t ended = last_pass(last->resource);
       after = after == no_value ? ended : std::max(after, ended);
       reached = last->end;
     }
@@ -373,7 +461,8 @@ struct Synchronizer {
   }
 
   void inherit(uint32_t from, uint32_t resource, uint32_t barrier, bool frame_before) {
-    wait_for(c.drafts[barrier], tail(c.states[c.first_object[from]]));
+    for (uint32_t part = 0; part < parts(from); ++part)
+      wait_for(c.drafts[barrier], tail(c.states[c.first_object[from] + part]));
     if (from != resource) c.drafts[barrier].why = PlanBarrier::Why::alias;
     because(barrier, from == resource ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from,
             frame_before ? 1 : 0);
@@ -383,12 +472,85 @@ struct Synchronizer {
   // moved apart stays in order.
   void settle_arrivals() {
     for (uint32_t r = 0; r < c.arrival_of.size(); ++r)
-      if (c.arrival_of[r] != no_value) inherit(r, r, c.arrival_of[r], true);
+      if (c.arrival_of[r] != no_value && parts(r) == 1) inherit(r, r, c.arrival_of[r], true);
     for (const Arrival& arrival : c.arrivals) {
       std::vector<Segment>& segments = c.memory[arrival.heap];
       for (auto at = behind(segments, arrival.begin); at != segments.end() && at->begin < arrival.end; ++at)
         if (at->resource != arrival.resource) inherit(at->resource, arrival.resource, arrival.barrier, true);
     }
+    settle_parts();
+  }
+
+  // Each part waits for those that had the memory before, and for its own last use in the frame before.
+  void settle_parts() {
+    for (size_t i = c.part_arrivals.size();
+         i-- > 0;) { // the first of a resource, from which others take, last
+      const PartArrival& arrival = c.part_arrivals[i];
+      PlanBarrier& barrier = c.drafts[arrival.barrier];
+      const PlanBarrier& first = c.drafts[c.arrival_of[arrival.resource]];
+      if (&barrier != &first) {
+        wait_for(barrier, {first.source_stages, first.source_access});
+        barrier.why = first.why;
+      }
+      wait_for(barrier, tail(c.states[arrival.object]));
+      because(arrival.barrier, Reason::Why::behind_last_use, arrival.resource, 1);
+    }
+  }
+
+  static bool unite(SubresourceRange& a, const SubresourceRange& b) {
+    if (a.first_layer == b.first_layer && a.layers == b.layers && a.first_mip + a.mips == b.first_mip) {
+      a.mips = static_cast<uint16_t>(a.mips + b.mips);
+      return true;
+    }
+    if (a.first_mip == b.first_mip && a.mips == b.mips && a.first_layer + a.layers == b.first_layer) {
+      a.layers = static_cast<uint16_t>(a.layers + b.layers);
+      return true;
+    }
+    return false;
+  }
+
+  bool merge(PlanBarrier& a, const PlanBarrier& b) const {
+    const auto same = [](const PlanBarrier& one) {
+      return std::tuple(one.resource, one.frames_back, one.source_stages, one.destination_stages,
+                        one.source_access, one.destination_access, one.old_layout, one.new_layout, one.why,
+                        one.from_host, one.to_host);
+    };
+    return parts(a.resource) > 1 && same(a) == same(b) && unite(a.range, b.range);
+  }
+
+  // Barriers of one batch that differ in the parts of an image alone become one.
+  void merge_parts() {
+    std::vector<uint32_t> kept, place_of(c.drafts.size());
+    for (uint32_t i = 0; i < c.drafts.size(); ++i) {
+      kept.push_back(i);
+      place_of[i] = i;
+      while (kept.size() > 1) {
+        const uint32_t earlier = kept[kept.size() - 2], later = kept.back();
+        if (c.batch_of[earlier] != c.batch_of[later] || !merge(c.drafts[earlier], c.drafts[later])) break;
+        place_of[later] = earlier;
+        kept.pop_back();
+      }
+    }
+    std::vector<uint32_t> number(c.drafts.size());
+    for (uint32_t k = 0; k < kept.size(); ++k) {
+      number[kept[k]] = k;
+      c.drafts[k] = c.drafts[kept[k]];
+      c.batch_of[k] = c.batch_of[kept[k]];
+    }
+    for (uint32_t i = 0; i < place_of.size(); ++i) // into what it stands in now
+      if (place_of[i] != i) number[i] = number[place_of[i]];
+    c.drafts.resize(kept.size());
+    c.batch_of.resize(kept.size());
+    using Key = std::tuple<uint32_t, Reason::Why, uint32_t, uint32_t, uint32_t>;
+    std::set<Key> seen;
+    std::vector<Reason>& reasons = c.out->reasons;
+    const auto repeated = [&](Reason& reason) {
+      reason.index = number[reason.index];
+      return !seen.insert({reason.index, reason.why, reason.a, reason.b, reason.c}).second;
+    };
+    reasons.erase(std::remove_if(reasons.begin() + static_cast<std::ptrdiff_t>(c.reasons_before),
+                                 reasons.end(), repeated),
+                  reasons.end());
   }
 
   // Every slot is handed back in the state the host asked for, also one that no pass touched.
@@ -397,6 +559,7 @@ struct Synchronizer {
     const Scope scope = tail(end);
     PlanBarrier barrier;
     barrier.resource = resource;
+    barrier.range = plan.resources[resource].whole();
     barrier.from_host = !end.touched;
     barrier.to_host = true;
     barrier.source_stages = scope.stages;
@@ -432,6 +595,11 @@ void synchronize(CompileContext& c) {
   const bool histories = walk.number_objects();
   if (histories) walk.find_ends();
   c.arrivals.clear();
+  c.part_arrivals.clear();
+  if (c.graph->parts) {
+    c.arrived_after.assign(plan.resources.size(), no_value);
+    c.part_after.assign(plan.resources.size(), no_value);
+  }
   c.arrival_of.assign(plan.resources.size(), no_value);
   c.memory.resize(std::max(c.memory.size(), plan.heaps.size()));
   for (std::vector<Segment>& segments : c.memory)
@@ -443,6 +611,7 @@ void synchronize(CompileContext& c) {
   for (uint32_t position = 0; position < plan.passes.size(); ++position)
     walk.run_pass(position);
   walk.settle_arrivals();
+  if (c.graph->parts) walk.merge_parts();
   walk.sort_into_batches();
   plan.first_final_barrier = static_cast<uint32_t>(plan.barriers.size());
   for (uint32_t r = 0; r < plan.resources.size(); ++r)

@@ -2,27 +2,32 @@
 // makes the names it would have written stand for their `otherwise`.
 
 #include "framegraph/compile/phases.hpp"
+#include "framegraph/text/limits.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace dermis {
 namespace {
 
 struct VersionScan {
   CompileContext& c;
+  uint64_t part_uses = 0;
+  std::pair<PassId, uint16_t> refused{};
 
   void begin() {
     const size_t resources = c.graph->resources.size();
+    const size_t parts = std::max(resources, c.parts.size());
     c.values.clear();
     c.uses.clear();
     c.first_use.clear();
     c.forward.clear();
     c.overwrites = false;
-    c.current.assign(resources, {});
-    c.last_version.assign(resources, no_value);
-    c.definitions.assign(resources, {});
+    c.current.assign(parts, {});
+    c.last_version.assign(parts, no_value);
+    c.definitions.assign(parts, {});
     for (uint32_t i = 0; i < resources; ++i) {
       if (!c.facts[i].imported || !c.bound[i]) continue;
       c.current[i].value = add_value({ResourceId{i}, 0, PassId{}, no_value});
@@ -36,6 +41,37 @@ struct VersionScan {
   }
 
   bool unbound_import(ResourceId id) const { return c.facts[id.value].imported && !c.bound[id.value]; }
+
+  // One use for each part that the port sees.
+  void add_parts(Use use, const ImagePart& seen) {
+    const uint32_t end_mip = seen.mips == 0 ? UINT32_MAX : seen.first_mip + seen.mips;
+    const uint32_t end_layer = seen.layers == 0 ? UINT32_MAX : uint32_t{seen.first_layer} + seen.layers;
+    for (uint32_t i = 0; i < c.facts[use.asked.value].parts; ++i) {
+      use.part = c.part_number(use.asked, i);
+      const SubresourceRange& part = c.parts[use.part];
+      if (part.first_mip >= seen.first_mip && part.first_mip < end_mip &&
+          part.first_layer >= seen.first_layer && part.first_layer < end_layer)
+        c.uses.push_back(use);
+    }
+    part_uses += c.facts[use.asked.value].parts;
+  }
+
+  // A port of which some part cannot be read is not bound at all.
+  void spread_trouble() {
+    for (size_t first = 0; first < c.uses.size();) {
+      const Use& one = c.uses[first];
+      size_t end = first + 1;
+      while (end < c.uses.size() && c.uses[end].pass == one.pass && c.uses[end].port == one.port &&
+             c.uses[end].binding == one.binding)
+        ++end;
+      const auto bad = std::find_if(c.uses.begin() + static_cast<std::ptrdiff_t>(first),
+                                    c.uses.begin() + static_cast<std::ptrdiff_t>(end),
+                                    [](const Use& use) { return use.trouble != Use::Trouble::none; });
+      for (size_t u = first; u < end && bad != c.uses.begin() + static_cast<std::ptrdiff_t>(end); ++u)
+        if (c.uses[u].trouble == Use::Trouble::none) c.uses[u].trouble = bad->trouble;
+      first = end;
+    }
+  }
 
   void scan_uses(PassId pass) {
     const PassDeclaration& declared = c.graph->passes[pass.value];
@@ -55,9 +91,17 @@ struct VersionScan {
         use.resource = use.asked = binding.resource;
         use.frames_back = binding.frames_back;
         use.when = binding.when;
+        use.part = use.asked.value;
         use.binding = number++;
-        c.uses.push_back(use);
+        if (c.split(use.asked))
+          add_parts(use, binding.part);
+        else
+          c.uses.push_back(use);
       }
+    constexpr uint32_t many = 64; // parts of images
+    if (c.uses.size() - first > many)
+      std::stable_sort(c.uses.begin() + first, c.uses.end(),
+                       [](const Use& a, const Use& b) { return a.port < b.port; });
     for (uint32_t u = first + 1; u < c.uses.size(); ++u) // few, and nearly always sorted
       for (uint32_t at = u; at > first && c.uses[at].port < c.uses[at - 1].port; --at)
         std::swap(c.uses[at], c.uses[at - 1]);
@@ -70,13 +114,13 @@ struct VersionScan {
   void read(uint32_t index) {
     Use& use = c.uses[index];
     if (!use.reads || use.frames_back > 0) return;
-    const Meaning& meaning = c.current[use.asked.value];
+    const Meaning& meaning = c.current[use.part];
     if (unbound_import(use.asked))
       use.trouble = Use::Trouble::unbound;
     else if (meaning.value != no_value)
       see(use, meaning.value);
     else
-      c.forward.emplace_back(index, meaning.later.valid() ? meaning.later : use.asked);
+      c.forward.emplace_back(index, meaning.later.valid() ? meaning.later.value : use.part);
   }
 
   void see(Use& use, uint32_t value) {
@@ -85,10 +129,10 @@ struct VersionScan {
     if (use.writes && use.resource != use.asked) use.trouble = Use::Trouble::replaced;
   }
 
-  bool reads_too(PassId pass, ResourceId id) const {
+  bool reads_too(PassId pass, uint32_t part) const {
     for (uint32_t u = c.first_use[pass.value]; u < c.uses.size(); ++u) {
       const Use& use = c.uses[u];
-      if (use.asked == id && use.frames_back == 0 && use.reads) return true;
+      if (use.part == part && use.frames_back == 0 && use.reads) return true;
     }
     return false;
   }
@@ -101,23 +145,25 @@ struct VersionScan {
       return;
     }
     const uint32_t id = use.asked.value;
-    const uint32_t before = c.current[id].value;
+    const uint32_t before = c.current[use.part].value;
     const PassId producer = before == no_value ? PassId{} : c.values[before].producer;
     const bool own = before != no_value && c.values[before].resource == use.asked;
     const bool second = own && (producer == use.pass || (!c.facts[id].imported && producer.valid() &&
-                                                         !reads_too(use.pass, use.asked)));
+                                                         !reads_too(use.pass, use.part)));
     if (second) return refuse_second(use, producer);
-    const uint32_t previous = c.last_version[id];
+    const uint32_t previous = c.last_version[use.part];
     const uint32_t version = previous == no_value ? 1 : c.values[previous].version + 1;
     c.overwrites |= previous != no_value;
     use.write_value = add_value({use.asked, version, use.pass, previous});
-    c.last_version[id] = use.write_value;
-    c.current[id] = {use.write_value, {}};
-    Definition& definition = c.definitions[id];
+    c.last_version[use.part] = use.write_value;
+    c.current[use.part] = {use.write_value, {}};
+    Definition& definition = c.definitions[use.part];
     if (++definition.producers == 1) definition.first_value = use.write_value;
   }
 
   void refuse_second(const Use& use, PassId producer) {
+    const std::pair port{use.pass, use.port};
+    if (std::exchange(refused, port) == port) return; // another part of what it writes
     auto& diagnostic = c.diagnostics->add(
         DiagnosticId::second_producer, c.binding(use).where,
         producer == use.pass
@@ -139,6 +185,13 @@ struct VersionScan {
                                        c.name(through.instead), c.name(through.output)));
         continue;
       }
+      if (c.split(through.output) || c.split(through.instead)) {
+        c.diagnostics->add(DiagnosticId::otherwise_mismatch, through.where,
+                           fmt::format("'{}' cannot stand in for '{}': ports name parts of '{}'",
+                                       c.name(through.instead), c.name(through.output),
+                                       c.name(c.split(through.output) ? through.output : through.instead)));
+        continue;
+      }
       Meaning meaning = c.current[through.instead.value];
       if (meaning.value == no_value && !meaning.later.valid()) meaning.later = through.instead;
       replaced.emplace_back(through.output, meaning);
@@ -157,12 +210,12 @@ struct VersionScan {
 
   // A reader before all writers sees the only producer's version. Follows `otherwise` at most once per
   // resource.
-  void look_ahead(uint32_t index, ResourceId wanted) {
+  void look_ahead(uint32_t index, uint32_t part) {
     Use& use = c.uses[index];
     for (size_t step = 0; step <= c.definitions.size(); ++step) {
-      const Definition& definition = c.definitions[wanted.value];
-      const bool writes_it = definition.first_value != no_value && writes(use.pass, wanted);
-      if (unbound_import(wanted)) {
+      const Definition& definition = c.definitions[part];
+      const bool writes_it = definition.first_value != no_value && writes(use.pass, part);
+      if (part < c.graph->resources.size() && unbound_import(ResourceId{part})) {
         use.trouble = Use::Trouble::unbound;
         return;
       }
@@ -173,14 +226,14 @@ struct VersionScan {
       }
       if (!definition.replaced) break;
       if (definition.instead.value != no_value) return see(use, definition.instead.value);
-      wanted = definition.instead.later;
+      part = definition.instead.later.value;
     }
     use.trouble = Use::Trouble::unwritten;
   }
 
-  bool writes(PassId pass, ResourceId id) const {
+  bool writes(PassId pass, uint32_t part) const {
     for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u)
-      if (c.uses[u].asked == id && c.uses[u].write_value != no_value) return true;
+      if (c.uses[u].part == part && c.uses[u].write_value != no_value) return true;
     return false;
   }
 };
@@ -205,19 +258,25 @@ void resolve_versions(CompileContext& c) {
       scan.scan_uses(PassId{i});
     else
       scan.scan_otherwise(PassId{i});
+    if (scan.part_uses <= limits::part_uses) continue;
+    c.diagnostics->add(DiagnosticId::limit_exceeded, c.graph->passes[i].where,
+                       fmt::format("ports see more than {} parts of images", limits::part_uses));
+    return;
   }
   c.first_use.push_back(static_cast<uint32_t>(c.uses.size()));
-  for (const auto& [use, wanted] : c.forward)
-    scan.look_ahead(use, wanted);
+  for (const auto& [use, part] : c.forward)
+    scan.look_ahead(use, part);
 
-  c.final_value.assign(c.graph->resources.size(), no_value);
+  c.final_value.assign(c.current.size(), no_value);
   for (uint32_t i = 0; i < c.final_value.size(); ++i) {
-    const uint32_t last = c.current[i].value;
-    if (last != no_value && c.values[last].resource == ResourceId{i}) c.final_value[i] = last;
+    const uint32_t last = c.current[i].value; // parts have no stand-ins
+    const bool further = i >= c.graph->resources.size();
+    if (last != no_value && (further || c.values[last].resource == ResourceId{i})) c.final_value[i] = last;
   }
   for (Use& use : c.uses)
-    if (use.frames_back > 0 && c.final_value[use.asked.value] == no_value)
+    if (use.frames_back > 0 && c.final_value[use.part] == no_value)
       use.trouble = Use::Trouble::history_unwritten;
+  if (c.graph->parts) scan.spread_trouble();
 }
 
 } // namespace dermis

@@ -1,5 +1,7 @@
 #include "framegraph/explain/names.hpp"
 
+#include "framegraph/model/image_part.hpp"
+
 #include <fmt/format.h>
 
 #include <iterator>
@@ -131,6 +133,20 @@ std::string_view read_when_text(ReadWhen when) {
     return " else";
   }
   return "";
+}
+
+std::string range_text(const PlanResource& resource, const SubresourceRange& range) {
+  ImagePart part;
+  const SubresourceRange whole = resource.whole();
+  if (range.first_mip != whole.first_mip || range.mips != whole.mips) {
+    part.first_mip = static_cast<uint8_t>(range.first_mip);
+    part.mips = static_cast<uint8_t>(range.mips);
+  }
+  if (range.first_layer != whole.first_layer || range.layers != whole.layers) {
+    part.first_layer = range.first_layer;
+    part.layers = range.layers;
+  }
+  return part_text(part);
 }
 
 std::string bytes_text(uint64_t bytes) {

@@ -21,6 +21,9 @@ std::string_view read_when_text(ReadWhen when); // " where it is valid", to stan
 std::string stage_text(Stage stages);
 std::string access_text(Access accesses);
 
+// As a graph file names it, behind the name of the resource: "#1..3[0]"; "" for all that it has.
+std::string range_text(const PlanResource& resource, const SubresourceRange& range);
+
 // 1536 -> "1.5 KiB", to one decimal, exact below 1 KiB.
 std::string bytes_text(uint64_t bytes);
 

@@ -24,8 +24,10 @@ private:
   std::map<std::string, uint32_t> count_;
 };
 
-std::string object_text(const SavedPlan& saved, uint32_t resource, uint32_t frames_back) {
-  const std::string& name = saved.names.resources[resource];
+std::string object_text(const SavedPlan& saved, uint32_t resource, uint32_t frames_back,
+                        const SubresourceRange& range) {
+  const std::string name =
+      saved.names.resources[resource] + range_text(saved.plan.resources[resource], range);
   return frames_back == 0 ? name : fmt::format("{}@-{}", name, frames_back);
 }
 
@@ -76,8 +78,8 @@ std::string pass_text(const SavedPlan& saved, size_t p) {
   for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
     const PlanAccess& access = saved.plan.accesses[a];
     const bool writes = (access.access & all_write_access) != 0;
-    text += fmt::format(" {}{}{}{}", saved.names.ports[a],
-                        writes ? "=>" : "<=", object_text(saved, access.resource, access.frames_back),
+    text += fmt::format(" {}{}{}{}", saved.names.ports[a], writes ? "=>" : "<=",
+                        object_text(saved, access.resource, access.frames_back, access.range),
                         read_when_text(access.when));
   }
   const size_t settings_end =
@@ -134,7 +136,8 @@ Lines histories(const SavedPlan& saved) {
 void add_batch(const SavedPlan& saved, std::string_view where, uint32_t first, uint32_t count, Lines& lines) {
   for (uint32_t b = first; b < first + count; ++b) {
     const PlanBarrier& barrier = saved.plan.barriers[b];
-    lines.add(fmt::format("{}: {}", where, object_text(saved, barrier.resource, barrier.frames_back)),
+    lines.add(fmt::format("{}: {}", where,
+                          object_text(saved, barrier.resource, barrier.frames_back, barrier.range)),
               fmt::format("{}, {} {} {} -> {} {} {}", why_name(barrier.why),
                           barrier.from_host ? "host" : stage_text(barrier.source_stages),
                           access_text(barrier.source_access), layout_name(barrier.old_layout),

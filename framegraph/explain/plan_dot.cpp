@@ -1,6 +1,8 @@
 #include "framegraph/explain/plan_dot.hpp"
 
+#include "framegraph/explain/names.hpp"
 #include "framegraph/explain/reasons.hpp"
+#include "framegraph/model/image_part.hpp"
 
 #include <fmt/format.h>
 
@@ -38,11 +40,12 @@ std::string resource_node(const ResourceDeclaration& declared, uint32_t index, c
 }
 
 // A port that both reads and writes gets an arrow each way.
-std::string arrows(uint32_t pass, uint32_t resource, uint32_t frames_back, const Port& port) {
+std::string arrows(uint32_t pass, uint32_t resource, uint32_t frames_back, const std::string& part,
+                   const Port& port) {
   const UsageInfo& usage = usage_info(port.usage);
-  const std::string label =
-      quoted(frames_back > 0 ? fmt::format("{} @-{}", port.name, frames_back) : std::string(port.name)) +
-      (frames_back > 0 ? ", style=dashed" : "");
+  const std::string name = part.empty() ? std::string(port.name) : fmt::format("{} {}", port.name, part);
+  const std::string label = quoted(frames_back > 0 ? fmt::format("{} @-{}", name, frames_back) : name) +
+                            (frames_back > 0 ? ", style=dashed" : "");
   std::string result;
   if (usage.reads) result += fmt::format("  r{} -> p{} [label={}];\n", resource, pass, label);
   if (usage.writes) result += fmt::format("  p{} -> r{} [label={}];\n", pass, resource, label);
@@ -60,8 +63,8 @@ std::string graph_dot(const Graph& graph, const KindRegistry& kinds) {
     out += pass_node(graph, kinds, p, "", declared.when.valid() ? ", style=dashed" : "");
     for (const auto* bindings : {&declared.reads, &declared.writes})
       for (const PortBinding& binding : *bindings)
-        out +=
-            arrows(p, binding.resource.value, binding.frames_back, kinds[declared.kind].ports[binding.port]);
+        out += arrows(p, binding.resource.value, binding.frames_back, part_text(binding.part),
+                      kinds[declared.kind].ports[binding.port]);
   }
   return out + "}\n";
 }
@@ -85,6 +88,7 @@ std::string plan_dot(const Graph& graph, const KindRegistry& kinds, const Compil
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
       const PlanAccess& access = plan.accesses[a];
       out += arrows(pass.declared.value, plan.resources[access.resource].declared.value, access.frames_back,
+                    range_text(plan.resources[access.resource], access.range),
                     kinds[pass.kind].ports[access.port]);
     }
   }

@@ -116,13 +116,20 @@ struct Exporter {
     out.close();
   }
 
+  void subresources(const SubresourceRange& range) {
+    out.key("range").open_object(true).member("first_mip", range.first_mip).member("mips", range.mips);
+    out.member("first_layer", range.first_layer).member("layers", range.layers).close();
+  }
+
   void barriers(std::string_view key, uint32_t first, uint32_t count) {
     out.key(key).open_array();
     for (uint32_t b = first; b < first + count; ++b) {
       const PlanBarrier& barrier = plan.barriers[b];
       out.open_object();
       out.member("index", b).member("resource", barrier.resource).member("name", name(barrier.resource));
-      out.member("frames_back", barrier.frames_back).member("why", why_name(barrier.why));
+      out.member("frames_back", barrier.frames_back);
+      subresources(barrier.range);
+      out.member("why", why_name(barrier.why));
       out.member("from_host", barrier.from_host).member("to_host", barrier.to_host);
       mask("source_stages", barrier.source_stages, stage_names(barrier.source_stages));
       mask("source_access", barrier.source_access, access_names(barrier.source_access));
@@ -146,6 +153,7 @@ struct Exporter {
           .member("usage", usage_info(port.usage).name);
       out.member("resource", access.resource).member("name", name(access.resource));
       out.member("frames_back", access.frames_back);
+      subresources(access.range);
       mask("stages", access.stages, stage_names(access.stages));
       mask("access", access.access, access_names(access.access));
       layout("layout", access.layout);

@@ -9,7 +9,7 @@
 
 namespace dermis {
 
-inline constexpr uint32_t plan_json_version = 1; // of the layout below; raised when a reader could be misled
+inline constexpr uint32_t plan_json_version = 2; // of the layout below; raised when a reader could be misled
 
 // Every index that the document uses is the position in the array it refers to. Masks are written as a hex
 // string (they have 64 bits, which JSON numbers do not) and as names. `graph` and `kinds` are those it was

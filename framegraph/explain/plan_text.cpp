@@ -22,8 +22,8 @@ struct TextExporter {
 
   std::string reason(Reason::About about, uint32_t index) const { return reasons.about(about, index); }
 
-  std::string object(uint32_t resource, uint32_t frames_back) const {
-    const std::string& name = graph.resources[plan.resources[resource].declared.value].name;
+  std::string object(uint32_t resource, uint32_t frames_back, const std::string& part = {}) const {
+    const std::string name = graph.resources[plan.resources[resource].declared.value].name + part;
     return frames_back == 0 ? name : fmt::format("{}@-{}", name, frames_back);
   }
 
@@ -49,7 +49,9 @@ struct TextExporter {
       layouts = fmt::format(", {} -> {}", one.from_host ? "host" : layout_name(one.old_layout),
                             one.to_host ? "host" : layout_name(one.new_layout));
     line(fmt::format("     | {}", reason(Reason::About::barrier, index)));
-    line(fmt::format("     |   {}: {} -> {}{}", why_name(one.why), from, to, layouts));
+    const std::string part = range_text(plan.resources[one.resource], one.range);
+    line(fmt::format("     |   {}{}: {} -> {}{}", why_name(one.why), part.empty() ? "" : " of " + part, from,
+                     to, layouts));
   }
 
   void passes() {
@@ -65,7 +67,9 @@ struct TextExporter {
         const UsageInfo& usage = usage_info(kind.ports[access.port].usage);
         const char* arrow = usage.reads && usage.writes ? "<->" : usage.reads ? "<-" : "->";
         line(fmt::format("       {} {} {}{}", kind.ports[access.port].name, arrow,
-                         object(access.resource, access.frames_back), read_when_text(access.when)));
+                         object(access.resource, access.frames_back,
+                                range_text(plan.resources[access.resource], access.range)),
+                         read_when_text(access.when)));
       }
     }
     if (plan.final_barrier_count > 0) line("   at the end");

@@ -52,7 +52,8 @@ struct Speaker {
   std::string dependency() const {
     const PlanBarrier& barrier = plan.barriers[reason.index];
     const std::string& later = pass_at(reason.c);
-    const std::string& name = resource(plan.resources[barrier.resource].declared.value);
+    const std::string name = resource(plan.resources[barrier.resource].declared.value) +
+                             range_text(plan.resources[barrier.resource], barrier.range);
     const std::string what = barrier.frames_back == 0 ? fmt::format("'{}'", name)
                                                       : fmt::format("'{}@-{}'", name, barrier.frames_back);
     const std::string last = fmt::format("'{}'{}", pass_at(reason.a), when());

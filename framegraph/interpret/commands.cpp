@@ -19,6 +19,10 @@ struct Touch {
   bool from_host = false, to_host = false;
 };
 
+bool same(const Touch& a, const Touch& b) {
+  return a.command == b.command && a.source == b.source && a.destination == b.destination;
+}
+
 bool waits(const Touch& later, const Touch& earlier) {
   if (later.is_barrier && later.from_host) return earlier.is_barrier && earlier.to_host;
   if (later.is_barrier && earlier.is_barrier) return (earlier.destination & later.source) != 0;
@@ -30,9 +34,10 @@ bool waits(const Touch& later, const Touch& earlier) {
 std::vector<std::vector<Touch>> touches_of(const Plan& plan, const Memory& memory,
                                            const std::vector<Command>& commands) {
   std::vector<std::vector<Touch>> touches(memory.overlap.size());
-  const auto touch = [&](uint32_t resource, uint32_t frames_back, uint32_t frame, const Touch& one) {
-    for (const uint32_t piece : memory.overlap[memory.piece(plan, resource, frames_back, frame)])
-      touches[piece].push_back(one);
+  const auto touch = [&](const auto& what, uint32_t frame, const Touch& one) { // once a piece
+    for (const uint32_t own : memory.pieces(plan, what.resource, what.frames_back, frame, what.range))
+      for (const uint32_t piece : memory.overlap[own])
+        if (touches[piece].empty() || !same(touches[piece].back(), one)) touches[piece].push_back(one);
   };
   for (uint32_t c = 0; c < commands.size(); ++c) {
     const Command& command = commands[c];
@@ -40,11 +45,11 @@ std::vector<std::vector<Touch>> touches_of(const Plan& plan, const Memory& memor
       const PlanPass& pass = plan.passes[command.index];
       for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[a];
-        touch(access.resource, access.frames_back, command.frame, {c, false, access.stages, 0});
+        touch(access, command.frame, {c, false, access.stages, 0});
       }
     } else {
       const PlanBarrier& barrier = plan.barriers[command.index];
-      touch(barrier.resource, barrier.frames_back, command.frame,
+      touch(barrier, command.frame,
             {c, true, barrier.source_stages, barrier.destination_stages, barrier.from_host, barrier.to_host});
     }
   }
@@ -53,25 +58,44 @@ std::vector<std::vector<Touch>> touches_of(const Plan& plan, const Memory& memor
 
 } // namespace
 
-uint32_t Memory::piece(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame) const {
-  const uint32_t count = plan.resources[resource].instance_count;
-  return first[resource] + (frame % count + count - frames_back % count) % count;
+std::vector<uint32_t> Memory::pieces(const Plan& plan, uint32_t resource, uint32_t frames_back,
+                                     uint32_t frame, const SubresourceRange& range) const {
+  const PlanResource& declared = plan.resources[resource];
+  const uint32_t count = declared.instance_count;
+  const uint32_t instance = (frame % count + count - frames_back % count) % count;
+  const uint32_t begin = first[resource] + instance * declared.mips * declared.layers;
+  std::vector<uint32_t> result;
+  for (uint32_t m = range.first_mip; m < uint32_t{range.first_mip} + range.mips; ++m)
+    for (uint32_t l = range.first_layer; l < uint32_t{range.first_layer} + range.layers; ++l)
+      result.push_back(begin + m * declared.layers + l);
+  return result;
 }
 
 Memory memory_of(const Plan& plan) {
+  struct Owner {
+    uint32_t resource, instance, placement;
+  };
   Memory memory;
-  std::vector<uint32_t> placement; // by piece
-  for (const PlanResource& resource : plan.resources) {
-    memory.first.push_back(static_cast<uint32_t>(placement.size()));
-    for (uint32_t i = 0; i < resource.instance_count; ++i)
-      placement.push_back(resource.first_instance == no_instance ? no_instance : resource.first_instance + i);
+  std::vector<Owner> owners; // by piece
+  for (uint32_t r = 0; r < plan.resources.size(); ++r) {
+    const PlanResource& resource = plan.resources[r];
+    memory.first.push_back(static_cast<uint32_t>(owners.size()));
+    for (uint32_t i = 0; i < resource.instance_count; ++i) {
+      const uint32_t placement =
+          resource.first_instance == no_instance ? no_instance : resource.first_instance + i;
+      owners.insert(owners.end(), size_t{resource.mips} * resource.layers, {r, i, placement});
+    }
   }
-  memory.overlap.resize(placement.size());
-  for (uint32_t a = 0; a < placement.size(); ++a)
-    for (uint32_t b = 0; b < placement.size(); ++b) {
-      const bool placed = placement[a] != no_instance && placement[b] != no_instance;
-      if (a == b || (placed && share_memory(plan.placements[placement[a]], plan.placements[placement[b]])))
-        memory.overlap[a].push_back(b);
+  memory.overlap.resize(owners.size());
+  for (uint32_t a = 0; a < owners.size(); ++a)
+    for (uint32_t b = 0; b < owners.size(); ++b) {
+      const bool one_image =
+          owners[a].resource == owners[b].resource && owners[a].instance == owners[b].instance;
+      const bool placed = owners[a].placement != no_instance && owners[b].placement != no_instance;
+      const bool shared =
+          placed && !one_image &&
+          share_memory(plan.placements[owners[a].placement], plan.placements[owners[b].placement]);
+      if (a == b || shared) memory.overlap[a].push_back(b);
     }
   return memory;
 }

@@ -8,12 +8,15 @@
 
 namespace dermis {
 
-// A piece of memory with contents of its own: a placement, or what the host binds to a resource.
+// A piece of memory with contents of its own: one mip of one layer of an image, or a buffer, in a placement
+// or in what the host binds to a resource.
 struct Memory {
   std::vector<uint32_t> first;                // by resource: number of its first piece
   std::vector<std::vector<uint32_t>> overlap; // by piece: pieces with a byte in common, itself included
 
-  uint32_t piece(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame) const;
+  // The pieces of one instance in the range: mips first, each by layers.
+  std::vector<uint32_t> pieces(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame,
+                               const SubresourceRange& range) const;
 };
 
 // `plan` must pass verify_structure().

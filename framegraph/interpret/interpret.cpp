@@ -22,7 +22,7 @@ struct Interpreter {
     for (const PlanResource& resource : plan.resources) {
       const bool history =
           resource.first_instance != no_instance && plan.placements[resource.first_instance].persistent;
-      for (uint32_t i = 0; i < resource.instance_count; ++i)
+      for (uint32_t i = 0; i < resource.instance_count * resource.mips * resource.layers; ++i)
         pieces.push_back(history ? Pixels{} : poison());
     }
     uint32_t slots = 0;
@@ -39,13 +39,15 @@ struct Interpreter {
 
   void run(const PlanBarrier& barrier, uint32_t frame) {
     const PlanResource& resource = plan.resources[barrier.resource];
-    const uint32_t piece = memory.piece(plan, barrier.resource, barrier.frames_back, frame);
     const auto slot = static_cast<uint32_t>(resource.slot);
-    if (barrier.from_host)
-      pieces[piece] = host_pixels(options.contents, frame, slot);
-    else if (resource.type == ResourceType::image && barrier.old_layout == Layout::undefined)
-      write(piece, poison()); // discarded
-    if (barrier.to_host) out[frame][slot] = pieces[piece];
+    for (const uint32_t piece :
+         memory.pieces(plan, barrier.resource, barrier.frames_back, frame, barrier.range)) {
+      if (barrier.from_host)
+        pieces[piece] = host_pixels(options.contents, frame, slot);
+      else if (resource.type == ResourceType::image && barrier.old_layout == Layout::undefined)
+        write(piece, poison()); // discarded
+      if (barrier.to_host) out[frame][slot] = pieces[piece];
+    }
   }
 
   static bool cut_before(const PlanHistory& history, uint64_t cuts, uint32_t frame) {
@@ -80,7 +82,9 @@ struct Interpreter {
   void restart_histories(uint32_t frame) {
     for (const PlanHistory& history : plan.histories)
       for (uint32_t back = 1; cut_before(history, options.cuts, frame) && back <= history.frames; ++back)
-        pieces[memory.piece(plan, history.resource, back, frame)] = Pixels{};
+        for (const uint32_t piece :
+             memory.pieces(plan, history.resource, back, frame, plan.resources[history.resource].whole()))
+          pieces[piece] = Pixels{};
   }
 
   void run(const PlanPass& pass, uint32_t frame) {
@@ -88,14 +92,20 @@ struct Interpreter {
     std::vector<StandInInput> inputs;
     for (uint32_t a = 0; a < pass.access_count; ++a)
       if ((accesses[a].access & ~all_write_access) != 0 && happens(accesses, a, frame))
-        inputs.push_back({accesses[a].port,
-                          pieces[memory.piece(plan, accesses[a].resource, accesses[a].frames_back, frame)]});
-    std::sort(inputs.begin(), inputs.end(),
-              [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
-    for (uint32_t a = 0; a < pass.access_count; ++a)
-      if ((accesses[a].access & all_write_access) != 0)
-        write(memory.piece(plan, accesses[a].resource, accesses[a].frames_back, frame),
-              stand_in(pass.declared.value, accesses[a].port, inputs));
+        for (const uint32_t piece : pieces_of(accesses[a], frame))
+          inputs.push_back({accesses[a].port, pieces[piece]});
+    std::stable_sort(inputs.begin(), inputs.end(),
+                     [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
+    for (uint32_t a = 0; a < pass.access_count; ++a) {
+      if ((accesses[a].access & all_write_access) == 0) continue;
+      uint32_t part = 0;
+      for (const uint32_t piece : pieces_of(accesses[a], frame))
+        write(piece, stand_in(pass.declared.value, accesses[a].port, part++, inputs));
+    }
+  }
+
+  std::vector<uint32_t> pieces_of(const PlanAccess& access, uint32_t frame) const {
+    return memory.pieces(plan, access.resource, access.frames_back, frame, access.range);
   }
 };
 

@@ -24,10 +24,10 @@ Pixels arbitrary_pixels(uint64_t seed, uint64_t stream) {
   return out;
 }
 
-Pixels stand_in(uint32_t pass, uint32_t port, std::span<const StandInInput> inputs) {
+Pixels stand_in(uint32_t pass, uint32_t port, uint32_t part, std::span<const StandInInput> inputs) {
   Pixels out{};
   for (size_t i = 0; i < out.size(); ++i) {
-    uint64_t sum = mix(mix(pass, port), i);
+    uint64_t sum = mix(mix(mix(pass, port), part), i);
     for (const StandInInput& input : inputs) {
       sum = mix(sum, input.port);
       for (const size_t ahead : neighbours)

@@ -8,7 +8,7 @@
 
 namespace dermis {
 
-using Pixels = std::array<uint64_t, 8>; // every image and buffer, whatever its size
+using Pixels = std::array<uint64_t, 8>; // every buffer and every mip of a layer, whatever its size
 
 struct StandInInput {
   uint32_t port = 0;
@@ -18,8 +18,9 @@ struct StandInInput {
 // Pixels that depend on `seed` and `stream` alone: contents of the host, or contents that mean nothing.
 Pixels arbitrary_pixels(uint64_t seed, uint64_t stream);
 
-// What pass number `pass` writes to `port` from these inputs, in the order given. Each pixel depends on
+// What pass number `pass` writes to `port` from these inputs, in the order given; to the mip and layer number
+// `part` of those that the port sees. Each pixel depends on
 // several pixels of every input. Settings have no part in it.
-Pixels stand_in(uint32_t pass, uint32_t port, std::span<const StandInInput> inputs);
+Pixels stand_in(uint32_t pass, uint32_t port, uint32_t part, std::span<const StandInInput> inputs);
 
 } // namespace dermis

@@ -89,6 +89,14 @@ struct Expression {
   std::vector<SettingValue> list; // for `in`
 };
 
+// Mips and layers of an image, counted from 0: `name#1..3[0]`.
+struct ImagePart {
+  uint8_t first_mip = 0, mips = 0;      // mips 0: to the last
+  uint16_t first_layer = 0, layers = 0; // likewise
+
+  constexpr bool whole() const { return first_mip == 0 && mips == 0 && first_layer == 0 && layers == 0; }
+};
+
 // In which frames a pass reads what is bound to a port. Whether `name@-N` is valid, N frames having been
 // written since it began or was cut, is known when a frame is recorded; no plan depends on it.
 enum class ReadWhen : uint8_t { always, history_valid, history_invalid };
@@ -100,6 +108,7 @@ struct PortBinding {
   // history_invalid: this is what the port reads where the history of the binding before this one, at the
   // same port, is not valid.
   ReadWhen when = ReadWhen::always;
+  ImagePart part; // images of one frame that the graph owns
   SourceLocation where;
 };
 
@@ -140,6 +149,7 @@ struct Graph {
   std::vector<ResourceDeclaration> resources; // imports first, in file order, then resources
   std::vector<Expression> expressions;
   std::vector<PassDeclaration> passes; // in file order: versions of a resource follow it
+  bool parts = false;                  // some port names a part of an image; if not, nobody looks for any
 };
 
 } // namespace dermis

@@ -138,8 +138,8 @@ constexpr std::string_view pass_text =
         "pass": { "$ref": "#/definitions/name" },
         "kind": { "enum": [<kinds>] },
         "when": { "type": "string", "maxLength": <expression bytes>, "description": "the pass is off where this is false: quality in ['good', 'best'] and samples > 4" },
-        "read": { "type": "object", "description": "port: resource, or resource@-N of the frame N before, or an object that requires it to be valid" },
-        "write": { "type": "object", "description": "port: resource" },
+        "read": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer, or resource@-N of the frame N before, or an object that requires it to be valid" },
+        "write": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer" },
         "set": { "type": "object", "description": "setting of the kind: value, or \"$name\" of the graph's settings" },
         "otherwise": { "type": "object", "additionalProperties": { "type": "string" }, "description": "what readers of an output get when the pass is off" },
         "after": { "type": "array", "maxItems": <passes>, "items": { "type": "object", "required": ["pass", "reason"], "additionalProperties": false, "properties": {

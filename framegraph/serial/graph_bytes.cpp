@@ -75,6 +75,9 @@ struct GraphWriter {
       index(binding.resource);
       number(binding.frames_back);
       word(binding.when);
+      for (const uint64_t side : {uint64_t{binding.part.first_mip}, uint64_t{binding.part.mips},
+                                  uint64_t{binding.part.first_layer}, uint64_t{binding.part.layers}})
+        number(side);
     });
   }
 

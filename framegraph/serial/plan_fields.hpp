@@ -92,10 +92,18 @@ template <class A> void fields(A& a, Of<A, PlanPass>& pass) {
   a.number("first setting", pass.first_setting);
 }
 
+template <class A> void fields(A& a, Of<A, SubresourceRange>& range) {
+  a.number("first mip", range.first_mip);
+  a.number("mips", range.mips);
+  a.number("first layer", range.first_layer);
+  a.number("layers", range.layers);
+}
+
 template <class A> void fields(A& a, Of<A, PlanAccess>& access) {
   a.number("port", access.port);
   a.number("access's resource", access.resource);
   a.number("frames back", access.frames_back);
+  fields(a, access.range);
   a.number("stages", access.stages);
   a.number("access", access.access);
   fields(a, access.layout);
@@ -106,6 +114,7 @@ template <class A> void fields(A& a, Of<A, PlanAccess>& access) {
 template <class A> void fields(A& a, Of<A, PlanBarrier>& barrier) {
   a.number("barrier's resource", barrier.resource);
   a.number("frames back", barrier.frames_back);
+  fields(a, barrier.range);
   a.number("source stages", barrier.source_stages);
   a.number("destination stages", barrier.destination_stages);
   a.number("source access", barrier.source_access);

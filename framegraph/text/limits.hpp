@@ -33,6 +33,8 @@ inline constexpr int64_t size_factor = 65536;    // numerator and denominator of
 inline constexpr uint32_t image_border = 64;     // texels on every side
 inline constexpr uint32_t image_mips = 15;       // full chain of image_side
 inline constexpr uint32_t image_layers = 2048;   // VkPhysicalDeviceLimits::maxImageArrayLayers, usual minimum
+inline constexpr uint32_t image_parts = 512;     // of one image that ports tell apart
+inline constexpr uint32_t part_uses = 1u << 20;  // parts of images, counted at each port that sees them
 inline constexpr uint32_t buffer_stride = 65536; // bytes an element
 inline constexpr int64_t buffer_elements = 1ll << 31;
 

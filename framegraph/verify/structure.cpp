@@ -1,5 +1,7 @@
 #include "framegraph/verify/structure.hpp"
 
+#include "framegraph/text/limits.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +10,7 @@
 namespace dermis {
 namespace {
 
+constexpr uint32_t most_mips = 32;     // of an image whose sides are 32-bit numbers
 constexpr size_t most_objections = 32; // the first ones tell; a hostile plan could cause one for each pair
 
 struct Checker {
@@ -32,9 +35,21 @@ struct Checker {
     return resource < plan.resources.size() && frames_back <= deepest[resource];
   }
 
+  // Does the resource have all of the range? Histories and what the host binds are never divided.
+  bool has(uint32_t number, const SubresourceRange& range) const {
+    const PlanResource& resource = plan.resources[number];
+    if (resource.first_instance == no_instance || deepest[number] > 0) return range == resource.whole();
+    return range.mips >= 1 && uint32_t{range.first_mip} + range.mips <= resource.mips && range.layers >= 1 &&
+           uint32_t{range.first_layer} + range.layers <= resource.layers;
+  }
+
   void resources() {
     for (size_t i = 0; i < plan.resources.size(); ++i) {
       const PlanResource& resource = plan.resources[i];
+      const bool buffer = resource.type == ResourceType::buffer;
+      expect(resource.mips >= 1 && resource.mips <= (buffer ? 1 : most_mips) && resource.layers >= 1 &&
+                 resource.layers <= (buffer ? 1 : limits::image_layers),
+             "a resource has no mips or layers, or too many", i);
       expect(resource.instance_count >= 1, "a resource has no instance", i);
       const bool host = resource.origin == Origin::imported || resource.exported;
       expect(host == (resource.first_instance == no_instance),
@@ -112,6 +127,8 @@ struct Checker {
         const bool exists = object_exists(access.resource, access.frames_back);
         expect(condition_fits(pass, a), "a read depends on a validity that it does not name", p);
         expect(exists, "a pass accesses a resource or an earlier frame that does not exist", p);
+        expect(!exists || has(access.resource, access.range),
+               "a pass accesses mips or layers that do not exist", p);
         if (!exists || plan.resources[access.resource].first_instance >= plan.placements.size()) continue;
         const Placement& placement = plan.placements[plan.resources[access.resource].first_instance];
         expect(placement.first_use <= p && p <= placement.last_use,
@@ -120,9 +137,13 @@ struct Checker {
     }
     expect(range_in(plan.first_final_barrier, plan.final_barrier_count, plan.barriers.size()),
            "the final batch refers to barriers that do not exist", 0);
-    for (size_t b = 0; b < plan.barriers.size(); ++b)
-      expect(object_exists(plan.barriers[b].resource, plan.barriers[b].frames_back),
-             "a barrier names a resource or an earlier frame that does not exist", b);
+    for (size_t b = 0; b < plan.barriers.size(); ++b) {
+      const PlanBarrier& barrier = plan.barriers[b];
+      const bool exists = object_exists(barrier.resource, barrier.frames_back);
+      expect(exists, "a barrier names a resource or an earlier frame that does not exist", b);
+      expect(!exists || has(barrier.resource, barrier.range),
+             "a barrier names mips or layers that do not exist", b);
+    }
   }
 
   void histories() {

@@ -1,4 +1,6 @@
-// The model. A *thing* is a piece of memory with one layout: a placement, or what the host bound to a slot.
+// The model. A *thing* is a piece of memory with one layout: a part of an image that no access and no barrier
+// divides, or a buffer, in a placement or in what the host bound to a slot. Parts of one image share no byte;
+// images and buffers whose placements overlap share all of them.
 // Every access leaves an *event* on its thing, which remembers at which stages later work is ordered behind
 // it and where a write is visible. Barriers extend both along execution chains (Vulkan 1.3, "Execution and
 // Memory Dependencies").
@@ -15,6 +17,7 @@
 
 #include "framegraph/verify/verify.hpp"
 
+#include "framegraph/verify/parts.hpp"
 #include "framegraph/verify/structure.hpp"
 
 #include <fmt/format.h>
@@ -26,6 +29,8 @@ namespace dermis {
 namespace {
 
 constexpr size_t most_objections = 32; // the first ones tell; the rest follow from them
+
+constexpr uint64_t most_things = 1u << 18; // a hostile plan could divide images without end
 
 struct Visible {
   Stage stages;
@@ -43,6 +48,7 @@ struct Event {
 };
 
 struct Thing {
+  uint32_t owner = 0;               // into Machine::instances
   uint32_t placement = no_instance; // or the host's
   bool image = false;
   bool with_host = false;   // not ours to touch now
@@ -53,38 +59,57 @@ struct Thing {
   std::vector<Event> events;
 };
 
+// One instance of a resource: its parts follow each other among the things.
+struct InstanceThings {
+  uint32_t first = 0, count = 0;
+  uint32_t placement = no_instance;
+};
+
 struct Machine {
   const Plan& plan;
-  std::vector<Thing> things;
-  std::vector<uint32_t> first_thing;              // by resource
-  std::vector<std::vector<uint32_t>> overlapping; // by thing: those with a byte in common, itself included
-  std::vector<std::string> objections;
+  const std::vector<ResourceParts> parts; // by resource
+  std::vector<Thing> things = {};
+  std::vector<InstanceThings> instances = {};
+  std::vector<uint32_t> first_instance = {};           // by resource: into instances
+  std::vector<std::vector<uint32_t>> overlapping = {}; // by instance: others with a byte in common
+  std::vector<std::string> objections = {};
   uint32_t frame = 0;
 
-  explicit Machine(const Plan& run) : plan(run) {
-    for (const PlanResource& resource : plan.resources) {
-      first_thing.push_back(static_cast<uint32_t>(things.size()));
+  void prepare() {
+    for (uint32_t r = 0; r < plan.resources.size(); ++r) {
+      const PlanResource& resource = plan.resources[r];
+      first_instance.push_back(static_cast<uint32_t>(instances.size()));
       for (uint32_t i = 0; i < resource.instance_count; ++i) {
         Thing thing;
+        thing.owner = static_cast<uint32_t>(instances.size());
         thing.image = resource.type == ResourceType::image;
         if (resource.first_instance != no_instance) thing.placement = resource.first_instance + i;
         thing.with_host = resource.first_instance == no_instance;
-        things.push_back(thing);
+        instances.push_back({static_cast<uint32_t>(things.size()), parts[r].count(), thing.placement});
+        things.insert(things.end(), parts[r].count(), thing);
       }
     }
     find_overlaps();
     for (const PlanHistory& history : plan.histories) // as if the executor had just made them
-      for (uint32_t back = 1; back <= history.frames; ++back) {
-        Thing& thing = things[thing_of(history.resource, back)];
-        thing.defined = true;
-        thing.of_frame = -int64_t{back};
-        thing.layout = plan.history_layouts[history.first_layout + back];
-      }
+      for (uint32_t back = 1; back <= history.frames; ++back)
+        for_each_part(history.resource, back, plan.resources[history.resource].whole(), [&](uint32_t index) {
+          things[index].defined = true;
+          things[index].of_frame = -int64_t{back};
+          things[index].layout = plan.history_layouts[history.first_layout + back];
+        });
   }
 
-  uint32_t thing_of(uint32_t resource, uint32_t frames_back) const {
+  uint32_t instance_of(uint32_t resource, uint32_t frames_back) const {
     const uint32_t count = plan.resources[resource].instance_count;
-    return first_thing[resource] + (frame % count + count - frames_back % count) % count;
+    return first_instance[resource] + (frame % count + count - frames_back % count) % count;
+  }
+
+  // Calls with the index of each thing in the range.
+  template <class Visit>
+  void for_each_part(uint32_t resource, uint32_t frames_back, const SubresourceRange& range,
+                     Visit visit) const {
+    const uint32_t first = instances[instance_of(resource, frames_back)].first;
+    parts[resource].for_each_in(range, [&](uint32_t part) { visit(first + part); });
   }
 
   void object(const std::string& what, uint32_t resource, uint32_t frames_back, const std::string& where) {
@@ -93,15 +118,15 @@ struct Machine {
           fmt::format("frame {}, {}: resource {}@-{}: {}", frame, where, resource, frames_back, what));
   }
 
-  // In the order of the heap: behind a thing's end nothing overlaps it.
+  // In the order of the heap: behind an instance's end nothing overlaps it.
   void find_overlaps() {
-    overlapping.resize(things.size());
+    overlapping.resize(instances.size());
     std::vector<uint32_t> placed;
-    for (uint32_t t = 0; t < things.size(); ++t) {
-      overlapping[t].push_back(t);
-      if (things[t].placement != no_instance) placed.push_back(t);
-    }
-    const auto memory = [&](uint32_t t) -> const Placement& { return plan.placements[things[t].placement]; };
+    for (uint32_t i = 0; i < instances.size(); ++i)
+      if (instances[i].placement != no_instance) placed.push_back(i);
+    const auto memory = [&](uint32_t i) -> const Placement& {
+      return plan.placements[instances[i].placement];
+    };
     std::sort(placed.begin(), placed.end(), [&](uint32_t a, uint32_t b) {
       return std::tuple(memory(a).heap, memory(a).offset, a) <
              std::tuple(memory(b).heap, memory(b).offset, b);
@@ -117,8 +142,10 @@ struct Machine {
   }
 
   template <class Visit> void for_each_overlapping(uint32_t index, Visit visit) {
-    for (const uint32_t t : overlapping[index])
-      visit(things[t], t == index);
+    visit(things[index], true);
+    for (const uint32_t i : overlapping[things[index].owner])
+      for (uint32_t t = instances[i].first; t < instances[i].first + instances[i].count; ++t)
+        visit(things[t], false);
   }
 
   bool renewed_in_place(uint32_t resource) const {
@@ -132,15 +159,18 @@ struct Machine {
       thing.handed_back = false;
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       if (renewed_in_place(r)) continue; // it holds the oldest frame still
-      Thing& current = things[thing_of(r, 0)];
-      current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
+      for_each_part(r, 0, plan.resources[r].whole(), [&](uint32_t index) {
+        Thing& current = things[index];
+        current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
+      });
     }
     for (const PlanHistory& history : plan.histories)
       for (uint32_t back = 1; back <= history.frames; ++back)
-        if (things[thing_of(history.resource, back)].layout !=
-            plan.history_layouts[history.first_layout + back])
-          object("is not in the layout the plan promises at the start of a frame", history.resource, back,
-                 "start");
+        for_each_part(history.resource, back, plan.resources[history.resource].whole(), [&](uint32_t index) {
+          if (things[index].layout != plan.history_layouts[history.first_layout + back])
+            object("is not in the layout the plan promises at the start of a frame", history.resource, back,
+                   "start");
+        });
   }
 
   static bool starts_from(const Event& event, Stage source) {
@@ -167,7 +197,11 @@ struct Machine {
   }
 
   void run(const PlanBarrier& barrier, const std::string& where) {
-    const uint32_t index = thing_of(barrier.resource, barrier.frames_back);
+    for_each_part(barrier.resource, barrier.frames_back, barrier.range,
+                  [&](uint32_t index) { run(barrier, index, where); });
+  }
+
+  void run(const PlanBarrier& barrier, uint32_t index, const std::string& where) {
     Thing& thing = things[index];
     const auto wrong = [&](const char* what) { object(what, barrier.resource, barrier.frames_back, where); };
     if (barrier.to_host) {
@@ -218,7 +252,11 @@ struct Machine {
   }
 
   void check(const PlanAccess& access, const std::string& where) {
-    const uint32_t index = thing_of(access.resource, access.frames_back);
+    for_each_part(access.resource, access.frames_back, access.range,
+                  [&](uint32_t index) { check(access, index, where); });
+  }
+
+  void check(const PlanAccess& access, uint32_t index, const std::string& where) {
     const Thing& thing = things[index];
     const auto wrong = [&](const char* what) { object(what, access.resource, access.frames_back, where); };
     const Access as_read = access.access & ~all_write_access, as_write = access.access & all_write_access;
@@ -254,16 +292,15 @@ struct Machine {
     if ((read.access & ~all_write_access) == 0 || read.own_texels) return;
     const auto overwrites = [&](const PlanAccess& write) {
       return (write.access & all_write_access) != 0 && write.resource == read.resource &&
-             write.frames_back != read.frames_back &&
-             thing_of(write.resource, write.frames_back) == thing_of(read.resource, read.frames_back);
+             write.frames_back != read.frames_back && meet(write.range, read.range) &&
+             instance_of(write.resource, write.frames_back) == instance_of(read.resource, read.frames_back);
     };
     if (std::any_of(accesses, accesses + count, overwrites))
       object("is written over by the pass that reads it, not texel by texel", read.resource, read.frames_back,
              where);
   }
 
-  void leave(const PlanAccess& access, bool first_of_pass) {
-    const uint32_t index = thing_of(access.resource, access.frames_back);
+  void leave(const PlanAccess& access, uint32_t index, bool first_of_pass) {
     const Access writes = access.access & all_write_access;
     Thing& thing = things[index];
     if (writes != 0) {
@@ -291,10 +328,16 @@ struct Machine {
       check_own_texels(accesses, pass.access_count, accesses[a], where);
     }
     for (uint32_t a = 0; a < pass.access_count; ++a) {
-      const bool first = std::none_of(accesses, accesses + a, [&](const PlanAccess& earlier) {
-        return earlier.resource == accesses[a].resource && earlier.frames_back == accesses[a].frames_back;
+      const ResourceParts& own = parts[accesses[a].resource];
+      own.for_each_in(accesses[a].range, [&](uint32_t part) {
+        const SubresourceRange at = own.begin_of(part);
+        const bool first = std::none_of(accesses, accesses + a, [&](const PlanAccess& earlier) {
+          return earlier.resource == accesses[a].resource && earlier.frames_back == accesses[a].frames_back &&
+                 meet(earlier.range, at);
+        });
+        const uint32_t instance = instance_of(accesses[a].resource, accesses[a].frames_back);
+        leave(accesses[a], instances[instance].first + part, first);
       });
-      leave(accesses[a], first);
     }
   }
 
@@ -304,7 +347,8 @@ struct Machine {
       run(plan.passes[p], fmt::format("pass {}", p));
     run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, "final batch");
     for (uint32_t r = 0; r < plan.resources.size(); ++r)
-      if (plan.resources[r].first_instance == no_instance && !things[first_thing[r]].handed_back)
+      if (plan.resources[r].first_instance == no_instance &&
+          !things[instances[first_instance[r]].first].handed_back)
         object("is not handed back to the host", r, 0, "end");
     ++frame;
   }
@@ -318,7 +362,13 @@ std::vector<std::string> verify(const Plan& plan) {
   uint32_t frames = 3; // the first, one that follows it, and one that follows a frame like itself
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
-  Machine machine{plan};
+  std::vector<ResourceParts> parts = parts_of(plan);
+  uint64_t things = 0;
+  for (size_t r = 0; r < parts.size(); ++r)
+    things += uint64_t{parts[r].count()} * plan.resources[r].instance_count;
+  if (things > most_things) return {"the plan tells too many parts of images apart"};
+  Machine machine{plan, std::move(parts)};
+  machine.prepare();
   for (uint32_t f = 0; f < frames && machine.objections.empty(); ++f)
     machine.run_frame();
   return std::move(machine.objections);

@@ -355,7 +355,8 @@ TEST(Verify, AReaderThatMayBeLeftOutShowsAWriterNothing) {
     if (pass.declared != b.pass_id("count")) continue;
     plan.accesses[pass.first_access].access = access::shader_storage_write;
     ASSERT_EQ(pass.barrier_count, 1u);
-    plan.barriers[pass.first_barrier].source_access = plan.barriers[pass.first_barrier].destination_access = 0;
+    plan.barriers[pass.first_barrier].source_access = plan.barriers[pass.first_barrier].destination_access =
+        0;
   }
   EXPECT_FALSE(verify(plan).empty());
   EXPECT_NE(first_hazard(plan), "");

@@ -51,7 +51,7 @@ TEST(PlanJson, IsValidJsonForEveryGraph) {
 TEST(PlanJson, NamesWhatRunsAndWhatDoesNotAndWhy) {
   const auto b = sample();
   const auto text = plan_json(b.graph, b.kinds, compiled(b));
-  EXPECT_THAT(text, HasSubstr(R"("dermis_plan": 1)"));
+  EXPECT_THAT(text, HasSubstr(R"("dermis_plan": 2)"));
   EXPECT_THAT(text, HasSubstr(R"({ "name": "smooth", "type": "bool", "value": true })"));
   EXPECT_THAT(text, HasSubstr(R"("mask": "0x100000000", "names": ["shader_sampled_read"])"));
   EXPECT_THAT(text, HasSubstr(R"("layout_at_start": ["undefined", "shader_read_only"])"));

@@ -1,6 +1,7 @@
 #include "tests/framegraph/graph_builder.hpp"
 
 #include "framegraph/explain/reasons.hpp"
+#include "framegraph/model/image_part.hpp"
 
 #include "framegraph/verify/verify.hpp"
 
@@ -146,11 +147,16 @@ PassId GraphBuilder::pass_id(const std::string& name) const {
 }
 
 PortBinding GraphBuilder::reference(uint32_t port, const std::string& text) {
-  const size_t at = text.find("@-");
+  const size_t at = std::min(text.find("@-"), text.size());
+  const size_t end = std::min(text.find_first_of("#["), at);
   PortBinding binding;
   binding.port = port;
-  binding.resource = resource(text.substr(0, at));
-  if (at != std::string::npos) binding.frames_back = static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
+  binding.resource = resource(text.substr(0, end));
+  const auto part = parse_part(text.substr(end, at - end));
+  EXPECT_TRUE(part) << text;
+  if (part) binding.part = *part;
+  graph.parts |= !binding.part.whole();
+  if (at != text.size()) binding.frames_back = static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
   binding.where = next_line();
   return binding;
 }

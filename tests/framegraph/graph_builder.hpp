@@ -11,7 +11,8 @@
 
 namespace dermis::testing {
 
-// Port and "resource", "resource@-1", "resource@-1?" (required to be valid) or "resource@-1?otherwise".
+// Port and "resource", "resource#1[0]", "resource@-1", "resource@-1?" (required to be valid) or
+// "resource@-1?otherwise".
 using Bindings = std::vector<std::pair<std::string, std::string>>;
 
 // Kinds: test.shade (a b c -> out, out2), test.update (image in place), test.fill (clears target),
@@ -40,7 +41,7 @@ struct GraphBuilder {
   ExpressionId when(const std::string& setting, bool wanted = true); // "setting" or "not setting"
   void otherwise(PassDeclaration& pass, const std::string& output, const std::string& instead);
 
-  PortBinding reference(uint32_t port, const std::string& text); // "resource" or "resource@-1"
+  PortBinding reference(uint32_t port, const std::string& text); // as there, without "?"
   ResourceId resource(const std::string& name) const;
   PassId pass_id(const std::string& name) const;
   CompileInput input(uint32_t width = 64, uint32_t height = 64) const;

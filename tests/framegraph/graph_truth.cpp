@@ -13,6 +13,23 @@ bool is_slot(const ResourceDeclaration& resource) {
   return resource.origin == Origin::imported || resource.exported;
 }
 
+// By mip, then by layer.
+using Contents = std::vector<std::optional<Pixels>>;
+
+Contents undefined(const ResourceDeclaration& resource) {
+  return Contents(size_t{resource.mips} * resource.layers);
+}
+
+// Numbers of the mips of layers that the part holds.
+std::vector<size_t> numbers(const ResourceDeclaration& resource, const ImagePart& part) {
+  std::vector<size_t> result;
+  for (uint32_t m = part.first_mip; m < (part.mips == 0 ? resource.mips : part.first_mip + part.mips); ++m)
+    for (uint32_t l = part.first_layer;
+         l < (part.layers == 0 ? resource.layers : uint32_t{part.first_layer} + part.layers); ++l)
+      result.push_back(m * resource.layers + l);
+  return result;
+}
+
 } // namespace
 
 Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32_t frames, uint64_t contents,
@@ -21,13 +38,14 @@ Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32
   for (const SettingDeclaration& setting : graph.settings)
     settings.push_back(setting.default_value);
   // contents_of[r][f]: of resource r at the end of frame f, or as far as the frame has come.
-  std::vector<std::vector<std::optional<Pixels>>> contents_of(graph.resources.size());
+  std::vector<std::vector<Contents>> contents_of(graph.resources.size());
   Interpretation out(frames);
   for (uint32_t frame = 0; frame < frames; ++frame) {
     uint32_t slot = 0;
     for (size_t r = 0; r < graph.resources.size(); ++r) {
       const bool import = graph.resources[r].origin == Origin::imported;
-      contents_of[r].push_back(import ? std::optional(host_pixels(contents, frame, slot)) : std::nullopt);
+      contents_of[r].push_back(undefined(graph.resources[r]));
+      if (import) contents_of[r].back().assign(1, host_pixels(contents, frame, slot));
       slot += is_slot(graph.resources[r]) ? 1 : 0;
     }
     const auto in_history = [&](const PortBinding& binding) { // written since the last cut that counts
@@ -37,11 +55,23 @@ Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32
         if (back == frame || (cuts_count && (cuts >> (frame - back) & 1u) != 0)) return false;
       return true;
     };
-    const auto read = [&](const PortBinding& binding) {
-      if (!in_history(binding)) return Pixels{}; // histories start from zero
-      const auto& found = contents_of[binding.resource.value][frame - binding.frames_back];
-      EXPECT_TRUE(found.has_value()) << graph.resources[binding.resource.value].name;
-      return found.value_or(Pixels{});
+    const auto read = [&](const PortBinding& binding, std::vector<StandInInput>& inputs) {
+      const ResourceDeclaration& resource = graph.resources[binding.resource.value];
+      if (!in_history(binding)) { // histories start from zero
+        inputs.insert(inputs.end(), numbers(resource, binding.part).size(), {binding.port, Pixels{}});
+        return;
+      }
+      const Contents& found = contents_of[binding.resource.value][frame - binding.frames_back];
+      if (binding.part.whole()) // of whatever stands for the resource
+        for (const auto& pixels : found) {
+          EXPECT_TRUE(pixels.has_value()) << resource.name;
+          inputs.push_back({binding.port, pixels.value_or(Pixels{})});
+        }
+      else
+        for (const size_t number : numbers(resource, binding.part)) {
+          EXPECT_TRUE(found[number].has_value()) << resource.name;
+          inputs.push_back({binding.port, found[number].value_or(Pixels{})});
+        }
     };
     for (uint32_t p = 0; p < graph.passes.size(); ++p) {
       const PassDeclaration& pass = graph.passes[p];
@@ -55,19 +85,21 @@ Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32
         const PortBinding& binding = pass.reads[i];
         if (binding.when == ReadWhen::history_valid && !in_history(binding)) continue;
         if (binding.when == ReadWhen::history_invalid && in_history(pass.reads[i - 1])) continue;
-        inputs.push_back({binding.port, read(binding)});
+        read(binding, inputs);
       }
       for (const PortBinding& binding : pass.writes)
-        if (usage_info(kinds[pass.kind].ports[binding.port].usage).reads)
-          inputs.push_back({binding.port, read(binding)});
-      std::sort(inputs.begin(), inputs.end(),
-                [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
-      for (const PortBinding& binding : pass.writes)
-        contents_of[binding.resource.value][frame] = stand_in(p, binding.port, inputs);
+        if (usage_info(kinds[pass.kind].ports[binding.port].usage).reads) read(binding, inputs);
+      std::stable_sort(inputs.begin(), inputs.end(),
+                       [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
+      for (const PortBinding& binding : pass.writes) {
+        uint32_t part = 0;
+        for (const size_t number : numbers(graph.resources[binding.resource.value], binding.part))
+          contents_of[binding.resource.value][frame][number] = stand_in(p, binding.port, part++, inputs);
+      }
     }
     for (size_t r = 0; r < graph.resources.size(); ++r)
       if (is_slot(graph.resources[r]))
-        out[frame].push_back(graph.resources[r].exported ? contents_of[r][frame] : std::nullopt);
+        out[frame].push_back(graph.resources[r].exported ? contents_of[r][frame].front() : std::nullopt);
   }
   return out;
 }

@@ -8,7 +8,7 @@
 namespace dermis::testing {
 namespace {
 
-// What one command does to one thing. A thing is an instance of a resource.
+// What one command does to one thing. A thing is one mip of one layer of an instance of a resource.
 struct Operation {
   enum class What { access, barrier, frame_begins } what = What::access;
   uint32_t step = 0; // passes and barriers, counted through all frames; accesses of a pass share one
@@ -16,6 +16,7 @@ struct Operation {
   uint32_t resource = 0, instance = 0;
   const PlanAccess* access = nullptr;
   const PlanBarrier* barrier = nullptr;
+  uint32_t mip = 0, layer = 0;
 };
 
 struct Oracle {
@@ -29,24 +30,36 @@ struct Oracle {
     return (frame + count - frames_back) % count;
   }
 
+  void add(Operation operation, const SubresourceRange& range) {
+    for (uint32_t m = range.first_mip; m < uint32_t{range.first_mip} + range.mips; ++m)
+      for (uint32_t l = range.first_layer; l < uint32_t{range.first_layer} + range.layers; ++l) {
+        operation.mip = m;
+        operation.layer = l;
+        all.push_back(operation);
+      }
+  }
+
   void unroll(uint32_t frames) {
     uint32_t step = 0;
     for (uint32_t f = 0; f < frames; ++f) {
       const auto barriers = [&](uint32_t first, uint32_t count) {
         for (uint32_t b = first; b < first + count; ++b) {
           const PlanBarrier& one = plan.barriers[b];
-          all.push_back({Operation::What::barrier, step++, f, one.resource,
-                         instance(one.resource, one.frames_back, f), nullptr, &one});
+          add({Operation::What::barrier, step++, f, one.resource, instance(one.resource, one.frames_back, f),
+               nullptr, &one},
+              one.range);
         }
       };
       for (uint32_t r = 0; r < plan.resources.size(); ++r)
-        all.push_back({Operation::What::frame_begins, step++, f, r, instance(r, 0, f), nullptr, nullptr});
+        add({Operation::What::frame_begins, step++, f, r, instance(r, 0, f), nullptr, nullptr},
+            plan.resources[r].whole());
       for (const PlanPass& pass : plan.passes) {
         barriers(pass.first_barrier, pass.barrier_count);
         for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
           const PlanAccess& one = plan.accesses[a];
-          all.push_back({Operation::What::access, step, f, one.resource,
-                         instance(one.resource, one.frames_back, f), &one, nullptr});
+          add({Operation::What::access, step, f, one.resource, instance(one.resource, one.frames_back, f),
+               &one, nullptr},
+              one.range);
         }
         ++step;
       }
@@ -57,10 +70,13 @@ struct Oracle {
   bool host(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
   bool image(const Operation& o) const { return plan.resources[o.resource].type == ResourceType::image; }
   static bool same_thing(const Operation& a, const Operation& b) {
+    return same_instance(a, b) && a.mip == b.mip && a.layer == b.layer;
+  }
+  static bool same_instance(const Operation& a, const Operation& b) {
     return a.resource == b.resource && a.instance == b.instance;
   }
   bool overlap(const Operation& a, const Operation& b) const {
-    if (same_thing(a, b)) return true;
+    if (same_instance(a, b)) return same_thing(a, b);
     if (host(a.resource) || host(b.resource)) return false;
     const Placement& m = plan.placements[plan.resources[a.resource].first_instance + a.instance];
     const Placement& n = plan.placements[plan.resources[b.resource].first_instance + b.instance];

@@ -228,6 +228,46 @@ INSTANTIATE_TEST_SUITE_P(
                {"port 'history' of pass 'blur'", "'material'"}}),
     law_of);
 
+INSTANTIATE_TEST_SUITE_P(
+    Parts, DamagedPass,
+    ::testing::Values(Damage{"ALayerThatTheImageHas",
+                             "\"read\": { \"source\": \"half\" }, \"write\": { \"target\": \"fixed\" }",
+                             "\"read\": { \"source\": \"half#1[2]\" }, \"write\": { \"target\": \"fixed\" }",
+                             Id::bad_part,
+                             "\"half#1[2]\"",
+                             {"port 'source' of pass 'copy'", "'half#1[2]'", "2 layers"}},
+                      Damage{"WhatTheHostBindsIsWhole",
+                             "\"read\": { \"source\": \"light\"",
+                             "\"read\": { \"source\": \"light#0\"",
+                             Id::bad_part,
+                             "\"light#0\"",
+                             {"'light' is bound by the host"}},
+                      Damage{"HistoriesAreWhole",
+                             "\"history\": \"kept@-2\"",
+                             "\"history\": \"kept#0@-2\"",
+                             Id::bad_part,
+                             "\"kept#0@-2\"",
+                             {"'kept' keeps a history"}},
+                      Damage{"BuffersHaveNoMips",
+                             "\"tiles\": \"list\", \"history\"",
+                             "\"tiles\": \"list#0\", \"history\"",
+                             Id::bad_part,
+                             "\"list#0\"",
+                             {"'list' is a buffer"}},
+                      Damage{"APortWritesOneMip",
+                             "\"target\": \"half\"",
+                             "\"target\": \"half#0..1\"",
+                             Id::bad_part,
+                             "\"half#0..1\"",
+                             {"port 'target' of pass 'blur' writes one mip", "'half#0..1'"}},
+                      Damage{"PartsAreNumbers",
+                             "\"read\": { \"source\": \"half\" }, \"write\": { \"target\": \"fixed\" }",
+                             "\"read\": { \"source\": \"half#x\" }, \"write\": { \"target\": \"fixed\" }",
+                             Id::bad_reference,
+                             "\"half#x\"",
+                             {"'half#x'", "#1..3"}}),
+    law_of);
+
 TEST(ValidHistory, APortThatMustBeBoundSaysWhatItReadsElse) {
   std::string text =
       damaged("\"source\": \"light\"", "\"source\": { \"from\": \"kept@-1\", \"requires\": \"valid\" }");

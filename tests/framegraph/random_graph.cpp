@@ -59,9 +59,42 @@ struct Draft {
       b.pass(fresh("keep"), "test.shade", reads(3), {{"out", history}});
   }
 
+  // An image of several mips and layers: each mip of each layer from what is there by then, some of them at
+  // once; then parts of it are readable, and written in place.
+  void parts() {
+    const auto name = fresh("parts");
+    auto& declared = b.image(name);
+    declared.size.x = declared.size.y = {1, 4}; // no larger than others: see docs/limits.md on implied barriers
+    declared.mips = 1 + random.below(3);
+    declared.layers = 1 + random.below(2);
+    const uint32_t mips = declared.mips, layers = declared.layers;
+    if (random.chance(20)) b.pass(fresh("fill"), "test.fill", {}, {{"target", name}});
+    const bool filled =
+        b.graph.passes.size() > 0 && b.graph.passes.back().writes[0].resource == b.resource(name);
+    for (uint32_t m = 0; m < mips; ++m) {
+      const bool by_layer = random.chance(50);
+      for (uint32_t l = 0; l < (by_layer ? layers : 1); ++l) {
+        const auto part = fmt::format("{}#{}{}", name, m, by_layer ? fmt::format("[{}]", l) : "");
+        auto inputs = reads(2);
+        if (m > 0)
+          inputs.emplace_back("c", fmt::format("{}#{}{}", name, m - 1, random.chance(50) ? "" : "[0]"));
+        if (filled) {
+          b.pass(fresh("change"), "test.update",
+                 inputs.empty() ? Bindings{} : Bindings{{"a", inputs.back().second}}, {{"image", part}});
+        } else {
+          b.pass(fresh("mip"), "test.shade", inputs, {{"out", part}});
+        }
+      }
+    }
+    readable.push_back(name);
+    readable.push_back(fmt::format("{}#{}", name, random.below(mips)));
+    readable.push_back(fmt::format("{}#{}..[{}]", name, random.below(mips), random.below(layers)));
+  }
+
   void one_pass() {
     const auto name = fresh("pass");
     const uint32_t kind = random.below(10);
+    if (random.chance(6)) return parts();
     if (kind == 0) {
       buffers.push_back(fresh("buffer"));
       b.buffer(buffers.back());

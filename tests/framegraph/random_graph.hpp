@@ -1,6 +1,6 @@
 #pragma once
 // Graphs drawn from a seed: valid by construction, with in-place updates, histories, buffers, imports and
-// exports.
+// exports, and images of which ports name parts.
 
 #include "tests/framegraph/graph_builder.hpp"
 

@@ -1,5 +1,6 @@
 // "read" and "write" of a pass: which resource, of which frame, stands at which port.
 
+#include "framegraph/model/image_part.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
@@ -76,7 +77,7 @@ private:
     if (side == PortSide::read && reader_.document[node].kind == NodeKind::object)
       return read_condition(node, port, what);
     PortBinding binding;
-    if (!read_reference(side, node, port, what, binding)) return false;
+    if (!read_reference(side, node, port, what, binding) || !choose_mip(what, binding)) return false;
     keep(side, what, binding);
     return true;
   }
@@ -92,6 +93,7 @@ private:
 
   void keep(PortSide side, const std::string& what, const PortBinding& binding) {
     (side == PortSide::read ? pass_.reads : pass_.writes).push_back(binding);
+    reader_.graph.parts |= !binding.part.whole();
     if (binding.port != unknown_port && !reader_.broken_resources[binding.resource.value])
       check(kind_->ports[binding.port], what, binding);
   }
@@ -182,7 +184,7 @@ private:
     return -1;
   }
 
-  // "name" or "name@-N".
+  // "name", "name@-N", or "name#mips[layers]".
   bool parse_reference(std::string_view text, const std::string& what, PortSide side,
                        const SourceLocation& where, PortBinding& out) {
     const size_t at = text.find('@');
@@ -198,7 +200,18 @@ private:
       }
       out.frames_back = static_cast<uint32_t>(-frame);
     }
-    out.resource = find_resource(reader_, text.substr(0, at), what, where);
+    const size_t end = std::min(text.find_first_of("#[@"), text.size());
+    const auto part = parse_part(text.substr(end, std::min(at, text.size()) - end));
+    if (!part) {
+      reader_.error(
+          DiagnosticId::bad_reference, where,
+          fmt::format("{} names '{}'; mips are #0, #1..3, #1.., layers [0], [1..3], [1..]; at most {} "
+                      "mips and {} layers",
+                      what, text, limits::image_mips, limits::image_layers));
+      return false;
+    }
+    out.part = *part;
+    out.resource = find_resource(reader_, text.substr(0, end), what, where);
     if (!out.resource.valid()) return false;
     const ResourceDeclaration& resource = reader_.graph.resources[out.resource.value];
     if (out.frames_back > 0 && side == PortSide::write) {
@@ -216,7 +229,50 @@ private:
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
       return false;
     }
-    return true;
+    return out.part.whole() || check_part(text, what, out);
+  }
+
+  // Whether the resource has such parts, as far as that is known before there is a view.
+  bool check_part(std::string_view text, const std::string& what, const PortBinding& binding) {
+    const ResourceDeclaration& resource = reader_.graph.resources[binding.resource.value];
+    if (reader_.broken_resources[binding.resource.value]) return true;
+    std::string problem;
+    const uint32_t last_mip = binding.part.first_mip + std::max<uint32_t>(binding.part.mips, 1) - 1;
+    const uint32_t last_layer = binding.part.first_layer + std::max<uint32_t>(binding.part.layers, 1) - 1;
+    if (resource.type == ResourceType::buffer)
+      problem = fmt::format("'{}' is a buffer", resource.name);
+    else if (resource.origin == Origin::imported || resource.exported)
+      problem = fmt::format("'{}' is bound by the host, as a whole", resource.name);
+    else if (resource.history.frames > 0)
+      problem = fmt::format("'{}' keeps a history, as a whole", resource.name);
+    else if (resource.mips != 0 && last_mip >= resource.mips)
+      problem = fmt::format("'{}' has {} mips", resource.name, resource.mips);
+    else if (last_layer >= resource.layers)
+      problem = fmt::format("'{}' has {} layers", resource.name, resource.layers);
+    if (problem.empty()) return true;
+    reader_
+        .error(DiagnosticId::bad_part, binding.where,
+               fmt::format("{} names '{}', but {}", what, text, problem))
+        .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+    return false;
+  }
+
+  // A storage image has one mip: of an image with several the first, unless another one is named.
+  bool choose_mip(const std::string& what, PortBinding& binding) {
+    const ResourceDeclaration& resource = reader_.graph.resources[binding.resource.value];
+    if (binding.port == unknown_port || resource.type == ResourceType::buffer || resource.mips == 1 ||
+        resource.origin == Origin::imported || resource.exported || resource.history.frames > 0)
+      return true;
+    const Usage usage = kind_->ports[binding.port].usage;
+    if (usage != Usage::storage_image_write && usage != Usage::storage_image_update) return true;
+    if (binding.part.first_mip == 0 && binding.part.mips == 0) binding.part.mips = 1;
+    if (binding.part.mips == 1) return true;
+    reader_
+        .error(DiagnosticId::bad_part, binding.where,
+               fmt::format("{} writes one mip, but '{}{}' are several", what, resource.name,
+                           part_text(binding.part)))
+        .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+    return false;
   }
 
   void check(const Port& port, const std::string& what, const PortBinding& binding) {

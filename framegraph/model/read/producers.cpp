@@ -21,20 +21,31 @@ struct Producers {
   Producer first;
 };
 
+bool meet(const ImagePart& a, const ImagePart& b) {
+  const auto apart = [](uint32_t first, uint32_t count, uint32_t other) { // count 0: without end
+    return count != 0 && first + count <= other;
+  };
+  return !apart(a.first_mip, a.mips, b.first_mip) && !apart(b.first_mip, b.mips, a.first_mip) &&
+         !apart(a.first_layer, a.layers, b.first_layer) && !apart(b.first_layer, b.layers, a.first_layer);
+}
+
 bool updates(const GraphReader& reader, const PassDeclaration& pass, const PortBinding& binding) {
   return binding.port != unknown_port && usage_info(reader.kinds[pass.kind].ports[binding.port].usage).reads;
 }
 
-bool reads_now(const PassDeclaration& pass, ResourceId id) {
-  return std::any_of(pass.reads.begin(), pass.reads.end(),
-                     [&](const PortBinding& one) { return one.resource == id && one.frames_back == 0; });
+bool reads_now(const PassDeclaration& pass, const PortBinding& written) {
+  return std::any_of(pass.reads.begin(), pass.reads.end(), [&](const PortBinding& one) {
+    return one.resource == written.resource && one.frames_back == 0 && meet(one.part, written.part);
+  });
 }
 
 // Two ports of one pass cannot write the same memory.
 void check_written_once(GraphReader& reader, const PassDeclaration& pass) {
   for (size_t i = 0; i < pass.writes.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
-      if (pass.writes[i].resource != pass.writes[j].resource) continue;
+      if (pass.writes[i].resource != pass.writes[j].resource ||
+          !meet(pass.writes[i].part, pass.writes[j].part))
+        continue;
       reader
           .error(DiagnosticId::two_producers, pass.writes[i].where,
                  fmt::format("pass '{}' writes '{}' through two ports", pass.name,
@@ -50,13 +61,16 @@ void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
   for (const PortBinding& binding : pass.writes) {
     Producers& producers = all[binding.resource.value];
     const ResourceDeclaration& resource = reader.graph.resources[binding.resource.value];
-    const bool continues = updates(reader, pass, binding) || reads_now(pass, binding.resource);
+    const bool continues = updates(reader, pass, binding) || reads_now(pass, binding);
     producers.any = true;
     if (continues) continue;
     producers.fresh = true;
     // Passes with a `when` may exclude each other, and an unknown port may update.
     const bool sometimes = reader.document.find(reader.pass_nodes[id.value], "when").valid();
-    if (sometimes || binding.port == unknown_port || resource.origin == Origin::imported) continue;
+    // Which parts of an image passes write the compiler says, who knows how many it has.
+    if (sometimes || binding.port == unknown_port || resource.origin == Origin::imported ||
+        !binding.part.whole())
+      continue;
     if (!producers.first.pass.valid()) {
       producers.first = {id, binding.where};
     } else if (producers.first.pass != id) {

@@ -53,6 +53,13 @@ bool nothing_to_do(const PlanBarrier& barrier, const Scopes& s) {
   return false;
 }
 
+// All that the image has where the plan means all that it knows of.
+VkImageSubresourceRange subresources(const PlanResource& resource, const SubresourceRange& range) {
+  const VkImageAspectFlags aspects = barrier_aspects(resource.format);
+  if (range == resource.whole()) return {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  return {aspects, range.first_mip, range.mips, range.first_layer, range.layers};
+}
+
 VkImageMemoryBarrier2 image_barrier(VkImage image, VkImageAspectFlags aspects, const Scopes& s) {
   VkImageMemoryBarrier2 out{};
   out.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
@@ -120,7 +127,9 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     }
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
     if (resource.type == ResourceType::image) {
-      state.image_barriers[images++] = image_barrier(instance.image, barrier_aspects(resource.format), s);
+      VkImageMemoryBarrier2& image = state.image_barriers[images++];
+      image = image_barrier(instance.image, barrier_aspects(resource.format), s);
+      image.subresourceRange = subresources(resource, barrier.range);
       continue;
     }
     state.buffer_barriers[buffers++] = buffer_barrier(instance.buffer, s);

@@ -60,16 +60,16 @@ Error check_needs(const State& state, const Placement& placement, const VkMemory
           heap.memory_type_bits)};
 }
 
-Error create_view(const Device& device, const PlanResource& resource, VkImage image, uint32_t mips,
-                  const std::string& name, VkImageView& view) {
+Error create_view(const Device& device, const PlanResource& resource, VkImage image,
+                  const SubresourceRange& range, const std::string& name, VkImageView& view) {
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = image;
-  info.viewType = resource.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  info.viewType = range.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   info.format = vk_format(resource.format);
   const VkImageAspectFlags aspect =
       format_info(resource.format).depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
-  info.subresourceRange = {aspect, 0, mips, 0, resource.layers};
+  info.subresourceRange = {aspect, range.first_mip, range.mips, range.first_layer, range.layers};
   const VkResult result = device.vk.vkCreateImageView(device.device, &info, device.allocator, &view);
   if (result != VK_SUCCESS) view = VK_NULL_HANDLE;
   return call_error(result, "vkCreateImageView", name);
@@ -95,9 +95,40 @@ Error create_image(State& state, const PlanResource& resource, const Placement& 
   if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", name);
   constexpr uint32_t viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   if ((resource.vk_usage & viewable) == 0) return {}; // only cleared: a view would be invalid
-  if (Error error = create_view(device, resource, instance.image, resource.mips, name, instance.all_mips))
+  SubresourceRange range = resource.whole();
+  if (Error error = create_view(device, resource, instance.image, range, name, instance.all_mips))
     return error;
-  return create_view(device, resource, instance.image, 1, name, instance.first_mip);
+  range.mips = 1;
+  return create_view(device, resource, instance.image, range, name, instance.first_mip);
+}
+
+// Views for the accesses that see a part of an image: equal ones share theirs.
+Error create_part_views(State& state, const Graph& graph) {
+  constexpr Access viewed =
+      access::shader_sampled_read | access::shader_storage_read | access::shader_storage_write;
+  state.view_of_access.assign(state.plan.accesses.size(), no_index);
+  for (size_t a = 0; a < state.plan.accesses.size(); ++a) {
+    const PlanAccess& access = state.plan.accesses[a];
+    const PlanResource& resource = state.plan.resources[access.resource];
+    if (resource.first_instance == no_instance || access.range == resource.whole() ||
+        (access.access & viewed) == 0)
+      continue;
+    for (size_t v = 0; v < state.part_views.size(); ++v)
+      if (state.part_views[v].instance == resource.first_instance &&
+          state.part_views[v].range == access.range)
+        state.view_of_access[a] = static_cast<uint32_t>(v);
+    if (state.view_of_access[a] != no_index) continue;
+    state.view_of_access[a] = static_cast<uint32_t>(state.part_views.size());
+    for (uint32_t i = 0; i < resource.instance_count; ++i) {
+      PartView& part = state.part_views.emplace_back();
+      part.instance = resource.first_instance + i;
+      part.range = access.range;
+      if (Error error = create_view(*state.device, resource, state.instances[part.instance].image, part.range,
+                                    graph.resources[resource.declared.value].name, part.view))
+        return error;
+    }
+  }
+  return {};
 }
 
 Error create_buffer(State& state, const PlanResource& resource, const Placement& placement,
@@ -156,11 +187,13 @@ Error create_memory(State& state, const Graph& graph) {
       if (error) return error;
     }
   }
-  return {};
+  return create_part_views(state, graph);
 }
 
 void destroy_memory(State& state) {
   const Device& device = *state.device;
+  for (const PartView& part : state.part_views)
+    device.vk.vkDestroyImageView(device.device, part.view, device.allocator);
   for (const Instance& instance : state.instances) {
     device.vk.vkDestroyImageView(device.device, instance.all_mips, device.allocator);
     device.vk.vkDestroyImageView(device.device, instance.first_mip, device.allocator);

@@ -1,6 +1,7 @@
 // One frame of the plan into the host's command buffer.
 #include "framegraph/vulkan/executor/state.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace dermis::vulkan {
@@ -84,15 +85,16 @@ VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& ker
       .buffer;
 }
 
-const PlanResource* first_written_image(const State& state, const Pass& pass) {
+VkExtent2D first_written_size(const State& state, const Pass& pass) { // zero: no image is written
   for (const PortAccess& port : pass.ports) {
-    if (port.access == no_index ||
-        (state.plan.accesses[port.access].access & access::shader_storage_write) == 0)
-      continue;
-    const PlanResource& resource = state.plan.resources[state.plan.accesses[port.access].resource];
-    if (resource.type == ResourceType::image) return &resource;
+    if (port.access == no_index) continue;
+    const PlanAccess& access = state.plan.accesses[port.access];
+    const PlanResource& resource = state.plan.resources[access.resource];
+    if ((access.access & access::shader_storage_write) != 0 && resource.type == ResourceType::image)
+      return {std::max(resource.width >> access.range.first_mip, 1u),
+              std::max(resource.height >> access.range.first_mip, 1u)};
   }
-  return nullptr;
+  return {0, 0};
 }
 
 void dispatch(State& state, VkCommandBuffer commands, const Pass& pass, const Kernel& kernel,
@@ -112,8 +114,8 @@ void dispatch(State& state, VkCommandBuffer commands, const Pass& pass, const Ke
     break;
   }
   case DispatchShape::over_written: {
-    const PlanResource* image = first_written_image(state, pass);
-    if (image) vk.vkCmdDispatch(commands, tiles_along(image->width), tiles_along(image->height), 1);
+    const VkExtent2D size = first_written_size(state, pass);
+    if (size.width > 0) vk.vkCmdDispatch(commands, tiles_along(size.width), tiles_along(size.height), 1);
     break;
   }
   case DispatchShape::single_group:
@@ -143,8 +145,6 @@ void run_clear(State& state, const FrameInput& frame, size_t p) {
   const FunctionTable& vk = state.device->vk;
   const PlanPass& planned = state.plan.passes[p];
   const VkClearColorValue zero{};
-  const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
-                                      VK_REMAINING_ARRAY_LAYERS};
   for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
     const PlanAccess& access = state.plan.accesses[a];
     const PlanResource& resource = state.plan.resources[access.resource];
@@ -158,8 +158,13 @@ void run_clear(State& state, const FrameInput& frame, size_t p) {
     }
     const VkImage image =
         host_owned ? frame.images[static_cast<size_t>(resource.slot)].image : instance.image;
+    VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                                  VK_REMAINING_ARRAY_LAYERS};
+    if (access.range != resource.whole())
+      range = {VK_IMAGE_ASPECT_COLOR_BIT, access.range.first_mip, access.range.mips, access.range.first_layer,
+               access.range.layers};
     vk.vkCmdClearColorImage(frame.command_buffer, image, static_cast<VkImageLayout>(access.layout), &zero, 1,
-                            &whole);
+                            &range);
   }
 }
 

@@ -17,6 +17,12 @@ struct Instance { // of a plan resource, one per Plan::placements
   bool ready = false; // histories: holds defined contents in the layout that the plan expects
 };
 
+struct PartView { // of a range of mips and layers of one instance
+  uint32_t instance = 0;
+  SubresourceRange range;
+  VkImageView view = VK_NULL_HANDLE;
+};
+
 struct StandIn {                         // what an unbound optional port sees: zero
   VkFormat format = VK_FORMAT_UNDEFINED; // undefined: the buffer
   bool storage = false;
@@ -104,6 +110,9 @@ struct Executor::State {
   uint32_t frames_in_flight = 1;
   std::vector<VkDeviceMemory> heaps;
   std::vector<Instance> instances;
+  std::vector<PartView> part_views;
+  std::vector<uint32_t> view_of_access; // by plan access: first of its part_views, one for each instance;
+                                        // no_index: all of the image, or no view
   std::vector<StandIn> stand_ins;
   bool stand_ins_ready = false;
   std::vector<Kernel> kernels;

@@ -1,5 +1,7 @@
 #include "tests/framegraph/vulkan/small_graph.hpp"
 
+#include "framegraph/model/image_part.hpp"
+
 #include <gtest/gtest.h>
 
 #include "test_add.spv.h"
@@ -116,12 +118,14 @@ ResourceDeclaration& SmallGraph::buffer(const std::string& name, uint32_t extra_
 
 PortBinding SmallGraph::binding(const PassKind& kind, const std::string& port,
                                 const std::string& text) const {
-  const size_t at = text.find("@-");
+  const size_t at = std::min(text.find("@-"), text.size());
+  const size_t end = std::min(text.find_first_of("#["), at);
   PortBinding result;
+  result.part = parse_part(text.substr(end, at - end)).value_or(ImagePart{});
   result.port = static_cast<uint32_t>(find_port(kind, port));
-  result.frames_back = at == std::string::npos ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
+  result.frames_back = at == text.size() ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
   for (uint32_t i = 0; i < graph.resources.size(); ++i)
-    if (graph.resources[i].name == text.substr(0, at)) result.resource = ResourceId{i};
+    if (graph.resources[i].name == text.substr(0, end)) result.resource = ResourceId{i};
   EXPECT_TRUE(result.resource.valid()) << text;
   EXPECT_LT(result.port, kind.ports.size()) << port;
   return result;
@@ -148,6 +152,9 @@ PassDeclaration& SmallGraph::pass(const std::string& name, const std::string& ki
   added.kind = small_kinds().find(kind);
   added.reads = bindings(small_kinds()[added.kind], reads);
   added.writes = bindings(small_kinds()[added.kind], writes);
+  for (const auto* side : {&added.reads, &added.writes})
+    for (const PortBinding& one : *side)
+      graph.parts |= !one.part.whole();
   return added;
 }
 

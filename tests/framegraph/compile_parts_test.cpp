@@ -1,0 +1,194 @@
+// Laws of parts: mips and layers that ports tell apart have versions, lifetimes of their contents, layouts
+// and barriers of their own.
+
+#include "tests/framegraph/graph_builder.hpp"
+
+#include "framegraph/model/image_part.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+// light -> chain#0 -> chain#1 -> chain#2, all of it -> result
+GraphBuilder pyramid() {
+  GraphBuilder b;
+  b.import("light");
+  b.image("chain").mips = 3;
+  b.exported("result");
+  b.pass("base", "test.need", {{"a", "light"}}, {{"out", "chain#0"}});
+  b.pass("down1", "test.need", {{"a", "chain#0"}}, {{"out", "chain#1"}});
+  b.pass("down2", "test.need", {{"a", "chain#1"}}, {{"out", "chain#2"}});
+  b.pass("gather", "test.need", {{"a", "chain"}}, {{"out", "result"}});
+  return b;
+}
+
+const PlanAccess& access_of(const GraphBuilder& b, const Plan& plan, const std::string& pass, uint32_t port) {
+  for (const PlanPass& one : plan.passes)
+    for (uint32_t a = one.first_access; a < one.first_access + one.access_count; ++a)
+      if (one.declared == b.pass_id(pass) && plan.accesses[a].port == port) return plan.accesses[a];
+  ADD_FAILURE() << pass << " has nothing at port " << port;
+  return plan.accesses.front();
+}
+
+std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan, const std::string& pass,
+                                         const std::string& resource) {
+  std::vector<PlanBarrier> found;
+  for (const PlanPass& one : plan.passes)
+    for (uint32_t i = one.first_barrier; i < one.first_barrier + one.barrier_count; ++i)
+      if (one.declared == b.pass_id(pass) &&
+          plan.resources[plan.barriers[i].resource].declared == b.resource(resource))
+        found.push_back(plan.barriers[i]);
+  return found;
+}
+
+TEST(ImagePart, IsReadAsItIsWritten) {
+  for (const char* text :
+       {"", "#0", "#14", "#1..3", "#2..", "[0]", "[2047]", "[1..4]", "#0[1]", "#1..2[3..]"}) {
+    const auto part = parse_part(text);
+    ASSERT_TRUE(part) << text;
+    EXPECT_EQ(part_text(*part), text);
+  }
+  EXPECT_TRUE(parse_part("")->whole());
+  EXPECT_TRUE(parse_part("#0..[0..]")->whole());
+  for (const char* text : {"#", "#-1", "#15", "#3..1", "#1.2", "#1...2", "[", "[]", "[0", "0]", "[2048]",
+                           "[0]#1", "#1[0]x", " #1", "#1 ", "#99999999999", "#1..99"})
+    EXPECT_FALSE(parse_part(text)) << text;
+}
+
+TEST(Parts, AMipIsReadWhileAnotherOneIsWritten) {
+  const auto b = pyramid();
+  const Plan plan = compiled(b).plan;
+  EXPECT_EQ(pass_names(b, plan), "base down1 down2 gather");
+  const PlanAccess &read = access_of(b, plan, "down1", 0), &written = access_of(b, plan, "down1", 1);
+  EXPECT_EQ(read.range, (SubresourceRange{0, 1, 0, 1}));
+  EXPECT_EQ(read.layout, Layout::shader_read_only);
+  EXPECT_EQ(written.range, (SubresourceRange{1, 1, 0, 1}));
+  EXPECT_EQ(written.layout, Layout::general);
+  EXPECT_EQ(access_of(b, plan, "gather", 0).range, (SubresourceRange{0, 3, 0, 1}));
+  const auto last = barriers_before(b, plan, "gather", "chain"); // the others are readable already
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_EQ(last[0].range, (SubresourceRange{2, 1, 0, 1}));
+}
+
+TEST(Parts, WhatNobodyReadsOfAnImageIsNotMade) {
+  auto b = pyramid();
+  b.graph.passes[3].reads[0].part = *parse_part("#0..1");
+  const auto plan = compiled(b);
+  EXPECT_EQ(pass_names(b, plan.plan), "base down1 gather");
+  EXPECT_THAT(reasons(b, plan, Reason::About::pass, 2), HasSubstr("culled"));
+}
+
+TEST(Parts, WhatIsReadOfAnImageHasBeenWritten) {
+  auto b = pyramid();
+  b.graph.resources[1].mips = 4;
+  const auto errors = refused(b);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
+  EXPECT_THAT(errors[0].text, HasSubstr("'chain'"));
+  EXPECT_EQ(errors[0].where.line, b.graph.passes[3].reads[0].where.line);
+}
+
+TEST(Parts, TwoWritersOfOneMipAreRefusedOnce) {
+  auto b = pyramid();
+  b.pass("again", "test.need", {{"a", "light"}}, {{"out", "chain#0..1"}});
+  const auto errors = refused(b);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].id, DiagnosticId::second_producer);
+}
+
+TEST(Parts, MipsBeyondThoseOfTheViewAreRefused) {
+  auto b = pyramid();
+  b.graph.resources[1].mips = 0; // the full chain: 64 texels have 7
+  b.pass("far", "test.need", {{"a", "chain#7"}}, {{"out", "chain#8[1]"}});
+  const auto errors = refused(b);
+  ASSERT_EQ(errors.size(), 2u);
+  for (const Diagnostic& error : errors) {
+    EXPECT_EQ(error.id, DiagnosticId::part_missing);
+    EXPECT_THAT(error.text, HasSubstr("at 64x64 texels 'chain' has 7 mips and 1 layers"));
+    EXPECT_EQ(error.related.size(), 1u);
+  }
+  EXPECT_EQ(errors[0].where.line, b.graph.passes[4].reads[0].where.line);
+  EXPECT_THAT(errors[1].text, HasSubstr("'chain#8[1]'"));
+}
+
+TEST(Parts, AnOpenRangeEndsWithTheImage) {
+  for (const uint32_t side : {8u, 64u}) {
+    auto b = pyramid();
+    b.graph.resources[1].mips = 0;
+    b.pass("rest", "test.fill", {}, {{"target", "chain#3.."}});
+    const auto input = b.input(side, side);
+    const Plan plan = compiled(b, input).plan;
+    EXPECT_EQ(access_of(b, plan, "rest", 0).range.mips, side == 8 ? 1u : 4u);
+  }
+}
+
+TEST(Parts, NothingStandsInForAPart) {
+  auto b = pyramid();
+  b.boolean("small", true);
+  b.image("half");
+  b.graph.passes[0].when = b.when("small", false);
+  b.otherwise(b.graph.passes[0], "chain", "light");
+  const auto errors = refused(b);
+  ASSERT_GE(errors.size(), 1u);
+  EXPECT_EQ(errors[0].id, DiagnosticId::otherwise_mismatch);
+  EXPECT_THAT(errors[0].text, HasSubstr("ports name parts of 'chain'"));
+}
+
+TEST(Parts, MoreThanCanBeCountedAreRefused) {
+  GraphBuilder b;
+  auto& array = b.image("array");
+  array.layers = 256;
+  array.mips = 4;
+  b.exported("result");
+  b.pass("coarse", "test.fill", {}, {{"target", "array#2"}});
+  for (uint32_t l = 0; l < 256; ++l)
+    b.pass(fmt::format("p{}", l), "test.fill", {}, {{"target", fmt::format("array#0[{}]", l)}});
+  b.pass("show", "test.need", {{"a", "array#0"}}, {{"out", "result"}});
+  const auto errors = refused(b);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].id, DiagnosticId::limit_exceeded);
+  EXPECT_THAT(errors[0].text, HasSubstr("1024 parts of 'array'"));
+}
+
+TEST(Parts, ThatGoTheSameWayShareABarrier) {
+  GraphBuilder b;
+  auto& image = b.image("image");
+  image.mips = image.layers = 2;
+  b.exported("result");
+  b.pass("fill", "test.fill", {}, {{"target", "image"}});
+  b.pass("touch", "test.update", {}, {{"image", "image#1[0]"}});
+  b.pass("show", "test.need", {{"a", "image"}}, {{"out", "result"}});
+  const Plan plan = compiled(b).plan;
+  const auto first = barriers_before(b, plan, "fill", "image");
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first[0].range, (SubresourceRange{0, 2, 0, 2}));
+  const auto second = barriers_before(b, plan, "touch", "image");
+  uint32_t parts = 0;
+  for (const PlanBarrier& barrier : second)
+    parts += barrier.range.mips * barrier.range.layers;
+  for (const PlanBarrier& barrier : barriers_before(b, plan, "show", "image"))
+    parts += barrier.range.mips * barrier.range.layers;
+  EXPECT_EQ(parts, 5u); // the touched one twice
+}
+
+TEST(Parts, APortSeesAllOfThemInOneLayout) {
+  GraphBuilder b;
+  b.image("image").mips = 2;
+  b.exported("result");
+  b.pass("fill", "test.fill", {}, {{"target", "image"}});
+  b.pass("mix", "test.update", {{"a", "image"}}, {{"image", "image#1"}});
+  b.pass("show", "test.need", {{"a", "image"}}, {{"out", "result"}});
+  const Plan plan = compiled(b).plan;
+  EXPECT_EQ(access_of(b, plan, "mix", 0).layout, Layout::general);
+  EXPECT_EQ(access_of(b, plan, "mix", 0).range.mips, 2u);
+  EXPECT_EQ(access_of(b, plan, "mix", 1).layout, Layout::general);
+}
+
+} // namespace
+} // namespace dermis::testing

@@ -1,0 +1,63 @@
+// Laws of parts on a device: each port sees the mips and layers that it names, under validation.
+#include "tests/framegraph/vulkan/executor_fixture.hpp"
+
+#include <gmock/gmock.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::Each;
+using ::testing::FloatEq;
+
+constexpr uint32_t side = 16, half = 8;
+
+class PartsTest : public ExecutorTest {};
+
+// Two layers of two mips, each filled with a number of its own; mip 1 has half the texels, and so has the
+// frame.
+SmallGraph filled() {
+  SmallGraph g;
+  g.exported("result");
+  ResourceDeclaration& image = g.image("image");
+  image.mips = image.layers = 2;
+  const std::pair<const char*, double> parts[] = {
+      {"image#0[0]", 1}, {"image#0[1]", 10}, {"image#1[0]", 100}, {"image#1[1]", 1000}};
+  for (const auto& [part, value] : parts)
+    g.set(g.pass(std::string("fill ") + part, "test.fill", {}, {{"target", part}}), "value", value);
+  return g;
+}
+
+TEST_F(PartsTest, APortSeesTheMipAndTheLayerThatItNames) {
+  const std::pair<std::pair<const char*, const char*>, float> cases[] = {
+      {{"image#0[0]", "image#0[1]"}, 11.0f},
+      {{"image#1[0]", "image#1[1]"}, 1100.0f},
+      {{"image#0[1]", "image#1[0]"}, 110.0f}};
+  for (const auto& [ports, sum] : cases) {
+    SmallGraph g = filled();
+    g.pass("add", "test.add", {{"a", ports.first}, {"b", ports.second}}, {{"target", "result"}});
+    make_executor(g, side, side);
+    const TestImage result = bind(g, "result", {});
+    for (int i = 0; i < 3; ++i)
+      ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
+    const std::vector<float> texels = read(result);
+    for (uint32_t y = 0; y < half; ++y)
+      for (uint32_t x = 0; x < half; ++x)
+        ASSERT_EQ(texels[y * side + x], sum) << ports.first << " + " << ports.second;
+    executor.reset();
+  }
+}
+
+TEST_F(PartsTest, ClearingAPartLeavesTheOthers) {
+  SmallGraph g = filled();
+  g.pass("clear", "test.clear", {}, {{"target", "image#0[0]"}});
+  // What stood there is written over: the fill of that part is none that somebody reads, and is culled.
+  g.graph.passes.erase(g.graph.passes.begin());
+  g.pass("add", "test.add", {{"a", "image#0[0]"}, {"b", "image#0[1]"}}, {{"target", "result"}});
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
+  EXPECT_EQ(read(result)[0], 10.0f);
+}
+
+} // namespace
+} // namespace dermis::testing
