@@ -38,6 +38,7 @@ struct CompileInput {
   PackingLevel packing = PackingLevel::tight;
   bool alias = true;     // false: no two transients share memory
   bool cull = true;      // false: every pass that is on and has what it needs runs
+  bool poison = false;   // true: the graph's own images and buffers can be filled: see ExecutorInput::poison
   ResourceId keep_alive; // valid: this transient shares memory with nothing
 };
 

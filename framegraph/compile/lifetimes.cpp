@@ -135,6 +135,10 @@ void gather_usage(CompileContext& c) {
       life.vk_usage |= usage_info(Usage::clear).vk_usage; // instances start from zero
     explain_history(c, i, life);
   }
+  if (!c.input->poison) return;
+  for (uint32_t i = 0; i < c.graph->resources.size(); ++i)
+    if (c.lifetimes[i].used && !c.facts[i].host_owned)
+      c.lifetimes[i].vk_usage |= usage_info(Usage::clear).vk_usage;
 }
 
 void lifetimes(CompileContext& c) {

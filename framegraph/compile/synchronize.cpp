@@ -71,7 +71,7 @@ struct Synchronizer {
   CompileContext& c;
   Plan& plan;
   const std::array<UsageSet, usage_sets>& sets;
-  std::vector<std::pair<uint32_t, uint32_t>> pending = {}; // barriers for parts, and what they stand behind
+  std::vector<std::pair<uint32_t, uint32_t>> waiting_parts = {}; // barriers for parts, and what they stand behind
   bool emit = false;                                       // barriers; otherwise only how each object ends
   uint32_t last_batch = no_value;                          // position of the pass behind it
 
@@ -255,7 +255,7 @@ struct Synchronizer {
     const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
     collect(first_use, end);
     if (emit) add_accesses(pass, first_use, end);
-    pending.clear();
+    waiting_parts.clear();
     for (const PassTouch& touch : c.touches)
       run_touch(touch, position);
     batch_parts(position);
@@ -263,19 +263,19 @@ struct Synchronizer {
 
   // Barriers for parts of one image stand in one batch, so that they can become one barrier.
   void batch_parts(uint32_t position) {
-    for (const auto& [index, after] : pending) {
+    for (const auto& [index, after] : waiting_parts) {
       uint32_t& latest = c.part_after[c.drafts[index].resource];
       if (after != no_value) latest = latest == no_value ? after : std::max(latest, after);
     }
-    for (const auto& [index, after] : pending)
+    for (const auto& [index, after] : waiting_parts)
       batch(index, c.part_after[c.drafts[index].resource], position);
-    for (const auto& [index, after] : pending)
+    for (const auto& [index, after] : waiting_parts)
       c.part_after[c.drafts[index].resource] = no_value;
   }
 
   void place(uint32_t index, uint32_t after, uint32_t position) {
     if (c.graph->parts && parts(c.drafts[index].resource) > 1)
-      pending.emplace_back(index, after);
+      waiting_parts.emplace_back(index, after);
     else
       batch(index, after, position);
   }

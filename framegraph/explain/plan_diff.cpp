@@ -61,6 +61,7 @@ Lines compiled_from(const SavedPlan& saved) {
   lines.add("packing", std::string(levels[static_cast<size_t>(key.packing)]));
   lines.add("aliasing", yes_no(key.alias));
   lines.add("culling", yes_no(key.cull));
+  lines.add("poison", yes_no(key.poison));
   lines.add("kept alive", key.keep_alive.valid() ? fmt::format("resource {}", key.keep_alive.value) : "none");
   return lines;
 }

@@ -196,6 +196,7 @@ template <class A> void fields(A& a, Of<A, PlanKey>& key) {
   a.word("packing", key.packing, PackingLevel::optimize);
   a.flag("alias", key.alias);
   a.flag("cull", key.cull);
+  a.flag("poison", key.poison);
   fields(a, key.keep_alive);
 }
 

@@ -32,6 +32,7 @@ PlanKey plan_key(const CompileInput& input) {
   key.packing = input.packing;
   key.alias = input.alias;
   key.cull = input.cull;
+  key.poison = input.poison;
   key.keep_alive = input.keep_alive;
   return key;
 }

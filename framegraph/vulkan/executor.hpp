@@ -54,6 +54,9 @@ struct ExecutorInput { // nothing is kept but `device`; all the rest is copied o
   uint32_t frames_in_flight = 2;                      // 1 .. max_frames_in_flight
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;    // may be null
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid
+  // For tests: each frame fills whatever the plan says nobody may read, before it is first written, with NaN, or
+  // 0xCD in each byte. The plan must be compiled with CompileInput::poison.
+  bool poison = false;
 };
 
 struct HostState {

@@ -2,6 +2,8 @@
 
 #include "tests/framegraph/random_graph.hpp"
 
+#include "framegraph/serial/plan_file.hpp"
+
 #include <gtest/gtest.h>
 
 #include <set>
@@ -45,6 +47,25 @@ TEST(Switches, WithoutAliasingNoTransientsShareMemoryAndTheHeapIsTheirSum) {
     if (HasFailure()) return;
   }
   EXPECT_GT(larger, seeds / 4); // the generator makes graphs where sharing pays
+}
+
+// Only what the graph's own images and buffers may be used for differs.
+TEST(Switches, PoisonChangesUsagesAndNothingElse) {
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto builder = random_graph(seed);
+    CompileInput input = builder.input();
+    const Plan plain = compiled(builder, input).plan;
+    input.poison = true;
+    Plan plan = compiled(builder, input).plan;
+    for (size_t r = 0; r < plan.resources.size(); ++r) {
+      const bool own = plan.resources[r].first_instance != no_instance;
+      EXPECT_TRUE(!own || (plan.resources[r].vk_usage & usage_info(Usage::clear).vk_usage) != 0);
+      plan.resources[r].vk_usage = plain.resources[r].vk_usage;
+    }
+    EXPECT_EQ(plan_bytes(plan), plan_bytes(plain));
+    if (HasFailure()) return;
+  }
 }
 
 TEST(Switches, AResourceKeptAliveSharesItsMemoryWithNothing) {

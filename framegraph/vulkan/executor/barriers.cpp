@@ -126,13 +126,23 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
       continue;
     }
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
+    const bool poison = state.poison && discards(state.plan, barrier);
     if (resource.type == ResourceType::image) {
-      VkImageMemoryBarrier2& image = state.image_barriers[images++];
+      VkImageMemoryBarrier2& image = state.image_barriers[images];
       image = image_barrier(instance.image, barrier_aspects(resource.format), s);
       image.subresourceRange = subresources(resource, barrier.range);
+      if (poison)
+        record_poison(state, frame.command_buffer, image, resource.format);
+      else
+        ++images;
       continue;
     }
-    state.buffer_barriers[buffers++] = buffer_barrier(instance.buffer, s);
+    VkBufferMemoryBarrier2& buffer = state.buffer_barriers[buffers];
+    buffer = buffer_barrier(instance.buffer, s);
+    if (poison)
+      record_poison(state, frame.command_buffer, buffer);
+    else
+      ++buffers;
   }
   // A shader does not write to a port that is not bound, but only it knows that.
   constexpr Scopes in_order{

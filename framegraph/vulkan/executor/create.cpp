@@ -22,6 +22,12 @@ Error check_input(const ExecutorInput& input) {
       return {ErrorKind::unsupported, VK_SUCCESS,
               fmt::format("'{}' is a buffer that the host would bind; only images can be bound",
                           input.graph->resources[resource.declared.value].name)};
+  const auto fillable = [](const PlanResource& resource) { // the same bit for buffers
+    return resource.first_instance == no_instance ||
+           (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0;
+  };
+  if (input.poison && !std::all_of(input.plan->resources.begin(), input.plan->resources.end(), fillable))
+    return argument("poison is asked for, but the plan is not compiled with it");
   return {};
 }
 
@@ -151,6 +157,7 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   state->device = input.device;
   state->plan = *input.plan;
   state->frames_in_flight = input.frames_in_flight;
+  state->poison = input.poison;
   make_passes(*state, input);
   make_slots(*state);
   make_histories(*state, input);

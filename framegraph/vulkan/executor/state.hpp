@@ -115,6 +115,7 @@ struct Executor::State {
                                         // no_index: all of the image, or no view
   std::vector<StandIn> stand_ins;
   bool stand_ins_ready = false;
+  bool poison = false; // ExecutorInput::poison
   std::vector<Kernel> kernels;
   Environment environment;
   Descriptors descriptors;
@@ -184,6 +185,14 @@ void record_releases(State& state, const FrameInput& frame) noexcept; // and fro
 // ---- initialise.cpp
 // Brings stand-ins and new or invalid history instances to zero and to the layout that the plan expects.
 void record_initialisation(State& state, VkCommandBuffer commands) noexcept;
+
+// ---- poison.cpp
+// Does nobody read what was there before this barrier?
+bool discards(const Plan& plan, const PlanBarrier& barrier) noexcept;
+// The barrier `image` or `buffer` in two halves, and what is filled between them.
+void record_poison(State& state, VkCommandBuffer commands, const VkImageMemoryBarrier2& image,
+                   Format format) noexcept;
+void record_poison(State& state, VkCommandBuffer commands, const VkBufferMemoryBarrier2& buffer) noexcept;
 
 // ---- timestamps.cpp
 Error create_timestamps(State& state);

@@ -37,7 +37,9 @@ double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassK
     const PlanResource& resource = plan.resources[access.resource];
     if (kind.ports[access.port].usage != Usage::storage_image_write || resource.type != ResourceType::image)
       continue;
-    return double(resource.width) * resource.height / (double(plan.view_width) * plan.view_height);
+    const uint32_t mip = access.range.first_mip;
+    const double texels = double(std::max(resource.width >> mip, 1u)) * std::max(resource.height >> mip, 1u);
+    return texels / (double(plan.view_width) * plan.view_height);
   }
   return 1;
 }

@@ -39,6 +39,7 @@ vulkan::Error ExecutorTest::try_executor(const SmallGraph& graph, const Plan& pl
   input.kernels = small_kernels();
   input.environment = environment;
   input.frames_in_flight = test_frames_in_flight;
+  input.poison = poison;
   return vulkan::Executor::create(input, result);
 }
 
@@ -46,7 +47,7 @@ void ExecutorTest::make_executor(const SmallGraph& graph, uint32_t width, uint32
                                  const std::vector<std::string>& unbound) {
   view_width = width;
   view_height = height;
-  const Plan plan = graph.compile(profile, width, height, unbound);
+  const Plan plan = graph.compile(profile, width, height, unbound, poison);
   const vulkan::Error error = try_executor(graph, plan, dermis_device, executor);
   ASSERT_FALSE(error) << error.text;
 }

@@ -34,6 +34,7 @@ protected:
   std::vector<vulkan::HostImage> images; // by slot
   std::vector<SettingValue> settings;
   uint64_t frame_index = 0;
+  bool poison = false; // of the next executor
   uint32_t view_width = 0, view_height = 0;
 };
 

@@ -194,13 +194,14 @@ int32_t SmallGraph::slot(const std::string& name) const {
 }
 
 Plan SmallGraph::compile(const DeviceProfile& device, uint32_t width, uint32_t height,
-                         const std::vector<std::string>& unbound) const {
+                         const std::vector<std::string>& unbound, bool poison) const {
   CompileInput input;
   input.graph = &graph;
   input.kinds = &small_kinds();
   input.device = &device;
   input.view_width = width;
   input.view_height = height;
+  input.poison = poison;
   input.bound.assign(graph.resources.size(), true);
   for (const std::string& name : unbound)
     for (size_t i = 0; i < graph.resources.size(); ++i)

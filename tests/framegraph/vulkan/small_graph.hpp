@@ -39,7 +39,7 @@ struct SmallGraph {
   int32_t slot(const std::string& name) const; // as PlanResource::slot
   // Compiles; fails the test and returns an empty plan on diagnostics.
   Plan compile(const DeviceProfile& device, uint32_t width, uint32_t height,
-               const std::vector<std::string>& unbound = {}) const;
+               const std::vector<std::string>& unbound = {}, bool poison = false) const;
 
 private:
   ResourceDeclaration& resource(const std::string& name, Format format);
