@@ -44,6 +44,7 @@ void clear(CompiledPlan& out) {
   plan.histories.clear();
   plan.history_layouts.clear();
   plan.first_final_barrier = plan.final_barrier_count = 0;
+  plan.final_wait = no_point;
   plan.transient_bytes = plan.history_bytes = 0;
   out.reasons.clear();
 }
@@ -70,6 +71,7 @@ bool Compiler::compile(const CompileInput& input, Diagnostics& diagnostics, Comp
            find_parts,       // into which parts do ports divide images?
            resolve_versions, // which version of which resource does each port see?
            cull,             // which passes does something bound need?
+           choose_queues,    // which of them run beside the others?
            gather_usage,     // how do they use each resource?
            resolve_formats,  // which format does each resource get, and how much memory?
            order,            // in which order do they run?

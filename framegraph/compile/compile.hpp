@@ -36,8 +36,9 @@ struct CompileInput {
   PassOrder order = PassOrder::memory;
   uint64_t order_seed = 0;
   PackingLevel packing = PackingLevel::tight;
-  bool alias = true;     // false: no two transients share memory
-  bool cull = true;      // false: every pass that is on and has what it needs runs
+  bool alias = true;        // false: no two transients share memory
+  bool cull = true;         // false: every pass that is on and has what it needs runs
+  bool single_queue = true; // false: passes that are declared `async` may get a queue of their own
   bool poison = false;   // true: the graph's own images and buffers can be filled: see ExecutorInput::poison
   ResourceId keep_alive; // valid: this transient shares memory with nothing
 };

@@ -149,6 +149,7 @@ void lifetimes(CompileContext& c) {
     PlanPass& planned = passes.emplace_back();
     planned.declared = pass;
     planned.kind = c.kind_of[pass.value];
+    if (!c.queue.empty()) planned.queue = c.queue[pass.value];
     add_settings(c, pass, planned);
     uint8_t& fits = c.kind_fits[planned.kind.value];
     if (fits != 1) fits = check_limits(c, pass) ? 1 : 2;

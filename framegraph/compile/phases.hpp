@@ -101,6 +101,7 @@ struct ObjectState {
   Layout layout = Layout::undefined;
   uint32_t last_pass = no_value; // position; in the frame before while `carried`
   uint8_t visible = 0;           // usages that may read without another barrier
+  Queue queue = Queue::main;     // that touched it last
   bool touched = false;
   bool carried = false;       // from the frame before
   bool read_for_sure = false; // in every frame: whoever waits for the readers waits for the last write
@@ -177,6 +178,7 @@ struct CompileContext {
   std::vector<uint8_t> live;
   std::vector<PassId> pending;
   std::vector<uint8_t> reported; // by resource: one root cause, one diagnostic
+  std::vector<Queue> queue;      // by pass, where there are two
   // usage
   std::vector<Lifetime> lifetimes; // by resource
   std::vector<NarrowUse> narrow;
@@ -208,8 +210,17 @@ struct CompileContext {
   std::vector<std::vector<Segment>> memory; // by heap
   std::vector<PlanBarrier> drafts;          // as found, before they are sorted into batches
   std::vector<uint32_t>
-      batch_of;              // by draft: position of the pass it stands before; then its place in the plan
-  size_t reasons_before = 0; // of the other phases
+      batch_of; // by draft: position of the pass it stands before; then its place in the plan
+  std::vector<uint32_t> batch_filled; // by batch: barriers that have their place, those behind the pass apart
+  size_t reasons_before = 0;          // of the other phases
+  // By position, where there are two queues: position + 2 of the last pass of the other queue that it comes
+  // after, in this frame and in the one before; 0: none.
+  std::vector<uint32_t> needs_point, needs_frame_before;
+  std::vector<uint8_t> waits_here;   // by draft: for something on its own queue
+  std::vector<uint32_t> draft_after; // by draft: position of the last pass of this frame that it waits for
+  // By position: how many positions hold passes of the same queue that are done and seen by then, since the
+  // other queue waited for them and this one for that.
+  std::vector<uint32_t> round_trip;
   std::vector<Arrival> arrivals;
   std::vector<PartArrival> part_arrivals;
   std::vector<uint32_t> part_after; // by plan resource: scratch
@@ -253,9 +264,10 @@ void resolve_sizes(CompileContext& context); // bound slots, extents
 void choose(CompileContext& context);        // values of settings; which passes are on
 void find_parts(CompileContext& context);    // into which parts do ports divide images?
 void resolve_versions(
-    CompileContext& context);               // which version each port reads and writes, `otherwise` applied
-void cull(CompileContext& context);         // which passes run: those that something bound needs
-void gather_usage(CompileContext& context); // union of usages, deepest read
+    CompileContext& context);                // which version each port reads and writes, `otherwise` applied
+void cull(CompileContext& context);          // which passes run: those that something bound needs
+void choose_queues(CompileContext& context); // which passes run beside the others
+void gather_usage(CompileContext& context);  // union of usages, deepest read
 void resolve_formats(CompileContext& context); // one format each, Plan::resources, memory needs
 void order(CompileContext& context);           // in which order; refuses cycles
 void lifetimes(CompileContext& context);       // first and last use, Plan::passes

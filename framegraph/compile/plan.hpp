@@ -59,6 +59,14 @@ struct Heap {
   bool persistent = false;     // holds history instances only; else transients only
 };
 
+// async: a second queue of another family, which runs beside the first.
+enum class Queue : uint8_t { main, async };
+
+// Points in time, one sequence for each queue: a pass waits until the other queue has reached one, and
+// reaches one of its own when it is done. They count from 1 in each frame; 0 is the last one of the frame
+// before. As values of a timeline semaphore: frame * (points of a frame) + point.
+inline constexpr uint32_t no_point = 0xffffffffu;
+
 struct PlanAccess { // one bound port of one pass
   uint32_t port = 0;
   uint32_t resource = 0; // into Plan::resources
@@ -97,6 +105,10 @@ struct PlanBarrier {
   } why = Why::first_use;
   bool from_host = false; // source scope and old layout come from the binding's `before`
   bool to_host = false;   // destination scope and new layout come from the binding's `after`
+  // Between queues, in two halves with the same layouts: released behind a pass of one queue (no
+  // destination), acquired before a pass of the other (no source), which waits for a point behind the
+  // release.
+  enum class Transfer : uint8_t { none, release, acquire } transfer = Transfer::none;
 };
 
 struct PlanSetting { // value of one setting of one pass kind, resolved
@@ -110,6 +122,10 @@ struct PlanPass {
   uint32_t first_access = 0, access_count = 0;   // into Plan::accesses
   uint32_t first_barrier = 0, barrier_count = 0; // into Plan::barriers: one batch before the pass
   uint32_t first_setting = 0;                    // into Plan::settings, one per KindSetting
+  Queue queue = Queue::main;
+  uint32_t wait = no_point;   // of the other queue, before the barriers
+  uint32_t release_count = 0; // barriers behind the pass, which follow those before it in Plan::barriers
+  uint32_t signal = 0;        // the point that this queue has reached behind the releases; 0: none
 };
 
 // History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned
@@ -137,7 +153,9 @@ struct Plan {
   std::vector<Layout> history_layouts; // of an instance when a frame starts; the newest's is undefined: its
                                        // old contents are discarded
   uint32_t first_final_barrier = 0,
-           final_barrier_count = 0;                // batch after the last pass: to the host's `after`
+           final_barrier_count = 0; // batch after the last pass: to the host's `after`
+  uint32_t final_wait =
+      no_point; // point of the async queue that the main one waits for before the final batch
   uint64_t transient_bytes = 0, history_bytes = 0; // heap bytes by kind
 };
 
@@ -154,6 +172,8 @@ struct Reason {
     writes_export,    // resource a
     side_effects,     // of its kind
     culling_off,      // asked for by the caller
+    beside,           // declared async, and on the async queue
+    not_beside,       // declared async, but resource a is the host's, a history, or bound in parts
     port_unbound,     // optional port a; nothing provides resource b
     always_otherwise, // port a has no history b to read: its `otherwise` stands in for it in every frame
     not_needed,       // culled

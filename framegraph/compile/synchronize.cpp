@@ -7,52 +7,16 @@
 // own, and as few boundaries as possible get a batch. That is stabbing intervals with points: in the order of
 // their ends, each takes the last point if that lies inside, else its own end becomes the next.
 
+#include "framegraph/compile/synchronize.hpp"
 #include "framegraph/compile/phases.hpp"
 
 #include <algorithm>
 #include <array>
-#include <set>
 #include <span>
-#include <tuple>
 #include <utility>
 
 namespace dermis {
 namespace {
-
-constexpr auto usage_count = static_cast<uint32_t>(Usage::count);
-constexpr uint32_t usage_sets = 1u << usage_count; // sets of usages, as masks
-static_assert(usage_count <= 8, "PassTouch::usages and ObjectState::visible are bytes");
-
-// What a set of usages comes to.
-struct UsageSet {
-  Stage stages = 0;
-  Access access = 0;
-  Layout image_layout = Layout::undefined; // one layout for all: `general` serves every one of them
-  uint8_t sees = 0; // usages that see what these see: visible to them, visible to those
-  bool reads = false, writes = false;
-};
-
-std::array<UsageSet, usage_sets> make_usage_sets() {
-  std::array<UsageSet, usage_sets> sets{};
-  for (uint32_t mask = 1; mask < usage_sets; ++mask) {
-    UsageSet& set = sets[mask];
-    for (uint32_t u = 0; u < usage_count; ++u) {
-      if ((mask >> u & 1) == 0) continue;
-      const UsageInfo& info = usage_info(static_cast<Usage>(u));
-      set.image_layout = set.stages == 0 || set.image_layout == info.layout ? info.layout : Layout::general;
-      set.stages |= info.stages;
-      set.access |= info.access;
-      set.reads |= info.reads;
-      set.writes |= info.writes;
-      for (uint32_t other = 0; other < usage_count; ++other) {
-        const UsageInfo& wanted = usage_info(static_cast<Usage>(other));
-        if ((wanted.stages & ~info.stages) == 0 && (wanted.access & ~info.access) == 0)
-          set.sees = static_cast<uint8_t>(set.sees | 1u << other);
-      }
-    }
-  }
-  return sets;
-}
 
 struct Scope {
   Stage stages = 0;
@@ -71,9 +35,11 @@ struct Synchronizer {
   CompileContext& c;
   Plan& plan;
   const std::array<UsageSet, usage_sets>& sets;
-  std::vector<std::pair<uint32_t, uint32_t>> waiting_parts = {}; // barriers for parts, and what they stand behind
-  bool emit = false;                                       // barriers; otherwise only how each object ends
-  uint32_t last_batch = no_value;                          // position of the pass behind it
+  std::vector<std::pair<uint32_t, uint32_t>> waiting_parts =
+      {};                         // barriers for parts, and what they stand behind
+  uint32_t current = 0;           // position
+  bool emit = false;              // barriers; otherwise only how each object ends
+  uint32_t last_batch = no_value; // position of the pass behind it
 
   void because(uint32_t barrier, Reason::Why why, uint32_t resource, uint32_t b = 0) {
     c.because(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
@@ -139,6 +105,44 @@ struct Synchronizer {
       c.ends = c.states;
     }
     carry_over();
+  }
+
+  bool two_queues() const { return !c.queue.empty(); }
+  Queue queue_at(uint32_t position) const { return plan.passes[position].queue; }
+
+  // The pass at `position` comes after the one at `earlier`, of the other queue.
+  void need(uint32_t position, uint32_t earlier) {
+    c.needs_point[position] = std::max(c.needs_point[position], earlier + 2);
+  }
+  // Likewise, after one of the frame before.
+  void need_frame_before(uint32_t position, uint32_t earlier) {
+    c.needs_frame_before[position] = std::max(c.needs_frame_before[position], earlier + 2);
+  }
+
+  // The object leaves one queue for the other, with its contents.
+  void transfer(const PassTouch& touch, const ObjectState& state, const UsageSet& set, uint32_t position) {
+    PlanBarrier release;
+    release.resource = touch.resource;
+    release.frames_back = touch.frames_back;
+    release.range = range_of(touch.resource, touch.part);
+    release.old_layout = state.layout;
+    release.new_layout = touch.layout;
+    release.why = set.reads ? PlanBarrier::Why::read_after_write : PlanBarrier::Why::write_after_write;
+    PlanBarrier acquire = release;
+    const Scope scope = tail(state);
+    release.source_stages = scope.stages;
+    release.source_access = scope.access;
+    release.transfer = PlanBarrier::Transfer::release;
+    acquire.source_stages = acquire.destination_stages = set.stages; // where the wait for the point ends
+    acquire.destination_access = set.access;
+    acquire.transfer = PlanBarrier::Transfer::acquire;
+    for (const PlanBarrier& half : {release, acquire}) {
+      const uint32_t index = draft();
+      c.drafts[index] = half;
+      c.batch_of[index] = half.transfer == PlanBarrier::Transfer::release ? state.last_pass : position;
+      c.because(Reason::About::barrier, index, Reason::Why::dependency, state.last_pass, 0, position);
+    }
+    need(position, state.last_pass);
   }
 
   Layout layout_of(const PassTouch& touch) const {
@@ -219,6 +223,12 @@ struct Synchronizer {
   // Adds a barrier for the pass at `position` that waits for nothing of this frame behind the pass at
   // `after`.
   void batch(uint32_t index, uint32_t after, uint32_t position) {
+    if (two_queues()) { // the passes between may be the other queue's
+      c.batch_of[index] = position;
+      c.draft_after.resize(c.drafts.size(), no_value);
+      c.draft_after[index] = after;
+      return;
+    }
     const bool shared = last_batch != no_value && (after == no_value || after < last_batch);
     if (!shared) last_batch = position;
     c.batch_of[index] = last_batch;
@@ -232,18 +242,28 @@ struct Synchronizer {
 
   // Brings the drafts into the order of their batches, those of one batch as they were found.
   void sort_into_batches() {
-    for (const uint32_t position : c.batch_of)
-      ++plan.passes[position].barrier_count;
+    const auto released = [&](uint32_t draft) {
+      return c.drafts[draft].transfer == PlanBarrier::Transfer::release;
+    };
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < c.drafts.size(); ++i) {
+      if (c.batch_of[i] == no_value) continue;
+      ++count;
+      PlanPass& pass = plan.passes[c.batch_of[i]];
+      ++(released(i) ? pass.release_count : pass.barrier_count);
+    }
     uint32_t filled = 0;
     for (PlanPass& pass : plan.passes) {
       pass.first_barrier = filled;
-      filled += pass.barrier_count;
-      pass.barrier_count = 0;
+      filled += pass.barrier_count + pass.release_count;
     }
-    plan.barriers.resize(c.drafts.size());
+    plan.barriers.resize(count);
+    c.batch_filled.assign(2 * plan.passes.size(), 0);
     for (uint32_t i = 0; i < c.drafts.size(); ++i) {
-      PlanPass& pass = plan.passes[c.batch_of[i]];
-      c.batch_of[i] = pass.first_barrier + pass.barrier_count++;
+      if (c.batch_of[i] == no_value) continue;
+      const PlanPass& pass = plan.passes[c.batch_of[i]];
+      uint32_t& before = c.batch_filled[2 * size_t{c.batch_of[i]} + (released(i) ? 1 : 0)];
+      c.batch_of[i] = pass.first_barrier + (released(i) ? pass.barrier_count : 0) + before++;
       plan.barriers[c.batch_of[i]] = c.drafts[i];
     }
     for (size_t r = c.reasons_before; r < c.out->reasons.size(); ++r)
@@ -254,6 +274,7 @@ struct Synchronizer {
     PlanPass& pass = plan.passes[position];
     const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
     collect(first_use, end);
+    current = position;
     if (emit) add_accesses(pass, first_use, end);
     waiting_parts.clear();
     for (const PassTouch& touch : c.touches)
@@ -285,8 +306,11 @@ struct Synchronizer {
     const UsageSet& set = sets[touch.usages];
     const Layout layout = touch.layout;
     bool waited = true;
+    const bool elsewhere = state.touched && state.queue != queue_at(position);
     if (!state.touched) {
       if (emit) arrive(touch, set, layout, position);
+    } else if (elsewhere) {
+      if (emit) transfer(touch, state, set, position);
     } else {
       PlanBarrier barrier;
       waited = dependency(state, touch.usages, set, layout, barrier);
@@ -302,7 +326,7 @@ struct Synchronizer {
         place(index, state.carried ? no_value : state.last_pass, position);
       }
     }
-    const bool transition = !state.touched || layout != state.layout;
+    const bool transition = !state.touched || elsewhere || layout != state.layout;
     if (set.writes || transition) {
       state.source_stages = set.stages;
       state.source_access = set.access & all_write_access;
@@ -320,6 +344,7 @@ struct Synchronizer {
     }
     state.touched = true;
     state.carried = false;
+    state.queue = queue_at(position);
     state.layout = layout;
     state.last_pass = position;
   }
@@ -460,9 +485,48 @@ struct Synchronizer {
     return first;
   }
 
+  void inherit(const ObjectState& state, uint32_t barrier, bool frame_before) {
+    const uint32_t position = c.batch_of[barrier] == no_value ? current : c.batch_of[barrier];
+    if (two_queues() && state.touched && state.queue != queue_at(position))
+      return wait_elsewhere(c.drafts[barrier], position, state.last_pass, frame_before);
+    wait_for(c.drafts[barrier], tail(state));
+    if (!two_queues() || !state.touched) return;
+    c.waits_here.resize(c.drafts.size());
+    c.waits_here[barrier] = 1;
+  }
+
+  // Barriers that change no layout, and whose work the waits for points do: those behind which the other
+  // queue has waited, and this one for it; and those of buffers that take over what the other queue had
+  // alone.
+  void drop_needless() {
+    c.waits_here.resize(c.drafts.size());
+    c.draft_after.resize(c.drafts.size(), no_value);
+    for (uint32_t i = 0; i < c.drafts.size(); ++i) {
+      const PlanBarrier& draft = c.drafts[i];
+      if (draft.transfer != PlanBarrier::Transfer::none || draft.from_host ||
+          draft.old_layout != draft.new_layout)
+        continue;
+      const uint32_t after = c.draft_after[i] == no_value ? 0 : c.draft_after[i] + 1;
+      const uint32_t done = c.round_trip[c.batch_of[i]];
+      const bool arrival = c.arrival_of[draft.resource] == i; // of a buffer: images change their layout
+      if ((done > 0 && after <= done) || (arrival && !c.waits_here[i])) c.batch_of[i] = no_value;
+    }
+    std::vector<Reason>& reasons = c.out->reasons;
+    reasons.erase(std::remove_if(reasons.begin() + static_cast<std::ptrdiff_t>(c.reasons_before),
+                                 reasons.end(),
+                                 [&](const Reason& one) { return c.batch_of[one.index] == no_value; }),
+                  reasons.end());
+  }
+
+  // Behind the wait for a point, which ends where the barrier begins.
+  void wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier, bool frame_before) {
+    barrier.source_stages |= barrier.destination_stages;
+    frame_before ? need_frame_before(position, earlier) : need(position, earlier);
+  }
+
   void inherit(uint32_t from, uint32_t resource, uint32_t barrier, bool frame_before) {
     for (uint32_t part = 0; part < parts(from); ++part)
-      wait_for(c.drafts[barrier], tail(c.states[c.first_object[from] + part]));
+      inherit(c.states[c.first_object[from] + part], barrier, frame_before);
     if (from != resource) c.drafts[barrier].why = PlanBarrier::Why::alias;
     because(barrier, from == resource ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from,
             frame_before ? 1 : 0);
@@ -492,65 +556,9 @@ struct Synchronizer {
         wait_for(barrier, {first.source_stages, first.source_access});
         barrier.why = first.why;
       }
-      wait_for(barrier, tail(c.states[arrival.object]));
+      inherit(c.states[arrival.object], arrival.barrier, true);
       because(arrival.barrier, Reason::Why::behind_last_use, arrival.resource, 1);
     }
-  }
-
-  static bool unite(SubresourceRange& a, const SubresourceRange& b) {
-    if (a.first_layer == b.first_layer && a.layers == b.layers && a.first_mip + a.mips == b.first_mip) {
-      a.mips = static_cast<uint16_t>(a.mips + b.mips);
-      return true;
-    }
-    if (a.first_mip == b.first_mip && a.mips == b.mips && a.first_layer + a.layers == b.first_layer) {
-      a.layers = static_cast<uint16_t>(a.layers + b.layers);
-      return true;
-    }
-    return false;
-  }
-
-  bool merge(PlanBarrier& a, const PlanBarrier& b) const {
-    const auto same = [](const PlanBarrier& one) {
-      return std::tuple(one.resource, one.frames_back, one.source_stages, one.destination_stages,
-                        one.source_access, one.destination_access, one.old_layout, one.new_layout, one.why,
-                        one.from_host, one.to_host);
-    };
-    return parts(a.resource) > 1 && same(a) == same(b) && unite(a.range, b.range);
-  }
-
-  // Barriers of one batch that differ in the parts of an image alone become one.
-  void merge_parts() {
-    std::vector<uint32_t> kept, place_of(c.drafts.size());
-    for (uint32_t i = 0; i < c.drafts.size(); ++i) {
-      kept.push_back(i);
-      place_of[i] = i;
-      while (kept.size() > 1) {
-        const uint32_t earlier = kept[kept.size() - 2], later = kept.back();
-        if (c.batch_of[earlier] != c.batch_of[later] || !merge(c.drafts[earlier], c.drafts[later])) break;
-        place_of[later] = earlier;
-        kept.pop_back();
-      }
-    }
-    std::vector<uint32_t> number(c.drafts.size());
-    for (uint32_t k = 0; k < kept.size(); ++k) {
-      number[kept[k]] = k;
-      c.drafts[k] = c.drafts[kept[k]];
-      c.batch_of[k] = c.batch_of[kept[k]];
-    }
-    for (uint32_t i = 0; i < place_of.size(); ++i) // into what it stands in now
-      if (place_of[i] != i) number[i] = number[place_of[i]];
-    c.drafts.resize(kept.size());
-    c.batch_of.resize(kept.size());
-    using Key = std::tuple<uint32_t, Reason::Why, uint32_t, uint32_t, uint32_t>;
-    std::set<Key> seen;
-    std::vector<Reason>& reasons = c.out->reasons;
-    const auto repeated = [&](Reason& reason) {
-      reason.index = number[reason.index];
-      return !seen.insert({reason.index, reason.why, reason.a, reason.b, reason.c}).second;
-    };
-    reasons.erase(std::remove_if(reasons.begin() + static_cast<std::ptrdiff_t>(c.reasons_before),
-                                 reasons.end(), repeated),
-                  reasons.end());
   }
 
   // Every slot is handed back in the state the host asked for, also one that no pass touched.
@@ -589,13 +597,16 @@ struct Synchronizer {
 } // namespace
 
 void synchronize(CompileContext& c) {
-  static const std::array<UsageSet, usage_sets> sets = make_usage_sets();
   Plan& plan = c.out->plan;
-  Synchronizer walk{c, plan, sets};
+  Synchronizer walk{c, plan, all_usage_sets()};
   const bool histories = walk.number_objects();
   if (histories) walk.find_ends();
   c.arrivals.clear();
   c.part_arrivals.clear();
+  c.needs_point.assign(walk.two_queues() ? plan.passes.size() : 0, 0);
+  c.waits_here.clear();
+  c.draft_after.clear();
+  c.needs_frame_before.assign(c.needs_point.size(), 0);
   if (c.graph->parts) {
     c.arrived_after.assign(plan.resources.size(), no_value);
     c.part_after.assign(plan.resources.size(), no_value);
@@ -611,7 +622,11 @@ void synchronize(CompileContext& c) {
   for (uint32_t position = 0; position < plan.passes.size(); ++position)
     walk.run_pass(position);
   walk.settle_arrivals();
-  if (c.graph->parts) walk.merge_parts();
+  if (walk.two_queues()) {
+    number_points(c);
+    walk.drop_needless();
+  }
+  if (c.graph->parts) merge_part_barriers(c);
   walk.sort_into_batches();
   plan.first_final_barrier = static_cast<uint32_t>(plan.barriers.size());
   for (uint32_t r = 0; r < plan.resources.size(); ++r)

@@ -111,6 +111,22 @@ std::string_view why_name(PlanBarrier::Why why) {
   return "unknown";
 }
 
+std::string_view queue_name(Queue queue) {
+  return queue == Queue::main ? "main" : "async";
+}
+
+std::string_view transfer_name(PlanBarrier::Transfer transfer) {
+  switch (transfer) {
+  case PlanBarrier::Transfer::none:
+    return "none";
+  case PlanBarrier::Transfer::release:
+    return "release";
+  case PlanBarrier::Transfer::acquire:
+    return "acquire";
+  }
+  return "unknown";
+}
+
 std::string_view read_when_name(ReadWhen when) {
   switch (when) {
   case ReadWhen::always:

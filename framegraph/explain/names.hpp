@@ -14,6 +14,8 @@ std::vector<std::string> stage_names(Stage stages);
 std::vector<std::string> access_names(Access accesses);
 std::string_view layout_name(Layout layout);
 std::string_view why_name(PlanBarrier::Why why);
+std::string_view queue_name(Queue queue);
+std::string_view transfer_name(PlanBarrier::Transfer transfer);
 std::string_view read_when_name(ReadWhen when); // "history_valid"
 std::string_view read_when_text(ReadWhen when); // " where it is valid", to stand behind what is read
 

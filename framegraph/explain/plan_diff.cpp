@@ -62,6 +62,7 @@ Lines compiled_from(const SavedPlan& saved) {
   lines.add("aliasing", yes_no(key.alias));
   lines.add("culling", yes_no(key.cull));
   lines.add("poison", yes_no(key.poison));
+  lines.add("single queue", yes_no(key.single_queue));
   lines.add("kept alive", key.keep_alive.valid() ? fmt::format("resource {}", key.keep_alive.value) : "none");
   return lines;
 }
@@ -76,6 +77,9 @@ Lines settings(const SavedPlan& saved) {
 std::string pass_text(const SavedPlan& saved, size_t p) {
   const PlanPass& pass = saved.plan.passes[p];
   std::string text = saved.names.kinds[p];
+  if (pass.queue == Queue::async) text += " async";
+  if (pass.wait != no_point) text += fmt::format(" wait={}", pass.wait);
+  if (pass.signal != 0) text += fmt::format(" signal={}", pass.signal);
   for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
     const PlanAccess& access = saved.plan.accesses[a];
     const bool writes = (access.access & all_write_access) != 0;
@@ -152,6 +156,10 @@ Lines barriers(const SavedPlan& saved) {
   for (size_t p = 0; p < saved.plan.passes.size(); ++p)
     add_batch(saved, "before " + saved.names.passes[p], saved.plan.passes[p].first_barrier,
               saved.plan.passes[p].barrier_count, lines);
+  for (size_t p = 0; p < saved.plan.passes.size(); ++p)
+    add_batch(saved, "behind " + saved.names.passes[p],
+              saved.plan.passes[p].first_barrier + saved.plan.passes[p].barrier_count,
+              saved.plan.passes[p].release_count, lines);
   add_batch(saved, "at the end", saved.plan.first_final_barrier, saved.plan.final_barrier_count, lines);
   return lines;
 }

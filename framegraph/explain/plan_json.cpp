@@ -131,6 +131,7 @@ struct Exporter {
       subresources(barrier.range);
       out.member("why", why_name(barrier.why));
       out.member("from_host", barrier.from_host).member("to_host", barrier.to_host);
+      out.member("transfer", transfer_name(barrier.transfer));
       mask("source_stages", barrier.source_stages, stage_names(barrier.source_stages));
       mask("source_access", barrier.source_access, access_names(barrier.source_access));
       mask("destination_stages", barrier.destination_stages, stage_names(barrier.destination_stages));
@@ -140,6 +141,11 @@ struct Exporter {
       out.close();
     }
     out.close();
+  }
+
+  void point(std::string_view key, bool none, uint32_t number) {
+    out.key(key);
+    none ? out.null() : out.value(number);
   }
 
   void accesses(const PlanPass& pass) {
@@ -168,8 +174,12 @@ struct Exporter {
     out.open_object();
     out.member("name", graph.passes[pass.declared.value].name).member("kind", kind.name);
     out.member("dispatch", name_in(dispatch_shapes, kind.dispatch));
+    out.member("queue", queue_name(pass.queue));
+    point("wait", pass.wait == no_point, pass.wait);
     barriers("barriers", pass.first_barrier, pass.barrier_count);
     accesses(pass);
+    barriers("releases", pass.first_barrier + pass.barrier_count, pass.release_count);
+    point("signal", pass.signal == 0, pass.signal);
     out.key("settings").open_array();
     for (uint32_t s = 0; s < kind.settings.size(); ++s) {
       const PlanSetting& setting = plan.settings[pass.first_setting + s];
@@ -245,6 +255,7 @@ struct Exporter {
     for (const PlanPass& one : plan.passes)
       pass(one);
     out.close();
+    point("final_wait", plan.final_wait == no_point, plan.final_wait);
     barriers("final_barriers", plan.first_final_barrier, plan.final_barrier_count);
     reasons();
     changes();

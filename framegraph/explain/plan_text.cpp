@@ -50,8 +50,10 @@ struct TextExporter {
                             one.to_host ? "host" : layout_name(one.new_layout));
     line(fmt::format("     | {}", reason(Reason::About::barrier, index)));
     const std::string part = range_text(plan.resources[one.resource], one.range);
-    line(fmt::format("     |   {}{}: {} -> {}{}", why_name(one.why), part.empty() ? "" : " of " + part, from,
-                     to, layouts));
+    const std::string half =
+        one.transfer == PlanBarrier::Transfer::none ? "" : fmt::format("{}, ", transfer_name(one.transfer));
+    line(fmt::format("     |   {}{}{}: {} -> {}{}", half, why_name(one.why),
+                     part.empty() ? "" : " of " + part, from, to, layouts));
   }
 
   void passes() {
@@ -59,9 +61,14 @@ struct TextExporter {
     for (uint32_t position = 0; position < plan.passes.size(); ++position) {
       const PlanPass& pass = plan.passes[position];
       const PassKind& kind = kinds[pass.kind];
+      if (pass.wait != no_point)
+        line(fmt::format("     | waits for point {} of the {} queue{}", pass.wait,
+                         queue_name(pass.queue == Queue::main ? Queue::async : Queue::main),
+                         pass.wait == 0 ? ", the last one of the frame before" : ""));
       for (uint32_t b = 0; b < pass.barrier_count; ++b)
         barrier(pass.first_barrier + b);
-      line(fmt::format("{:4} {} ({})", position, graph.passes[pass.declared.value].name, kind.name));
+      line(fmt::format("{:4} {} ({}){}", position, graph.passes[pass.declared.value].name, kind.name,
+                       pass.queue == Queue::main ? "" : " on the async queue"));
       for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[a];
         const UsageInfo& usage = usage_info(kind.ports[access.port].usage);
@@ -71,8 +78,14 @@ struct TextExporter {
                                 range_text(plan.resources[access.resource], access.range)),
                          read_when_text(access.when)));
       }
+      for (uint32_t b = 0; b < pass.release_count; ++b)
+        barrier(pass.first_barrier + pass.barrier_count + b);
+      if (pass.signal != 0)
+        line(fmt::format("     | the {} queue reaches point {}", queue_name(pass.queue), pass.signal));
     }
     if (plan.final_barrier_count > 0) line("   at the end");
+    if (plan.final_wait != no_point)
+      line(fmt::format("     | waits for point {} of the async queue", plan.final_wait));
     for (uint32_t b = 0; b < plan.final_barrier_count; ++b)
       barrier(plan.first_final_barrier + b);
   }

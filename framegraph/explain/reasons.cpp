@@ -88,6 +88,11 @@ struct Speaker {
     case Reason::Why::port_unbound:
       return fmt::format("optional port '{}' stays unbound: nothing provides '{}'",
                          port(reason.index, reason.a), resource(reason.b));
+    case Reason::Why::beside:
+      return "runs on the async queue";
+    case Reason::Why::not_beside:
+      return fmt::format("stays on the main queue: '{}' is the host's, kept across frames, or bound in parts",
+                         resource(reason.a));
     case Reason::Why::always_otherwise:
       return fmt::format("port '{}' reads its 'otherwise' in every frame: no pass that is on writes '{}'",
                          port(reason.index, reason.a), resource(reason.b));

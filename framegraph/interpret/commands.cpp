@@ -4,6 +4,7 @@
 #include "framegraph/verify/structure.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <queue>
 
@@ -17,6 +18,7 @@ struct Touch {
   Stage source = 0;      // barriers: what they wait for; passes: where the access happens
   Stage destination = 0; // barriers: what waits for them
   bool from_host = false, to_host = false;
+  Queue queue = Queue::main;
 };
 
 bool same(const Touch& a, const Touch& b) {
@@ -24,6 +26,7 @@ bool same(const Touch& a, const Touch& b) {
 }
 
 bool waits(const Touch& later, const Touch& earlier) {
+  if (later.queue != earlier.queue) return false;
   if (later.is_barrier && later.from_host) return earlier.is_barrier && earlier.to_host;
   if (later.is_barrier && earlier.is_barrier) return (earlier.destination & later.source) != 0;
   if (later.is_barrier) return (earlier.source & ~later.source) == 0;
@@ -41,16 +44,18 @@ std::vector<std::vector<Touch>> touches_of(const Plan& plan, const Memory& memor
   };
   for (uint32_t c = 0; c < commands.size(); ++c) {
     const Command& command = commands[c];
+    if (command.wait_until != no_wait) continue;
     if (command.is_pass) {
       const PlanPass& pass = plan.passes[command.index];
       for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[a];
-        touch(access, command.frame, {c, false, access.stages, 0});
+        touch(access, command.frame, {c, false, access.stages, 0, false, false, command.queue});
       }
     } else {
       const PlanBarrier& barrier = plan.barriers[command.index];
       touch(barrier, command.frame,
-            {c, true, barrier.source_stages, barrier.destination_stages, barrier.from_host, barrier.to_host});
+            {c, true, barrier.source_stages, barrier.destination_stages, barrier.from_host, barrier.to_host,
+             command.queue});
     }
   }
   return touches;
@@ -103,17 +108,33 @@ Memory memory_of(const Plan& plan) {
 std::vector<Command> record(const Plan& plan, uint32_t first, uint32_t end) {
   std::vector<Command> commands;
   uint32_t batch = 0;
-  const auto barriers = [&](uint32_t frame, uint32_t begin, uint32_t count) {
+  std::array<std::vector<uint32_t>, 2> reached; // commands, by queue and point
+  const auto barriers = [&](uint32_t frame, uint32_t begin, uint32_t count, Queue queue) {
     for (uint32_t b = begin; b < begin + count; ++b)
-      commands.push_back({frame, false, b, batch});
+      commands.push_back({frame, false, b, batch, queue, no_wait});
     ++batch;
   };
+  const auto reach = [&](uint32_t point, Queue queue) {
+    if (point != 0) reached[static_cast<size_t>(queue)].push_back(static_cast<uint32_t>(commands.size() - 1));
+  };
   for (uint32_t frame = first; frame < end; ++frame) {
+    const std::array<size_t, 2> before{reached[0].size(), reached[1].size()};
+    const auto wait = [&](uint32_t point, Queue queue) {
+      const size_t other = queue == Queue::main ? 1 : 0;
+      if (point == no_point || before[other] + point == 0 || before[other] + point > reached[other].size())
+        return;
+      commands.push_back({frame, false, 0, 0, queue, reached[other][before[other] + point - 1]});
+    };
     for (uint32_t p = 0; p < plan.passes.size(); ++p) {
-      barriers(frame, plan.passes[p].first_barrier, plan.passes[p].barrier_count);
-      commands.push_back({frame, true, p, 0});
+      const PlanPass& pass = plan.passes[p];
+      wait(pass.wait, pass.queue);
+      barriers(frame, pass.first_barrier, pass.barrier_count, pass.queue);
+      commands.push_back({frame, true, p, 0, pass.queue, no_wait});
+      barriers(frame, pass.first_barrier + pass.barrier_count, pass.release_count, pass.queue);
+      reach(pass.signal, pass.queue);
     }
-    barriers(frame, plan.first_final_barrier, plan.final_barrier_count);
+    wait(plan.final_wait, Queue::main);
+    barriers(frame, plan.first_final_barrier, plan.final_barrier_count, Queue::main);
   }
   return commands;
 }
@@ -132,6 +153,14 @@ std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
             !commands[a].is_pass && !commands[b].is_pass && commands[a].batch == commands[b].batch;
         if (a != b && !one_batch && waits(on_piece[later], on_piece[earlier])) followers[a].push_back(b);
       }
+  for (uint32_t w = 0; w < commands.size(); ++w) {
+    if (commands[w].wait_until == no_wait) continue;
+    for (uint32_t c = 0; c < commands.size(); ++c) {
+      const bool own = commands[c].queue == commands[w].queue;
+      if (own && c > w) followers[w].push_back(c);
+      if (!own && c <= commands[w].wait_until) followers[c].push_back(w);
+    }
+  }
   std::vector<uint32_t> waits_for(commands.size(), 0);
   for (const auto& all : followers)
     for (const uint32_t b : all)

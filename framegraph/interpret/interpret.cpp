@@ -7,12 +7,19 @@
 namespace dermis {
 namespace {
 
+enum class Owner : uint8_t { main, async, in_transfer };
+
+Owner owner_of(Queue queue) {
+  return queue == Queue::main ? Owner::main : Owner::async;
+}
+
 struct Interpreter {
   const Plan& plan;
   const InterpretOptions& options;
   Memory memory;
   std::vector<Pixels> pieces;
-  uint64_t spoiled = 0; // how often contents were lost: each time to other pixels
+  std::vector<Owner> owners = {}; // by piece
+  uint64_t spoiled = 0;           // how often contents were lost: each time to other pixels
   Interpretation out;
 
   Pixels poison() { return arbitrary_pixels(~options.poison, spoiled++); }
@@ -25,6 +32,7 @@ struct Interpreter {
       for (uint32_t i = 0; i < resource.instance_count * resource.mips * resource.layers; ++i)
         pieces.push_back(history ? Pixels{} : poison());
     }
+    owners.assign(pieces.size(), Owner::main);
     uint32_t slots = 0;
     for (const PlanResource& resource : plan.resources)
       slots = std::max(slots, static_cast<uint32_t>(resource.slot + 1));
@@ -37,11 +45,25 @@ struct Interpreter {
     pieces[piece] = pixels;
   }
 
-  void run(const PlanBarrier& barrier, uint32_t frame) {
+  // Contents that one queue left are lost to the other one, unless they were released and acquired.
+  void touch(uint32_t piece, Queue queue) {
+    if (owners[piece] != owner_of(queue)) pieces[piece] = poison();
+    owners[piece] = owner_of(queue);
+  }
+
+  void change_queue(const PlanBarrier& barrier, uint32_t piece, Queue queue) {
+    if (barrier.transfer == PlanBarrier::Transfer::none) return;
+    const bool acquire = barrier.transfer == PlanBarrier::Transfer::acquire;
+    if (owners[piece] != (acquire ? Owner::in_transfer : owner_of(queue))) pieces[piece] = poison();
+    owners[piece] = acquire ? owner_of(queue) : Owner::in_transfer;
+  }
+
+  void run(const PlanBarrier& barrier, uint32_t frame, Queue queue) {
     const PlanResource& resource = plan.resources[barrier.resource];
     const auto slot = static_cast<uint32_t>(resource.slot);
     for (const uint32_t piece :
          memory.pieces(plan, barrier.resource, barrier.frames_back, frame, barrier.range)) {
+      change_queue(barrier, piece, queue);
       if (barrier.from_host)
         pieces[piece] = host_pixels(options.contents, frame, slot);
       else if (resource.type == ResourceType::image && barrier.old_layout == Layout::undefined)
@@ -92,15 +114,19 @@ struct Interpreter {
     std::vector<StandInInput> inputs;
     for (uint32_t a = 0; a < pass.access_count; ++a)
       if ((accesses[a].access & ~all_write_access) != 0 && happens(accesses, a, frame))
-        for (const uint32_t piece : pieces_of(accesses[a], frame))
+        for (const uint32_t piece : pieces_of(accesses[a], frame)) {
+          touch(piece, pass.queue);
           inputs.push_back({accesses[a].port, pieces[piece]});
+        }
     std::stable_sort(inputs.begin(), inputs.end(),
                      [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
     for (uint32_t a = 0; a < pass.access_count; ++a) {
       if ((accesses[a].access & all_write_access) == 0) continue;
       uint32_t part = 0;
-      for (const uint32_t piece : pieces_of(accesses[a], frame))
+      for (const uint32_t piece : pieces_of(accesses[a], frame)) {
+        touch(piece, pass.queue);
         write(piece, stand_in(pass.declared.value, accesses[a].port, part++, inputs));
+      }
     }
   }
 
@@ -116,7 +142,7 @@ Pixels host_pixels(uint64_t contents, uint32_t frame, uint32_t slot) {
 }
 
 Interpretation interpret(const Plan& plan, const InterpretOptions& options) {
-  Interpreter machine{plan, options, {}, {}, 0, {}};
+  Interpreter machine{plan, options, {}, {}, {}, 0, {}};
   machine.prepare();
   for (uint32_t first = 0; first < options.frames;) { // from cut to cut
     machine.restart_histories(first);
@@ -126,10 +152,11 @@ Interpretation interpret(const Plan& plan, const InterpretOptions& options) {
     const std::vector<Command> commands = record(plan, first, end);
     for (const uint32_t c : legal_order(plan, machine.memory, commands, options.order)) {
       const Command& command = commands[c];
+      if (command.wait_until != no_wait) continue;
       if (command.is_pass)
         machine.run(plan.passes[command.index], command.frame);
       else
-        machine.run(plan.barriers[command.index], command.frame);
+        machine.run(plan.barriers[command.index], command.frame, command.queue);
     }
     first = end;
   }

@@ -134,7 +134,8 @@ struct Ordering {
 struct PassDeclaration {
   std::string name;
   KindId kind;
-  ExpressionId when; // invalid: always
+  ExpressionId when;  // invalid: always
+  bool async = false; // may run beside the others, where there are two queues
   std::vector<PortBinding> reads, writes;
   std::vector<SettingBinding> settings;
   std::vector<PassThrough> otherwise;

@@ -138,6 +138,7 @@ constexpr std::string_view pass_text =
         "pass": { "$ref": "#/definitions/name" },
         "kind": { "enum": [<kinds>] },
         "when": { "type": "string", "maxLength": <expression bytes>, "description": "the pass is off where this is false: quality in ['good', 'best'] and samples > 4" },
+        "queue": { "enum": ["main", "async"], "description": "async: may run beside the passes of the main queue, where there are two" },
         "read": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer, or resource@-N of the frame N before, or an object that requires it to be valid" },
         "write": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer" },
         "set": { "type": "object", "description": "setting of the kind: value, or \"$name\" of the graph's settings" },

@@ -104,6 +104,7 @@ struct GraphWriter {
     text(pass.name);
     index(pass.kind); // plans hold the number of the kind
     index(pass.when);
+    number(pass.async);
     bindings(pass.reads);
     bindings(pass.writes);
     all(pass.settings, [&](const SettingBinding& binding) {

@@ -90,6 +90,10 @@ template <class A> void fields(A& a, Of<A, PlanPass>& pass) {
   a.number("first barrier", pass.first_barrier);
   a.number("barriers", pass.barrier_count);
   a.number("first setting", pass.first_setting);
+  a.word("queue", pass.queue, Queue::async);
+  a.number("wait", pass.wait);
+  a.number("releases", pass.release_count);
+  a.number("signal", pass.signal);
 }
 
 template <class A> void fields(A& a, Of<A, SubresourceRange>& range) {
@@ -124,6 +128,7 @@ template <class A> void fields(A& a, Of<A, PlanBarrier>& barrier) {
   a.word("why", barrier.why, PlanBarrier::Why::host_after);
   a.flag("from host", barrier.from_host);
   a.flag("to host", barrier.to_host);
+  a.word("transfer", barrier.transfer, PlanBarrier::Transfer::acquire);
 }
 
 template <class A> void fields(A& a, Of<A, PlanSetting>& setting) {
@@ -162,6 +167,7 @@ template <class A> void fields(A& a, Of<A, Plan>& plan) {
   a.list("history layouts", plan.history_layouts, many);
   a.number("first final barrier", plan.first_final_barrier);
   a.number("final barriers", plan.final_barrier_count);
+  a.number("final wait", plan.final_wait);
   a.number("transient bytes", plan.transient_bytes);
   a.number("history bytes", plan.history_bytes);
 }
@@ -197,6 +203,7 @@ template <class A> void fields(A& a, Of<A, PlanKey>& key) {
   a.flag("alias", key.alias);
   a.flag("cull", key.cull);
   a.flag("poison", key.poison);
+  a.flag("single queue", key.single_queue);
   fields(a, key.keep_alive);
 }
 

@@ -71,7 +71,7 @@ std::string first_misfit(const SavedPlan& saved) {
       return "accesses, barriers and settings do not stand in the order of their passes";
     if (pass.first_setting > plan.settings.size()) return "a pass refers to settings that do not exist";
     accesses += pass.access_count;
-    barriers += pass.barrier_count;
+    barriers += uint64_t{pass.barrier_count} + pass.release_count;
     settings = pass.first_setting;
   }
   if (plan.first_final_barrier != barriers || barriers + plan.final_barrier_count != plan.barriers.size() ||

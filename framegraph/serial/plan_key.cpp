@@ -33,6 +33,7 @@ PlanKey plan_key(const CompileInput& input) {
   key.alias = input.alias;
   key.cull = input.cull;
   key.poison = input.poison;
+  key.single_queue = input.single_queue;
   key.keep_alive = input.keep_alive;
   return key;
 }

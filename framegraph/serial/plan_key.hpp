@@ -24,7 +24,7 @@ struct PlanKey {
   PassOrder order = PassOrder::memory;
   uint64_t order_seed = 0; // 0 unless the order is drawn
   PackingLevel packing = PackingLevel::tight;
-  bool alias = true, cull = true, poison = false;
+  bool alias = true, cull = true, poison = false, single_queue = true;
   ResourceId keep_alive;
 };
 

@@ -122,6 +122,9 @@ struct Checker {
       expect(accesses, "a pass refers to accesses that do not exist", p);
       expect(range_in(pass.first_barrier, pass.barrier_count, plan.barriers.size()),
              "a pass refers to barriers that do not exist", p);
+      expect(range_in(uint64_t{pass.first_barrier} + pass.barrier_count, pass.release_count,
+                      plan.barriers.size()),
+             "a pass refers to releases that do not exist", p);
       for (uint32_t a = 0; accesses && a < pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[pass.first_access + a];
         const bool exists = object_exists(access.resource, access.frames_back);
@@ -143,6 +146,10 @@ struct Checker {
       expect(exists, "a barrier names a resource or an earlier frame that does not exist", b);
       expect(!exists || has(barrier.resource, barrier.range),
              "a barrier names mips or layers that do not exist", b);
+      const bool own = exists && plan.resources[barrier.resource].first_instance != no_instance &&
+                       deepest[barrier.resource] == 0;
+      expect(own || barrier.transfer == PlanBarrier::Transfer::none,
+             "only what one frame owns goes from queue to queue", b);
     }
   }
 

@@ -13,6 +13,10 @@
 //          a read that depends on the validity of a history counts as if it happened, but nobody may rely on
 //          it a pass reads and writes the same thing as two frames of a history only texel by texel
 //  layout  equals what the access was planned with; transitions are writes; `undefined` discards the contents
+//  queues  a barrier orders what is on its own queue; a wait for a point orders and shows to its queue all
+//  that the
+//          other one had done, or had been ordered behind, when it reached the point. What one queue left the
+//          other one touches once released and acquired, or discards
 //  host    a slot is taken over before its first access and handed back, ordered and available, at the end
 
 #include "framegraph/verify/verify.hpp"
@@ -23,6 +27,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 namespace dermis {
@@ -32,7 +37,19 @@ constexpr size_t most_objections = 32; // the first ones tell; the rest follow f
 
 constexpr uint64_t most_things = 1u << 18; // a hostile plan could divide images without end
 
+constexpr size_t queues = 2;
+constexpr uint64_t everything = ~uint64_t{0}; // stages or accesses: behind a semaphore
+constexpr int64_t never = INT64_MAX;
+
+size_t index_of(Queue queue) {
+  return static_cast<size_t>(queue);
+}
+Queue other_than(Queue queue) {
+  return queue == Queue::main ? Queue::async : Queue::main;
+}
+
 struct Visible {
+  Queue queue;
   Stage stages;
   Access access;
 };
@@ -42,7 +59,10 @@ struct Event {
   Access writes = 0; // 0: a read
   bool is_write = false;
   bool certain = true; // false: a read that some frames leave out
-  Stage ordered = 0;   // later work at these stages happens after it
+  Queue queue = Queue::main;
+  int64_t at = 0;                                  // which pass it was, counted through all frames
+  std::array<Stage, queues> ordered{};             // by queue: later work at these stages happens after it
+  std::array<int64_t, queues> since{never, never}; // by queue: the pass from which on that is so
   bool available = false;
   std::vector<Visible> visible;
 };
@@ -51,10 +71,13 @@ struct Thing {
   uint32_t owner = 0;               // into Machine::instances
   uint32_t placement = no_instance; // or the host's
   bool image = false;
-  bool with_host = false;   // not ours to touch now
-  bool handed_back = false; // to the host, in this frame
-  bool defined = false;     // contents mean something
-  int64_t of_frame = 0;     // what was written last: below 0 as the executor made it
+  bool with_host = false;    // not ours to touch now
+  bool handed_back = false;  // to the host, in this frame
+  Queue queue = Queue::main; // whose it is
+  bool in_transfer = false;  // released by that queue
+  Layout released_old = Layout::undefined, released_new = Layout::undefined;
+  bool defined = false; // contents mean something
+  int64_t of_frame = 0; // what was written last: below 0 as the executor made it
   Layout layout = Layout::undefined;
   std::vector<Event> events;
 };
@@ -74,6 +97,10 @@ struct Machine {
   std::vector<std::vector<uint32_t>> overlapping = {}; // by instance: others with a byte in common
   std::vector<std::string> objections = {};
   uint32_t frame = 0;
+  Queue queue = Queue::main;                             // that runs now
+  int64_t now = 0;                                       // which pass, counted through all frames
+  std::array<std::vector<int64_t>, queues> reached = {}; // by queue and point: the pass behind which it was
+  std::array<size_t, queues> points_before = {};         // those of earlier frames
 
   void prepare() {
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
@@ -173,27 +200,103 @@ struct Machine {
         });
   }
 
-  static bool starts_from(const Event& event, Stage source) {
-    const bool direct = event.stages != 0 && (event.stages & ~source) == 0;
-    return direct || (event.ordered & source) != 0;
+  bool starts_from(const Event& event, Stage source) const {
+    const bool direct = event.queue == queue && event.stages != 0 && (event.stages & ~source) == 0;
+    return direct || (event.ordered[index_of(queue)] & source) != 0;
   }
 
-  static void extend(Event& event, const PlanBarrier& barrier) {
+  void order(Event& event, Stage stages) const {
+    event.ordered[index_of(queue)] |= stages;
+    if (stages != 0) event.since[index_of(queue)] = std::min(event.since[index_of(queue)], now);
+  }
+
+  void extend(Event& event, const PlanBarrier& barrier) const {
     if (!starts_from(event, barrier.source_stages)) return;
-    const bool direct = event.stages != 0 && (event.stages & ~barrier.source_stages) == 0;
-    event.ordered |= barrier.destination_stages;
+    const bool direct =
+        event.queue == queue && event.stages != 0 && (event.stages & ~barrier.source_stages) == 0;
+    order(event, barrier.destination_stages);
     if (!event.is_write) return;
     if (direct && (event.writes & ~barrier.source_access) == 0) event.available = true;
-    if (event.available) event.visible.push_back({barrier.destination_stages, barrier.destination_access});
+    if (event.available)
+      event.visible.push_back({queue, barrier.destination_stages, barrier.destination_access});
+  }
+
+  // Whatever the other queue had done by then, or had been ordered behind.
+  void wait_for_pass(int64_t pass) {
+    const size_t other = index_of(other_than(queue));
+    for (Thing& thing : things)
+      for (Event& event : thing.events) {
+        const bool done = event.queue != queue && event.at <= pass;
+        if (!done && (event.ordered[other] == 0 || event.since[other] > pass)) continue;
+        order(event, everything);
+        event.available = true;
+        if (event.is_write) event.visible.push_back({queue, everything, everything});
+      }
+  }
+
+  void complain(std::string what) {
+    if (objections.size() < most_objections) objections.push_back(std::move(what));
+  }
+
+  void wait(uint32_t point, const std::string& where) {
+    if (point == no_point) return;
+    const size_t other = index_of(other_than(queue));
+    const size_t wanted = points_before[other] + point;
+    if (wanted > reached[other].size())
+      complain(
+          fmt::format("frame {}, {}: waits for point {} of the other queue, which is not reached before it",
+                      frame, where, point));
+    else if (wanted > 0) // else the frames before the first, which nobody waits for
+      wait_for_pass(reached[other][wanted - 1]);
+  }
+
+  void reach(uint32_t point, const std::string& where) {
+    if (point == 0) return;
+    std::vector<int64_t>& own = reached[index_of(queue)];
+    if (point != own.size() - points_before[index_of(queue)] + 1)
+      complain(fmt::format("frame {}, {}: reaches point {} out of turn", frame, where, point));
+    own.push_back(now);
   }
 
   // A transition, as a write that its own barrier has made available.
-  static Event left_by(const PlanBarrier& barrier) {
+  Event left_by(const PlanBarrier& barrier) const {
     Event event;
     event.is_write = event.available = true;
-    event.ordered = barrier.destination_stages;
-    event.visible = {{barrier.destination_stages, barrier.destination_access}};
+    event.queue = queue;
+    event.at = now;
+    order(event, barrier.destination_stages);
+    event.visible = {{queue, barrier.destination_stages, barrier.destination_access}};
     return event;
+  }
+
+  // Whether the thing may go from queue to queue as the barrier says; it does so.
+  void change_queue(Thing& thing, const PlanBarrier& barrier, const auto& wrong) {
+    const bool discarded = thing.image && barrier.old_layout == Layout::undefined;
+    switch (barrier.transfer) {
+    case PlanBarrier::Transfer::none:
+      if (discarded || (!thing.image && !thing.in_transfer)) {
+        if (thing.image) thing.queue = queue;
+        thing.in_transfer = false;
+      } else if (thing.queue != queue || thing.in_transfer) {
+        wrong("has a barrier on a queue that it does not belong to");
+      }
+      break;
+    case PlanBarrier::Transfer::release:
+      if (thing.queue != queue || thing.in_transfer)
+        wrong("is released by a queue that it does not belong to");
+      thing.in_transfer = true;
+      thing.released_old = barrier.old_layout;
+      thing.released_new = barrier.new_layout;
+      break;
+    case PlanBarrier::Transfer::acquire:
+      if (thing.queue == queue || !thing.in_transfer)
+        wrong("is acquired, but the other queue has not released it");
+      if (thing.released_old != barrier.old_layout || thing.released_new != barrier.new_layout)
+        wrong("is acquired in other layouts than it was released in");
+      thing.queue = queue;
+      thing.in_transfer = false;
+      break;
+    }
   }
 
   void run(const PlanBarrier& barrier, const std::string& where) {
@@ -209,6 +312,8 @@ struct Machine {
       if (thing.handed_back) wrong("is handed back to the host twice");
       thing.handed_back = true;
     }
+    if ((barrier.from_host || barrier.to_host) && queue != Queue::main)
+      wrong("is the host's on the async queue");
     if (barrier.from_host) {
       if (!thing.with_host) wrong("is taken over from the host twice");
       thing.with_host = barrier.to_host;
@@ -217,7 +322,10 @@ struct Machine {
       return;
     }
     if (thing.with_host) wrong("has a barrier while it is the host's");
-    const bool transition = barrier.to_host || (thing.image && barrier.old_layout != barrier.new_layout);
+    change_queue(thing, barrier, wrong);
+    const bool release = barrier.transfer == PlanBarrier::Transfer::release;
+    const bool transition = barrier.to_host || barrier.transfer != PlanBarrier::Transfer::none ||
+                            (thing.image && barrier.old_layout != barrier.new_layout);
     if (thing.image && barrier.old_layout != Layout::undefined && barrier.old_layout != thing.layout)
       wrong("has a barrier from a layout it is not in");
     if (thing.image && barrier.old_layout == Layout::undefined) {
@@ -235,19 +343,23 @@ struct Machine {
       if (transition && !own) other.defined = false;
     });
     if (!transition) return;
-    thing.layout = barrier.new_layout;
+    if (!release) thing.layout = barrier.new_layout;
     thing.events = {left_by(barrier)};
     thing.with_host = barrier.to_host;
   }
 
-  void run(const PlanBarrier* barriers, uint32_t count, const std::string& where) {
-    for (uint32_t b = 0; b < count; ++b)
+  void run(const PlanBarrier* barriers, uint32_t count, bool releases, const std::string& where) {
+    for (uint32_t b = 0; b < count; ++b) {
+      if ((barriers[b].transfer == PlanBarrier::Transfer::release) != releases)
+        complain(fmt::format("frame {}, {}: a release stands behind a pass, everything else before it", frame,
+                             where));
       run(barriers[b], where);
+    }
   }
 
-  static bool visible(const Event& write, Stage stages, Access accesses) {
+  bool visible(const Event& write, Stage stages, Access accesses) const {
     return std::any_of(write.visible.begin(), write.visible.end(), [&](const Visible& to) {
-      return (stages & ~to.stages) == 0 && (accesses & ~to.access) == 0;
+      return to.queue == queue && (stages & ~to.stages) == 0 && (accesses & ~to.access) == 0;
     });
   }
 
@@ -262,6 +374,8 @@ struct Machine {
     const Access as_read = access.access & ~all_write_access, as_write = access.access & all_write_access;
     const bool reads = as_read != 0, writes = as_write != 0;
     if (thing.with_host) return wrong("is touched while it is the host's");
+    if (thing.in_transfer || (thing.queue != queue && (thing.image || reads)))
+      wrong("is touched by a queue that it does not belong to");
     if (thing.image && thing.layout != access.layout)
       wrong("is not in the layout the access was planned with");
     if (reads && !thing.defined) wrong("is read, but its contents are not defined");
@@ -272,7 +386,7 @@ struct Machine {
       bool followed = false; // by an access of every frame
       for (size_t e = other.events.size(); e-- > 0;) {
         const Event& event = other.events[e];
-        const bool ordered = (access.stages & ~event.ordered) == 0;
+        const bool ordered = (access.stages & ~event.ordered[index_of(queue)]) == 0;
         if ((event.is_write || writes) && !ordered) wrong("is touched before an earlier access is done");
         if (writes && event.is_write && !event.available)
           wrong("is written before an earlier write is available");
@@ -311,18 +425,24 @@ struct Machine {
       if (first_of_pass) thing.events.clear();
       thing.defined = true;
       thing.of_frame = int64_t{frame} - access.frames_back;
+      thing.queue = queue;
     }
     Event event;
     event.stages = access.stages;
     event.writes = writes;
     event.is_write = writes != 0;
     event.certain = access.when == ReadWhen::always;
+    event.queue = queue;
+    event.at = now;
     thing.events.push_back(event);
   }
 
   void run(const PlanPass& pass, const std::string& where) {
     const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
-    run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, where);
+    queue = pass.queue;
+    ++now;
+    wait(pass.wait, where);
+    run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, false, where);
     for (uint32_t a = 0; a < pass.access_count; ++a) {
       check(accesses[a], where);
       check_own_texels(accesses, pass.access_count, accesses[a], where);
@@ -339,17 +459,24 @@ struct Machine {
         leave(accesses[a], instances[instance].first + part, first);
       });
     }
+    run(plan.barriers.data() + pass.first_barrier + pass.barrier_count, pass.release_count, true, where);
+    reach(pass.signal, where);
   }
 
   void run_frame() {
     begin_frame();
     for (uint32_t p = 0; p < plan.passes.size(); ++p)
       run(plan.passes[p], fmt::format("pass {}", p));
-    run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, "final batch");
+    queue = Queue::main;
+    ++now;
+    wait(plan.final_wait, "final batch");
+    run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, false, "final batch");
     for (uint32_t r = 0; r < plan.resources.size(); ++r)
       if (plan.resources[r].first_instance == no_instance &&
           !things[instances[first_instance[r]].first].handed_back)
         object("is not handed back to the host", r, 0, "end");
+    for (size_t q = 0; q < queues; ++q)
+      points_before[q] = reached[q].size();
     ++frame;
   }
 };

@@ -73,6 +73,10 @@ void add_parts(CLI::App& verb, GraphParts& parts) {
            "Folder that included files are read from, beside the graph's own; may be repeated");
 }
 
+void add_two_queues(CLI::App& verb, bool& two_queues) {
+  verb.add_flag("--two-queues", two_queues, "Passes declared async get a queue of their own where they can");
+}
+
 void add_common(CLI::App& verb, Session& session, bool json_is_file = false) {
   static const std::map<std::string, ColorMode> modes{
       {"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}};
@@ -135,6 +139,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--unbound", options.unbound, "Optional slots that the host leaves out")
             ->type_name("NAME")
             ->delimiter(',');
+        add_two_queues(verb, options.two_queues);
         add_parts(verb, options.parts);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
@@ -216,6 +221,7 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
         add_parts(verb, options.parts);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
+        add_two_queues(verb, options.two_queues);
         add_unbound(verb, options.unbound);
         verb.add_option("--out,-o", options.out, "File to write")->required()->type_name("FILE");
       });

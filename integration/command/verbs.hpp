@@ -43,6 +43,7 @@ struct ExplainOptions {
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports that the host leaves out
+  bool two_queues = false; // passes declared async get a queue of their own where they can
   std::string out = "-";
 };
 ExitCode explain(const Session& session, const ExplainOptions& options);
@@ -76,6 +77,7 @@ struct PlanSaveOptions {
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound;
+  bool two_queues = false; // passes declared async get a queue of their own where they can
   std::string out; // file
 };
 ExitCode plan_save(const Session& session, const PlanSaveOptions& options);

@@ -49,6 +49,27 @@ TEST_F(PlanFiles, TheSameGraphIsSavedAsTheSameBytesAndVerifiesAlone) {
   EXPECT_EQ(run({"plan", "save", burley, "--out", path("no/such/folder/a.plan")}).exit_code, 3);
 }
 
+TEST_F(PlanFiles, PassesDeclaredAsyncGetAQueueWhereItIsAskedFor) {
+  const std::string graph = write("two.json", R"({ "dermis": 1, "name": "two",
+  "imports": { "light": { "format": "rgba16f", "size": "view" } },
+  "resources": { "a": { "format": "rgba16f", "size": "view" }, "b": { "format": "rgba16f", "size": "view/2" },
+    "out": { "format": "rgba16f", "size": "view/4" } },
+  "passes": [
+    { "pass": "first", "kind": "subsurface.pyramid_down", "read": { "fine": "light" }, "write": { "coarse": "a" } },
+    { "pass": "aside", "kind": "subsurface.pyramid_down", "queue": "async", "read": { "fine": "a" }, "write": { "coarse": "b" } },
+    { "pass": "last", "kind": "subsurface.pyramid_down", "read": { "fine": "b" }, "write": { "coarse": "out" } } ],
+  "exports": ["out"] })");
+  const Outcome one = run({"explain", graph}), two = run({"explain", graph, "--two-queues"});
+  EXPECT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_THAT(one.out, Not(HasSubstr("async queue")));
+  EXPECT_THAT(two.out, AllOf(HasSubstr("aside (subsurface.pyramid_down) on the async queue"),
+                             HasSubstr("the main queue reaches point 1"),
+                             HasSubstr("waits for point 1 of the async queue")));
+  ASSERT_EQ(run({"plan", "save", graph, "--two-queues", "--out", path("two.plan")}).exit_code, 0);
+  EXPECT_THAT(run({"plan", "verify", path("two.plan")}).out, HasSubstr("no hazard"));
+  EXPECT_THAT(run({"plan", "diff", path("two.plan"), graph}).out, HasSubstr("single queue"));
+}
+
 TEST_F(PlanFiles, ADamagedPlanIsRefusedWithTheByte) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   const std::string whole = contents(path("a.plan"));

@@ -58,6 +58,7 @@ bool digest_drawn(uint64_t seed) {
   CompileInput input = builder.input();
   input.packing = static_cast<PackingLevel>(seed % 3);
   input.order = static_cast<PassOrder>(seed / 3 % 3);
+  input.single_queue = seed % 2 == 0;
   input.order_seed = seed;
   return print_digest(fmt::format("drawn {}", seed), input);
 }

@@ -10,18 +10,21 @@ namespace {
 
 // What one command does to one thing. A thing is one mip of one layer of an instance of a resource.
 struct Operation {
-  enum class What { access, barrier, frame_begins } what = What::access;
+  enum class What { access, barrier, frame_begins, wait } what = What::access;
   uint32_t step = 0; // passes and barriers, counted through all frames; accesses of a pass share one
   uint32_t frame = 0;
   uint32_t resource = 0, instance = 0;
   const PlanAccess* access = nullptr;
   const PlanBarrier* barrier = nullptr;
   uint32_t mip = 0, layer = 0;
+  Queue queue = Queue::main;
+  uint32_t until = 0; // waits: the last step of the other queue that is done by then
 };
 
 struct Oracle {
   const Plan& plan;
   std::vector<Operation> all;
+  std::string misplaced = {}; // what is wrong with points and releases
 
   // --- what the operations are
 
@@ -39,31 +42,70 @@ struct Oracle {
       }
   }
 
+  static size_t number(Queue queue) { return queue == Queue::main ? 0 : 1; }
+
   void unroll(uint32_t frames) {
     uint32_t step = 0;
+    std::vector<uint32_t> reached[2]; // steps, by queue and point
     for (uint32_t f = 0; f < frames; ++f) {
-      const auto barriers = [&](uint32_t first, uint32_t count) {
+      const size_t before[2] = {reached[0].size(), reached[1].size()};
+      const auto barriers = [&](uint32_t first, uint32_t count, Queue queue, bool releases) {
         for (uint32_t b = first; b < first + count; ++b) {
           const PlanBarrier& one = plan.barriers[b];
-          add({Operation::What::barrier, step++, f, one.resource, instance(one.resource, one.frames_back, f),
-               nullptr, &one},
-              one.range);
+          if ((one.transfer == PlanBarrier::Transfer::release) != releases)
+            misplaced = "a release stands wrong";
+          Operation operation{Operation::What::barrier,
+                              step++,
+                              f,
+                              one.resource,
+                              instance(one.resource, one.frames_back, f),
+                              nullptr,
+                              &one};
+          operation.queue = queue;
+          add(operation, one.range);
         }
+      };
+      const auto wait = [&](uint32_t point, Queue queue) {
+        if (point == no_point) return;
+        const size_t other = 1 - number(queue);
+        const size_t wanted = before[other] + point;
+        if (wanted > reached[other].size()) misplaced = "a point is waited for that is not reached";
+        if (wanted == 0 || wanted > reached[other].size()) return;
+        Operation operation{Operation::What::wait, step++, f, no_instance, 0, nullptr, nullptr};
+        operation.queue = queue;
+        operation.until = reached[other][wanted - 1];
+        all.push_back(operation);
+      };
+      const auto reach = [&](uint32_t point, Queue queue) {
+        if (point == 0) return;
+        if (before[number(queue)] + point != reached[number(queue)].size() + 1)
+          misplaced = "a point is reached out of turn";
+        reached[number(queue)].push_back(step++);
       };
       for (uint32_t r = 0; r < plan.resources.size(); ++r)
         add({Operation::What::frame_begins, step++, f, r, instance(r, 0, f), nullptr, nullptr},
             plan.resources[r].whole());
       for (const PlanPass& pass : plan.passes) {
-        barriers(pass.first_barrier, pass.barrier_count);
+        wait(pass.wait, pass.queue);
+        barriers(pass.first_barrier, pass.barrier_count, pass.queue, false);
         for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
           const PlanAccess& one = plan.accesses[a];
-          add({Operation::What::access, step, f, one.resource, instance(one.resource, one.frames_back, f),
-               &one, nullptr},
-              one.range);
+          Operation operation{Operation::What::access,
+                              step,
+                              f,
+                              one.resource,
+                              instance(one.resource, one.frames_back, f),
+                              &one,
+                              nullptr};
+          operation.queue = pass.queue;
+          add(operation, one.range);
         }
         ++step;
+        barriers(pass.first_barrier + pass.barrier_count, pass.release_count, pass.queue, true);
+        reach(pass.signal, pass.queue);
       }
-      barriers(plan.first_final_barrier, plan.final_barrier_count);
+      wait(plan.final_wait, Queue::main);
+      barriers(plan.first_final_barrier, plan.final_barrier_count, Queue::main, false);
     }
   }
 
@@ -86,6 +128,7 @@ struct Oracle {
   // Barriers that are operations on the contents themselves: changes of layout and of owner.
   bool transition(const Operation& o) const {
     return is_barrier(o) && (o.barrier->from_host || o.barrier->to_host ||
+                             o.barrier->transfer != PlanBarrier::Transfer::none ||
                              (image(o) && o.barrier->old_layout != o.barrier->new_layout));
   }
   static bool accesses(const Operation& o) { return o.what == Operation::What::access; }
@@ -97,34 +140,51 @@ struct Oracle {
   // --- what the barriers between two operations establish
 
   struct Path {
-    Stage ordered = 0; // stages that wait for the first operation
+    Stage ordered[2] = {0, 0};                      // by queue: stages that wait for the first operation
+    uint32_t since[2] = {no_instance, no_instance}; // by queue: the step from which on some do
     bool available = false;
     bool visible = false; // to what the second one reads
     bool visible_to_write = false;
   };
 
-  static void show(Path& p, const Operation& second, Stage stages, Access access) {
-    if (!p.available || !accesses(second) || (second.access->stages & ~stages) != 0) return;
+  static void show(Path& p, const Operation& second, Queue queue, Stage stages, Access access) {
+    if (queue != second.queue || !p.available || !accesses(second) || (second.access->stages & ~stages) != 0)
+      return;
     p.visible |= (read(second) & ~access) == 0;
     p.visible_to_write |= (written(second) & ~access) == 0;
+  }
+
+  static void reach(Path& p, const Operation& by, Stage stages) {
+    p.ordered[number(by.queue)] |= stages;
+    if (stages != 0) p.since[number(by.queue)] = std::min(p.since[number(by.queue)], by.step);
   }
 
   Path path(size_t first, size_t second) const {
     const Operation& a = all[first];
     Path p;
     if (is_barrier(a)) {
-      p.ordered = a.barrier->destination_stages;
+      reach(p, a, a.barrier->destination_stages);
       p.available = true;
-      show(p, all[second], p.ordered, a.barrier->destination_access);
+      show(p, all[second], a.queue, a.barrier->destination_stages, a.barrier->destination_access);
     }
     for (size_t k = first + 1; k < second; ++k) {
-      if (!is_barrier(all[k]) || all[k].barrier->from_host || !overlap(a, all[k])) continue;
-      const PlanBarrier& b = *all[k].barrier;
-      const bool directly = accesses(a) && (a.access->stages & ~b.source_stages) == 0;
-      if (!directly && (p.ordered & b.source_stages) == 0) continue;
-      p.ordered |= b.destination_stages;
+      const Operation& o = all[k];
+      if (o.what == Operation::What::wait) {
+        const size_t other = 1 - number(o.queue);
+        const bool done = number(a.queue) == other && a.step <= o.until;
+        if (!done && p.since[other] > o.until) continue;
+        reach(p, o, ~uint64_t{0});
+        p.available = true;
+        show(p, all[second], o.queue, ~uint64_t{0}, ~uint64_t{0});
+        continue;
+      }
+      if (!is_barrier(o) || o.barrier->from_host || !overlap(a, o)) continue;
+      const PlanBarrier& b = *o.barrier;
+      const bool directly = accesses(a) && a.queue == o.queue && (a.access->stages & ~b.source_stages) == 0;
+      if (!directly && (p.ordered[number(o.queue)] & b.source_stages) == 0) continue;
+      reach(p, o, b.destination_stages);
       p.available |= directly && (written(a) & ~b.source_access) == 0;
-      show(p, all[second], b.destination_stages, b.destination_access);
+      show(p, all[second], o.queue, b.destination_stages, b.destination_access);
     }
     return p;
   }
@@ -155,14 +215,13 @@ struct Oracle {
     if (is_barrier(b) && b.barrier->from_host) return ""; // the host has seen to that
     if (replaced(first, second)) return "";
     const Path p = path(first, second);
-    const bool ordered = accesses(b)
-                             ? (b.access->stages & ~p.ordered) == 0
-                             : (p.ordered & b.barrier->source_stages) != 0 ||
-                                   (accesses(a) && (a.access->stages & ~b.barrier->source_stages) == 0);
+    const Stage before = p.ordered[number(b.queue)];
+    const bool directly = is_barrier(b) && accesses(a) && a.queue == b.queue &&
+                          (a.access->stages & ~b.barrier->source_stages) == 0;
+    const bool ordered = accesses(b) ? (b.access->stages & ~before) == 0
+                                     : directly || (before & b.barrier->source_stages) != 0;
     if (!ordered) return "is not ordered behind an earlier operation";
-    const bool made_available =
-        p.available || (is_barrier(b) && accesses(a) && (a.access->stages & ~b.barrier->source_stages) == 0 &&
-                        (written(a) & ~b.barrier->source_access) == 0);
+    const bool made_available = p.available || (directly && (written(a) & ~b.barrier->source_access) == 0);
     if (writes(a) && writes(b) && !made_available) return "comes before an earlier write is available";
     if (writes(a) && read(b) != 0 && same_thing(a, b) && !p.visible) return "does not see the last write";
     if (writes(a) && written(b) != 0 && !p.visible_to_write && !read_since(first, second))
@@ -199,7 +258,7 @@ struct Oracle {
   bool defined(size_t second) const {
     for (size_t k = second; k-- > 0;) {
       const Operation& o = all[k];
-      if (o.step == all[second].step || !overlap(o, all[second])) continue;
+      if (o.what == Operation::What::wait || o.step == all[second].step || !overlap(o, all[second])) continue;
       const bool own = same_thing(o, all[second]);
       if (o.what == Operation::What::frame_begins) {
         if (own && !keeps_oldest(o.resource))
@@ -219,7 +278,9 @@ struct Oracle {
   // The layout of a thing just before operation `at`.
   Layout layout(const Operation& thing, size_t at) const {
     for (size_t k = at; k-- > 0;)
-      if (transition(all[k]) && same_thing(all[k], thing)) return all[k].barrier->new_layout;
+      if (transition(all[k]) && all[k].barrier->transfer != PlanBarrier::Transfer::release &&
+          same_thing(all[k], thing))
+        return all[k].barrier->new_layout;
     for (const PlanHistory& history : plan.histories)
       for (uint32_t back = 1; history.resource == thing.resource && back <= history.frames; ++back)
         if (instance(thing.resource, back, 0) == thing.instance)
@@ -235,8 +296,56 @@ struct Oracle {
     return true;
   }
 
+  struct Owner {
+    Queue queue = Queue::main;
+    const PlanBarrier* released = nullptr;
+  };
+  // Whose a thing is just before operation `at`, and whether that queue has released it.
+  Owner owner(size_t at) const {
+    for (size_t k = at; k-- > 0;) {
+      const Operation& o = all[k];
+      if (!same_thing(o, all[at])) continue;
+      if (accesses(o) && written(o) != 0) return {o.queue, nullptr};
+      if (!is_barrier(o) || o.barrier->from_host) continue;
+      if (o.barrier->transfer == PlanBarrier::Transfer::release) return {o.queue, o.barrier};
+      const bool discards = image(o) && o.barrier->old_layout == Layout::undefined;
+      if (discards || o.barrier->transfer == PlanBarrier::Transfer::acquire) return {o.queue, nullptr};
+    }
+    return {};
+  }
+
+  std::string on_queue(size_t at) const {
+    const Operation& o = all[at];
+    const Owner own = owner(at);
+    if (accesses(o)) {
+      const bool fresh = !image(o) && read(o) == 0; // what was there before does not count
+      return own.released || (own.queue != o.queue && !fresh) ? "belongs to the other queue" : "";
+    }
+    if (!is_barrier(o)) return "";
+    const PlanBarrier& b = *o.barrier;
+    if ((b.from_host || b.to_host) && o.queue != Queue::main) return "is the host's on the async queue";
+    if (b.from_host) return "";
+    switch (b.transfer) {
+    case PlanBarrier::Transfer::none: {
+      const bool discards = image(o) && b.old_layout == Layout::undefined;
+      const bool free = discards || (!image(o) && !own.released);
+      return !free && (own.released || own.queue != o.queue) ? "belongs to the other queue" : "";
+    }
+    case PlanBarrier::Transfer::release:
+      return own.released || own.queue != o.queue ? "is not this queue's to release" : "";
+    case PlanBarrier::Transfer::acquire:
+      return !own.released || own.queue == o.queue || own.released->old_layout != b.old_layout ||
+                     own.released->new_layout != b.new_layout
+                 ? "is not released like that"
+                 : "";
+    }
+    return "";
+  }
+
   std::string alone(size_t at) const {
     const Operation& o = all[at];
+    if (o.what == Operation::What::wait) return "";
+    if (const std::string wrong = on_queue(at); !wrong.empty()) return wrong;
     const bool owned = host(o.resource) && with_host(at);
     if (accesses(o)) {
       if (owned) return "is the host's";
@@ -298,6 +407,7 @@ std::string first_hazard(const Plan& plan) {
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
   oracle.unroll(frames + 1); // the beginning of the last one tells how the one before ended
+  if (!oracle.misplaced.empty()) return oracle.misplaced;
   for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {
     const Operation& o = oracle.all[b];
     if (o.frame == frames && o.what != Operation::What::frame_begins) break;

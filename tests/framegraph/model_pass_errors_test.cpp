@@ -228,6 +228,22 @@ INSTANTIATE_TEST_SUITE_P(
                {"port 'history' of pass 'blur'", "'material'"}}),
     law_of);
 
+INSTANTIATE_TEST_SUITE_P(Queues, DamagedPass,
+                         ::testing::Values(Damage{"AQueueIsOneOfTwo",
+                                                  "\"pass\": \"mix\", ",
+                                                  "\"pass\": \"mix\", \"queue\": \"asink\", ",
+                                                  Id::invalid_value,
+                                                  "\"asink\"",
+                                                  {"'queue' of pass 'mix'", "'async'"}}),
+                         law_of);
+
+TEST(Queue, OfAPassIsMainUnlessItSaysSo) {
+  const Read result = read(damaged("\"pass\": \"mix\", ", "\"pass\": \"mix\", \"queue\": \"async\", "));
+  ASSERT_TRUE(result.graph) << all_messages(result.diagnostics);
+  EXPECT_FALSE(result.graph->passes[2].async);
+  EXPECT_TRUE(result.graph->passes[3].async);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Parts, DamagedPass,
     ::testing::Values(Damage{"ALayerThatTheImageHas",

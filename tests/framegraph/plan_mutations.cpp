@@ -15,6 +15,8 @@ Plan without_barrier(const Plan& plan, uint32_t index) {
       --pass.first_barrier;
     else if (index < pass.first_barrier + pass.barrier_count)
       --pass.barrier_count;
+    else if (index < pass.first_barrier + pass.barrier_count + pass.release_count)
+      --pass.release_count;
   }
   if (index < mutant.first_final_barrier)
     --mutant.first_final_barrier;
@@ -88,7 +90,8 @@ void for_each_swap(const Plan& plan, const VisitMutant& visit) {
 void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit) {
   for (size_t p = 0; p + 1 < plan.passes.size(); ++p) {
     const PlanPass &first = plan.passes[p], &second = plan.passes[p + 1];
-    if (first.first_barrier + first.barrier_count != second.first_barrier) continue;
+    if (first.first_barrier + first.barrier_count != second.first_barrier || first.queue != second.queue)
+      continue;
     if (first.barrier_count > 0) {
       Plan mutant = plan;
       --mutant.passes[p].barrier_count;
@@ -103,6 +106,30 @@ void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit) {
       ++mutant.passes[p + 1].first_barrier;
       visit(mutant, fmt::format("the first barrier of pass {} one pass earlier", p + 1));
     }
+  }
+}
+
+void for_each_lost_point(const Plan& plan, const VisitMutant& visit) {
+  for (size_t p = 0; p < plan.passes.size(); ++p) {
+    if (plan.passes[p].wait != no_point) {
+      Plan mutant = plan;
+      mutant.passes[p].wait = no_point;
+      visit(mutant, fmt::format("pass {} without its wait", p));
+      if (plan.passes[p].wait > 0) {
+        mutant.passes[p].wait = plan.passes[p].wait - 1;
+        visit(mutant, fmt::format("pass {} waits for an earlier point", p));
+      }
+    }
+    if (plan.passes[p].signal != 0) {
+      Plan mutant = plan;
+      mutant.passes[p].signal = 0;
+      visit(mutant, fmt::format("pass {} without its signal", p));
+    }
+  }
+  if (plan.final_wait != no_point) {
+    Plan mutant = plan;
+    mutant.final_wait = no_point;
+    visit(mutant, "no wait at the end");
   }
 }
 

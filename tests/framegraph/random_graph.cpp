@@ -152,6 +152,8 @@ GraphBuilder random_graph(uint64_t seed) {
     draft.keep(history);
   draft.b.exported("result");
   draft.b.pass("finish", "test.shade", draft.reads(3), {{"out", "result"}});
+  for (PassDeclaration& pass : draft.b.graph.passes) // counts where there are two queues
+    pass.async = draft.random.chance(35);
   return std::move(draft.b);
 }
 

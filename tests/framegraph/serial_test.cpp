@@ -89,16 +89,16 @@ TEST(SavedPlan, CutAnywhereIsRefused) {
 TEST(SavedPlan, OfAnotherVersionIsRefused) {
   std::string bytes = file_of(5);
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "the plan has version 9, this program reads version 3");
+  EXPECT_EQ(refusal(bytes), "the plan has version 9, this program reads version 4");
   EXPECT_EQ(refusal("{}"), "a saved plan begins with DERMPLAN");
 }
 
 TEST(SavedPlan, WithACountBeyondItsEndIsRefusedBeforeMemoryIsTaken) {
   SavedPlan plan;
-  std::string bytes = write_plan(plan); // its last lists are empty: then 4 + 4 + 8 + 8 bytes
-  const size_t layouts = bytes.size() - 28;
+  std::string bytes = write_plan(plan); // its last lists are empty: then 3 * 4 + 2 * 8 bytes
+  const size_t layouts = bytes.size() - 32;
   bytes.replace(layouts, 4, "\xff\xff\xff\xff");
-  EXPECT_THAT(refusal(bytes), HasSubstr("'history layouts' has 4294967295 entries, the file has room for 6"));
+  EXPECT_THAT(refusal(bytes), HasSubstr("'history layouts' has 4294967295 entries, the file has room for 7"));
 }
 
 TEST(SavedPlan, WithAnyByteChangedIsRefusedOrIsAnotherPlanThatCanBeFollowed) {

@@ -78,6 +78,34 @@ void expect_closed(const SchemaFile& schema, const json& whole, json& part, cons
   }
 }
 
+TEST_F(PlanSchema, AcceptsThePlanOfTwoQueues) {
+  Diagnostics diagnostics;
+  const auto document = parse_document("two.json", R"({ "dermis": 1, "name": "two",
+  "imports": { "light": { "format": "rgba16f", "size": "view" } },
+  "resources": { "a": { "format": "rgba16f", "size": "view", "mips": 2 }, "b": { "format": "rgba16f", "size": "view" },
+    "c": { "format": "rgba16f", "size": "view" }, "out": { "format": "rgba16f", "size": "view" } },
+  "passes": [
+    { "pass": "first", "kind": "subsurface.pyramid_down", "read": { "fine": "light" }, "write": { "coarse": "b" } },
+    { "pass": "aside", "kind": "subsurface.pyramid_down", "queue": "async", "read": { "fine": "b" }, "write": { "coarse": "c" } },
+    { "pass": "part", "kind": "subsurface.pyramid_down", "read": { "fine": "c" }, "write": { "coarse": "a#1" } },
+    { "pass": "last", "kind": "subsurface.pyramid_down", "read": { "fine": "a#1" }, "write": { "coarse": "out" } } ],
+  "exports": ["out"] })",
+                                       diagnostics);
+  const auto graph = document ? read_graph(*document, kinds, diagnostics) : std::nullopt;
+  ASSERT_TRUE(graph) << format_as_json(diagnostics);
+  CompileInput input;
+  input.graph = &*graph;
+  input.kinds = &kinds;
+  input.device = &device;
+  input.view_width = input.view_height = 64;
+  input.single_queue = false;
+  const auto compiled = compile(input, diagnostics);
+  ASSERT_TRUE(compiled) << format_as_json(diagnostics);
+  const json plan = json::parse(plan_json(*graph, kinds, *compiled));
+  EXPECT_EQ(schema.first_problem(plan), "");
+  EXPECT_EQ(plan["passes"][1]["queue"], "async");
+}
+
 TEST_F(PlanSchema, RefusesAPlanThatLacksAnythingOrHasMore) {
   json whole = plan_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json", true);
   const json copy = whole;

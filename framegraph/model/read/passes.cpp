@@ -27,6 +27,11 @@ void read_kind(GraphReader& reader, ObjectReader& object, PassDeclaration& pass)
       .suggestion = did_you_mean(*name, names);
 }
 
+void read_queue(ObjectReader& object, PassDeclaration& pass) {
+  constexpr std::string_view words[] = {"main", "async"};
+  pass.async = object.word("queue", words, Need::optional).value_or(0) == 1;
+}
+
 void read_when(GraphReader& reader, ObjectReader& object, PassDeclaration& pass) {
   if (!object.string("when", Need::optional)) return;
   if (reader.unknown_settings) return;
@@ -142,6 +147,7 @@ void read_passes(GraphReader& reader) {
     object.name("pass");
     pass.note = note_of(reader.document, node);
     read_kind(reader, object, pass);
+    read_queue(object, pass);
     read_when(reader, object, pass);
     const bool writes_known = read_bindings(reader, object, pass);
     if (!writes_known) reader.unknown_writes = true;

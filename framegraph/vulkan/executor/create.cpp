@@ -22,6 +22,11 @@ Error check_input(const ExecutorInput& input) {
       return {ErrorKind::unsupported, VK_SUCCESS,
               fmt::format("'{}' is a buffer that the host would bind; only images can be bound",
                           input.graph->resources[resource.declared.value].name)};
+  for (const PlanPass& pass : input.plan->passes)
+    if (pass.queue != Queue::main)
+      return {ErrorKind::unsupported, VK_SUCCESS,
+              fmt::format("pass '{}' runs on a second queue; compile the plan for a single one",
+                          input.graph->passes[pass.declared.value].name)};
   const auto fillable = [](const PlanResource& resource) { // the same bit for buffers
     return resource.first_instance == no_instance ||
            (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0;

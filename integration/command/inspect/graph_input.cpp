@@ -193,6 +193,7 @@ CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& devic
   input.view_height = size.height;
   input.settings = choices.settings;
   input.bound = choices.bound;
+  input.single_queue = !choices.two_queues;
   return input;
 }
 

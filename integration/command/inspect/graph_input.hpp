@@ -41,6 +41,7 @@ std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open
 struct CompileChoices {
   std::vector<SettingValue> settings;
   std::vector<bool> bound;
+  bool two_queues = false;
   std::string problem;
 };
 CompileChoices read_choices(const Graph& graph, std::span<const NamedValue> settings = {},

@@ -49,7 +49,8 @@ std::optional<NamedPlan> load_plan(const PlanSource& source, Diagnostics& diagno
   }
   const std::optional<LoadedGraph> loaded = load_graph(source.file, source.parts, diagnostics);
   if (!loaded) return std::nullopt;
-  const CompileChoices choices = read_choices(loaded->graph, source.settings, source.unbound);
+  CompileChoices choices = read_choices(loaded->graph, source.settings, source.unbound);
+  choices.two_queues = source.two_queues;
   problem = choices.problem;
   if (!problem.empty()) return std::nullopt;
   const DeviceProfile device = generic_profile();

@@ -17,6 +17,7 @@ struct PlanSource {
   Size size = default_size;
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound;
+  bool two_queues = false;
 };
 
 struct NamedPlan {

@@ -6,6 +6,7 @@
 namespace dermis::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using vulkan::FunctionTable;
 
@@ -128,6 +129,21 @@ TEST_F(FailureTest, BadInputsAreRefused) {
   const vulkan::EnvironmentBinding empty[] = {{vulkan::EnvironmentType::uniform_buffer, 0, {}}};
   input.environment = empty;
   EXPECT_THAT(vulkan::Executor::create(input, made).text, HasSubstr("environment binding 0 has 0 bytes"));
+}
+
+TEST_F(ExecutorTest, APlanOfTwoQueuesIsRefused) {
+  SmallGraph g;
+  g.exported("result");
+  for (const char* name : {"first", "second"})
+    g.image(name);
+  g.pass("fill", "test.fill", {}, {{"target", "first"}});
+  g.pass("aside", "test.add", {{"a", "first"}}, {{"target", "second"}});
+  g.pass("show", "test.add", {{"a", "second"}}, {{"target", "result"}});
+  Plan plan = g.compile(profile, 16, 16);
+  plan.passes[1].queue = Queue::async;
+  const vulkan::Error error = try_executor(g, plan, dermis_device, executor);
+  EXPECT_EQ(error.kind, vulkan::ErrorKind::unsupported);
+  EXPECT_THAT(error.text, AllOf(HasSubstr("'aside'"), HasSubstr("single one")));
 }
 
 } // namespace

@@ -1,0 +1,182 @@
+// Laws of plans with an async queue: nothing that one queue needs of the other is lost, nothing waits in
+// vain, and whatever order the points allow gives the same pixels.
+
+#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/hazard_oracle.hpp"
+#include "tests/framegraph/plan_mutations.hpp"
+#include "tests/framegraph/random_graph.hpp"
+#include "tests/framegraph/second_opinion.hpp"
+#include "tests/framegraph/test_tier.hpp"
+
+#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/verify/verify.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr uint32_t frames = 5;
+
+CompileInput two_queues(const GraphBuilder& builder) {
+  CompileInput input = builder.input();
+  input.single_queue = false;
+  return input;
+}
+
+uint32_t async_passes(const Plan& plan) {
+  uint32_t count = 0;
+  for (const PlanPass& pass : plan.passes)
+    count += pass.queue == Queue::async;
+  return count;
+}
+
+template <class Visit> void for_random_plans(uint64_t quick, uint64_t full, Visit visit) {
+  for (uint64_t seed = 0; seed < seeds_of_tier(quick, full) && !::testing::Test::HasFailure(); ++seed) {
+    const auto builder = random_graph(seed);
+    const Plan plan = compiled(builder, two_queues(builder)).plan;
+    if (async_passes(plan) > 0) visit(builder, plan, seed);
+  }
+}
+
+// light -> a -> (async) b -> c, and a -> d beside it
+GraphBuilder fork() {
+  GraphBuilder b;
+  b.import("light");
+  for (const char* name : {"a", "b", "c", "d"})
+    b.image(name);
+  b.exported("result");
+  b.pass("first", "test.need", {{"a", "light"}}, {{"out", "a"}});
+  b.pass("aside", "test.need", {{"a", "a"}}, {{"out", "b"}}).async = true;
+  b.pass("beside", "test.need", {{"a", "light"}}, {{"out", "d"}});
+  b.pass("join", "test.shade", {{"a", "b"}, {"b", "d"}}, {{"out", "result"}});
+  return b;
+}
+
+TEST(TwoQueues, AForkAndAJoinAreOnePointEach) {
+  const auto b = fork();
+  CompileInput input = two_queues(b);
+  input.alias = false; // memory that changes hands makes queues wait as well
+  const auto whole = compiled(b, input);
+  const Plan& plan = whole.plan;
+  ASSERT_EQ(pass_names(b, plan), "first aside beside join");
+  EXPECT_EQ(plan.passes[1].queue, Queue::async);
+  EXPECT_EQ(plan.passes[0].signal, 1u);
+  EXPECT_EQ(plan.passes[0].release_count, 1u);
+  EXPECT_EQ(plan.passes[1].wait, 1u);
+  EXPECT_EQ(plan.passes[1].signal, 1u);
+  EXPECT_EQ(plan.passes[2].wait, no_point);
+  EXPECT_EQ(plan.passes[3].wait, 1u);
+  EXPECT_THAT(reasons(b, whole, Reason::About::pass, 1), HasSubstr("runs on the async queue"));
+}
+
+TEST(TwoQueues, ASingleQueueIsTheDefault) {
+  const auto b = fork();
+  EXPECT_EQ(async_passes(compiled(b).plan), 0u);
+  const Plan one = compiled(b).plan;
+  for (const PlanBarrier& barrier : one.barriers)
+    EXPECT_EQ(barrier.transfer, PlanBarrier::Transfer::none);
+}
+
+TEST(TwoQueues, WhatTheHostBindsStaysOnTheMainQueue) {
+  auto b = fork();
+  b.graph.passes[0].async = true;
+  const auto whole = compiled(b, two_queues(b));
+  EXPECT_EQ(whole.plan.passes[0].queue, Queue::main);
+  EXPECT_THAT(reasons(b, whole, Reason::About::pass, 0), HasSubstr("stays on the main queue: 'light'"));
+}
+
+TEST(TwoQueues, TheOracleAcceptsWhatTheCompilerMakes) {
+  uint64_t transfers = 0;
+  for_random_plans(300, 3000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    EXPECT_EQ(first_hazard(plan), "") << "seed " << seed;
+    for (const PlanBarrier& barrier : plan.barriers)
+      transfers += barrier.transfer == PlanBarrier::Transfer::acquire;
+  });
+  EXPECT_GT(transfers, 100u);
+}
+
+TEST(TwoQueues, WhateverOrderThePointsAllowGivesThePixelsThatTheGraphMeans) {
+  for_random_plans(1500, 10000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    for (uint64_t order = 0; order <= 3; ++order)
+      ASSERT_TRUE(agrees(interpret(plan, {frames, seed, order + 1, order}), truth))
+          << "seed " << seed << ", order " << order;
+  });
+}
+
+// But for the barriers of buffers that take over memory: a wait for the other queue may imply them, since
+// buffers have no layout.
+TEST(TwoQueues, NoBarrierAndNoHalfOfATransferCanBeDropped) {
+  uint64_t dropped = 0, implied = 0;
+  for_random_plans(500, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    for (uint32_t b = 0; b < plan.barriers.size(); ++b, ++dropped) {
+      const Plan mutant = without_barrier(plan, b);
+      if (!verify(mutant).empty()) continue;
+      const PlanBarrier& barrier = plan.barriers[b];
+      ASSERT_EQ(plan.resources[barrier.resource].type, ResourceType::buffer)
+          << "seed " << seed << ", barrier " << b;
+      ASSERT_TRUE(barrier.why == PlanBarrier::Why::alias || barrier.why == PlanBarrier::Why::first_use)
+          << "seed " << seed << ", barrier " << b;
+      ASSERT_EQ(first_hazard(mutant), "") << "seed " << seed << ", barrier " << b;
+      ++implied;
+    }
+  });
+  EXPECT_GT(dropped, 1000u);
+  EXPECT_LT(implied * 50, dropped);
+}
+
+TEST(TwoQueues, NoWaitAndNoSignalCanBeLost) {
+  Tally tally;
+  for_random_plans(300, 3000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    for_each_lost_point(plan, [&](const Plan& mutant, const std::string& what) {
+      if (HasFatalFailure()) return;
+      expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
+      if (what.find("earlier") == std::string::npos) {
+        EXPECT_FALSE(verify(mutant).empty()) << "seed " << seed << ": " << what;
+      }
+    });
+  });
+  EXPECT_GT(tally.refused, 200u);
+}
+
+TEST(TwoQueues, AWeakerMaskIsRefusedExactlyWhereItMatters) {
+  Tally tally;
+  for_random_plans(60, 600, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    for_each_weaker_mask(plan, [&](const Plan& mutant, const std::string& what) {
+      if (!HasFatalFailure()) expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
+    });
+  });
+  EXPECT_GT(tally.refused, 100u);
+}
+
+TEST(TwoQueues, APassOnTheOtherQueueIsRefusedExactlyWhereItMatters) {
+  Tally tally;
+  for_random_plans(150, 1500, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    for (size_t p = 0; p < plan.passes.size() && !HasFatalFailure(); ++p) {
+      Plan mutant = plan;
+      mutant.passes[p].queue = plan.passes[p].queue == Queue::main ? Queue::async : Queue::main;
+      expect_same_verdict(mutant, fmt::format("seed {}: pass {}", seed, p), tally);
+    }
+  });
+  EXPECT_GT(tally.refused, 100u);
+}
+
+TEST(TwoQueues, AreSavedAndReadBack) {
+  const auto b = fork();
+  const CompileInput input = two_queues(b);
+  const SavedPlan saved = saved_plan(input, compiled(b, input).plan);
+  Diagnostics diagnostics;
+  const auto again = read_plan("a.plan", write_plan(saved), diagnostics);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(write_plan(*again), write_plan(saved));
+  EXPECT_EQ(async_passes(again->plan), 1u);
+}
+
+} // namespace
+} // namespace dermis::testing
