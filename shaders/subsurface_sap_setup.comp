@@ -1,44 +1,72 @@
 #version 460
-// Level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 where nothing scatters.
+// Level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 where nothing scatters. An invocation computes a
+// block of pixels, whose patches need material and depth of a ring around it.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_sap_setup.bindings.glsl"
 #include "environment.glsl"
-#include "tiles.glsl"
 #include "half.glsl"
 #include "sanitise.glsl"
 #include "radius.glsl"
 #include "patch.glsl"
-#include "sap.glsl"
+const int block_width = 4, block_height = 2;
+#include "sap_tiles.glsl"
+
+const int ring_width = block_width + 2, ring_height = block_height + 2;
+uint ring_profile[ring_width * ring_height];
+float ring_depth[ring_width * ring_height]; // mm, 0 where there is nothing
+
+void read_ring(ivec2 first) {
+  [[unroll]] for (int i = 0; i < ring_width * ring_height; ++i) {
+    int x = i % ring_width, y = i / ring_width;
+    bool corner = (x == 0 || x == ring_width - 1) && (y == 0 || y == ring_height - 1);
+    ivec2 pixel = first + ivec2(x, y) - 1, texel = texel_of(pixel);
+    uint id = 0u;
+    float depth = 0.0;
+    if (!corner && inside_rect(pixel))
+      id = texelFetch(material_image, texel, 0).r;
+    if (id != 0u)
+      depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    ring_profile[i] = id;
+    ring_depth[i] = depth;
+  }
+}
+float depth_of_profile(int index, uint id) { return ring_profile[index] == id ? ring_depth[index] : 0.0; }
 
 void main() {
-  ivec2 pixel;
-  bool copy_only;
-  bool listed = listed_pixel(pixel, copy_only);
-  share_patches(pixel - ivec2(gl_LocalInvocationID.xy));
-  if (!listed)
+  texel_block block;
+  if (!listed_block(0, block))
     return;
-  ivec2 texel = texel_of(pixel);
-  uint id = own_profile();
-  vec4 light = vec4(0.0);
-  uvec4 bits = uvec4(0u);
-  if (id != 0u) {
-    light.rgb = clean_light(texelFetch(lighting_image, texel, 0).rgb);
-    if (settings.texturing != TEXTURING_POST && has_albedo()) {
-      vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-      light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
+  read_ring(block.first);
+  [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
+    ivec2 pixel = block.first + ivec2(k % block_width, k / block_width), texel = texel_of(pixel);
+    if (!inside_rect(pixel))
+      continue;
+    int here = (k / block_width + 1) * ring_width + k % block_width + 1;
+    uint id = ring_profile[here];
+    float depth = ring_depth[here];
+    vec4 light = vec4(0.0);
+    uvec4 bits = uvec4(0u);
+    if (id != 0u) {
+      light.rgb = clean_light(texelFetch(lighting_image, texel, 0).rgb);
+      if (settings.texturing != TEXTURING_POST && has_albedo()) {
+        vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
+        light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
+      }
+      if (depth > 0.0) {
+        patch_neighbours around = patch_neighbours(
+            vec2(depth_of_profile(here - 1, id), depth_of_profile(here - ring_width, id)),
+            vec2(depth_of_profile(here + 1, id), depth_of_profile(here + ring_width, id)));
+        surface_patch patch_here = build_patch(pixel, depth, around);
+        vec2 sides = pixel_footprint(depth);
+        float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+        float reach = min(sqrt(sqrt(1.0 / patch_here.area)) * scale, largest_half);
+        light.a = min(patch_here.area, sap_area_cap);
+        bits = sap_pack(sap_texel(depth, round_to_half(vec3(patch_here.slope * sides / sap_footprint(depth), 0.0)).xy,
+                                  round_to_half(reach), 1.0, id));
+      }
     }
-    float depth = own_depth();
-    if (depth > 0.0) {
-      surface_patch patch_here = build_patch(pixel);
-      vec2 sides = pixel_footprint(depth);
-      float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
-      float reach = min(sqrt(sqrt(1.0 / patch_here.area)) * scale, largest_half);
-      light.a = min(patch_here.area, sap_area_cap);
-      bits = sap_pack(sap_texel(depth, round_to_half(vec3(patch_here.slope * sides / sap_footprint(depth), 0.0)).xy,
-                                round_to_half(reach), 1.0, id));
-    }
+    imageStore(light_image, texel, round_to_half(light));
+    imageStore(surface_image, texel, bits);
   }
-  imageStore(light_image, texel, round_to_half(light));
-  imageStore(surface_image, texel, bits);
 }

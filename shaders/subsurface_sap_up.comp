@@ -1,42 +1,47 @@
 #version 460
-// One level up: its own light and what the coarser level hands down, blended by the profile's shares.
+// One level up: its own light and what the coarser level hands down, blended by the profile's shares. A block's four
+// texels lie on the same four of the coarser level.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_sap_up.bindings.glsl"
 #include "environment.glsl"
 #include "half.glsl"
-bool near_written(ivec2 at) { return true; }
+const int block_width = 2, block_height = 2, coarse_width = 2, coarse_height = 2, odd_first = 1;
 #include "sap_up.glsl"
-
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
 const float least_share = 0.004; // below it the tent is not worth its time
 
 void main() {
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy) - 1;
   int level = settings.level;
-  bool smooth_level = settings.variant == VARIANT_SMOOTH, last = !has_coarse_scattered();
-  sap_share(at - local_texel(), level, smooth_level, !last);
-  if (!sap_inside(at, level))
+  texel_block block;
+  if (!listed_block(level, block))
     return;
-  sap_texel own = sap_own();
-  vec4 light = vec4(0.0);
-  vec3 mass = vec3(0.0);
-  if (own.id != 0u) {
-    vec3 share = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
-    sap_sum here = sap_sum(sap_own_light(), vec3(own.mass));
-    if (smooth_level && max(share.r, max(share.g, share.b)) >= least_share)
-      here = sap_tent(level, own);
-    float confidence = 0.0;
-    sap_sum rest = sap_sum(here.light, vec3(0.0));
-    if (!last)
-      rest = sap_from_coarser(at, level, own, here.light, confidence);
-    rest.mass *= 1.0 - share;
-    sap_sum blend = sap_blend(share * here.mass, here.light, vec3(0.0), here.light, rest);
-    float widest = share[profiles[min(own.id, 255u)].widest];
-    light = vec4(blend.light, mix(confidence, here.mass.r, widest));
-    mass = blend.mass;
+  ivec2 first = block.first - 1;
+  bool smooth_level = settings.variant == VARIANT_SMOOTH, last = !has_coarse_scattered();
+  read_ring(block, first, level, smooth_level);
+  if (!last)
+    read_coarser(first, level);
+  [[unroll]] for (int k = 0; k < block_texels; ++k) {
+    ivec2 at = first + ivec2(k % block_width, k / block_width);
+    if (!sap_inside(at, level))
+      continue;
+    sap_texel own = sap_own(k);
+    uvec4 bits = uvec4(0u);
+    if (own.id != 0u) {
+      vec3 share = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
+      sap_sum here = sap_sum(sap_own_light(k), vec3(own.mass));
+      if (smooth_level && max(share.r, max(share.g, share.b)) >= least_share)
+        here = sap_tent(k, level, own);
+      float confidence = 0.0;
+      sap_sum rest = sap_sum(here.light, vec3(0.0));
+      if (!last)
+        rest = sap_from_coarser(k, level, own, here.light, confidence);
+      rest.mass *= 1.0 - share;
+      sap_sum blend = sap_blend(share * here.mass, here.light, vec3(0.0), here.light, rest);
+      float widest = share[profiles[min(own.id, 255u)].widest];
+      bits = sap_pack_scattered(sap_scattered(round_to_half(blend.light), round_to_half(mix(confidence, here.mass.r, widest)),
+                                              round_to_half(blend.mass)));
+    }
+    imageStore(scattered_image, sap_address(at, level), bits);
   }
-  imageStore(scattered_image, sap_address(at, level), round_to_half(light));
-  imageStore(mass_image, sap_address(at, level), vec4(round_to_half(mass), 1.0));
 }

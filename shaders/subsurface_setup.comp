@@ -7,7 +7,7 @@
 #include "tiles.glsl"
 #include "half.glsl"
 #include "sanitise.glsl"
-#include "patch.glsl"
+#include "shared_patch.glsl"
 
 void main() {
   ivec2 pixel;

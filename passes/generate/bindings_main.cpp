@@ -2,7 +2,7 @@
 // written once. Usage: write_bindings <output folder>
 #include "passes/subsurface/kinds.hpp"
 #include "passes/subsurface/profiles/radial_table.hpp"
-#include "passes/subsurface/sap/sap_weights.hpp"
+#include "passes/subsurface/sap/sap_tiles.hpp"
 #include "passes/subsurface/separable/separable_kernel.hpp"
 #include "passes/subsurface/temporal/reproject.hpp"
 #include "passes/subsurface/truth/surface.hpp"
@@ -87,6 +87,8 @@ std::string shared_constants() {
                      "const int sap_nodes = {};\n"
                      "const float sap_nodes_per_octave = {:.1f};\n"
                      "const float sap_log2_d_first = {};\n"
+                     "const uint sap_tiles_per_group_first = {}u; // sap_tiles.hpp\n"
+                     "const uint sap_tiles_per_group = {}u;\n"
                      "const int radial_nodes = {}; // profiles/radial_table.hpp\n"
                      "const float radial_log2_r_first = {:.1f};\n"
                      "const float radial_nodes_per_octave = {:.1f};\n"
@@ -101,11 +103,12 @@ std::string shared_constants() {
                      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
                      subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::plain),
                      subsurface::sap_node_count, double(subsurface::sap_nodes_per_octave),
-                     subsurface::sap_log2_d_first, subsurface::radial_nodes, subsurface::radial_log2_r_first,
-                     subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit,
-                     subsurface::reproject_snap_px, subsurface::reproject_largest_velocity,
-                     subsurface::reproject_depth_share, subsurface::reproject_slope_pixels,
-                     subsurface::reproject_least_weight);
+                     subsurface::sap_log2_d_first, subsurface::sap_tiles_per_group_first,
+                     subsurface::sap_tiles_per_group, subsurface::radial_nodes,
+                     subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
+                     subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
+                     subsurface::reproject_largest_velocity, subsurface::reproject_depth_share,
+                     subsurface::reproject_slope_pixels, subsurface::reproject_least_weight);
 }
 
 bool write(const std::string& path, const std::string& text) {

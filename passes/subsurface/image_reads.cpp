@@ -53,11 +53,25 @@ ImageReads none(const PassKind&, const ReadsQuestion&) {
   return {};
 }
 
-// subsurface_setup.comp and subsurface_sap_setup.comp: light, the patch.
-ImageReads setup(const PassKind& kind, const ReadsQuestion& question) {
+// Lighting, and what scales it.
+double light_reads(const PassKind& kind, const ReadsQuestion& question) {
   const bool textured = setting(kind, question, "texturing") != 0;
-  return {1 + patch_reads + scale_read(kind, question) +
-          (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+  return 1 + scale_read(kind, question) + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0);
+}
+
+// subsurface_setup.comp: light, the patch.
+ImageReads setup(const PassKind& kind, const ReadsQuestion& question) {
+  return {light_reads(kind, question) + patch_reads};
+}
+
+// An invocation of the pyramid's kernels computes a block of texels and reads what they need once.
+constexpr double block_reads(double texels, double width, double height) {
+  return texels / (width * height);
+}
+
+// subsurface_sap_setup.comp: light; material and depth of a block of 4x2 and a ring without corners.
+ImageReads sap_setup(const PassKind& kind, const ReadsQuestion& question) {
+  return {light_reads(kind, question) + 2 * block_reads(6 * 4 - 4, 4, 2)};
 }
 
 // Material, light, depth; a sample reads material, depth, light and slope.
@@ -81,28 +95,23 @@ ImageReads separable(const PassKind& kind, const ReadsQuestion& question) {
           sides * 2 * 2 * 3};
 }
 
-// subsurface_sap_down.comp, share_children: surface and light.
+// subsurface_sap_down.comp: surface and light of the 6x6 children of 2x2 parents.
 ImageReads sap_down(const PassKind&, const ReadsQuestion&) {
-  return {shared_reads(18 * 18) * 2};
+  return {2 * block_reads(6 * 6, 2, 2)};
 }
 
-// sap_up.glsl, sap_share: surface and light of the group's texels, with a ring around them where a tent is
-// wanted; surface, light and mass of the 6x6 texels of the coarser level on which they lie.
-constexpr double near_reads(bool ring) {
-  return shared_reads(ring ? 10 * 10 : 8 * 8) * 2;
-}
-constexpr double coarser_reads = shared_reads(6 * 6) * 3;
-
+// sap_up.glsl: surface and light of a block's texels, with a ring around them where a tent is wanted; surface
+// and scattered light of the texels of the coarser level on which they lie.
 ImageReads sap_up(const PassKind& kind, const ReadsQuestion& question) {
   const bool smooth = setting(kind, question, "variant") == int64_t(SapVariant::smooth);
   const bool last = one_if(kind, question, "coarse_scattered", PortSide::read) == 0;
-  return {near_reads(smooth) + (last ? 0 : coarser_reads)};
+  return {2 * block_reads(smooth ? 4 * 4 : 2 * 2, 2, 2) + (last ? 0 : 2 * block_reads(2 * 2, 2, 2))};
 }
 
-// Light alone where no pixel scatters further than itself.
+// Surface and light alone where no pixel scatters further than itself.
 ImageReads sap_gather(const PassKind&, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
-  return {widest < copy_below_d_px ? 1 : near_reads(true) + coarser_reads};
+  return {widest < copy_below_d_px ? 2 : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2)};
 }
 
 // As fixed; a sample reads its levels beside that, two of them or one.
@@ -189,7 +198,8 @@ constexpr Entry entries[] = {
     {"subsurface.setup", setup},
     {"subsurface.burley", burley},
     {"subsurface.separable", separable},
-    {"subsurface.sap_setup", setup},
+    {"subsurface.sap_tiles", none},
+    {"subsurface.sap_setup", sap_setup},
     {"subsurface.sap_down", sap_down},
     {"subsurface.sap_up", sap_up},
     {"subsurface.sap_gather", sap_gather},

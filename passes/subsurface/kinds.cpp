@@ -7,10 +7,11 @@ namespace dermis::subsurface {
 KindRegistry make_kinds() {
   KindRegistry registry;
   for (const PassKind* kind :
-       {&classify_kind,     &tile_list_kind, &setup_kind,         &burley_kind,       &separable_kind,
-        &combine_kind,      &light_kind,     &sap_setup_kind,     &sap_down_kind,     &sap_up_kind,
-        &sap_gather_kind,   &fixed_kind,     &pyramid_setup_kind, &pyramid_down_kind, &pyramid_gather_kind,
-        &transmission_kind, &afis_kind,      &blend_kind,         &residual_kind,     &guided_kind})
+       {&classify_kind,       &tile_list_kind,    &setup_kind,     &burley_kind,        &separable_kind,
+        &combine_kind,        &light_kind,        &sap_tiles_kind, &sap_setup_kind,     &sap_down_kind,
+        &sap_up_kind,         &sap_gather_kind,   &fixed_kind,     &pyramid_setup_kind, &pyramid_down_kind,
+        &pyramid_gather_kind, &transmission_kind, &afis_kind,      &blend_kind,         &residual_kind,
+        &guided_kind})
     registry.add(*kind);
   return registry;
 }

@@ -7,11 +7,11 @@ const float largest_half = 65504.0;
 // The fp16 value nearest to x (ties to even), as fp32, so that a store is exact whatever its rounding.
 float round_to_half(float x) {
   float a = min(abs(x), largest_half);
-  if (a < 6.103515625e-5) // 2^-14: subnormal halves are multiples of 2^-24
-    return sign(x) * roundEven(a * 16777216.0) / 16777216.0;
+  float subnormal = roundEven(a * 16777216.0) / 16777216.0; // below 2^-14 halves are multiples of 2^-24
   uint bits = floatBitsToUint(a);
   bits += 0xfffu + ((bits >> 13) & 1u);
-  return sign(x) * min(uintBitsToFloat(bits & 0xffffe000u), largest_half);
+  float normal = min(uintBitsToFloat(bits & 0xffffe000u), largest_half);
+  return sign(x) * (a < 6.103515625e-5 ? subnormal : normal);
 }
 vec3 round_to_half(vec3 v) { return vec3(round_to_half(v.x), round_to_half(v.y), round_to_half(v.z)); }
 vec4 round_to_half(vec4 v) { return vec4(round_to_half(v.xyz), round_to_half(v.w)); }

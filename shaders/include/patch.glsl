@@ -1,42 +1,18 @@
-// The surface patch behind a pixel, from depth differences; mirrors passes/subsurface/truth/surface.cpp. Groups are 8x8
-// pixels, which share what they read. Include after bindings with `material` and `depth`.
+// The surface patch behind a pixel, from depth differences; mirrors passes/subsurface/truth/surface.cpp.
 #ifndef DERMIS_PATCH_GLSL
 #define DERMIS_PATCH_GLSL
 
 #include "constants.glsl"
 #include "environment.glsl"
 
-const int patch_side = 10; // 8x8 pixels and a ring around them
-shared uint patch_profile[patch_side * patch_side];
-shared float patch_depth[patch_side * patch_side]; // mm, 0 where there is nothing
-
-// Reads what the group with first pixel `first` needs, once each. Every invocation of the group calls it.
-void share_patches(ivec2 first) {
-  for (int i = int(gl_LocalInvocationIndex); i < patch_side * patch_side; i += 64) {
-    ivec2 pixel = first + ivec2(i % patch_side, i / patch_side) - 1, texel = texel_of(pixel);
-    uint id = inside_rect(pixel) ? texelFetch(material_image, texel, 0).r : 0u;
-    patch_profile[i] = id;
-    patch_depth[i] = id != 0u ? view_depth(texelFetch(depth_image, texel, 0).r) : 0.0;
-  }
-  barrier();
-}
-int patch_index(ivec2 offset) {
-  ivec2 local = ivec2(gl_LocalInvocationID.xy) + 1 + offset;
-  return local.y * patch_side + local.x;
-}
-uint own_profile() { return patch_profile[patch_index(ivec2(0))]; }
-float own_depth() { return patch_depth[patch_index(ivec2(0))]; }
-
-// Depth of the pixel at an offset if it is of profile `id`, mm; 0 if it is outside, of another profile or has none.
-float depth_of_profile(ivec2 offset, uint id) {
-  int index = patch_index(offset);
-  return patch_profile[index] == id ? patch_depth[index] : 0.0;
-}
+// Depths of a pixel's neighbours along both axes, mm; 0 where it is outside, of another profile or has none.
+struct patch_neighbours {
+  vec2 before, after; // x: along the row, y: along the column
+};
 
 // Tangent along an axis: towards the neighbour of the same profile that is nearer in depth; across the view where
 // there is none.
-vec3 patch_tangent(ivec2 pixel, ivec2 axis, uint id, float depth, vec3 position) {
-  float after = depth_of_profile(axis, id), before = depth_of_profile(-axis, id);
+vec3 patch_tangent(ivec2 pixel, ivec2 axis, float before, float after, float depth, vec3 position) {
   bool backwards = before > 0.0 && (after <= 0.0 || abs(before - depth) < abs(after - depth));
   float neighbour = backwards ? before : (after > 0.0 ? after : depth);
   int side = backwards ? -1 : 1;
@@ -48,15 +24,12 @@ struct surface_patch {
   float area;  // over the area of the pixel's cross-section: 1 / cos to the viewer, capped
 };
 
-// Of the invocation's own pixel, after share_patches.
-surface_patch build_patch(ivec2 pixel) {
-  uint id = own_profile();
-  float depth = own_depth();
+surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
   vec3 position = view_position(vec2(pixel), depth);
   vec3 ray = is_perspective() ? position / depth : vec3(0.0, 0.0, -1.0);
   vec3 viewer = -normalize(ray);
-  vec3 normal = cross(patch_tangent(pixel, ivec2(1, 0), id, depth, position),
-                      patch_tangent(pixel, ivec2(0, 1), id, depth, position));
+  vec3 normal = cross(patch_tangent(pixel, ivec2(1, 0), around.before.x, around.after.x, depth, position),
+                      patch_tangent(pixel, ivec2(0, 1), around.before.y, around.after.y, depth, position));
   float size = length(normal);
   normal = size > 0.0 ? normal / size : viewer;
   if (dot(normal, viewer) < 0.0)

@@ -2,6 +2,8 @@
 #ifndef DERMIS_SAP_GLSL
 #define DERMIS_SAP_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 #include "constants.glsl"
 #include "environment.glsl"
 
@@ -33,10 +35,25 @@ sap_texel sap_unpack(uvec4 bits) {
   return sap_texel(uintBitsToFloat(bits.x), unpackHalf2x16(bits.y), pair.x, pair.y, bits.w);
 }
 
+// What a level hands down: light of its own and coarser levels, the share of the kernel that met the surface, confidence.
+struct sap_scattered {
+  vec3 light;
+  float confidence;
+  vec3 mass;
+};
+// All values must be halves already.
+uvec4 sap_pack_scattered(sap_scattered t) {
+  return uvec4(packHalf2x16(t.light.rg), packHalf2x16(vec2(t.light.b, t.confidence)), packHalf2x16(t.mass.rg),
+               packHalf2x16(vec2(t.mass.b, 0.0)));
+}
+sap_scattered sap_unpack_scattered(uvec4 bits) {
+  vec2 pair = unpackHalf2x16(bits.y);
+  return sap_scattered(vec3(unpackHalf2x16(bits.x), pair.x), pair.y, vec3(unpackHalf2x16(bits.z), unpackHalf2x16(bits.w).x));
+}
+
 // Geometric mean of a pixel's sides at a depth, mm.
 float sap_footprint(float depth) {
-  vec2 sides = pixel_footprint(depth);
-  return sqrt(sides.x * sides.y);
+  return sqrt(abs(frame.ray_scale.x * frame.ray_scale.y)) * (is_perspective() ? depth : 1.0);
 }
 // Rise of a texel's tangent plane at an offset in pixels, mm.
 float sap_rise(float depth, vec2 slope, vec2 offset) { return dot(slope, offset) * sap_footprint(depth); }
@@ -47,7 +64,8 @@ bool sap_inside(ivec2 at, int level) {
   int border = level > 0 ? 1 : 0;
   return all(greaterThanEqual(at, ivec2(-border))) && all(lessThan(at, sap_level_size(level) + border));
 }
-// Tile of the view that a pixel lies in. Level 0 is written in tiles with subsurface only.
+// Tile of the view that a pixel lies in. Level 0 is written in tiles with subsurface only; so is, at each level, the texel
+// that such a pixel lies in.
 int sap_tile(ivec2 pixel) { return (pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3); }
 ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at); }
 
@@ -55,13 +73,12 @@ ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at
 float sap_lookup(int table, int row, float d_px) {
   int first = (table * (sap_levels + 1) + row) * sap_nodes;
   float position = (log2(max(d_px, 1e-30)) - sap_log2_d_first) * sap_nodes_per_octave;
-  if (position < 0.0) { // below the first node all but the centre fades
-    float share = d_px / exp2(sap_log2_d_first);
-    return row == 0 ? 1.0 - share * (1.0 - sap_table[first]) : row == 1 ? share * sap_table[first] : sap_table[first];
-  }
-  position = min(position, float(sap_nodes - 1));
-  int node = min(int(position), sap_nodes - 2);
-  return mix(sap_table[first + node], sap_table[first + node + 1], position - float(node));
+  float clamped = clamp(position, 0.0, float(sap_nodes - 1));
+  int node = min(int(clamped), sap_nodes - 2);
+  float value = mix(sap_table[first + node], sap_table[first + node + 1], clamped - float(node));
+  // Below the first node all but the centre fades.
+  float share = position < 0.0 ? d_px / exp2(sap_log2_d_first) : 1.0;
+  return row == 0 ? 1.0 - share * (1.0 - value) : row == 1 ? share * value : value;
 }
 // Per channel; a profile with tables of its own has one a channel.
 vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {

@@ -67,8 +67,10 @@ TEST_F(Kinds, KindsThatRunOverTilesReadTheListAndItsArguments) {
   for (uint32_t i = 0; i < kinds.size(); ++i) {
     const PassKind& kind = kinds[KindId{i}];
     if (kind.dispatch == DispatchShape::over_tiles) {
-      EXPECT_GE(find_port(kind, "tiles"), 0) << kind.name;
-      EXPECT_GE(find_port(kind, "arguments"), 0) << kind.name;
+      const bool levels = find_port(kind, "level_tiles") >= 0;
+      EXPECT_GE(find_port(kind, levels ? "level_tiles" : "tiles"), 0) << kind.name;
+      EXPECT_GE(find_port(kind, levels ? "level_arguments" : "arguments"), 0) << kind.name;
+      EXPECT_TRUE(kind.arguments_entry.empty() || find_setting(kind, kind.arguments_entry) >= 0) << kind.name;
     }
   }
 }

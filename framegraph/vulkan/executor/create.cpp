@@ -79,10 +79,10 @@ void make_passes(State& state, const ExecutorInput& input) {
 
 // What a kind without kernel clears, and that an indirect dispatch has its arguments, known before the first
 // frame.
-Error check_passes(const State& state, const KindRegistry& kinds) {
+Error check_passes(State& state, const KindRegistry& kinds) {
   for (size_t p = 0; p < state.passes.size(); ++p) {
     const PlanPass& planned = state.plan.passes[p];
-    const Pass& pass = state.passes[p];
+    Pass& pass = state.passes[p];
     const PassKind& kind = kinds[planned.kind];
     constexpr size_t mask_bits = 32;
     if (kind.ports.size() > mask_bits)
@@ -93,6 +93,13 @@ Error check_passes(const State& state, const KindRegistry& kinds) {
       if (kernel.dispatch == DispatchShape::over_tiles && pass.ports[kernel.indirect_port].access == no_index)
         return argument(fmt::format("pass '{}' dispatches over tiles, but its port '{}' is not bound",
                                     pass.name, kind.ports[kernel.indirect_port].name));
+      if (kernel.dispatch == DispatchShape::over_tiles) {
+        const PlanAccess& access = state.plan.accesses[pass.ports[kernel.indirect_port].access];
+        pass.indirect_entries = state.plan.resources[access.resource].bytes / indirect_entry_bytes;
+        if (pass.indirect_entries == 0)
+          return argument(fmt::format("the indirect arguments of pass '{}' have fewer than {} bytes",
+                                      pass.name, indirect_entry_bytes));
+      }
       continue;
     }
     for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {

@@ -156,6 +156,8 @@ Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel&
     return {ErrorKind::shader, VK_SUCCESS,
             fmt::format("kind '{}' dispatches over tiles but has no port with usage indirect_arguments",
                         kind.name)};
+  if (!kind.arguments_entry.empty())
+    kernel.entry_setting = static_cast<uint32_t>(find_setting(kind, kind.arguments_entry));
   kernel.push_bytes = static_cast<uint32_t>(sizeof(uint32_t) * (1 + kind.settings.size()));
   if (Error error = create_set_layout(state, kind, kernel)) return error;
   if (Error error = create_layout(state, kind, kernel)) return error;

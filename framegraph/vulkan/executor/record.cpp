@@ -61,6 +61,12 @@ void invalidate_for_cut(State& state) {
   state.stand_ins_ready = false;
 }
 
+SettingValue value_of(const State& state, const FrameInput& frame, const PlanPass& planned, uint32_t index) {
+  const PlanSetting& setting = state.plan.settings[planned.first_setting + index];
+  const bool live = setting.from.valid() && setting.from.value < frame.settings.size();
+  return live ? frame.settings[setting.from.value] : setting.value;
+}
+
 void push_settings(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
                    const Kernel& kernel) {
   const uint32_t words = kernel.push_bytes / static_cast<uint32_t>(sizeof(uint32_t));
@@ -68,10 +74,9 @@ void push_settings(State& state, const FrameInput& frame, const PlanPass& planne
   for (const uint32_t port : pass.conditional_ports)
     if (access_now(state, pass.ports[port]) != no_index) state.push_constants[0] |= uint32_t{1} << port;
   for (uint32_t i = 1; i < words; ++i) {
-    const PlanSetting& setting = state.plan.settings[planned.first_setting + i - 1];
-    const bool live = setting.from.valid() && setting.from.value < frame.settings.size();
-    const SettingValue& value = live ? frame.settings[setting.from.value] : setting.value;
-    state.push_constants[i] = setting.value.type == SettingType::real
+    const SettingValue value = value_of(state, frame, planned, i - 1);
+    const SettingType type = state.plan.settings[planned.first_setting + i - 1].value.type;
+    state.push_constants[i] = type == SettingType::real
                                   ? std::bit_cast<uint32_t>(static_cast<float>(value.real))
                                   : static_cast<uint32_t>(static_cast<int32_t>(value.integer));
   }
@@ -83,6 +88,15 @@ VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& ker
   const PlanAccess& access = state.plan.accesses[pass.ports[kernel.indirect_port].access];
   return state.instances[instance_of(state, state.plan.resources[access.resource], access.frames_back)]
       .buffer;
+}
+
+// Where in them its own begin. A setting that names an entry which is not there takes the last.
+uint64_t indirect_offset(const State& state, const FrameInput& frame, const PlanPass& planned,
+                         const Pass& pass, const Kernel& kernel) {
+  if (kernel.entry_setting == no_index) return 0;
+  const int64_t entry = value_of(state, frame, planned, kernel.entry_setting).integer;
+  return indirect_entry_bytes *
+         std::min(static_cast<uint64_t>(std::max(entry, int64_t{0})), pass.indirect_entries - 1);
 }
 
 VkExtent2D first_written_size(const State& state, const Pass& pass) { // zero: no image is written
@@ -97,16 +111,18 @@ VkExtent2D first_written_size(const State& state, const Pass& pass) { // zero: n
   return {0, 0};
 }
 
-void dispatch(State& state, VkCommandBuffer commands, const Pass& pass, const Kernel& kernel,
-              const Rectangle& r) {
+void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
+              const Kernel& kernel, const Rectangle& r) {
   const FunctionTable& vk = state.device->vk;
+  const VkCommandBuffer commands = frame.command_buffer;
   const uint32_t across = tiles_along(r.width), down = tiles_along(r.height);
   switch (kernel.dispatch) {
   case DispatchShape::over_view:
     vk.vkCmdDispatch(commands, across, down, 1);
     break;
   case DispatchShape::over_tiles:
-    vk.vkCmdDispatchIndirect(commands, indirect_buffer(state, pass, kernel), 0);
+    vk.vkCmdDispatchIndirect(commands, indirect_buffer(state, pass, kernel),
+                             indirect_offset(state, frame, planned, pass, kernel));
     break;
   case DispatchShape::over_tile_grid: {
     const uint64_t tiles = uint64_t{across} * down;
@@ -138,7 +154,7 @@ void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size
   vk.vkCmdBindDescriptorSets(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout, 0,
                              environment ? 2 : 1, sets, 0, nullptr);
   push_settings(state, frame, state.plan.passes[p], pass, kernel);
-  dispatch(state, frame.command_buffer, pass, kernel, rectangle);
+  dispatch(state, frame, state.plan.passes[p], pass, kernel, rectangle);
 }
 
 void run_clear(State& state, const FrameInput& frame, size_t p) {

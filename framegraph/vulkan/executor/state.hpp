@@ -9,6 +9,7 @@
 namespace dermis::vulkan {
 
 inline constexpr uint32_t no_index = 0xffffffffu;
+inline constexpr uint64_t indirect_entry_bytes = 16; // group counts x, y, z and one more word
 
 struct Instance { // of a plan resource, one per Plan::placements
   VkImage image = VK_NULL_HANDLE;
@@ -41,6 +42,7 @@ struct Kernel { // one per pass kind of the plan that dispatches
   KindId kind;
   DispatchShape dispatch = DispatchShape::none;
   uint32_t indirect_port = no_index;
+  uint32_t entry_setting = no_index; // of the kind: says which entry of the indirect arguments counts
   std::vector<KernelPort> ports;
   uint32_t push_bytes = 0;
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
@@ -87,6 +89,7 @@ struct Pass {
   std::vector<PortAccess> ports;
   uint32_t port_mask = 0;                   // ports that are bound in every frame
   std::vector<uint32_t> conditional_ports;  // the others that may be
+  uint64_t indirect_entries = 1;            // that its indirect arguments have room for
   std::vector<uint32_t> writable_stand_ins; // into State::stand_ins
 };
 

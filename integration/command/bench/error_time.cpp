@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 
 namespace dermis::tools {
@@ -186,7 +187,8 @@ Scattering scattering_of(const Subject& subject) {
 
 // The same technique with so many samples that it is its own limit. Deterministic ones have none.
 demo::Result<std::optional<std::vector<float>>> self_reference(Bench& bench, const TechniqueRun& technique,
-                                                               const Subject& subject) {
+                                                               const Subject& subject,
+                                                               const CapturedFrame& window) {
   const ErrorTimeFile& file = bench.file;
   TechniqueRequest request = technique.request();
   auto samples = std::find_if(request.set.begin(), request.set.end(),
@@ -198,7 +200,7 @@ demo::Result<std::optional<std::vector<float>>> self_reference(Bench& bench, con
   samples->second = fmt::format("{}", file.self_samples);
   auto made = TechniqueRun::create(bench.host, request, bench.profiles, bench.sap_tables);
   if (!made) return made.error();
-  auto light = (*made)->scatter(subject.frame);
+  auto light = (*made)->scatter(window);
   if (!light) return light.error();
   return std::optional<std::vector<float>>(light.take());
 }
@@ -213,38 +215,52 @@ demo::Result<> measure(Bench& bench, size_t index, Progress& progress, uint64_t&
   if (!reference) return stopped();
   const Scattering scattering = scattering_of(subject);
   const size_t first = bench.measured.size();
+  const CapturedFrame window = window_of(subject.frame, bench.file.self_window);
+  const Reference in_window = inside(window, *reference);
   std::optional<std::vector<float>> self;
   std::string self_of; // graph of that reference: settings of one technique share it
   for (size_t t = 0; t < bench.techniques.size(); ++t) {
     if (interrupted()) return stopped();
     TechniqueRun& technique = *bench.techniques[t];
-    auto light = technique.scatter(subject.frame);
-    if (!light) return light.error();
-    Measured one{
-        t,  index, still_error(*light, *reference), technique.counts(scattering.share, scattering.d_px), {},
-        {}, {}};
+    Measured one{t, index, {}, {}, {}, {}, {}};
     if (self_of != technique.request().graph) {
-      auto found = self_reference(bench, technique, subject);
+      auto found = self_reference(bench, technique, subject, window);
       if (!found) return found.error();
       self = found.take();
       self_of = technique.request().graph;
     }
-    if (self) one.psnr_db_self = psnr_between(*light, *self, *reference);
+    if (self && !in_window.pixels.empty()) {
+      const auto part = technique.scatter(window);
+      if (!part) return part.error();
+      one.psnr_db_self = psnr_between(*part, *self, in_window);
+    }
+    const auto light = technique.scatter(subject.frame);
+    if (!light) return light.error();
+    one.error = still_error(*light, *reference);
+    one.counts = technique.counts(scattering.share, scattering.d_px);
     if (technique.request().heat_map)
       bench.maps.pictures.push_back(
           heat_map(fmt::format("{}, {} {}", name, technique.request().technique, technique.request().setting),
                    *light, *reference, subject.frame.description.width, subject.frame.profile));
     bench.measured.push_back(std::move(one));
   }
+  std::vector<double> spent(
+      bench.techniques.size()); // milliseconds of timed runs, with all that the host does
   for (uint32_t round = 1; round < bench.file.warm_up + bench.file.repetitions; ++round)
     for (size_t t = 0; t < bench.techniques.size(); ++t) {
       if (interrupted()) return stopped();
+      progress.update(++done);
+      Measured& row = bench.measured[first + t];
+      if (bench.file.row_milliseconds > 0 && row.device_ms.size() >= bench.file.least_repetitions &&
+          spent[t] >= bench.file.row_milliseconds)
+        continue;
+      const auto start = std::chrono::steady_clock::now();
       const auto times = bench.techniques[t]->run_again();
       if (!times) return times.error();
-      progress.update(++done);
       if (round < bench.file.warm_up) continue;
-      bench.measured[first + t].device_ms.push_back(times->device);
-      bench.measured[first + t].sampling_ms.push_back(times->sampling);
+      spent[t] += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+      row.device_ms.push_back(times->device);
+      row.sampling_ms.push_back(times->sampling);
     }
   return demo::success();
 }
@@ -258,6 +274,7 @@ std::vector<ReportColumn> columns() {
           {"device_ms", "ms", 4},
           {"device_ms_low", ""},
           {"device_ms_high", ""},
+          {"repetitions", ""},
           {"sampling_ms", "scattering ms", 4},
           {"mean_spp", "samples"},
           {"reads_per_pixel", "reads a pixel"},
@@ -318,6 +335,7 @@ void fill_table(const Bench& bench, Report& report) {
                                    device.median,
                                    device.low,
                                    device.high,
+                                   static_cast<int64_t>(one.device_ms.size()),
                                    spread_of(one.sampling_ms).median,
                                    one.counts.mean_spp,
                                    optional(one.counts.reads_per_pixel),
@@ -390,6 +408,12 @@ std::string text_of(const Report& report) {
   return format_table(table);
 }
 
+std::string early_end(const ErrorTimeFile& file) {
+  if (file.row_milliseconds == 0) return "";
+  return fmt::format("; a technique that took {} ms at a scene ends there, after {} at least",
+                     file.row_milliseconds, file.least_repetitions);
+}
+
 Report make_report(const Bench& bench, double seconds) {
   Report report;
   report.bench = "error-time";
@@ -402,8 +426,8 @@ Report make_report(const Bench& bench, double seconds) {
   report.facts.emplace_back("size",
                             fmt::format("{}x{} pixels", bench.options.size.width, bench.options.size.height));
   report.facts.emplace_back("repetitions",
-                            fmt::format("median of {} after {} to warm up, all techniques in turn",
-                                        bench.file.repetitions, bench.file.warm_up));
+                            fmt::format("median of {} after {} to warm up, all techniques in turn{}",
+                                        bench.file.repetitions, bench.file.warm_up, early_end(bench.file)));
   report.facts.emplace_back(
       "truth", fmt::format("everywhere on planes, else at {} stratified pixels", bench.file.subset));
   report.facts.emplace_back("reads a pixel",

@@ -76,6 +76,8 @@ struct FileReader {
     if (const auto name = object.name("setting")) file.self_setting = *name;
     if (const auto count = object.integer("samples", 64, 65536))
       file.self_samples = static_cast<uint32_t>(*count);
+    if (const auto side = object.integer("window", 8, 16384, Need::optional))
+      file.self_window = static_cast<uint32_t>(*side);
     const NodeId list = object.array("scenes", 0, most_entries);
     if (list.valid())
       for (const NodeId one : children(document, list))
@@ -89,6 +91,10 @@ struct FileReader {
     object.integer("dermis_benchmark", 1, 1);
     if (const auto n = object.integer("repetitions", 1, 1000)) file.repetitions = static_cast<uint32_t>(*n);
     if (const auto n = object.integer("warm_up", 1, 100)) file.warm_up = static_cast<uint32_t>(*n);
+    if (const auto n = object.integer("row_milliseconds", 0, 1'000'000, Need::optional))
+      file.row_milliseconds = static_cast<uint32_t>(*n);
+    if (const auto n = object.integer("least_repetitions", 1, 1000, Need::optional))
+      file.least_repetitions = static_cast<uint32_t>(*n);
     if (const auto n = object.integer("subset", 1, 1 << 24)) file.subset = static_cast<uint32_t>(*n);
     if (const auto path = object.string("skin")) file.skin = *path;
     baseline(object);

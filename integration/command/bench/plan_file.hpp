@@ -21,6 +21,9 @@ struct TechniqueRequest {
 
 struct ErrorTimeFile {
   uint32_t repetitions = 15, warm_up = 2; // of each technique at each scene
+  // Timed runs of a technique at a scene end early once they took so long, but not before the least number.
+  uint32_t row_milliseconds = 0; // 0: never
+  uint32_t least_repetitions = 3;
   uint32_t subset = 4096; // pixels of a scene that have a truth, where it is not known everywhere
   std::string skin;       // profile of the generated scenes
   std::string baseline_technique, baseline_setting; // what ratios are to
@@ -29,6 +32,7 @@ struct ErrorTimeFile {
   std::string self_setting;             // that sets the number of samples, where a graph has it
   uint32_t self_samples = 4096;         // of the reference of psnr_db_self
   std::vector<std::string> self_scenes; // "scene/framing" where that is measured; it takes long
+  uint32_t self_window = 0; // side of the square in the picture's middle that it is measured on; 0: all
 };
 
 // The keys technique, setting, graph, set and heat_map of an entry; whoever calls finishes the object.

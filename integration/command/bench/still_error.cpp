@@ -2,6 +2,8 @@
 
 #include "integration/demo_engine/engine.hpp"
 
+#include <algorithm>
+
 namespace dermis::tools {
 namespace {
 
@@ -38,6 +40,27 @@ double psnr_between(std::span<const float> light, std::span<const float> other, 
     for (size_t c = 0; c < 3; ++c)
       values.push_back(double(other[size_t{3} * pixel + c]));
   return measure_error(light, values, reference.pixels, reference.exposure, reference.population).psnr_db;
+}
+
+CapturedFrame window_of(const CapturedFrame& frame, uint32_t side) {
+  CapturedFrame window = frame;
+  FrameDescription& description = window.description;
+  if (side == 0) return window;
+  const uint32_t width = std::min(side, description.width), height = std::min(side, description.height);
+  description.render = {(description.width - width) / 2, (description.height - height) / 2, width, height};
+  return window;
+}
+
+Reference inside(const CapturedFrame& frame, const Reference& whole) {
+  const auto& render = frame.description.render;
+  Reference part;
+  part.exposure = whole.exposure;
+  for (const uint32_t pixel : whole.pixels) {
+    const uint32_t x = pixel % frame.description.width, y = pixel / frame.description.width;
+    if (x >= render.x && x < render.x + render.width && y >= render.y && y < render.y + render.height)
+      part.pixels.push_back(pixel);
+  }
+  return part;
 }
 
 } // namespace dermis::tools

@@ -29,9 +29,9 @@ demo::Error input_error(const std::string& graph, const std::string& text) {
   return {demo::ErrorKind::input, fmt::format("{}\nthe graph '{}' cannot be used", text, graph)};
 }
 
-// Texels that a pass computes for one pixel of the view.
+// Texels that a pass computes for one pixel of the view: those of the first image that it writes, if it
+// writes one.
 double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
-  if (kind.dispatch != DispatchShape::over_written) return 1;
   for (uint32_t i = 0; i < pass.access_count; ++i) {
     const PlanAccess& access = plan.accesses[pass.first_access + i];
     const PlanResource& resource = plan.resources[access.resource];

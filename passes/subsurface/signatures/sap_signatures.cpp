@@ -14,9 +14,9 @@ constexpr std::string_view light_doc = "rgb light, a = area of the surface over 
 constexpr std::string_view surface_doc =
     "depth in mm (bits of a float); slope x, y (halves); factor on d, share of the texel's kernel that met "
     "its own surface (halves); profile id, 0 = nothing here";
-constexpr std::string_view scattered_doc =
-    "rgb scattered light of this level and coarser ones, a = confidence";
-constexpr std::string_view mass_doc = "rgb share of the kernel that met the surface";
+constexpr std::string_view scattered_doc = "scattered light of this level and coarser ones (3 halves), "
+                                           "confidence (half), share of the kernel that met the "
+                                           "surface (3 halves), 0";
 
 constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
 constexpr Format surface_formats[] = {Format::rgba32_uint};
@@ -36,14 +36,41 @@ constexpr KindSetting variant =
     setting::choice("variant", variant_options,
                     "base: tent at level 0 alone; smooth: at every level, which hides the grid", 1);
 
+constexpr Port level_tiles{
+    "level_tiles", Usage::storage_buffer_read, false, "uvec2", "as subsurface.sap_tiles writes them", {}};
+constexpr Port level_arguments{
+    "level_arguments", Usage::indirect_arguments, false, "uint", "as subsurface.sap_tiles writes them", {}};
+
+constexpr Port tiles_ports[] = {
+    {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
+    {"level_tiles",
+     Usage::storage_buffer_write,
+     false,
+     "uvec2",
+     "for each level the index of its first entry and their number, then the entries: tile x in bits 0-14, y "
+     "in bits "
+     "15-29, bit 31 = copy only; which of 3x3 tiles can hold surface, in bits 0-8 those of the finer level "
+     "that the "
+     "tile reduces, in bits 9-17 those around it",
+     {}},
+    {"level_arguments",
+     Usage::storage_buffer_write,
+     false,
+     "uint",
+     "for each level the group counts x, y, z of an indirect dispatch over its tiles, and x times y",
+     {}},
+    {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
+    {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
+};
+
 constexpr Port setup_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
     port::material,
     port::depth,
     port::scatter_scale,
     port::albedo,
-    port::tiles,
-    port::arguments,
+    level_tiles,
+    level_arguments,
     {"light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
@@ -52,12 +79,8 @@ constexpr KindSetting setup_settings[] = {setting::texturing};
 constexpr Port down_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of the finer level", {}},
     {"surface", Usage::sampled_image, false, "utexture2D", "of the finer level", surface_formats},
-    {"classes",
-     Usage::storage_buffer_read,
-     true,
-     "uint",
-     "as subsurface.classify writes them; bound where the finer level is 0, which holds listed tiles only",
-     {}},
+    level_tiles,
+    level_arguments,
     {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
@@ -68,15 +91,11 @@ constexpr Port up_ports[] = {
     {"surface", Usage::sampled_image, false, "utexture2D", "of this level", surface_formats},
     {"coarse_surface", Usage::sampled_image, true, "utexture2D", "of the coarser level; unbound at the last",
      surface_formats},
-    {"coarse_scattered",
-     Usage::sampled_image,
-     true,
-     "texture2D",
-     "of the coarser level; unbound at the last",
-     {}},
-    {"coarse_mass", Usage::sampled_image, true, "texture2D", "of the coarser level; unbound at the last", {}},
-    {"scattered", Usage::storage_image_write, false, "image2D", scattered_doc, light_formats},
-    {"mass", Usage::storage_image_write, false, "image2D", mass_doc, light_formats},
+    {"coarse_scattered", Usage::sampled_image, true, "utexture2D",
+     "of the coarser level; unbound at the last", surface_formats},
+    level_tiles,
+    level_arguments,
+    {"scattered", Usage::storage_image_write, false, "uimage2D", scattered_doc, surface_formats},
 };
 constexpr KindSetting up_settings[] = {level_setting(1, "that is written"), variant};
 
@@ -84,17 +103,27 @@ constexpr Port gather_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of level 0", {}},
     {"surface", Usage::sampled_image, false, "utexture2D", "of level 0", surface_formats},
     {"coarse_surface", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
-    {"coarse_scattered", Usage::sampled_image, false, "texture2D", "of level 1", {}},
-    {"coarse_mass", Usage::sampled_image, false, "texture2D", "of level 1", {}},
-    {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
-    port::tiles,
-    port::arguments,
+    {"coarse_scattered", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
+    level_tiles,
+    level_arguments,
     {"scattered", Usage::storage_image_write, false, "image2D",
      "rgb scattered light where there is subsurface, undefined elsewhere; a = confidence", light_formats},
 };
 constexpr KindSetting gather_settings[] = {variant};
 
 } // namespace
+
+const PassKind sap_tiles_kind{
+    .name = "subsurface.sap_tiles",
+    .shader = "subsurface_sap_tiles",
+    .doc =
+        "Lists the tiles of every level of the surface-aware pyramid that can hold surface, and the indirect "
+        "arguments for them, in one pass and in row order.",
+    .ports = tiles_ports,
+    .settings = {},
+    .dispatch = DispatchShape::single_group,
+    .side_effects = false,
+};
 
 const PassKind sap_setup_kind{
     .name = "subsurface.sap_setup",
@@ -112,8 +141,9 @@ const PassKind sap_down_kind{
     .doc = "Reduces one level of the pyramid along the surface; stops at depth steps and other profiles.",
     .ports = down_ports,
     .settings = down_settings,
-    .dispatch = DispatchShape::over_written,
+    .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
+    .arguments_entry = "level",
 };
 
 const PassKind sap_up_kind{
@@ -122,8 +152,9 @@ const PassKind sap_up_kind{
     .doc = "Blends one level of the pyramid with what comes from the coarser ones.",
     .ports = up_ports,
     .settings = up_settings,
-    .dispatch = DispatchShape::over_written,
+    .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
+    .arguments_entry = "level",
 };
 
 const PassKind sap_gather_kind{

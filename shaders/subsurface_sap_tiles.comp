@@ -1,0 +1,97 @@
+#version 460
+// Lists, for every level of the surface-aware pyramid, the 8x8 tiles that can hold surface, and the arguments of indirect
+// dispatches over them: one group, no atomics on the lists, so the same classes give the same lists. Each invocation owns a
+// run of consecutive tiles.
+#extension GL_GOOGLE_include_directive : require
+#include "subsurface_sap_tiles.bindings.glsl"
+#include "environment.glsl"
+#include "sap_lists.glsl"
+
+const uint lanes = 256u;
+layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
+
+const int flag_words = 1536; // a level with more tiles (views beyond 3500x3500) is listed whole
+shared uint flags[2][flag_words]; // of the level and of the finer one, a bit a tile
+shared uint counts[lanes];
+
+bool fits(ivec2 tiles) { return tiles.x * tiles.y <= 32 * flag_words; }
+
+// Whether a tile of a level can hold surface; false outside.
+bool is_flagged(int level, ivec2 tile) {
+  ivec2 tiles = sap_level_tiles(level);
+  if (any(lessThan(tile, ivec2(0))) || any(greaterThanEqual(tile, tiles)))
+    return false;
+  int index = tile.y * tiles.x + tile.x;
+  if (level == 0)
+    return classes_data[index] != class_none;
+  return !fits(tiles) || (flags[level & 1][index >> 5] >> uint(index & 31) & 1u) != 0u;
+}
+// A bit for each of the 3x3 tiles from `first` on.
+uint flags_from(int level, ivec2 first) {
+  uint mask = 0u;
+  for (int i = 0; i < 9; ++i)
+    mask |= is_flagged(level, first + ivec2(i % 3, i / 3)) ? 1u << uint(i) : 0u;
+  return mask;
+}
+
+void main() {
+  uint lane = gl_LocalInvocationIndex;
+  uint next = uint(sap_levels); // the lists' heads come first
+  for (int level = 0; level < sap_levels; ++level) {
+    ivec2 tiles = sap_level_tiles(level);
+    if (level > 0 && fits(tiles)) {
+      for (int word = int(lane); word < (tiles.x * tiles.y + 31) >> 5; word += int(lanes)) {
+        uint bits = 0u;
+        for (int i = 0; i < min(32, tiles.x * tiles.y - 32 * word); ++i) {
+          ivec2 tile = ivec2((32 * word + i) % tiles.x, (32 * word + i) / tiles.x);
+          bits |= flags_from(level - 1, 2 * tile - 1) != 0u ? 1u << uint(i) : 0u;
+        }
+        flags[level & 1][word] = bits;
+      }
+      barrier();
+    }
+    int run = (tiles.x * tiles.y + int(lanes) - 1) / int(lanes);
+    int first = min(int(lane) * run, tiles.x * tiles.y), last = min(first + run, tiles.x * tiles.y);
+    uint own = 0u;
+    for (int i = first; i < last; ++i)
+      own += is_flagged(level, ivec2(i % tiles.x, i / tiles.x)) ? 1u : 0u;
+    counts[lane] = own;
+    barrier();
+    for (uint stride = 1u; stride < lanes; stride *= 2u) { // inclusive scan, Hillis & Steele 1986
+      uint before = lane >= stride ? counts[lane - stride] : 0u;
+      barrier();
+      counts[lane] += before;
+      barrier();
+    }
+    uint at = next + counts[lane] - own;
+    for (int i = first; i < last; ++i) {
+      ivec2 tile = ivec2(i % tiles.x, i / tiles.x);
+      if (!is_flagged(level, tile))
+        continue;
+      uint place = uint(tile.x) | uint(tile.y) << 15;
+      uint copy = level == 0 && classes_data[i] == class_copy ? tile_copy_bit : 0u;
+      uint children = level > 0 ? flags_from(level - 1, 2 * tile - 1) : 0u;
+      if (level == 0)
+        tiles_data[1u + at - next] = place | copy;
+      level_tiles_data[at++] = uvec2(place | copy, children | flags_from(level, tile - 1) << 9);
+    }
+    uint listed = counts[lanes - 1u];
+    if (lane == 0u && level == 0) { // a group a tile
+      tiles_data[0] = listed;
+      arguments_data[0] = min(listed, tile_groups_per_row);
+      arguments_data[1] = (listed + tile_groups_per_row - 1u) / tile_groups_per_row;
+      arguments_data[2] = 1u;
+    }
+    if (lane == 0u) {
+      uint per_group = level == 0 ? sap_tiles_per_group_first : sap_tiles_per_group;
+      uint groups = (listed + per_group - 1u) / per_group;
+      level_tiles_data[level] = uvec2(next, listed);
+      level_arguments_data[4 * level] = min(groups, tile_groups_per_row);
+      level_arguments_data[4 * level + 1] = (groups + tile_groups_per_row - 1u) / tile_groups_per_row;
+      level_arguments_data[4 * level + 2] = 1u;
+      level_arguments_data[4 * level + 3] = groups;
+    }
+    next += listed;
+    barrier();
+  }
+}
