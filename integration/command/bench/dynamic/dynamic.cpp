@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <numeric>
 
@@ -191,6 +192,44 @@ demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
   return demo::success();
 }
 
+std::string facts_text(const Report& report) {
+  std::string text;
+  for (const auto& [name, value] : report.facts)
+    text += fmt::format("{}: {}\n", name, value);
+  return text;
+}
+
+// sap_residual against afis + ccv (8..64) over the gated sequences with light that changes: samples and time
+// as ratios (geometric means), PSNR as a difference (mean).
+void add_comparison(Bench& bench) {
+  double log_samples = 0, log_ms = 0, difference = 0;
+  int count = 0;
+  ReportTable& table = bench.report.table;
+  const auto text = [&](size_t row, const char* key) { return std::get<std::string>(table.at(row, key)); };
+  const auto number = [&](size_t row, const char* key) { return std::get<double>(table.at(row, key)); };
+  const auto row_of = [&](const std::string& scene, const std::string& technique,
+                          const std::string& guidance) {
+    for (size_t i = 0; i < table.rows.size(); ++i)
+      if (text(i, "scene") == scene && text(i, "framing") == "close" && text(i, "technique") == technique &&
+          text(i, "guidance") == guidance)
+        return i;
+    return table.rows.size();
+  };
+  for (const char* scene : {"flashing", "regular", "dynamic"}) {
+    const size_t ours = row_of(scene, "sap_residual", "conf"), theirs = row_of(scene, "afis", "ccv");
+    if (ours == table.rows.size() || theirs == table.rows.size()) continue;
+    ++count;
+    log_samples += std::log(number(ours, "mean_spp") / number(theirs, "mean_spp"));
+    log_ms += std::log(number(ours, "mean_ms") / number(theirs, "mean_ms"));
+    difference += number(ours, "psnr_db_frame") - number(theirs, "psnr_db_frame");
+  }
+  if (count == 0) return;
+  bench.report.facts.emplace_back(
+      "sap_residual against afis + ccv",
+      fmt::format("{} sequences: samples x {:.3f}, time x {:.3f}, PSNR {:+.2f} dB", count,
+                  std::exp(log_samples / count), std::exp(log_ms / count), difference / count));
+}
+
 std::vector<ReportColumn> columns() {
   return {{"scene", "scene"},
           {"d_px", "d, px"},
@@ -268,10 +307,11 @@ ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& option
   bench.report.facts.emplace_back("truth", fmt::format("at {} stratified pixels a frame", file->subset));
   bench.report.facts.emplace_back("frames",
                                   fmt::format("counted from number {} of each sequence on", file->counted));
+  add_comparison(bench);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   bench.report.facts.emplace_back("took", format_duration(seconds));
   if (!session.quiet && options.json != "-" && options.html != "-" && options.csv != "-")
-    print(text_of(bench.report) + fmt::format("took {}\n", format_duration(seconds)));
+    print(text_of(bench.report) + facts_text(bench.report));
   const std::string problem = deliver_report(bench.report, options.json, options.csv, options.html);
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }
