@@ -47,6 +47,7 @@ void choose(CompileContext& c) {
   c.settings.clear();
   c.on.clear();
   c.kind_of.clear();
+  c.ordered = false;
   for (uint32_t i = 0; i < c.graph->settings.size(); ++i) {
     const SettingDeclaration& declared = c.graph->settings[i];
     const bool given = !c.input->settings.empty();
@@ -69,6 +70,7 @@ void choose(CompileContext& c) {
     }
     const ExpressionId when = c.graph->passes[i].when;
     c.kind_of.push_back(c.graph->passes[i].kind);
+    c.ordered |= !c.graph->passes[i].after.empty();
     c.on.push_back(!when.valid() || evaluate(*c.graph, when, c.settings));
     if (!c.on.back()) c.because(Reason::About::pass, i, Reason::Why::off);
   }

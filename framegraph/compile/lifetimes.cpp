@@ -67,12 +67,6 @@ void note(CompileContext& c, uint32_t u, const PassKind& kind) {
   life.first_narrow = static_cast<uint32_t>(c.narrow.size() - 1);
 }
 
-// When the oldest frame of a history is read for the last time, and when this frame's is first touched.
-struct Renewal {
-  uint32_t last_read = 0, first_touch = no_value;
-  bool own_texels = true; // whether the pass that writes reads the oldest frame in no other way
-};
-
 Renewal renewal_of(const CompileContext& c, ResourceId id, uint32_t deepest) {
   Renewal result;
   for (uint32_t position = 0; position < c.order.size(); ++position) {
@@ -100,7 +94,7 @@ void renew_in_place(CompileContext& c) {
   for (PlanResource& resource : c.out->plan.resources) {
     Lifetime& life = c.lifetimes[resource.declared.value];
     if (life.deepest_read == 0 || !c.input->alias || resource.declared == c.input->keep_alive) continue;
-    const Renewal renewal = renewal_of(c, resource.declared, life.deepest_read);
+    const Renewal renewal = life.renewal = renewal_of(c, resource.declared, life.deepest_read);
     life.updates_oldest = renewal.last_read == renewal.first_touch && renewal.own_texels;
     if (renewal.last_read >= renewal.first_touch && !life.updates_oldest) continue;
     resource.instance_count = life.deepest_read;

@@ -46,6 +46,32 @@ struct Orderer {
 
   // Fills c.before; false if some pass that is on needs one that does not stand before it.
   bool collect() {
+    const bool plain = !c.overwrites && !c.ordered && !c.values.empty();
+    return plain ? collect_producers() : collect_all();
+  }
+
+  // Where passes wait for producers only. One loop over all uses, which does not branch on what it finds.
+  bool collect_producers() {
+    bool forward = true;
+    uint32_t count = 0;
+    c.before.resize(c.uses.size() + 1);
+    c.first_before.assign(size_t{passes} + 1, 0);
+    for (const Use& use : c.uses) {
+      const bool reads = (use.trouble == Use::Trouble::none) & (use.read_value != no_value);
+      const PassId other = c.values[reads ? use.read_value : 0].producer;
+      const bool waits = reads & other.valid() & (other != use.pass);
+      forward &= !waits | (other < use.pass);
+      c.before[count] = other.value;
+      count += static_cast<uint32_t>(waits) & c.live[use.pass.value]; // what it reads is alive, too
+      c.first_before[use.pass.value + 1] = count;
+    }
+    c.before.resize(count);
+    for (uint32_t pass = 0; pass < passes; ++pass) // those without uses
+      c.first_before[pass + 1] = std::max(c.first_before[pass + 1], c.first_before[pass]);
+    return forward;
+  }
+
+  bool collect_all() {
     bool forward = true;
     size_t reader = 0;
     c.before.clear();
@@ -73,19 +99,20 @@ struct Orderer {
       if (c.live[pass]) c.order.push_back(PassId{pass});
   }
 
-  // From where to where each resource is used if the passes run in `sequence`.
+  // From where to where each resource is used if the passes run in `sequence`; one more, for what is not.
   template <class Sequence> void find_intervals(const Sequence& sequence, std::vector<Interval>& intervals) {
-    intervals.assign(c.graph->resources.size(), {});
+    const auto nowhere = static_cast<uint32_t>(c.graph->resources.size());
+    intervals.assign(size_t{nowhere} + 1, {});
+    c.position.resize(passes);
     uint32_t position = 0;
-    for (const auto& item : sequence) {
-      const uint32_t pass = number(item);
-      for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
-        if (c.uses[u].trouble != Use::Trouble::none) continue;
-        Interval& interval = intervals[c.uses[u].resource.value];
-        interval.first = std::min(interval.first, position);
-        interval.last = position;
-      }
-      ++position;
+    for (const auto& item : sequence)
+      c.position[number(item)] = position++;
+    for (const Use& use : c.uses) {
+      const bool counts = (use.trouble == Use::Trouble::none) & (c.live[use.pass.value] != 0);
+      Interval& interval = intervals[counts ? use.resource.value : nowhere];
+      const uint32_t at = c.position[use.pass.value];
+      interval.first = std::min(interval.first, at);
+      interval.last = std::max(interval.last, at);
     }
   }
   static uint32_t number(PassId pass) { return pass.value; }
@@ -94,7 +121,7 @@ struct Orderer {
   // The most bytes of transients alive at once.
   uint64_t most_alive(const std::vector<Interval>& intervals) {
     c.changes.assign(c.order.size() + 1, 0);
-    for (uint32_t r = 0; r < intervals.size(); ++r) {
+    for (uint32_t r = 0; r < c.transient_bytes.size(); ++r) {
       if (intervals[r].first == no_value) continue;
       const auto bytes = static_cast<int64_t>(c.transient_bytes[r]);
       c.changes[intervals[r].first] += bytes;
@@ -110,14 +137,13 @@ struct Orderer {
   // leaves. Sorts what each waits for into the order in which it is best done.
   void estimate() {
     c.peak_bytes.assign(passes, 0);
-    c.output_bytes.assign(passes, 0);
+    c.output_bytes.assign(size_t{passes} + 1, 0); // one more, for what no pass writes
+    for (const Value& value : c.values) {
+      const uint64_t bytes = value.previous == no_value ? c.transient_bytes[value.resource.value] : 0;
+      c.output_bytes[std::min(value.producer.value, passes)] += bytes;
+    }
     for (const PassId pass : c.order) {
-      uint64_t output = 0, running = 0, peak = 0;
-      for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
-        const Use& use = c.uses[u];
-        if (use.trouble != Use::Trouble::none || use.write_value == no_value) continue;
-        if (c.values[use.write_value].previous == no_value) output += c.transient_bytes[use.resource.value];
-      }
+      uint64_t running = 0, peak = 0;
       const auto gain = [&](uint32_t p) { return c.peak_bytes[p] - c.output_bytes[p]; };
       const uint32_t first = c.first_before[pass.value], end = c.first_before[pass.value + 1];
       for (uint32_t i = first + 1; i < end; ++i) // few
@@ -127,8 +153,7 @@ struct Orderer {
         peak = std::max(peak, running + c.peak_bytes[c.before[i]]);
         running += c.output_bytes[c.before[i]];
       }
-      c.output_bytes[pass.value] = output;
-      c.peak_bytes[pass.value] = std::max(peak, running + output);
+      c.peak_bytes[pass.value] = std::max(peak, running + c.output_bytes[pass.value]);
     }
   }
 

@@ -31,6 +31,7 @@ void make_placements(CompileContext& c) {
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
     PlanResource& resource = plan.resources[r];
     if (c.host_owned(resource.declared)) continue;
+    if (c.loans[r].from != no_value) continue;
     const Interval& life = c.intervals[resource.declared.value];
     const MemoryNeeds& needs = c.needs[r];
     const bool persistent = c.lifetimes[resource.declared.value].deepest_read > 0;
@@ -87,13 +88,57 @@ void place_group(CompileContext& c, uint32_t index) {
   plan.heaps.push_back(heap);
 }
 
-} // namespace
-
-void pack(CompileContext& c) {
+void place_all(CompileContext& c) {
+  Plan& plan = c.out->plan;
   c.groups.clear();
+  plan.heaps.clear();
+  plan.placements.clear();
+  plan.transient_bytes = plan.history_bytes = 0;
   make_placements(c);
   for (uint32_t g = 0; g < c.groups.size(); ++g)
     place_group(c, g);
+}
+
+// Behind all others: an instance of each borrower for each of its lender's. In frame f the one that is
+// written is f mod n, and the one with the oldest frame the next of the n.
+void place_borrowers(CompileContext& c) {
+  Plan& plan = c.out->plan;
+  for (uint32_t r = 0; r < plan.resources.size(); ++r) {
+    const Loan& loan = c.loans[r];
+    if (loan.from == no_value) continue;
+    PlanResource& resource = plan.resources[r];
+    const PlanResource& lender = plan.resources[loan.from];
+    const Interval& life = c.intervals[resource.declared.value];
+    resource.first_instance = static_cast<uint32_t>(plan.placements.size());
+    resource.instance_count = lender.instance_count;
+    for (uint32_t i = 0; i < resource.instance_count; ++i) {
+      const uint32_t slot = (i + (loan.after ? 1 : 0)) % lender.instance_count;
+      const Placement there = plan.placements[lender.first_instance + slot];
+      Placement& placement = plan.placements.emplace_back();
+      placement.resource = r;
+      placement.heap = there.heap;
+      placement.offset = there.offset + loan.offset;
+      placement.size = c.needs[r].size;
+      placement.alignment = c.needs[r].alignment;
+      placement.first_use = life.first;
+      placement.last_use = life.last;
+    }
+    c.because(Reason::About::resource, resource.declared.value, Reason::Why::borrows_memory,
+              lender.declared.value, loan.after ? 1 : 0);
+  }
+}
+
+} // namespace
+
+void pack(CompileContext& c) {
+  c.loans.assign(c.out->plan.resources.size(), {});
+  place_all(c);
+  if (!find_loans(c)) return;
+  const uint64_t without = c.out->plan.transient_bytes;
+  place_all(c);
+  if (c.out->plan.transient_bytes < without) return place_borrowers(c);
+  c.loans.assign(c.loans.size(), {});
+  place_all(c);
 }
 
 } // namespace dermis

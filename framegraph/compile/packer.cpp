@@ -4,16 +4,19 @@
 #include "framegraph/model/splitmix.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <numeric>
 
 namespace dermis {
 namespace {
 
-// Comparisons of two items the searches may make; one takes about a nanosecond.
+// Comparisons of two items the searches may make; one takes about a nanosecond, several in large graphs,
+// which the caches do not hold.
 constexpr uint64_t tight_steps_per_item = 10'000;
+constexpr uint64_t most_tight_steps = 25'000'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
-constexpr uint32_t block_passes = 32; // positions that share one list of what is alive in them
+constexpr uint32_t block_passes = 24; // positions that share one list of what is alive in them
 constexpr uint64_t unlimited = UINT64_MAX;
 
 uint64_t align_up(uint64_t value, uint64_t alignment) {
@@ -245,6 +248,7 @@ void Packer::try_orders(Packing& out) {
   try_sorted([&](uint32_t i) { return items_[i].size; });
   try_sorted([&](uint32_t i) { return items_[i].size * duration(i); });
   try_sorted([&](uint32_t i) { return duration(i); });
+  try_sorted([&](uint32_t i) { return std::bit_width(duration(i)); });
   try_sorted([&](uint32_t i) { return ~uint64_t{items_[i].first}; });
 }
 
@@ -342,9 +346,9 @@ void Packer::pack(std::span<const PackItem> items, PackingLevel level, Packing& 
   if (level == PackingLevel::fast) return;
   place_by_time(out);
   if (out.size == out.lower_bound) return;
-  const uint64_t budget =
-      level == PackingLevel::optimize ? optimize_steps : tight_steps_per_item * items.size();
-  if (level == PackingLevel::tight && items.size() * items.size() > budget) return;
+  const uint64_t budget = level == PackingLevel::optimize
+                              ? optimize_steps
+                              : std::min(tight_steps_per_item * items.size(), most_tight_steps);
   best_fit_ = Fit::tightest;
   try_orders(out);
   if (out.size > out.lower_bound && steps_ < budget) search(budget - steps_, out);

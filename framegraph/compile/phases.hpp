@@ -28,6 +28,7 @@ struct ResourceFacts {
   bool image = true, imported = false, exported = false, optional = false;
   bool host_owned = false; // its memory comes from the host in this plan
   bool history = false;
+  uint32_t layers = 1;
   uint32_t parts = 1; // that ports tell apart
 };
 
@@ -62,12 +63,19 @@ struct Use {
   Trouble trouble = Trouble::none;
 };
 
+// When the oldest frame of a history is read for the last time, and when this frame's is first touched.
+struct Renewal { // positions in the order
+  uint32_t last_read = 0, first_touch = no_value;
+  bool own_texels = true; // whether the pass that writes reads the oldest frame in no other way
+};
+
 // How a resource is used by the passes that run.
 struct Lifetime {
   bool used = false;
   uint32_t vk_usage = 0;
   uint32_t deepest_read = 0;        // largest frames_back that a live pass reads
   bool updates_oldest = false;      // the pass that reads the deepest one writes this frame's over it
+  Renewal renewal;                  // of a history that is read
   uint32_t first_narrow = no_value; // into CompileContext::narrow: a port that limits the format
 };
 
@@ -115,14 +123,21 @@ struct PassTouch { // all accesses of one pass to one object
   Layout layout = Layout::undefined;
 };
 
+struct Loan {               // memory of a history that a transient uses while it holds nothing: see lend.cpp
+  uint32_t from = no_value; // into Plan::resources: the history
+  bool after = false;       // the last read of its oldest frame; false: before it is written
+  uint64_t offset = 0;      // in each of its instances
+};
+
 struct Segment { // bytes of a heap and who had them last in this frame
   uint64_t begin = 0, end = 0;
-  uint32_t resource = 0; // into Plan::resources
+  uint32_t resource = 0;    // into Plan::resources
+  uint32_t frames_back = 0; // a history's
 };
 
 struct Arrival { // a first use whose bytes nothing in this frame had before
   uint64_t begin = 0, end = 0;
-  uint32_t heap = 0, barrier = 0, resource = 0;
+  uint32_t memory = 0, barrier = 0, resource = 0; // into CompileContext::memory
 };
 
 struct PartArrival { // the first use of a part of an image whose memory another part has taken over
@@ -159,6 +174,7 @@ struct CompileContext {
   std::vector<SettingValue> settings;
   std::vector<uint8_t> on;     // by pass: `when` holds
   std::vector<KindId> kind_of; // by pass
+  bool ordered = false;        // some pass has an `after`
   // parts: images of which ports name parts fall into the fewest that every port sees whole. The first part
   // of a resource has the number of the resource, the others follow behind all resources.
   std::vector<uint32_t> further_parts;                    // by resource: number of its second part
@@ -191,13 +207,15 @@ struct CompileContext {
   std::vector<uint32_t> first_before, before;         // by pass, and one more: passes that must run before it
   std::vector<std::pair<uint32_t, uint32_t>> readers; // pass that writes over a value, pass that reads it
   std::vector<uint64_t> peak_bytes, output_bytes;     // by pass
-  std::vector<uint32_t> candidate, stack, uses_cursor;
-  std::vector<Interval> intervals, other_intervals; // by resource, in c.order and in the candidate
+  std::vector<uint32_t> candidate, stack, uses_cursor, position;
+  std::vector<Interval> intervals, other_intervals; // by resource and one more, in c.order and in the
+                                                    // candidate
   std::vector<int64_t> changes;                     // by position: bytes that come alive less those that die
   std::vector<uint8_t> seen;
   std::vector<uint8_t> kind_fits; // by kind: 0 not looked at, 1 within the device's limits, 2 not
   // pack
   std::vector<MemoryGroup> groups;
+  std::vector<Loan> loans; // by plan resource
   std::vector<PackItem> items;
   std::vector<uint32_t> item_placement;
   Packer packer;
@@ -207,7 +225,8 @@ struct CompileContext {
   std::vector<ObjectState> states, ends;
   std::vector<PassTouch> touches;
   std::vector<uint32_t> touch_of_use;
-  std::vector<std::vector<Segment>> memory; // by heap
+  std::vector<uint32_t> lent_memory;        // by plan resource: into `memory`, of what it lends
+  std::vector<std::vector<Segment>> memory; // by heap, then two for each history that lends
   std::vector<PlanBarrier> drafts;          // as found, before they are sorted into batches
   std::vector<uint32_t>
       batch_of; // by draft: position of the pass it stands before; then its place in the plan
@@ -272,6 +291,7 @@ void resolve_formats(CompileContext& context); // one format each, Plan::resourc
 void order(CompileContext& context);           // in which order; refuses cycles
 void lifetimes(CompileContext& context);       // first and last use, Plan::passes
 void pack(CompileContext& context);            // heaps and placements
+bool find_loans(CompileContext& context);      // of pack: who uses memory of histories; false: nobody
 void synchronize(CompileContext& context);     // accesses and barriers
 
 // The passes marked in c.live in the order of the file, dependencies before all. Only for graphs in which

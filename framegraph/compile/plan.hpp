@@ -21,7 +21,8 @@ struct SubresourceRange {
   constexpr bool operator==(const SubresourceRange&) const = default;
 };
 
-// A physical image or buffer. Transients have one instance; a history resource of which N earlier frames are
+// A physical image or buffer. Transients have one instance, or one in each instance of a history whose memory
+// they use while it holds nothing; a history resource of which N earlier frames are
 // read has N+1, or N where a frame may be written into the memory of the oldest. In frame f (counted per view
 // from 0), `frames_back` b of resource r lives in instance first_instance + (f - b) mod instance_count.
 struct PlanResource {
@@ -56,7 +57,7 @@ struct Heap {
   uint32_t memory_type_bits = 0xffffffffu; // allowed memory types, all occupants agreed
   uint64_t size = 0, alignment = 1;
   uint64_t max_live_bytes = 0; // lower bound of any packing
-  bool persistent = false;     // holds history instances only; else transients only
+  bool persistent = false;     // holds histories, and transients that use their memory; else transients only
 };
 
 // async: a second queue of another family, which runs beside the first.
@@ -188,6 +189,7 @@ struct Reason {
     history_unread,     // no pass that runs reads its earlier frames
     history_read,       // earlier frames are read, down to a
     renewed_in_place,   // the oldest frame a has been read when this one is written; b: 1 by the same pass
+    borrows_memory,     // of history a; b: 0 before that is written, 1 after its oldest frame was read
     // of a barrier; b: 1 if that was in the frame before
     from_host,       // the first access to resource a takes it over
     oldest_instance, // of resource a becomes that of this frame

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace dermis {
 namespace {
@@ -13,29 +14,25 @@ constexpr uint64_t largest_side = 0xffffffffull;
 
 // align_up(round(base * factor), align), at least 1, and the border on both sides; nullopt beyond 32 bits.
 std::optional<uint32_t> scaled(uint64_t base, Rational factor, const SizeExpression& size) {
-  const Rounding rounding = size.rounding;
-  const uint32_t align = size.align;
   if (factor.numerator < 0 || factor.denominator <= 0) return std::nullopt;
   const auto numerator = static_cast<uint64_t>(factor.numerator);
   const auto denominator = static_cast<uint64_t>(factor.denominator);
-  if (numerator != 0 && base > UINT64_MAX / numerator) return std::nullopt;
+  const bool wide = ((base | numerator) >> 32) != 0;
+  if (wide && numerator != 0 && base > UINT64_MAX / numerator) return std::nullopt;
   const uint64_t product = base * numerator;
-  uint64_t value = denominator == 1 ? product : product / denominator;
-  if (rounding == Rounding::ceil && value * denominator != product) ++value;
-  value = std::max<uint64_t>(value, 1);
+  const uint64_t whole = product / denominator;
+  const bool up = (size.rounding == Rounding::ceil) & (whole * denominator != product);
+  const uint64_t value = std::max<uint64_t>(whole + (up ? 1 : 0), 1);
   if (value > largest_side) return std::nullopt;
-  const uint64_t step = std::max<uint32_t>(align, 1);
-  if (step != 1) value = (value + step - 1) / step * step;
-  value += 2 * uint64_t{size.border};
-  if (value > largest_side) return std::nullopt;
-  return static_cast<uint32_t>(value);
+  const uint64_t step = std::max<uint32_t>(size.align, 1);
+  const uint64_t aligned = step == 1 ? value : (value + step - 1) / step * step;
+  const uint64_t side = aligned + 2 * uint64_t{size.border};
+  if (side > largest_side) return std::nullopt;
+  return static_cast<uint32_t>(side);
 }
 
 uint32_t full_chain(uint32_t width, uint32_t height) {
-  uint32_t levels = 1;
-  for (uint32_t side = std::max(width, height); side > 1; side /= 2)
-    ++levels;
-  return levels;
+  return static_cast<uint32_t>(std::bit_width(std::max({width, height, 1u})));
 }
 
 struct SizeResolver {
@@ -51,10 +48,6 @@ struct SizeResolver {
   // recursion.
   void resolve(ResourceId wanted) {
     if (c.size_marks[wanted.value] != untouched) return;
-    if (c.graph->resources[wanted.value].size.base != SizeExpression::Base::resource) {
-      c.size_marks[wanted.value] = evaluate(wanted) ? done : failed;
-      return;
-    }
     std::vector<ResourceId>& chain = c.size_chain;
     chain.assign(1, wanted);
     while (true) { // walk to the first resource whose base is known
@@ -247,7 +240,10 @@ void resolve_sizes(CompileContext& c) {
   const auto count = c.graph->resources.size();
   c.bound.assign(count, 0);
   c.extents.assign(count, {});
-  c.facts.clear();
+  c.facts.assign(count, {});
+  c.size_marks.assign(count, SizeResolver::untouched);
+  SizeResolver resolver{c};
+  bool by_others = false;
   constexpr size_t ahead = 6;
   for (uint32_t i = 0; i < count; ++i) {
     if (i + ahead < count) {
@@ -257,24 +253,29 @@ void resolve_sizes(CompileContext& c) {
     }
     const ResourceDeclaration& declared = c.graph->resources[i];
     const bool slot = declared.origin == Origin::imported || declared.exported;
-    ResourceFacts& facts = c.facts.emplace_back();
+    ResourceFacts& facts = c.facts[i];
     facts.image = declared.type == ResourceType::image;
     facts.imported = declared.origin == Origin::imported;
     facts.exported = declared.exported;
     facts.optional = declared.optional;
     facts.history = declared.history.frames != 0;
-    c.bound[i] = slot && (!declared.optional || c.input->bound.empty() || c.input->bound[i]);
-    facts.host_owned = facts.imported || (slot && c.bound[i]);
-    if (slot && !c.bound[i]) c.because(Reason::About::resource, i, Reason::Why::unbound);
-    if (slot && declared.history.frames > 0)
-      c.diagnostics->add(
-          DiagnosticId::history_of_host_memory, declared.where,
-          fmt::format("'{}' is bound by the host, so its earlier frames are not the graph's to keep",
-                      declared.name));
+    facts.layers = declared.layers;
+    if (slot) {
+      c.bound[i] = !declared.optional || c.input->bound.empty() || c.input->bound[i];
+      facts.host_owned = facts.imported || c.bound[i];
+      if (!c.bound[i]) c.because(Reason::About::resource, i, Reason::Why::unbound);
+      if (facts.history)
+        c.diagnostics->add(
+            DiagnosticId::history_of_host_memory, declared.where,
+            fmt::format("'{}' is bound by the host, so its earlier frames are not the graph's to keep",
+                        declared.name));
+    }
+    if (declared.size.base == SizeExpression::Base::resource)
+      by_others = true;
+    else
+      c.size_marks[i] = resolver.evaluate(ResourceId{i}) ? SizeResolver::done : SizeResolver::failed;
   }
-  c.size_marks.assign(count, SizeResolver::untouched);
-  SizeResolver resolver{c};
-  for (uint32_t i = 0; i < count; ++i)
+  for (uint32_t i = 0; by_others && i < count; ++i)
     resolver.resolve(ResourceId{i});
 }
 
@@ -294,17 +295,17 @@ void resolve_formats(CompileContext& c) {
     const int32_t own_slot = is_slot ? slot++ : -1;
     const Lifetime& life = c.lifetimes[i];
     if (!life.used && !c.bound[i]) continue;
-    const ResourceDeclaration& declared = c.graph->resources[i];
+    const ResourceFacts& facts = c.facts[i];
     PlanResource& resource = plan.resources.emplace_back();
-    if (declared.type == ResourceType::image) choose_format(c, id, resource.format);
+    if (facts.image) choose_format(c, id, resource.format);
     resource.declared = id;
-    resource.type = declared.type;
-    resource.origin = declared.origin;
-    resource.exported = declared.exported && c.bound[i];
+    resource.type = facts.image ? ResourceType::image : ResourceType::buffer;
+    resource.origin = facts.imported ? Origin::imported : Origin::transient;
+    resource.exported = facts.exported && c.bound[i];
     resource.width = c.extents[i].width;
     resource.height = c.extents[i].height;
     resource.mips = c.extents[i].mips;
-    resource.layers = declared.layers;
+    resource.layers = facts.layers;
     resource.bytes = c.extents[i].bytes;
     resource.vk_usage = life.vk_usage;
     resource.instance_count = life.deepest_read + 1;

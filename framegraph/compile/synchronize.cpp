@@ -405,6 +405,7 @@ struct Synchronizer {
       const bool in_place = own.instance_count < roles(touch.resource);
       const ObjectState& before = in_place ? c.states[oldest] : c.ends[oldest];
       if (in_place && !before.carried) after = before.last_pass;
+      if (c.lent_memory[touch.resource] != no_value) after = take_over(touch.resource, index);
       wait_for(barrier, tail(before));
       barrier.why = PlanBarrier::Why::history;
       because(index, Reason::Why::oldest_instance, touch.resource);
@@ -423,10 +424,10 @@ struct Synchronizer {
   }
 
   // The last pass of this frame that touched any part of the resource.
-  uint32_t last_pass(uint32_t resource) const {
+  uint32_t last_pass(const Segment& of) const {
     uint32_t last = no_value;
-    for (uint32_t part = 0; part < parts(resource); ++part) {
-      const ObjectState& state = c.states[c.first_object[resource] + part];
+    for (uint32_t part = 0; part < parts(of.resource); ++part) {
+      const ObjectState& state = c.states[c.first_object[of.resource] + of.frames_back + part];
       if (state.touched) last = last == no_value ? state.last_pass : std::max(last, state.last_pass);
     }
     return last;
@@ -437,30 +438,32 @@ struct Synchronizer {
   // to be done before it: the wait reaches them through it.
   // Returns the last pass of this frame that had any of them, no_value if none had.
   uint32_t take_over(uint32_t resource, uint32_t barrier) {
-    const Placement& place = plan.placements[plan.resources[resource].first_instance];
-    std::vector<Segment>& segments = c.memory[place.heap];
-    const uint64_t begin = place.offset, end = place.offset + place.size;
-    because(barrier, Reason::Why::first_use, resource);
-    c.arrival_of[resource] = barrier;
+    const auto [memory, begin, end] = memory_of(resource);
+    std::vector<Segment>& segments = c.memory[memory];
+    if (roles(resource) == 1) { // histories say what they wait for themselves
+      because(barrier, Reason::Why::first_use, resource);
+      c.arrival_of[resource] = barrier;
+    }
     const auto first = behind(segments, begin);
     auto last = first;
     uint64_t reached = begin;
     uint32_t after = no_value;
     for (; last != segments.end() && last->begin < end; ++last) {
-      if (last->begin > reached) c.arrivals.push_back({reached, last->begin, place.heap, barrier, resource});
-      inherit(last->resource, resource, barrier, false);
-      const uint32_t ended = last_pass(last->resource);
+      if (last->begin > reached) c.arrivals.push_back({reached, last->begin, memory, barrier, resource});
+      inherit(*last, resource, barrier, false);
+      const uint32_t ended = last_pass(*last);
       after = after == no_value ? ended : std::max(after, ended);
       reached = last->end;
     }
-    if (reached < end) c.arrivals.push_back({reached, end, place.heap, barrier, resource});
+    if (reached < end) c.arrivals.push_back({reached, end, memory, barrier, resource});
     // What is left of the first and the last of them stays.
     std::array<Segment, 3> pieces;
     size_t count = 0;
-    if (first != last && first->begin < begin) pieces[count++] = {first->begin, begin, first->resource};
-    pieces[count++] = {begin, end, resource};
+    if (first != last && first->begin < begin)
+      pieces[count++] = {first->begin, begin, first->resource, first->frames_back};
+    pieces[count++] = {begin, end, resource, 0};
     if (first != last && (last - 1)->end > end)
-      pieces[count++] = {end, (last - 1)->end, (last - 1)->resource};
+      pieces[count++] = {end, (last - 1)->end, (last - 1)->resource, (last - 1)->frames_back};
     const auto replaced = static_cast<size_t>(last - first);
     const size_t in_place = std::min(replaced, count);
     std::copy_n(pieces.begin(), in_place, first);
@@ -524,23 +527,56 @@ struct Synchronizer {
     frame_before ? need_frame_before(position, earlier) : need(position, earlier);
   }
 
-  void inherit(uint32_t from, uint32_t resource, uint32_t barrier, bool frame_before) {
-    for (uint32_t part = 0; part < parts(from); ++part)
-      inherit(c.states[c.first_object[from] + part], barrier, frame_before);
-    if (from != resource) c.drafts[barrier].why = PlanBarrier::Why::alias;
-    because(barrier, from == resource ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from,
-            frame_before ? 1 : 0);
+  void inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before) {
+    const uint32_t first = c.first_object[from.resource] + from.frames_back;
+    for (uint32_t part = 0; part < parts(from.resource); ++part)
+      inherit(c.states[first + part], barrier, frame_before);
+    if (from.resource != resource && roles(resource) == 1) c.drafts[barrier].why = PlanBarrier::Why::alias;
+    because(barrier, from.resource == resource ? Reason::Why::behind_last_use : Reason::Why::takes_memory,
+            from.resource, frame_before ? 1 : 0);
+  }
+
+  // The bytes in which a resource arrives. What a history lends is memory of its own, twice: before it is
+  // written, and after the last read of its oldest frame. The instance of the latter is that of the former in
+  // the next frame.
+  struct MemoryRange {
+    uint32_t memory = 0; // into c.memory
+    uint64_t begin = 0, end = 0;
+  };
+  MemoryRange memory_of(uint32_t resource) const {
+    const Placement& place = plan.placements[plan.resources[resource].first_instance];
+    const Loan& loan = c.loans[resource];
+    if (loan.from != no_value)
+      return {c.lent_memory[loan.from] + (loan.after ? 1 : 0), loan.offset, loan.offset + place.size};
+    if (c.lent_memory[resource] != no_value) return {c.lent_memory[resource], 0, place.size};
+    return {place.heap, place.offset, place.offset + place.size};
+  }
+
+  // The memory that histories lend: the oldest frame has it first.
+  void lend() {
+    auto memory = static_cast<uint32_t>(plan.heaps.size());
+    c.lent_memory.assign(plan.resources.size(), no_value);
+    for (const Loan& loan : c.loans) {
+      if (loan.from == no_value || c.lent_memory[loan.from] != no_value) continue;
+      c.lent_memory[loan.from] = memory;
+      memory += 2;
+      c.memory.resize(std::max<size_t>(c.memory.size(), memory));
+      c.memory[memory - 2].clear();
+      const uint64_t size = plan.placements[plan.resources[loan.from].first_instance].size;
+      c.memory[memory - 1].assign(1, {0, size, loan.from, roles(loan.from) - 1});
+    }
   }
 
   // A resource's own last use in the frame before counts wherever the others lie: a plan whose placements are
   // moved apart stays in order.
   void settle_arrivals() {
     for (uint32_t r = 0; r < c.arrival_of.size(); ++r)
-      if (c.arrival_of[r] != no_value && parts(r) == 1) inherit(r, r, c.arrival_of[r], true);
+      if (c.arrival_of[r] != no_value && parts(r) == 1) inherit({0, 0, r, 0}, r, c.arrival_of[r], true);
     for (const Arrival& arrival : c.arrivals) {
-      std::vector<Segment>& segments = c.memory[arrival.heap];
+      const bool lent = arrival.memory >= plan.heaps.size(); // in the frame before, the instance beside it
+      std::vector<Segment>& segments = c.memory[arrival.memory + (lent ? 1 : 0)];
       for (auto at = behind(segments, arrival.begin); at != segments.end() && at->begin < arrival.end; ++at)
-        if (at->resource != arrival.resource) inherit(at->resource, arrival.resource, arrival.barrier, true);
+        if (at->resource != arrival.resource) inherit(*at, arrival.resource, arrival.barrier, true);
     }
     settle_parts();
   }
@@ -615,6 +651,7 @@ void synchronize(CompileContext& c) {
   c.memory.resize(std::max(c.memory.size(), plan.heaps.size()));
   for (std::vector<Segment>& segments : c.memory)
     segments.clear();
+  walk.lend();
   walk.emit = true;
   c.drafts.clear();
   c.batch_of.clear();

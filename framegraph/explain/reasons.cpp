@@ -121,6 +121,10 @@ struct Speaker {
     case Reason::Why::renewed_in_place:
       return fmt::format("each frame takes the memory of @-{}, which {}", reason.a,
                          reason.b != 0 ? "its writer reads texel by texel" : "has been read by then");
+    case Reason::Why::borrows_memory:
+      return fmt::format("lies in memory of the history '{}', {}", resource(reason.a),
+                         reason.b != 0 ? "whose oldest frame has been read by then"
+                                       : "which this frame has not written by then");
     case Reason::Why::from_host:
       return fmt::format("takes '{}' over from the host", resource(reason.a));
     case Reason::Why::oldest_instance:
@@ -197,7 +201,12 @@ std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan)
     const Placement& own = plan.placements[by_first[at]];
     std::string& text = texts[by_first[at]];
     if (own.persistent) {
-      text = "shares no memory: its contents outlive the frame";
+      const bool lends =
+          std::any_of(plan.placements.begin(), plan.placements.end(), [&](const Placement& other) {
+            return !other.persistent && other.heap == own.heap && share_bytes(own, other);
+          });
+      text = lends ? "its contents outlive the frame; lends its memory while it holds nothing"
+                   : "shares no memory: its contents outlive the frame";
       continue;
     }
     const size_t from = at > named_neighbours ? at - named_neighbours : 0;

@@ -39,19 +39,19 @@ struct HistoryDeclaration {
   enum class OnResize : uint8_t { invalidate, rescale } on_resize = OnResize::invalidate;
 };
 
-struct ResourceDeclaration {
-  std::string name;
-  ResourceType type = ResourceType::image;
-  Origin origin = Origin::transient;
-  bool exported = false;       // its last version is handed to the host
-  bool optional = false;       // import or export that the host may leave unbound
+struct ResourceDeclaration {   // what every compile reads comes first
   std::vector<Format> formats; // in order of preference
   SizeExpression size;         // images; buffers: element count = ceil-size x*y + extra_elements
   uint32_t mips = 1;           // 0 = full chain
   uint32_t layers = 1;
-  uint32_t stride = 0;         // buffers: bytes an element
+  uint32_t stride = 0; // buffers: bytes an element
+  ResourceType type = ResourceType::image;
+  Origin origin = Origin::transient;
+  bool exported = false;       // its last version is handed to the host
+  bool optional = false;       // import or export that the host may leave unbound
   uint64_t extra_elements = 0; // buffers
   HistoryDeclaration history;
+  std::string name;
   std::string note;
   SourceLocation where;
 };
@@ -131,15 +131,15 @@ struct Ordering {
   SourceLocation where;
 };
 
-struct PassDeclaration {
-  std::string name;
+struct PassDeclaration { // what every compile reads comes first
   KindId kind;
   ExpressionId when;  // invalid: always
   bool async = false; // may run beside the others, where there are two queues
   std::vector<PortBinding> reads, writes;
-  std::vector<SettingBinding> settings;
-  std::vector<PassThrough> otherwise;
   std::vector<Ordering> after;
+  std::vector<PassThrough> otherwise;
+  std::vector<SettingBinding> settings;
+  std::string name;
   std::string note;
   SourceLocation where;
 };

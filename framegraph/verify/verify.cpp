@@ -489,6 +489,8 @@ std::vector<std::string> verify(const Plan& plan) {
   uint32_t frames = 3; // the first, one that follows it, and one that follows a frame like itself
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
+  for (const PlanResource& resource : plan.resources) // whoever uses one instance too many is found out when
+    frames = std::max(frames, 2 * resource.instance_count + 1); // that has become the oldest
   std::vector<ResourceParts> parts = parts_of(plan);
   uint64_t things = 0;
   for (size_t r = 0; r < parts.size(); ++r)

@@ -389,7 +389,8 @@ struct Oracle {
       for (size_t k = 0; k < i; ++k) {
         const Placement &m = plan.placements[i], &n = plan.placements[k];
         const bool disjoint =
-            !m.persistent && !n.persistent && (m.last_use < n.first_use || n.last_use < m.first_use);
+            m.persistent != n.persistent || // lent: contents tell
+            (!m.persistent && !n.persistent && (m.last_use < n.first_use || n.last_use < m.first_use));
         const bool bytes =
             m.heap == n.heap && std::max(m.offset, n.offset) < std::min(m.offset + m.size, n.offset + n.size);
         if (bytes && !disjoint) return fmt::format("placements {} and {} share live memory", k, i);
@@ -406,6 +407,8 @@ std::string first_hazard(const Plan& plan) {
   uint32_t frames = 3;
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
+  for (const PlanResource& resource : plan.resources) // contents of each instance, until it is the oldest
+    frames = std::max(frames, 2 * resource.instance_count + 1);
   oracle.unroll(frames + 1); // the beginning of the last one tells how the one before ended
   if (!oracle.misplaced.empty()) return oracle.misplaced;
   for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {

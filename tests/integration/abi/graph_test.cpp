@@ -2,6 +2,8 @@
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
+#include "integration/abi/graph.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -345,6 +347,32 @@ TEST_F(GraphLife, SettingsAreCheckedAndNamed) {
   EXPECT_EQ(dermis_graph_set_setting(graph, "texturing", "\"pre\"", nullptr), DERMIS_OK);
   EXPECT_EQ(dermis_graph_set_setting(graph, nullptr, "1", nullptr), DERMIS_ERROR_ARGUMENT);
   EXPECT_EQ(dermis_graph_set_setting(graph, "samples", nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
+}
+
+// Looks inside: nothing else tells a plan that was found from one that was compiled again.
+TEST_F(GraphLife, ASettingThatFlipsBackFindsThePlanOfItsSide) {
+  std::string text = with("\"settings\": {", "\"settings\": { \"combined\": { \"bool\": true },");
+  const std::string pass = "\"pass\": \"combine\",";
+  text.replace(text.find(pass), pass.size(), pass + " \"when\": \"combined\",");
+  GraphOptions options;
+  options.text = text;
+  const dermis_graph graph = make_graph(options);
+  ASSERT_NE(graph, nullptr) << dermis_last_error();
+  make_images(graph);
+  const auto bound = bindings(graph);
+  const PlanCache& plans = graph->plans;
+  EXPECT_EQ(plans.misses, 1u);
+  constexpr uint32_t flips = 6;
+  for (uint32_t i = 0; i < flips; ++i) {
+    ASSERT_EQ(dermis_graph_set_setting(graph, "combined", i % 2 == 0 ? "false" : "true", nullptr), DERMIS_OK)
+        << dermis_last_error();
+    EXPECT_EQ(plans.misses, 2u) << "one for each side, whatever the number of flips";
+    EXPECT_EQ(plans.hits, i);
+    dermis_frame one = frame(bound);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+  }
+  ASSERT_EQ(dermis_graph_set_setting(graph, "samples", "64", nullptr), DERMIS_OK);
+  EXPECT_EQ(plans.hits + plans.misses, 1u + flips) << "a setting that no `when` asks about needs no plan";
 }
 
 TEST_F(GraphLife, ASettingIsInEffectAtTheNextRecord) {

@@ -22,14 +22,15 @@ constexpr uint32_t rotating = 64;              // graphs that take turns, so tha
 constexpr uint64_t time_per_row = 300'000'000; // ns
 constexpr uint32_t least_samples = 5, most_samples = 200;
 constexpr uint32_t memory_passes = 100, memory_seeds = 50, fan_seeds = 20;
-constexpr double mebibyte = 1024.0 * 1024.0;
+constexpr double mebibyte = 1024.0 * 1024.0, ns_per_ms = 1e6;
 
 constexpr std::string_view level_names[] = {"fast", "tight", "optimize"};
 constexpr std::string_view order_names[] = {"memory", "program", "random"};
 
-// Goals for level fast on drawn random graphs and fans, ns a pass; 0: none is set.
-double time_goal(std::string_view shape, uint32_t passes, bool reasons) {
-  if (shape == "chain" || shape == "given") return 0.0;
+// Goals on drawn random graphs and fans, ns a pass; 0: none is set.
+double time_goal(std::string_view shape, uint32_t passes, PackingLevel level, bool reasons) {
+  if (shape == "chain" || shape == "given" || level == PackingLevel::optimize) return 0.0;
+  if (level == PackingLevel::tight) return 20'000.0;
   const double plain = passes == 100 ? 500.0 : passes == 1000 ? 600.0 : passes == 10000 ? 900.0 : 0.0;
   return reasons ? 2.0 * plain : plain;
 }
@@ -55,7 +56,8 @@ struct Row {
   double median = 0.0, lowest = 0.0, low = 0.0, high = 0.0; // ns a pass; low and high: 10 % and 90 %
   double goal = 0.0;
   double heap_bytes = 0.0, max_live_bytes = 0.0, ratio = 0.0, worst_ratio = 0.0, batches_per_pass = 0.0;
-  uint32_t optimal = 0; // graphs whose heap is as small as what lives at once
+  uint32_t optimal = 0;                   // graphs whose heap is as small as what lives at once
+  double mean_ms = 0.0, slowest_ms = 0.0; // CPU time of one compile of one graph, each compiled once
 };
 
 CompileInput input_of(const Subject& subject, const Graph& graph, const DeviceProfile& device,
@@ -82,7 +84,11 @@ double batches_per_pass(const Plan& plan) {
 bool measure_memory(Compiler& compiler, const Subject& subject, const DeviceProfile& device,
                     CompiledPlan& plan, Row& row, Diagnostics& diagnostics) {
   for (const Graph& graph : subject.graphs) {
+    const uint64_t began = thread_nanoseconds();
     if (!compiler.compile(input_of(subject, graph, device, row.options), diagnostics, plan)) return false;
+    const double ms = static_cast<double>(thread_nanoseconds() - began) / ns_per_ms;
+    row.mean_ms += ms;
+    row.slowest_ms = std::max(row.slowest_ms, ms);
     uint64_t size = 0, bound = 0;
     for (const Heap& heap : plan.plan.heaps) {
       size += heap.size;
@@ -97,7 +103,7 @@ bool measure_memory(Compiler& compiler, const Subject& subject, const DeviceProf
     row.optimal += size == bound;
   }
   const auto count = static_cast<double>(subject.graphs.size());
-  for (double* mean : {&row.heap_bytes, &row.max_live_bytes, &row.ratio, &row.batches_per_pass})
+  for (double* mean : {&row.heap_bytes, &row.max_live_bytes, &row.ratio, &row.batches_per_pass, &row.mean_ms})
     *mean /= count;
   return true;
 }
@@ -136,7 +142,7 @@ std::optional<Row> measure(const Subject& subject, const Options& options, bool 
   row.passes = subject.passes;
   row.rotating = static_cast<uint32_t>(subject.graphs.size());
   row.options = options;
-  row.goal = options.level == PackingLevel::fast ? time_goal(row.shape, row.passes, options.reasons) : 0.0;
+  row.goal = time_goal(row.shape, row.passes, options.level, options.reasons);
   Compiler compiler;
   CompiledPlan plan;
   if (!measure_memory(compiler, subject, device, plan, row, diagnostics)) return std::nullopt;
@@ -156,16 +162,16 @@ std::string table_line(const Row& row) {
   const auto time = [&](double ns, bool given) { return given ? fmt::format("{:.0f}", ns) : "-"; };
   const bool timed = row.samples > 0;
   return fmt::format(
-      "{:<12}{:>7}{:>5}  {:<9}{:<9}{:<4}{:>9}{:>9}{:>9}{:>7}{:>10.1f}{:>8.4f}{:>8.4f}{:>7.2f}\n", row.shape,
-      row.passes, row.rotating, level_names[static_cast<size_t>(row.options.level)],
+      "{:<12}{:>7}{:>5}  {:<9}{:<9}{:<4}{:>9}{:>9}{:>9}{:>7}{:>10.1f}{:>8.4f}{:>8.4f}{:>6}{:>9.1f}{:>7.2f}\n",
+      row.shape, row.passes, row.rotating, level_names[static_cast<size_t>(row.options.level)],
       order_names[static_cast<size_t>(row.options.order)], row.options.reasons ? "yes" : "no",
       time(row.median, timed), time(row.low, timed), time(row.high, timed),
       time(row.goal, timed && row.goal > 0.0), row.heap_bytes / mebibyte, row.ratio, row.worst_ratio,
-      row.batches_per_pass);
+      row.optimal, row.slowest_ms, row.batches_per_pass);
 }
 
 constexpr std::string_view table_head = "shape        passes  rot  level    order    why  ns/pass    10 %    "
-                                        " 90 %   goal  heap MiB   ratio   worst  batch\n";
+                                        " 90 %   goal  heap MiB   ratio   worst  best  slow ms  batch\n";
 
 void write_row(JsonWriter& out, const Row& row) {
   out.open_object(true)
@@ -182,6 +188,7 @@ void write_row(JsonWriter& out, const Row& row) {
   }
   out.member("heap_bytes", row.heap_bytes).member("max_live_bytes", row.max_live_bytes);
   out.member("ratio", row.ratio).member("worst_ratio", row.worst_ratio).member("optimal", row.optimal);
+  out.member("mean_ms_per_graph", row.mean_ms).member("slowest_ms_per_graph", row.slowest_ms);
   out.member("batches_per_pass", row.batches_per_pass).close();
 }
 
@@ -224,6 +231,7 @@ struct Bench {
         const Subject subject = draw(file, kinds, shape, passes, fan_seeds);
         for (const PassOrder order : {PassOrder::memory, PassOrder::program})
           if (!add(subject, {PackingLevel::fast, order, false}, false)) return false;
+        if (!add(subject, {PackingLevel::tight, PassOrder::memory, false}, false)) return false;
       }
     }
     return true;
