@@ -59,7 +59,7 @@ struct Orderer {
     for (const Use& use : c.uses) {
       const bool reads = (use.trouble == Use::Trouble::none) & (use.read_value != no_value);
       const PassId other = c.values[reads ? use.read_value : 0].producer;
-      const bool waits = reads & other.valid() & (other != use.pass);
+      const bool waits = (int{reads} & int{other.valid()} & int{other != use.pass}) != 0;
       forward &= !waits | (other < use.pass);
       c.before[count] = other.value;
       count += static_cast<uint32_t>(waits) & c.live[use.pass.value]; // what it reads is alive, too

@@ -24,11 +24,16 @@ struct KernelCode {
 };
 
 // Descriptor set 1, common to all kernels: entry i is binding i. Binding 0, if it is a uniform buffer, holds
-// the frame constants and exists once per frame in flight; the others are written once.
-enum class EnvironmentType : uint8_t { uniform_buffer, storage_buffer, linear_sampler };
+// the frame constants and exists once per frame in flight, as counters do; the others are written once.
+enum class EnvironmentType : uint8_t {
+  uniform_buffer,
+  storage_buffer,
+  linear_sampler,
+  counters // storage buffer that kernels write and the host reads; zero at the start of each frame
+};
 struct EnvironmentBinding {
   EnvironmentType type = EnvironmentType::uniform_buffer;
-  uint64_t bytes = 0;                    // of the buffer, 1 or more; ignored for samplers
+  uint64_t bytes = 0;                    // of the buffer, 1 or more; counters: a multiple of 4
   std::span<const std::byte> contents{}; // at most `bytes`, the rest is zero; ignored for frame constants
 };
 
@@ -39,20 +44,25 @@ enum class HistoryReason : uint8_t {
   cut,         // FrameInput::reset_history
   resized,     // the executor was made for a new size
   reloaded,    // the executor was made for a new graph
-  discarded    // discard_frames()
+  discarded,   // discard_frames()
+  switched     // frames ran with another plan
 };
 // Static string for people, for example "camera cut". Free-threaded.
 const char* history_reason_text(HistoryReason reason);
+
+class HeapPool;
 
 struct ExecutorInput { // nothing is kept but `device`; all the rest is copied or consumed during the call
   const Device* device = nullptr; // must outlive the executor
   const Graph* graph = nullptr;   // that the plan was compiled from: names
   const KindRegistry* kinds = nullptr;
-  const Plan* plan = nullptr;                         // compiled with device_profile(*device)
-  std::span<const KernelCode> kernels;                // at least those of the plan's kinds
-  std::span<const EnvironmentBinding> environment;    // may be empty
-  uint32_t frames_in_flight = 2;                      // 1 .. max_frames_in_flight
-  VkPipelineCache pipeline_cache = VK_NULL_HANDLE;    // may be null
+  const Plan* plan = nullptr;                      // compiled with device_profile(*device)
+  std::span<const KernelCode> kernels;             // at least those of the plan's kinds
+  std::span<const EnvironmentBinding> environment; // may be empty
+  uint32_t frames_in_flight = 2;                   // 1 .. max_frames_in_flight
+  VkPipelineCache pipeline_cache = VK_NULL_HANDLE; // may be null
+  const HeapPool* heap_pool = nullptr; // made with this plan among others: transients lie in its memory, and
+                                       // no other user of it may run at the same time. Null: its own memory.
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid
   // For tests: each frame fills whatever the plan says nobody may read, before it is first written, with NaN, or
   // 0xCD in each byte. The plan must be compiled with CompileInput::poison.
@@ -87,7 +97,9 @@ struct FrameInput {
   std::span<const SettingValue> settings;     // one per Graph::settings; empty: those of the plan
   Rectangle rectangle;                        // width 0: the allocated view size
   uint64_t frame_index = 1;                   // grows; the frame `frame_index - frames_in_flight` is finished
-  bool reset_history = false;                 // camera cut: histories with on_cut invalidate become invalid
+  bool taken_over = false; // frames ran elsewhere since the last record: the pool's memory was used by
+                           // others, and histories start anew
+  bool reset_history = false; // camera cut: histories with on_cut invalidate become invalid
 };
 
 // Like Error, without memory of its own.
@@ -140,6 +152,10 @@ public:
   bool read_timings(uint64_t completed_frame_index, uint64_t& frame_index,
                     std::span<PassTiming> timings) noexcept;
 
+  // What kernels counted in frame `frame_index`, which the device has finished: as many as fit of the words
+  // of the environment's counters. False: that frame was not recorded here, or another took its place since.
+  // One thread at a time per executor.
+  bool read_counters(uint64_t frame_index, std::span<uint32_t> counters) const noexcept;
   const Plan& plan() const noexcept;
   uint64_t constant_bytes() const noexcept; // device memory for set 1 and stand-ins of unbound ports
 

@@ -186,8 +186,9 @@ void remove_jitter(subsurface::Matrix4& clip_from_view, int row, double pixels, 
     clip_from_view[row * 4 + c] -= 2.0 * pixels / extent * clip_from_view[12 + c];
 }
 
-bool fill_constants(const dermis_frame& frame, const Program& program, const vulkan::Rectangle& rectangle,
-                    bool history_invalid, subsurface::FrameConstants& constants) {
+bool fill_constants(const dermis_frame& frame, const Program& program, const vulkan::Executor& executor,
+                    const vulkan::Rectangle& rectangle, bool history_invalid,
+                    subsurface::FrameConstants& constants) {
   subsurface::FrameInput input;
   input.rect_x = rectangle.x;
   input.rect_y = rectangle.y;
@@ -203,7 +204,7 @@ bool fill_constants(const dermis_frame& frame, const Program& program, const vul
                                                                  : subsurface::DepthKind::device;
   input.frame_index = frame.frame_index;
   input.history_invalid = history_invalid;
-  const vulkan::Rectangle previous = program.executor->previous_rectangle();
+  const vulkan::Rectangle previous = executor.previous_rectangle();
   input.previous_x = previous.x;
   input.previous_y = previous.y;
   input.previous_width = previous.width;
@@ -225,16 +226,21 @@ dermis_result check_frame(const dermis_graph_t& graph, Program& program, const d
   const Log& log = graph.context->log;
   if (const dermis_result result = check_numbers(graph, frame); result != DERMIS_OK) return result;
   if (const dermis_result result =
-          check_rectangle(log, program.compiled.plan, frame, checked.input.rectangle);
+          check_rectangle(log, program.variants.front().compiled.plan, frame, checked.input.rectangle);
       result != DERMIS_OK)
     return result;
-  if (const dermis_result result = check_bindings(graph, program, frame); result != DERMIS_OK) return result;
+  return check_bindings(graph, program, frame);
+}
 
+dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, uint32_t outcome,
+                         bool taken_over, const dermis_frame& frame, CheckedFrame& checked) {
+  const Log& log = graph.context->log;
+  const vulkan::Executor& executor = *program.variants[program.outcomes[outcome].plan].executor;
   const bool reset = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
-  bool history_invalid = false;
-  for (uint32_t i = 0; i < program.executor->history_count(); ++i)
-    history_invalid = history_invalid || !program.executor->history_state(i, reset).valid;
-  if (!fill_constants(frame, program, checked.input.rectangle, history_invalid, checked.constants))
+  bool history_invalid = taken_over;
+  for (uint32_t i = 0; i < executor.history_count(); ++i)
+    history_invalid = history_invalid || !executor.history_state(i, reset).valid;
+  if (!fill_constants(frame, program, executor, checked.input.rectangle, history_invalid, checked.constants))
     return bad_argument(
         log,
         "{}: clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic "
@@ -243,9 +249,10 @@ dermis_result check_frame(const dermis_graph_t& graph, Program& program, const d
   checked.input.command_buffer = frame.command_buffer;
   checked.input.images = program.images;
   checked.input.frame_constants = std::as_bytes(std::span(&checked.constants, 1));
-  checked.input.settings = program.settings;
+  checked.input.settings = program.outcomes[outcome].settings;
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
+  checked.input.taken_over = taken_over;
   return DERMIS_OK;
 }
 

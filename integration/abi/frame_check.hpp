@@ -11,9 +11,13 @@ struct CheckedFrame {
   subsurface::FrameConstants constants{};
 };
 
-// Checks every field and fills `checked` and program.images. ARGUMENT or VERSION with a message that names
-// the field.
+// Checks every field, fills program.images and what of `checked` does not hang on the outcome. ARGUMENT or
+// VERSION with a message that names the field.
 dermis_result check_frame(const dermis_graph_t& graph, Program& program, const dermis_frame& frame,
                           CheckedFrame& checked);
+// The rest of `checked`, for one outcome of the program. `taken_over`: its variant did not record the last
+// frame.
+dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, uint32_t outcome,
+                         bool taken_over, const dermis_frame& frame, CheckedFrame& checked);
 
 } // namespace dermis::abi

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-dermis_graph_t::dermis_graph_t(dermis_context owner) : context(owner) {
+dermis_graph_t::dermis_graph_t(dermis_context owner) : context(owner), chooser(dermis::abi::make_chooser()) {
   const std::lock_guard lock(context->mutex);
   context->graphs.push_back(this);
 }
@@ -31,7 +31,7 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   if (const dermis_result result = read_graph_desc(log, desc, graph->input, diagnostics); result != DERMIS_OK)
     return result;
   dermis_result result = build_program(*context, graph->input, vulkan::HistoryReason::first_frame,
-                                       graph->plans, diagnostics, graph->next);
+                                       graph->plans, graph->chooser, diagnostics, graph->next);
   if (result == DERMIS_OK && diagnostics.has_errors()) result = DERMIS_ERROR_CONFIG; // of a profile
   result = conclude(log, result, std::move(diagnostics), report);
   if (result == DERMIS_OK) *out = graph.release();
@@ -45,7 +45,7 @@ dermis_result replace(dermis_graph_t& graph, ProgramInput&& input, vulkan::Histo
   std::unique_ptr<Program> candidate;
   const vulkan::HistoryReason history = graph.last_frame == 0 ? vulkan::HistoryReason::first_frame : reason;
   const dermis_result built =
-      build_program(*graph.context, input, history, graph.plans, diagnostics, candidate);
+      build_program(*graph.context, input, history, graph.plans, graph.chooser, diagnostics, candidate);
   const dermis_result result = conclude(graph.context->log, built, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
   graph.next = std::move(candidate); // one that waited was never recorded
@@ -91,10 +91,11 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
     input.settings.push_back({name, json});
   else
     given->json = json;
-  if (changes_passes(program, values))
+  const auto index = static_cast<uint32_t>(at - declared.begin());
+  if (at->by_budget || changes_passes(program, values))
     return replace(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
-  program.settings = std::move(values);
+  set_value(program, graph.chooser, graph.context->kinds, index, *value);
   graph.input = std::move(input);
   return result;
 }

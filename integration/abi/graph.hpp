@@ -21,6 +21,7 @@ struct dermis_graph_t {
   // different frame, and at most frames_in_flight frames are not complete.
   std::array<std::unique_ptr<dermis::abi::Program>, dermis::vulkan::max_frames_in_flight + 1> retired;
   uint64_t last_frame = 0;
+  dermis::abi::Chooser chooser;
 };
 
 namespace dermis::abi {

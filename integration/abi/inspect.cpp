@@ -26,13 +26,18 @@ dermis_slot describe_slot(const Slot& slot, uint32_t id) {
 }
 
 dermis_memory describe_memory(const Program& program) {
-  const Plan& plan = program.compiled.plan;
   dermis_memory out = DERMIS_MEMORY_INIT;
-  out.transient_bytes = plan.transient_bytes;
-  for (const Placement& placement : plan.placements)
-    if (!placement.persistent) out.transient_unaliased_bytes += placement.size;
-  out.history_bytes = plan.history_bytes;
-  out.constant_bytes = program.executor->constant_bytes();
+  for (const Variant& variant : program.variants) {
+    const Plan& plan = variant.compiled.plan;
+    uint64_t unaliased = 0;
+    for (const Placement& placement : plan.placements)
+      if (!placement.persistent) unaliased += placement.size;
+    out.transient_unaliased_bytes = std::max(out.transient_unaliased_bytes, unaliased);
+    out.transient_bytes = std::max(out.transient_bytes, plan.transient_bytes);
+    out.history_bytes += plan.history_bytes;
+    out.constant_bytes += variant.executor->constant_bytes();
+  }
+  if (program.heap_pool) out.transient_bytes = program.heap_pool->bytes();
   return out;
 }
 
@@ -44,17 +49,18 @@ dermis_result timings(dermis_graph_t& graph, uint64_t completed, uint32_t* count
     return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
                         completed, graph.last_frame);
   Program& program = graph.running ? *graph.running : newest(graph);
-  const auto passes = static_cast<uint32_t>(program.compiled.plan.passes.size());
+  const Variant& variant = program.current();
+  const auto passes = static_cast<uint32_t>(variant.compiled.plan.passes.size());
   if (out == nullptr) {
     *count = passes;
     return DERMIS_OK;
   }
   std::vector<vulkan::PassTiming> times(passes);
   uint64_t frame_index = 0;
-  if (!program.executor->read_timings(completed, frame_index, times)) return DERMIS_NOT_READY;
+  if (!variant.executor->read_timings(completed, frame_index, times)) return DERMIS_NOT_READY;
   return fill_array(log, function, count, out, passes, [&](uint32_t i) {
     dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
-    const PassId declared = program.compiled.plan.passes[i].declared;
+    const PassId declared = variant.compiled.plan.passes[i].declared;
     timing.pass = program.graph.passes[declared.value].name.c_str();
     timing.frame_index = frame_index;
     timing.nanoseconds = times[i].nanoseconds;
@@ -86,18 +92,17 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
     if (size == nullptr) return bad_argument(log, "dermis_graph_describe: size is NULL");
     const Program& program = newest(*graph);
     const dermis::KindRegistry& kinds = graph->context->kinds;
+    const dermis::CompiledPlan& compiled = program.current().compiled;
     std::string description;
     switch (static_cast<int>(format)) {
     case DERMIS_DESCRIBE_JSON:
-      description =
-          dermis::plan_json(program.graph, kinds, program.compiled, {program.changes, program.files});
+      description = dermis::plan_json(program.graph, kinds, compiled, {program.changes, program.files});
       break;
     case DERMIS_DESCRIBE_DOT:
-      description = dermis::plan_dot(program.graph, kinds, program.compiled);
+      description = dermis::plan_dot(program.graph, kinds, compiled);
       break;
     case DERMIS_DESCRIBE_TEXT:
-      description =
-          dermis::plan_text(program.graph, kinds, program.compiled, {program.changes, program.files});
+      description = dermis::plan_text(program.graph, kinds, compiled, {program.changes, program.files});
       break;
     default:
       return bad_argument(log, "dermis_graph_describe: format is {}, expected 0..2",

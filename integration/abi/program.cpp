@@ -41,8 +41,9 @@ std::vector<SettingValue> settings_of(const Graph& graph, const std::vector<Host
 
 void tell_lost_histories(const Program& program, vulkan::HistoryReason reason, Diagnostics& diagnostics) {
   if (reason == vulkan::HistoryReason::first_frame) return;
-  for (const PlanHistory& history : program.compiled.plan.histories) {
-    const ResourceId declared = program.compiled.plan.resources[history.resource].declared;
+  const Plan& plan = program.current().compiled.plan;
+  for (const PlanHistory& history : plan.histories) {
+    const ResourceId declared = plan.resources[history.resource].declared;
     diagnostics.add(DiagnosticId::history_restarts, program.graph.resources[declared.value].where,
                     fmt::format("history '{}' starts anew: {}", program.graph.resources[declared.value].name,
                                 vulkan::history_reason_text(reason)));
@@ -85,8 +86,9 @@ template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& val
   return std::as_bytes(std::span<const T>(values));
 }
 
-vulkan::Error make_executor(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            Program& program) {
+// One executor for each plan; where there are several, their transients share memory.
+vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
+                             Program& program) {
   std::vector<vulkan::KernelCode> kernels;
   for (const Kernel& kernel : embedded_kernels())
     kernels.push_back({kernel.shader, kernel.spirv});
@@ -95,7 +97,7 @@ vulkan::Error make_executor(dermis_context_t& context, ProgramInput& input, vulk
     input.tables =
         std::make_shared<subsurface::KernelTables>(subsurface::make_kernel_tables(use, input.profiles));
   const subsurface::KernelTables& tables = *input.tables;
-  const std::array<vulkan::EnvironmentBinding, 6> environment{{
+  const std::array<vulkan::EnvironmentBinding, 7> environment{{
       {vulkan::EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.profiles).size(), bytes_of(tables.profiles)},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.separable).size(),
@@ -103,25 +105,61 @@ vulkan::Error make_executor(dermis_context_t& context, ProgramInput& input, vulk
       {vulkan::EnvironmentType::linear_sampler, 0, {}},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.pyramid).size(), bytes_of(tables.pyramid)},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.radial).size(), bytes_of(tables.radial)},
+      {vulkan::EnvironmentType::counters, sizeof(subsurface::FrameCounters), {}},
   }};
-  static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 6);
+  static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 7);
   vulkan::ExecutorInput executor;
   executor.device = &context.device;
   executor.graph = &program.graph;
   executor.kinds = &context.kinds;
-  executor.plan = &program.compiled.plan;
   executor.kernels = kernels;
   executor.environment = environment;
   executor.frames_in_flight = context.frames_in_flight;
   executor.pipeline_cache = context.pipeline_cache;
   executor.history = history;
-  return vulkan::Executor::create(executor, program.executor);
+  if (program.variants.size() > 1) {
+    std::vector<const Plan*> plans;
+    for (const Variant& variant : program.variants)
+      plans.push_back(&variant.compiled.plan);
+    if (vulkan::Error error = vulkan::HeapPool::create(context.device, plans, program.heap_pool))
+      return error;
+  }
+  executor.heap_pool = program.heap_pool.get();
+  for (Variant& variant : program.variants) {
+    executor.plan = &variant.compiled.plan;
+    if (vulkan::Error error = vulkan::Executor::create(executor, variant.executor)) return error;
+  }
+  return {};
+}
+
+// What any of the plans wants of an image the host must provide.
+std::vector<Slot> slots_of(const Program& program) {
+  std::vector<Slot> slots = make_slots(program.graph, program.variants.front().compiled.plan);
+  for (const Variant& variant : program.variants) {
+    const std::vector<Slot> others = make_slots(program.graph, variant.compiled.plan);
+    for (size_t i = 0; i < slots.size(); ++i) {
+      slots[i].vk_usage |= others[i].vk_usage;
+      slots[i].read = slots[i].read || others[i].read;
+      slots[i].written = slots[i].written || others[i].written;
+      slots[i].bound = slots[i].bound || others[i].bound;
+    }
+  }
+  return slots;
 }
 
 } // namespace
 
+void set_value(Program& program, Chooser& chooser, const KindRegistry& kinds, uint32_t setting,
+               const SettingValue& value) {
+  program.settings[setting] = value;
+  for (choice::Outcome& outcome : program.outcomes)
+    outcome.settings[setting] = value;
+  describe_program(chooser, kinds, program);
+}
+
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            PlanCache& plans, Diagnostics& diagnostics, std::unique_ptr<Program>& program) {
+                            PlanCache& plans, Chooser& chooser, Diagnostics& diagnostics,
+                            std::unique_ptr<Program>& program) {
   auto composition = compose_sources(input, diagnostics);
   if (!composition) return DERMIS_ERROR_CONFIG;
   auto graph = read_graph(composition->document, context.kinds, diagnostics);
@@ -142,13 +180,17 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   compile_input.settings = candidate->settings;
   compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);
   compile_input.host_formats = host_formats(candidate->graph, input.formats, diagnostics);
-  auto compiled = compile(compile_input, plans, diagnostics);
-  if (!compiled || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
-  candidate->compiled = std::move(*compiled);
-  candidate->slots = make_slots(candidate->graph, candidate->compiled.plan);
+  auto made = choice::make_outcomes(
+      compile_input, chooser.errors, chooser.costs,
+      [&](const CompileInput& one, Diagnostics& told) { return compile(one, plans, told); }, diagnostics);
+  if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
+  candidate->outcomes = std::move(made->outcomes);
+  for (CompiledPlan& compiled : made->plans)
+    candidate->variants.push_back({std::move(compiled), nullptr, false});
+  candidate->slots = slots_of(*candidate);
   candidate->images.resize(candidate->slots.size());
 
-  if (const vulkan::Error error = make_executor(context, input, history, *candidate)) {
+  if (const vulkan::Error error = make_executors(context, input, history, *candidate)) {
     diagnostics.add(diagnostic_of(error.kind), {}, error.text);
     if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
     // The library built the executor's input: what does not fit there is a defect of the library, not of the
@@ -156,6 +198,8 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
     return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
   }
   tell_lost_histories(*candidate, history, diagnostics);
+  make_room(chooser, *candidate);
+  candidate->serial = ++chooser.programs;
   program = std::move(candidate);
   return DERMIS_OK;
 }

@@ -6,6 +6,8 @@
 #include "framegraph/compose/compose.hpp"
 #include "framegraph/serial/plan_cache.hpp"
 #include "framegraph/vulkan/executor.hpp"
+#include "framegraph/vulkan/heap_pool.hpp"
+#include "integration/abi/chooser.hpp"
 #include "integration/abi/context.hpp"
 #include "passes/subsurface/kernel_tables.hpp"
 
@@ -60,25 +62,42 @@ struct Slot {
   uint32_t width = 0, height = 0;
 };
 
-struct Program {
-  Graph graph;
-  std::vector<Change> changes;   // what overlays and included files did
-  std::vector<SourceFile> files; // that the changes name; without their texts
+// One plan of the graph, with what runs it.
+struct Variant {
   CompiledPlan compiled;
-  std::vector<SettingValue> settings; // by Graph::settings: what the next record uses
+  std::unique_ptr<vulkan::Executor> executor;
+  bool recorded = false; // at least once
+};
+
+struct Program {
+  uint64_t serial = 0; // no two programs of a graph have the same
+  Graph graph;
+  std::vector<Change> changes;                 // what overlays and included files did
+  std::vector<SourceFile> files;               // that the changes name; without their texts
+  std::vector<choice::Outcome> outcomes;       // what the choices by budget can come to; first: the defaults
+  std::unique_ptr<vulkan::HeapPool> heap_pool; // of all variants' transients; null where there is one
+  std::vector<Variant> variants;               // by Outcome::plan
+  uint32_t outcome = 0;                        // recorded last, or to be recorded first
+  std::vector<SettingValue> settings;          // by Graph::settings: choices by budget at their defaults
   std::vector<Slot> slots;
   std::vector<vulkan::HostImage>
-      images; // by slot; filled at each record, so that recording allocates nothing
-  std::unique_ptr<vulkan::Executor> executor;
-  uint64_t last_frame = 0;                // frame_index it was recorded with last; 0: never
+      images;              // by slot; filled at each record, so that recording allocates nothing
+  uint64_t last_frame = 0; // frame_index it was recorded with last; 0: never
   std::array<double, 2> last_jitter_px{}; // of that frame
+
+  const Variant& current() const { return variants[outcomes[outcome].plan]; }
 };
 
 // Parses, compiles (or takes the plan from `plans`, where it then is) and allocates. On failure `diagnostics`
 // tells why and `program` is unchanged. Keeps in `input` what the host delivers and what was fitted. Thread:
 // any.
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            PlanCache& plans, Diagnostics& diagnostics, std::unique_ptr<Program>& program);
+                            PlanCache& plans, Chooser& chooser, Diagnostics& diagnostics,
+                            std::unique_ptr<Program>& program);
+
+// Gives a setting that turns no pass on or off a new value, in all outcomes.
+void set_value(Program& program, Chooser& chooser, const KindRegistry& kinds, uint32_t setting,
+               const SettingValue& value);
 
 // The value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
 std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,

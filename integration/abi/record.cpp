@@ -20,6 +20,11 @@ void take_over(dermis_graph_t& graph) {
   graph.running = std::move(graph.next);
 }
 
+uint64_t tiles_of(const vulkan::Rectangle& rectangle) {
+  constexpr uint64_t side = 8;
+  return (rectangle.width + side - 1) / side * ((rectangle.height + side - 1) / side);
+}
+
 dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   const Log& log = graph.context->log;
   if (const dermis_result alive = check_alive(*graph.context, "dermis_graph_record"); alive != DERMIS_OK)
@@ -32,8 +37,21 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   CheckedFrame checked;
   if (const dermis_result result = check_frame(graph, program, frame, checked); result != DERMIS_OK)
     return result;
+  Chooser& chooser = graph.chooser;
+  if (graph.running) observe(chooser, *graph.running, frame.completed_frame_index);
+  choice::DecisionState state =
+      program.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
+  FrameChoice chosen = choose(chooser, program, tiles_of(checked.input.rectangle), chooser.forecasts, state);
+  if (!chooser.counted) state = {}; // decided for a view full of subsurface: no reason to stay
+  chosen.frame_index = frame.frame_index;
+  const uint32_t variant = program.outcomes[chosen.outcome].plan;
+  chosen.first_of_plan = !program.variants[variant].recorded;
+  const bool taken_over = program.last_frame > 0 && variant != program.outcomes[program.outcome].plan;
+  if (const dermis_result result = fill_frame(graph, program, chosen.outcome, taken_over, frame, checked);
+      result != DERMIS_OK)
+    return result;
   collect(graph, frame.completed_frame_index);
-  if (const vulkan::RecordResult error = program.executor->record(checked.input)) {
+  if (const vulkan::RecordResult error = program.variants[variant].executor->record(checked.input)) {
     if (error.kind == vulkan::ErrorKind::device_lost) graph.context->lost = true;
     const bool has_slot = error.slot >= 0 && static_cast<size_t>(error.slot) < program.slots.size();
     return fail(log, result_of(error.kind), diagnostic_of(error.kind), "dermis_graph_record: {}{}{}{}",
@@ -42,6 +60,9 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   }
   program.last_frame = frame.frame_index;
   program.last_jitter_px = {frame.jitter_x, frame.jitter_y};
+  program.outcome = chosen.outcome;
+  program.variants[variant].recorded = true;
+  remember(chooser, chosen, state);
   graph.last_frame = frame.frame_index;
   take_over(graph);
   return DERMIS_OK;

@@ -46,6 +46,12 @@ template <>
 inline constexpr size_t first_version_size<dermis_pass_timing> = offsetof(dermis_pass_timing, nanoseconds) +
                                                                  sizeof(uint64_t);
 template <>
+inline constexpr size_t first_version_size<dermis_budget> = offsetof(dermis_budget, calibration) +
+                                                            sizeof(const dermis_source*);
+template <>
+inline constexpr size_t first_version_size<dermis_choice> = offsetof(dermis_choice, reserved) +
+                                                            sizeof(uint32_t);
+template <>
 inline constexpr size_t first_version_size<dermis_image_binding> = offsetof(dermis_image_binding, after) +
                                                                    sizeof(dermis_image_state);
 template <>

@@ -1,6 +1,6 @@
 // The dermis command: reads the command line, runs one verb, and answers with its exit code.
 
-#include "integration/command/arguments.hpp"
+#include "integration/command/arguments/arguments.hpp"
 #include "integration/command/interrupt.hpp"
 
 #include <spdlog/sinks/stdout_color_sinks.h>

@@ -114,8 +114,19 @@ struct RenderOptions {
   std::vector<NamedValue> settings;
   GraphParts parts;
   ModelOptions model;
+  double budget_ms = 0;    // of device time for the graph's choices; 0: their defaults
+  bool metered = false;    // judge times by the calibration alone
+  std::string calibration; // file of dermis calibrate; "": the library's own
 };
 ExitCode render(const Session& session, const RenderOptions& options);
+
+struct CalibrateOptions {
+  std::string graph = "configs/graphs/skin.json", scene = "configs/scenes/bust.json", out = "-";
+  GraphParts parts;
+  Size size{640, 360};
+  uint32_t frames = 16; // of each combination of choices at each distance
+};
+ExitCode calibrate(const Session& session, const CalibrateOptions& options);
 
 struct SheetOptions {
   std::string scene = "configs/scenes/bust.json", out;
@@ -188,5 +199,16 @@ struct BenchSupplementOptions {
   std::string json, html; // files to write; "": none
 };
 ExitCode bench_supplement(const Session& session, const BenchSupplementOptions& options);
+
+struct BenchBudgetOptions {
+  std::string graph = "configs/graphs/skin.json";
+  std::string calibration;  // file of dermis calibrate; "": the library's own
+  std::vector<std::string> scenes{"flashing", "regular", "dynamic", "dolly", "cut"}; // in configs/scenes
+  Size size{480, 270};
+  uint32_t frames = 40;                    // judged, of each run
+  std::string json, html;                  // files to write; "": none
+  std::string cache = "build/bench_truth"; // folder for references; "": none is kept
+};
+ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options);
 
 } // namespace dermis::tools

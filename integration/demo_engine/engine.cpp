@@ -178,7 +178,11 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
                       {"gbuffer", elapsed_ms(renderer, after_shadows, after_gbuffer)},
                       {"lighting", elapsed_ms(renderer, after_gbuffer, after_lighting)},
                       {"composite", elapsed_ms(renderer, at_composite, at_end)}};
-  if (session.dermis) out.dermis_times = graph_times(*session.dermis, frame_index);
+  if (!session.dermis) return out;
+  out.dermis_times = graph_times(*session.dermis, frame_index);
+  auto choice = graph_choice(*session.dermis, frame_index);
+  if (!choice) return choice.error();
+  out.choice = choice.take();
   return out;
 }
 
@@ -217,7 +221,8 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   DermisHandle dermis;
   if (!options.graph.empty()) {
     auto made = create_dermis_host(**host, {options.graph, info.profiles, options.settings, options.width,
-                                            options.height, options.overlays, options.include});
+                                            options.height, options.overlays, options.include,
+                                            options.budget_ms, options.metered, options.calibration});
     if (!made) return made.error();
     dermis = made.take();
     desc.more_usage = usage_for_graph(*dermis);
@@ -240,6 +245,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
     if (callbacks.on_frame)
       if (auto done = callbacks.on_frame(*frame); !done) return done.error();
   }
+  if (dermis) summary.calibration = graph_calibration(*dermis);
   const std::lock_guard lock((*host)->log.mutex);
   summary.validation_messages = (*host)->log.messages;
   return summary;

@@ -47,6 +47,9 @@ struct RenderOptions {
   std::optional<CameraPlace> camera;
   double zoom = 1.0; // how many times larger the camera shows things: its field of view shrinks; > 0
   std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text
+  double budget_ms = 0;    // of device time for the graph's choices, a frame; 0: their defaults
+  bool metered = false;    // judge times by the calibration alone: the same choices on every machine
+  std::string calibration; // JSON of an earlier run's RenderSummary::calibration; "": the library's own
 };
 
 // Row by row from the top left; channels floats a pixel.
@@ -89,6 +92,15 @@ struct GraphInputs {
   FloatImage thickness, back_lighting;
 };
 
+// What the library chose for the frame, and what it expected.
+struct FrameChoice {
+  std::string outcome, technique, why, next_better; // next_better: lacks least time; "": none
+  double budget_ms = 0, predicted_ms = 0, predicted_spread_ms = 0, measured_ms = -1, metered_ms = 0,
+         predicted_rmse = 0;
+  double next_better_missing_ms = 0, mean_d_px = 0;
+  uint32_t outcomes = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;
+};
+
 struct FrameOutputs {
   uint32_t frame = 0;   // first_frame .. first_frame + frames - 1
   double seconds = 0.0; // scene time
@@ -101,6 +113,7 @@ struct FrameOutputs {
   FloatImage color;     // 3: linear radiance times exposure
   std::vector<uint8_t> display;       // RGB, tonemapped and sRGB encoded
   std::vector<PassTime> host_times;   // shadows, gbuffer, lighting, composite
+  std::optional<FrameChoice> choice;  // none without Dermis
   std::vector<PassTime> dermis_times; // passes of the graph in plan order; empty without Dermis or timestamps
 };
 
@@ -117,6 +130,7 @@ struct RenderInfo {
 
 struct RenderSummary {
   uint32_t frames = 0;
+  std::string calibration; // what the graph learned of the device's times, JSON; "" without Dermis
   std::vector<std::string> validation_messages; // empty unless validation found something
 };
 

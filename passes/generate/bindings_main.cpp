@@ -97,7 +97,9 @@ std::string shared_constants() {
                      "const float reproject_largest_velocity = {:.1f};\n"
                      "const float reproject_depth_share = {};\n"
                      "const float reproject_slope_pixels = {:.1f};\n"
-                     "const float reproject_least_weight = {};\n\n#endif\n",
+                     "const float reproject_least_weight = {};\n"
+                     "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
+                     "const float counter_log2_steps = {:.1f};\n\n#endif\n",
                      subsurface::copy_below_d_px, subsurface::min_patch_cosine, subsurface::separable_nodes,
                      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
                      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
@@ -108,7 +110,8 @@ std::string shared_constants() {
                      subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
                      subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
                      subsurface::reproject_largest_velocity, subsurface::reproject_depth_share,
-                     subsurface::reproject_slope_pixels, subsurface::reproject_least_weight);
+                     subsurface::reproject_slope_pixels, subsurface::reproject_least_weight,
+                     subsurface::counter_log2_shift, subsurface::counter_log2_steps);
 }
 
 bool write(const std::string& path, const std::string& text) {

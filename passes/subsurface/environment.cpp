@@ -80,6 +80,13 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   return true;
 }
 
+double mean_d_px(const FrameCounters& counters) {
+  if (counters.scattering_tiles == 0) return 0;
+  constexpr double half_step = 0.5; // that rounding down takes off
+  const double steps = double(counters.log2_d_sum) / double(counters.scattering_tiles) + half_step;
+  return std::exp2(steps / double(counter_log2_steps) - double(counter_log2_shift));
+}
+
 std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles, bool with_separable) {
   ProfileEntry none{};
   none.separable_row = no_separable_row;

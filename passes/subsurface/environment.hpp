@@ -23,8 +23,21 @@ enum class EnvironmentSlot : uint32_t {
   linear_sampler = 3,
   sap = 4,
   radial = 5,
-  count = 6
+  counters = 6,
+  count = 7
 };
+
+// What subsurface.classify counts in a frame, as words of the counters binding.
+struct FrameCounters {
+  uint32_t scattering_tiles = 0; // 8x8 tiles with a pixel that scatters further than itself
+  uint32_t copied_tiles = 0;     // tiles with subsurface below that
+  uint32_t log2_d_sum = 0; // over scattering tiles: counter_log2_steps * (log2 of the largest d in pixels
+                           // + counter_log2_shift), rounded down
+};
+inline constexpr float counter_log2_shift = 8;  // d from 1/256 pixel
+inline constexpr float counter_log2_steps = 16; // an octave; the sum of 4 M tiles fits 32 bits
+// Geometric mean of d over the scattering tiles, pixels; 0 where there are none.
+double mean_d_px(const FrameCounters& counters);
 
 enum class DepthKind : uint32_t { device = 0, view_units = 1 };
 

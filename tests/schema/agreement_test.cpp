@@ -8,6 +8,8 @@
 #include "integration/command/expect/expectation.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
 #include "integration/files/capture.hpp"
+#include "passes/choice/calibration.hpp"
+#include "passes/choice/error_model.hpp"
 #include "passes/subsurface/kinds.hpp"
 #include "passes/subsurface/profile.hpp"
 #include "tests/schema/validator.hpp"
@@ -62,6 +64,14 @@ void read_expectation_text(const std::string& text, Diagnostics& diagnostics) {
 void read_profile_text(const std::string& text, Diagnostics& diagnostics) {
   if (const auto document = parse_document("profile.json", text, diagnostics))
     subsurface::read_profile(*document, diagnostics);
+}
+void read_errors_text(const std::string& text, Diagnostics& diagnostics) {
+  if (const auto document = parse_document("errors.json", text, diagnostics))
+    choice::read_error_model(*document, diagnostics);
+}
+void read_calibration_text(const std::string& text, Diagnostics& diagnostics) {
+  if (const auto document = parse_document("calibration.json", text, diagnostics))
+    choice::read_calibration(*document, diagnostics);
 }
 void read_scene_text(const std::string& text, Diagnostics& diagnostics) {
   demo::parse_scene("scene.json", text, diagnostics);
@@ -314,6 +324,23 @@ TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
         "previous_clip_from_view": [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0],
         "profiles": [] })")};
   expect_agreement("configs/schema/capture.schema.json", read_capture_text, files, 3000);
+}
+
+TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
+  const std::vector<json> files = {
+      parse(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/choice/errors.json")),
+      parse(R"({ "dermis_errors": 1, "scenes": "s", "note": "n", "unscattered": [[1, 0.1]], "techniques": [
+        { "name": "t", "note": "n", "rmse": [[1, 2], [2, 3]],
+          "kinds": [{ "kind": "k", "set": { "a": 1, "b": true, "c": "x", "d": 1.5 }, "note": "n" }] } ] })")};
+  expect_agreement("configs/schema/errors.schema.json", read_errors_text, files, 3000);
+}
+
+TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
+  const std::vector<json> files = {
+      parse(R"({ "$schema": "x", "dermis_calibration": 1, "device": "d", "note": "n", "costs": [
+        { "work": "a", "base_us": 1, "group_us": 0.5, "spread": 0.1, "note": "n" },
+        { "work": "b", "base_us": 0, "group_us": 0, "spread": 1 } ] })")};
+  expect_agreement("configs/schema/calibration.schema.json", read_calibration_text, files, 3000);
 }
 
 TEST(Schema, OfGraphsIsTheOneThatTheKindsGive) {

@@ -157,6 +157,31 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
   submit_batch(state, frame.command_buffer, images, buffers);
 }
 
+namespace {
+
+void global_barrier(const State& state, VkCommandBuffer commands, const VkMemoryBarrier2& barrier) {
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &barrier;
+  state.device->vk.vkCmdPipelineBarrier2(commands, &info);
+}
+
+} // namespace
+
+void record_memory_takeover(State& state, const FrameInput& frame) noexcept {
+  global_barrier(state, frame.command_buffer,
+                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, all_commands, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  all_commands, all_memory});
+}
+
+void record_counters_to_host(State& state, const FrameInput& frame) noexcept {
+  if (state.environment.counters_bytes == 0) return;
+  global_barrier(state, frame.command_buffer,
+                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+}
+
 void record_acquires(State& state, const FrameInput& frame) noexcept {
   uint32_t images = 0;
   for (size_t slot = 0; slot < state.slot_resource.size(); ++slot) {

@@ -170,6 +170,8 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   state->plan = *input.plan;
   state->frames_in_flight = input.frames_in_flight;
   state->poison = input.poison;
+  state->heap_pool = input.heap_pool;
+  state->frame_of_slot.assign(input.frames_in_flight, 0);
   make_passes(*state, input);
   make_slots(*state);
   make_histories(*state, input);

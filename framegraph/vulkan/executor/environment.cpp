@@ -17,11 +17,17 @@ constexpr uint64_t align_up(uint64_t value, uint64_t alignment) {
 
 Error check_bindings(const Device& device, std::span<const EnvironmentBinding> bindings) {
   const VkPhysicalDeviceLimits& limits = device.properties.limits;
+  uint32_t counters = 0;
   for (size_t i = 0; i < bindings.size(); ++i) {
     const EnvironmentBinding& binding = bindings[i];
     if (binding.type == EnvironmentType::linear_sampler) continue;
     const uint64_t most = binding.type == EnvironmentType::uniform_buffer ? limits.maxUniformBufferRange
                                                                           : limits.maxStorageBufferRange;
+    const bool second = binding.type == EnvironmentType::counters && ++counters > 1;
+    if (second || (binding.type == EnvironmentType::counters && binding.bytes % sizeof(uint32_t) != 0))
+      return {
+          ErrorKind::argument, VK_SUCCESS,
+          fmt::format("environment binding {}: counters are 32-bit words, and one binding holds them", i)};
     if (binding.bytes == 0 || binding.bytes > most)
       return {
           ErrorKind::argument, VK_SUCCESS,
@@ -47,11 +53,17 @@ std::vector<uint64_t> lay_out(State& state, std::span<const EnvironmentBinding> 
     offsets[i] = end;
     const uint64_t stride = align_up(bindings[i].bytes, alignment);
     const bool constants = i == 0 && bindings[i].type == EnvironmentType::uniform_buffer;
+    const bool counters = bindings[i].type == EnvironmentType::counters;
     if (constants) {
       environment.constants_bytes = bindings[i].bytes;
       environment.constants_stride = stride;
     }
-    end += stride * (constants ? state.frames_in_flight : 1);
+    if (counters) {
+      environment.counters_bytes = bindings[i].bytes;
+      environment.counters_offset = end;
+      environment.counters_stride = stride;
+    }
+    end += stride * (constants || counters ? state.frames_in_flight : 1);
   }
   environment.total_bytes = end;
   return offsets;
@@ -150,9 +162,11 @@ void write_sets(State& state, std::span<const EnvironmentBinding> bindings,
   for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
     for (uint32_t i = 0; i < bindings.size(); ++i) {
       const bool constants = i == 0 && environment.constants_bytes > 0;
-      const VkDescriptorBufferInfo buffer{environment.buffer,
-                                          offsets[i] + (constants ? slot * environment.constants_stride : 0),
-                                          bindings[i].bytes};
+      const bool counters = bindings[i].type == EnvironmentType::counters;
+      const uint64_t stride = constants  ? environment.constants_stride
+                              : counters ? environment.counters_stride
+                                         : 0;
+      const VkDescriptorBufferInfo buffer{environment.buffer, offsets[i] + slot * stride, bindings[i].bytes};
       const VkDescriptorImageInfo sampler{environment.sampler, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED};
       VkWriteDescriptorSet write{};
       write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -178,7 +192,9 @@ Error create_environment(State& state, std::span<const EnvironmentBinding> bindi
   write_sets(state, bindings, offsets);
   for (size_t i = 0; i < bindings.size(); ++i) {
     const bool constants = i == 0 && state.environment.constants_bytes > 0;
-    if (!constants && !bindings[i].contents.empty() && bindings[i].type != EnvironmentType::linear_sampler)
+    const bool table = !constants && (bindings[i].type == EnvironmentType::uniform_buffer ||
+                                      bindings[i].type == EnvironmentType::storage_buffer);
+    if (table && !bindings[i].contents.empty())
       std::memcpy(state.environment.mapped + offsets[i], bindings[i].contents.data(),
                   bindings[i].contents.size());
   }
@@ -193,6 +209,25 @@ void destroy_environment(State& state) {
   device.vk.vkDestroySampler(device.device, environment.sampler, device.allocator);
   device.vk.vkDestroyBuffer(device.device, environment.buffer, device.allocator);
   device.vk.vkFreeMemory(device.device, environment.memory, device.allocator); // unmaps
+}
+
+void clear_counters(State& state, uint32_t frame_slot) noexcept {
+  const Environment& environment = state.environment;
+  if (environment.counters_bytes > 0)
+    std::memset(environment.mapped + environment.counters_offset + frame_slot * environment.counters_stride,
+                0, environment.counters_bytes);
+}
+
+bool Executor::read_counters(uint64_t frame_index, std::span<uint32_t> counters) const noexcept {
+  const State& state = *state_;
+  const Environment& environment = state.environment;
+  const auto frame_slot = static_cast<uint32_t>(frame_index % state.frames_in_flight);
+  if (environment.counters_bytes == 0 || frame_index == 0 || state.frame_of_slot[frame_slot] != frame_index)
+    return false;
+  std::memcpy(counters.data(),
+              environment.mapped + environment.counters_offset + frame_slot * environment.counters_stride,
+              std::min<uint64_t>(counters.size_bytes(), environment.counters_bytes));
+  return true;
 }
 
 void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept {

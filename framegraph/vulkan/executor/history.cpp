@@ -17,6 +17,8 @@ const char* history_reason_text(HistoryReason reason) {
     return "the graph was reloaded";
   case HistoryReason::discarded:
     return "a recorded frame was discarded";
+  case HistoryReason::switched:
+    return "frames ran with another plan";
   }
   return "unknown";
 }
@@ -25,6 +27,16 @@ uint32_t access_now(const State& state, const PortAccess& port) noexcept {
   if (port.history == no_index) return port.access;
   const bool valid = state.histories[port.history].age >= state.plan.accesses[port.access].frames_back;
   return valid ? port.access : port.otherwise;
+}
+
+void forget_histories(State& state, HistoryReason reason) noexcept {
+  for (size_t h = 0; h < state.histories.size(); ++h) {
+    state.histories[h].age = 0;
+    state.histories[h].reason = reason;
+    const PlanResource& resource = state.plan.resources[state.plan.histories[h].resource];
+    for (uint32_t i = 0; resource.first_instance != no_instance && i < resource.instance_count; ++i)
+      state.instances[resource.first_instance + i].ready = false;
+  }
 }
 
 uint32_t Executor::history_count() const noexcept {
@@ -45,10 +57,7 @@ Rectangle Executor::previous_rectangle() const noexcept {
 }
 
 void Executor::discard_frames() noexcept {
-  for (HistoryRecord& record : state_->histories) {
-    record.age = 0;
-    record.reason = HistoryReason::discarded;
-  }
+  forget_histories(*state_, HistoryReason::discarded);
   for (Instance& instance : state_->instances)
     instance.ready = false;
   for (uint64_t& frame : state_->timestamps.frame_of_slot)

@@ -26,19 +26,20 @@ Error allocate_type(const Device& device, uint64_t bytes, uint32_t type, const s
 }
 
 Error create_heaps(State& state) {
-  const Device& device = *state.device;
-  state.heaps.assign(state.plan.heaps.size(), VK_NULL_HANDLE);
+  state.heaps.assign(state.plan.heaps.size(), {});
   for (size_t h = 0; h < state.heaps.size(); ++h) {
     const Heap& heap = state.plan.heaps[h];
-    const auto type =
-        choose_memory_type(device, heap.memory_type_bits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    HeapMemory& memory = state.heaps[h];
+    if (!heap.persistent && state.heap_pool != nullptr) {
+      memory.memory = state.heap_pool->find(heap.memory_type_bits);
+      if (memory.memory == VK_NULL_HANDLE)
+        return {ErrorKind::argument, VK_SUCCESS, "the heap pool was made without this plan"};
+      continue;
+    }
+    memory.owned = true;
     const std::string thing = fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
-    if (!type)
-      return {ErrorKind::unsupported, VK_SUCCESS,
-              fmt::format("{}: the device has no memory type among {:#x}", thing, heap.memory_type_bits)};
-    if (Error error = allocate_type(device, heap.size, *type, thing, state.heaps[h])) return error;
-    name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(state.heaps[h]),
-                thing.c_str());
+    if (Error error = allocate_heap(*state.device, heap.memory_type_bits, heap.size, thing, memory.memory))
+      return error;
   }
   return {};
 }
@@ -90,7 +91,7 @@ Error create_image(State& state, const PlanResource& resource, const Placement& 
   device.vk.vkGetImageMemoryRequirements(device.device, instance.image, &needs);
   if (Error error = check_needs(state, placement, needs, name)) return error;
   const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, instance.image,
-                                   state.heaps[placement.heap], placement.offset};
+                                   state.heaps[placement.heap].memory, placement.offset};
   result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", name);
   constexpr uint32_t viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
@@ -145,7 +146,7 @@ Error create_buffer(State& state, const PlanResource& resource, const Placement&
   device.vk.vkGetBufferMemoryRequirements(device.device, instance.buffer, &needs);
   if (Error error = check_needs(state, placement, needs, name)) return error;
   const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, instance.buffer,
-                                    state.heaps[placement.heap], placement.offset};
+                                    state.heaps[placement.heap].memory, placement.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
   return call_error(result, "vkBindBufferMemory2", name);
 }
@@ -169,6 +170,17 @@ Error allocate(const Device& device, const VkMemoryRequirements& needs, VkMemory
   const auto type = choose_memory_type(device, needs.memoryTypeBits, required, preferred);
   if (!type) return {ErrorKind::unsupported, VK_SUCCESS, thing + ": the device has no memory type for it"};
   return allocate_type(device, needs.size, *type, thing, memory);
+}
+
+Error allocate_heap(const Device& device, uint32_t memory_type_bits, uint64_t bytes, const std::string& thing,
+                    VkDeviceMemory& memory) {
+  const auto type = choose_memory_type(device, memory_type_bits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  if (!type)
+    return {ErrorKind::unsupported, VK_SUCCESS,
+            fmt::format("{}: the device has no memory type among {:#x}", thing, memory_type_bits)};
+  if (Error error = allocate_type(device, bytes, *type, thing, memory)) return error;
+  name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(memory), thing.c_str());
+  return {};
 }
 
 Error create_memory(State& state, const Graph& graph) {
@@ -200,8 +212,8 @@ void destroy_memory(State& state) {
     device.vk.vkDestroyImage(device.device, instance.image, device.allocator);
     device.vk.vkDestroyBuffer(device.device, instance.buffer, device.allocator);
   }
-  for (const VkDeviceMemory heap : state.heaps)
-    device.vk.vkFreeMemory(device.device, heap, device.allocator);
+  for (const HeapMemory& heap : state.heaps)
+    if (heap.owned) device.vk.vkFreeMemory(device.device, heap.memory, device.allocator);
 }
 
 } // namespace dermis::vulkan

@@ -206,6 +206,7 @@ void finish_frame(State& state, const FrameInput& frame, uint32_t frame_slot, co
   if (state.timestamps.pool != VK_NULL_HANDLE) state.timestamps.frame_of_slot[frame_slot] = frame.frame_index;
   state.previous_rectangle = rectangle;
   state.last_frame_index = frame.frame_index;
+  state.frame_of_slot[frame_slot] = frame.frame_index;
   ++state.frame_counter;
 }
 
@@ -223,7 +224,12 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   if (frame.reset_history) invalidate_for_cut(state);
 
   write_frame_constants(state, frame_slot, frame.frame_constants);
+  clear_counters(state, frame_slot);
   write_descriptors(state, frame_slot, frame.images);
+  if (frame.taken_over) {
+    forget_histories(state, HistoryReason::switched);
+    record_memory_takeover(state, frame);
+  }
   begin_timestamps(state, commands, frame_slot);
   record_acquires(state, frame);
   record_initialisation(state, commands);
@@ -240,6 +246,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
     write_timestamp(state, commands, frame_slot, static_cast<uint32_t>(p) + 1);
   }
   record_barriers(state, frame, state.plan.first_final_barrier, state.plan.final_barrier_count, {});
+  record_counters_to_host(state, frame);
   record_releases(state, frame);
   finish_frame(state, frame, frame_slot, rectangle);
   return {};

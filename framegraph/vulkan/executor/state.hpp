@@ -3,6 +3,7 @@
 // vulkan/executor/. Each part frees itself from its destroy function, whatever of it exists.
 
 #include "framegraph/vulkan/executor.hpp"
+#include "framegraph/vulkan/heap_pool.hpp"
 
 #include <optional>
 
@@ -10,6 +11,11 @@ namespace dermis::vulkan {
 
 inline constexpr uint32_t no_index = 0xffffffffu;
 inline constexpr uint64_t indirect_entry_bytes = 16; // group counts x, y, z and one more word
+
+struct HeapMemory { // of a plan heap
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  bool owned = false; // false: of the pool
+};
 
 struct Instance { // of a plan resource, one per Plan::placements
   VkImage image = VK_NULL_HANDLE;
@@ -53,6 +59,8 @@ struct Kernel { // one per pass kind of the plan that dispatches
 struct Environment {             // descriptor set 1
   uint64_t constants_bytes = 0;  // 0: binding 0 is no uniform buffer
   uint64_t constants_stride = 0; // from one frame in flight to the next
+  uint64_t counters_bytes = 0;   // 0: no binding is counters
+  uint64_t counters_offset = 0, counters_stride = 0;
   uint64_t total_bytes = 0;
   VkBuffer buffer = VK_NULL_HANDLE;
   VkDeviceMemory memory = VK_NULL_HANDLE;
@@ -111,7 +119,8 @@ struct Executor::State {
   const Device* device = nullptr;
   Plan plan;
   uint32_t frames_in_flight = 1;
-  std::vector<VkDeviceMemory> heaps;
+  const HeapPool* heap_pool = nullptr; // or null
+  std::vector<HeapMemory> heaps;
   std::vector<Instance> instances;
   std::vector<PartView> part_views;
   std::vector<uint32_t> view_of_access; // by plan access: first of its part_views, one for each instance;
@@ -132,6 +141,7 @@ struct Executor::State {
   std::vector<uint32_t> push_constants;
   uint64_t frame_counter = 0; // frames recorded
   uint64_t last_frame_index = 0;
+  std::vector<uint64_t> frame_of_slot; // frame_index recorded there last; 0: none
   Rectangle previous_rectangle;
 
   State() = default;
@@ -150,6 +160,9 @@ std::optional<uint32_t> choose_memory_type(const Device& device, uint32_t allowe
 // Allocates what `needs` says, of a type with `required` and if possible `preferred`.
 Error allocate(const Device& device, const VkMemoryRequirements& needs, VkMemoryPropertyFlags required,
                VkMemoryPropertyFlags preferred, const std::string& thing, VkDeviceMemory& memory);
+// A block of one of these memory types, on the device if it can be.
+Error allocate_heap(const Device& device, uint32_t memory_type_bits, uint64_t bytes, const std::string& thing,
+                    VkDeviceMemory& memory);
 Error create_memory(State& state, const Graph& graph); // heaps, images, buffers, views
 void destroy_memory(State& state);
 
@@ -161,6 +174,7 @@ void destroy_stand_ins(State& state);
 // ---- environment.cpp
 Error create_environment(State& state, std::span<const EnvironmentBinding> bindings);
 void destroy_environment(State& state);
+void clear_counters(State& state, uint32_t frame_slot) noexcept;
 void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept;
 
 // ---- kernels.cpp
@@ -182,8 +196,16 @@ uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t 
 // One batch: the plan's barriers first .. first + count, and those that keep writes to stand-ins in order.
 void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
                      std::span<const uint32_t> writable_stand_ins) noexcept;
+// Everything before is done and visible: other commands used the same memory.
+void record_memory_takeover(State& state, const FrameInput& frame) noexcept;
+// What kernels counted becomes visible to the host; nothing where they do not count.
+void record_counters_to_host(State& state, const FrameInput& frame) noexcept;
 void record_acquires(State& state, const FrameInput& frame) noexcept; // queue family transfers to us
 void record_releases(State& state, const FrameInput& frame) noexcept; // and from us
+
+// ---- history.cpp
+// Every history starts anew at the next record.
+void forget_histories(State& state, HistoryReason reason) noexcept;
 
 // ---- initialise.cpp
 // Brings stand-ins and new or invalid history instances to zero and to the layout that the plan expects.

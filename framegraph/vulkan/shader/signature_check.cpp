@@ -60,8 +60,8 @@ struct Checker {
     const std::string place = fmt::format("environment binding {}", binding.binding);
     check_type(binding, place,
                given.type == EnvironmentType::uniform_buffer   ? BindingType::uniform_buffer
-               : given.type == EnvironmentType::storage_buffer ? BindingType::storage_buffer
-                                                               : BindingType::sampler);
+               : given.type == EnvironmentType::linear_sampler ? BindingType::sampler
+                                                               : BindingType::storage_buffer);
     if (given.type != EnvironmentType::linear_sampler && binding.bytes > given.bytes)
       mismatch("{} has {} bytes, '{}' in the shader needs {}", place, given.bytes, binding.name,
                binding.bytes);
@@ -138,6 +138,7 @@ std::optional<VkDescriptorType> descriptor_type(Usage usage) {
 VkDescriptorType descriptor_type(EnvironmentType type) {
   switch (type) {
   case EnvironmentType::storage_buffer:
+  case EnvironmentType::counters:
     return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   case EnvironmentType::linear_sampler:
     return VK_DESCRIPTOR_TYPE_SAMPLER;

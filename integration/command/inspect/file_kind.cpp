@@ -11,6 +11,8 @@ constexpr FileKind kinds[] = {
     {"dermis_capture", "capture", 1},
     {"dermis_overlay", "overlay", 1},
     {"dermis_fragment", "fragment", 1},
+    {"dermis_errors", "error table", 1},
+    {"dermis_calibration", "calibration", 1},
 };
 
 } // namespace

@@ -14,7 +14,17 @@ struct FileKind {
   int64_t version; // the newest one, which is what is read
 };
 
-enum class FileKindId : uint8_t { graph, profile, scene, expectations, capture, overlay, fragment };
+enum class FileKindId : uint8_t {
+  graph,
+  profile,
+  scene,
+  expectations,
+  capture,
+  overlay,
+  fragment,
+  errors,
+  calibration
+};
 
 std::span<const FileKind> file_kinds(); // by FileKindId
 

@@ -11,6 +11,8 @@
 #include "integration/command/run/captured.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
 #include "integration/files/capture_pictures.hpp"
+#include "passes/choice/calibration.hpp"
+#include "passes/choice/error_model.hpp"
 #include "passes/subsurface/profile.hpp"
 
 #include <dermis/dermis.h>
@@ -96,6 +98,12 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
     break;
   case FileKindId::fragment:
     checked.good = load_fragment(*document, open_beside(path, options.parts.roots), diagnostics).has_value();
+    break;
+  case FileKindId::errors:
+    checked.good = choice::read_error_model(*document, diagnostics).has_value();
+    break;
+  case FileKindId::calibration:
+    checked.good = choice::read_calibration(*document, diagnostics).has_value();
     break;
   }
   return checked;

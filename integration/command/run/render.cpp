@@ -5,9 +5,11 @@
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
+#include "integration/command/run/choice_report.hpp"
 #include "integration/command/run/pass_times.hpp"
 #include "integration/command/run/rendered_frame.hpp"
 #include "integration/command/run/truth_run.hpp"
+#include "integration/demo_engine/files.hpp"
 #include "integration/files/capture_truth.hpp"
 #include "integration/files/exr.hpp"
 #include "integration/files/png.hpp"
@@ -40,6 +42,7 @@ struct Run {
   std::vector<float> last_scattered{};
   CaptureWriter capture{};
   bool textured_before = false;
+  ChoiceReport choices{};
   bool transmission = false; // the graph adds light from behind before it scatters
 };
 
@@ -89,6 +92,7 @@ demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
     for (const demo::PassTime& time : frame.host_times)
       run.host_times.add(time.pass, time.milliseconds);
   }
+  if (frame.choice) run.choices.add(frame.frame, *frame.choice);
   run.exposure.add(captured->lighting.values, captured->profile);
   run.last = make_truth_frame(*captured);
   if (run.transmission) add_transmission(*captured, run.last);
@@ -128,6 +132,7 @@ ExitCode report(Run& run) {
   std::string text, error_json = "null";
   if (!run.graph_times.empty()) text += format_times(run.graph_times, "pass of the graph") + '\n';
   if (!run.host_times.empty()) text += format_times(run.host_times, "pass of the engine") + '\n';
+  if (!run.choices.empty()) text += run.choices.text() + '\n';
   const std::string no_error = why_no_error(run);
   if (no_error.empty()) {
     const TruthFrame& last = run.last;
@@ -157,6 +162,7 @@ ExitCode report(Run& run) {
     write_times(answer, run.graph_times);
     write_times(answer.key("engine_passes"), run.host_times);
     answer.member("device_ms", run.graph_times.total()).key("error").json(error_json);
+    run.choices.write(answer.key("choices"));
     answer.key("credits").open_array();
     for (const std::string& credit : run.info.credits)
       answer.value(credit);
@@ -176,6 +182,13 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.width = options.size.width;
   engine.height = options.size.height;
   engine.frames = options.frames;
+  engine.budget_ms = options.budget_ms;
+  engine.metered = options.metered;
+  if (!options.calibration.empty()) {
+    auto text = demo::read_text_file(options.calibration);
+    if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
+    engine.calibration = text.take();
+  }
 
   // The graph is read here first: its messages then come with excerpts and as JSON, and --set is checked.
   bool textured = false, transmission = false;

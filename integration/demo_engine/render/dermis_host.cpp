@@ -167,6 +167,19 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
   return query_slots(host);
 }
 
+Result<> set_budget(DermisHost& host, const DermisDesc& desc) {
+  if (desc.budget_ms == 0 && !desc.metered && desc.calibration.empty()) return success();
+  const dermis_source calibration = source_of("calibration", desc.calibration);
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  budget.milliseconds = static_cast<float>(desc.budget_ms);
+  budget.flags = desc.metered ? DERMIS_BUDGET_METER : 0;
+  budget.calibration = desc.calibration.empty() ? nullptr : &calibration;
+  Report report;
+  const dermis_result result = dermis_graph_set_budget(host.graph, &budget, &report.handle);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_set_budget", result, report.handle);
+  return success();
+}
+
 } // namespace
 
 void DermisHostDeleter::operator()(DermisHost* host) const {
@@ -215,6 +228,7 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
     error.kind = ErrorKind::usage; // names and values come from whoever starts the rendering
     return error;
   }
+  if (auto done = set_budget(*host, desc); !done) return done.error();
   // A setting may change what the graph uses; slots and their names belong to the plan that was replaced.
   if (auto done = query_slots(*host); !done) return done.error();
   return host;
@@ -304,6 +318,40 @@ std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index) {
   for (const dermis_pass_timing& one : timings)
     times.push_back({one.pass, static_cast<double>(one.nanoseconds) * 1e-6});
   return times;
+}
+
+Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  const dermis_result result = dermis_graph_choice(host.graph, frame_index, &choice);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_choice", result);
+  FrameChoice out;
+  out.outcome = choice.outcome;
+  out.technique = choice.technique;
+  out.why = choice.why;
+  out.next_better = choice.next_better;
+  out.budget_ms = choice.budget_ms;
+  out.predicted_ms = choice.predicted_ms;
+  out.predicted_spread_ms = choice.predicted_spread_ms;
+  out.measured_ms = choice.measured_ms;
+  out.metered_ms = choice.metered_ms;
+  out.predicted_rmse = choice.predicted_rmse;
+  out.next_better_missing_ms = choice.next_better_missing_ms;
+  out.mean_d_px = choice.mean_d_px;
+  out.outcomes = choice.outcome_count;
+  out.view_tiles = choice.view_tiles;
+  out.scattering_tiles = choice.scattering_tiles;
+  out.copied_tiles = choice.copied_tiles;
+  out.switches = choice.switches;
+  return out;
+}
+
+std::string graph_calibration(DermisHost& host) {
+  size_t size = 0;
+  if (dermis_graph_calibration(host.graph, &size, nullptr) != DERMIS_OK || size == 0) return "";
+  std::string text(size, '\0');
+  if (dermis_graph_calibration(host.graph, &size, text.data()) != DERMIS_OK) return "";
+  text.resize(size - 1); // without the final 0
+  return text;
 }
 
 } // namespace demo

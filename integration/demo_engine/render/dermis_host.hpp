@@ -18,6 +18,9 @@ struct DermisDesc {
   uint32_t width = 1, height = 1;
   std::vector<NamedText> overlays = {};
   std::function<std::optional<NamedText>(const std::string& name)> include = {};
+  double budget_ms = 0;
+  bool metered = false;
+  std::string calibration = {};
 };
 
 struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h
@@ -43,5 +46,9 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
                       VkCommandBuffer commands, uint64_t frame_index);
 // Device times of the frame; the device must have finished it. Empty where the device has no timestamps.
 std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index);
+// What was chosen for the frame; the device must have finished it. Errors: internal.
+Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index);
+// What the graph learned of the device's times, as JSON.
+std::string graph_calibration(DermisHost& host);
 
 } // namespace demo

@@ -326,6 +326,62 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, ui
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name, const char* json,
                                                               dermis_report* report);
 
+/* ---- the choice ------------------------------------------------------------------------------------------ */
+
+#define DERMIS_BUDGET_METER 0x1u /* times come from the calibration alone, never from timestamps: the same frames
+                                    give the same choices on every machine */
+
+/* Device time that the graph may take. Settings declared with "by": "budget" are then chosen in each record: the least
+ * expected error whose expected time fits. All plans that this can lead to exist from creation on; changing between
+ * them allocates nothing. Times are learned with DERMIS_CONTEXT_TIMINGS; else they are those of the calibration. */
+typedef struct dermis_budget {
+  size_t struct_size;
+  float milliseconds;               /* a frame, > 0; 0: no budget, choices take their defaults */
+  uint32_t flags;                   /* DERMIS_BUDGET_... */
+  const dermis_source* errors;      /* error table (docs/choice.md); NULL: as it was, at first the library's own */
+  const dermis_source* calibration; /* what dermis_graph_calibration gave; NULL: as it was. What was learned is dropped */
+} dermis_budget;
+#define DERMIS_BUDGET_INIT {sizeof(dermis_budget), 0, 0, NULL, NULL}
+
+/* Effective at the next record; kept over reload and resize. Thread: one per graph. Errors: ARGUMENT, VERSION, CONFIG,
+ * MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph, const dermis_budget* budget,
+                                                             dermis_report* report);
+
+/* What was chosen for a frame, and what became of it. Strings live until the next reload, resize, set_setting or
+ * destroy. */
+typedef struct dermis_choice {
+  size_t struct_size;
+  uint64_t frame_index;          /* of the frame that this is about */
+  const char* outcome;           /* "technique=sap" */
+  const char* technique;         /* as the error table names it; "" where none runs */
+  const char* why;               /* static string */
+  const char* next_better;       /* the outcome with less error that lacks least time; "" for none */
+  float budget_ms;               /* 0: none */
+  float predicted_ms;
+  float predicted_spread_ms;     /* typical deviation of a frame */
+  float measured_ms;             /* -1: not timed */
+  float metered_ms;              /* by the calibration alone, for the tiles that were counted */
+  float predicted_rmse;          /* of linear luminance, the light's 99.9th percentile at 1 */
+  float next_better_missing_ms;  /* that the budget lacks for next_better */
+  float mean_d_px;               /* widest shape parameter over the scattering tiles, geometric mean; 0: none */
+  uint32_t outcome_count;
+  uint32_t view_tiles;           /* 8x8 tiles of the render rectangle */
+  uint32_t scattering_tiles;     /* that ran the technique */
+  uint32_t copied_tiles;         /* with subsurface that scatters less than a pixel: copied */
+  uint32_t switches;             /* since the graph was made */
+  uint32_t reserved;             /* 0 */
+} dermis_choice;
+#define DERMIS_CHOICE_INIT {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+
+/* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame.
+ * Thread: one per graph. Errors: ARGUMENT, NOT_READY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph, uint64_t completed_frame_index,
+                                                         dermis_choice* choice);
+/* What is known of this device's times, as JSON for dermis_budget.calibration at the next start. *size in: room in
+ * `text`; out: bytes needed with the final 0. text may be NULL. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size, char* text);
+
 /* ---- each frame ------------------------------------------------------------------------------------------ */
 
 typedef struct dermis_image_state {

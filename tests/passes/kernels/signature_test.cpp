@@ -19,6 +19,7 @@ TEST(Kernels, EveryKernelFitsItsSignatureAndTheEnvironment) {
       {EnvironmentType::linear_sampler, 0, {}},
       {EnvironmentType::storage_buffer, any, {}},
       {EnvironmentType::storage_buffer, any, {}},
+      {EnvironmentType::counters, sizeof(FrameCounters), {}},
   };
   const KindRegistry kinds = make_kinds();
   ASSERT_GT(kinds.size(), 0u);

@@ -1,0 +1,161 @@
+// Budgets, what was chosen, and what is known of times.
+
+#include "framegraph/text/document.hpp"
+#include "integration/abi/graph.hpp"
+#include "integration/abi/graph_desc.hpp"
+#include "integration/abi/report.hpp"
+
+#include <cmath>
+#include <cstring>
+
+namespace dermis::abi {
+namespace {
+
+constexpr float largest_budget_ms = 1e6f;
+
+struct Tables {
+  std::optional<choice::ErrorModel> errors;
+  std::optional<choice::Calibration> calibration;
+};
+
+dermis_result read_tables(const Log& log, const dermis_budget& budget, Tables& out,
+                          Diagnostics& diagnostics) {
+  std::string name, text;
+  if (budget.errors != nullptr) {
+    if (const dermis_result result =
+            read_source(log, "dermis_graph_set_budget: errors", *budget.errors, name, text);
+        result != DERMIS_OK)
+      return result;
+    const auto document = parse_document(name.empty() ? "errors" : name, std::move(text), diagnostics);
+    if (document) out.errors = choice::read_error_model(*document, diagnostics);
+  }
+  if (budget.calibration != nullptr) {
+    if (const dermis_result result =
+            read_source(log, "dermis_graph_set_budget: calibration", *budget.calibration, name, text);
+        result != DERMIS_OK)
+      return result;
+    const auto document = parse_document(name.empty() ? "calibration" : name, std::move(text), diagnostics);
+    if (document) out.calibration = choice::read_calibration(*document, diagnostics);
+  }
+  return DERMIS_OK;
+}
+
+dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, dermis_report* report) {
+  const Log& log = graph.context->log;
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  if (const SizedRead read = read_sized(given, budget); read != SizedRead::ok)
+    return refused_size(log, read, "dermis_graph_set_budget: budget", stated_size(given),
+                        first_version_size<dermis_budget>);
+  if (!(budget.milliseconds >= 0 && budget.milliseconds <= largest_budget_ms)) // NaN is refused, too
+    return bad_argument(log, "dermis_graph_set_budget: milliseconds is {}, expected 0..{}",
+                        budget.milliseconds, largest_budget_ms);
+  if ((budget.flags & ~DERMIS_BUDGET_METER) != 0)
+    return bad_argument(log, "dermis_graph_set_budget: flags is {:#x}, known is {:#x}", budget.flags,
+                        DERMIS_BUDGET_METER);
+  Diagnostics diagnostics;
+  Tables tables;
+  if (const dermis_result result = read_tables(log, budget, tables, diagnostics); result != DERMIS_OK)
+    return result;
+  const dermis_result result = diagnostics.has_errors() ? DERMIS_ERROR_CONFIG : DERMIS_OK;
+  if (conclude(log, result, std::move(diagnostics), report) != DERMIS_OK) return result;
+
+  Chooser& chooser = graph.chooser;
+  if (tables.errors) chooser.errors = std::move(*tables.errors);
+  if (tables.calibration) {
+    chooser.calibration = std::move(*tables.calibration);
+    chooser.costs = choice::CostModel(chooser.calibration.costs);
+  }
+  if (tables.errors || tables.calibration)
+    for (Program* program : {graph.running.get(), graph.next.get()})
+      if (program != nullptr) describe_program(chooser, graph.context->kinds, *program);
+  chooser.budget_ms = static_cast<double>(budget.milliseconds);
+  chooser.metered = (budget.flags & DERMIS_BUDGET_METER) != 0;
+  return DERMIS_OK;
+}
+
+dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
+  const FrameChoice& frame = chooser.newest;
+  const choice::Outcome& outcome = program.outcomes[frame.outcome];
+  const bool better = frame.decision.next_better < program.outcomes.size();
+  dermis_choice out = DERMIS_CHOICE_INIT;
+  out.frame_index = frame.frame_index;
+  out.outcome = outcome.name.c_str();
+  out.technique = outcome.technique < 0
+                      ? ""
+                      : chooser.errors.techniques[static_cast<size_t>(outcome.technique)].name.c_str();
+  out.why = choice::why_text(frame.decision.why);
+  out.next_better = better ? program.outcomes[frame.decision.next_better].name.c_str() : "";
+  out.next_better_missing_ms = static_cast<float>(frame.decision.missing_ms);
+  out.budget_ms = static_cast<float>(frame.budget_ms);
+  out.predicted_ms = static_cast<float>(frame.forecast.ms);
+  out.predicted_spread_ms = static_cast<float>(frame.forecast.spread_ms);
+  out.measured_ms = frame.timed ? static_cast<float>(frame.measured_ms) : -1.0f;
+  out.metered_ms = static_cast<float>(frame.metered_ms);
+  out.predicted_rmse = static_cast<float>(frame.forecast.rmse);
+  out.mean_d_px = static_cast<float>(subsurface::mean_d_px(frame.counters));
+  out.outcome_count = static_cast<uint32_t>(program.outcomes.size());
+  out.view_tiles = static_cast<uint32_t>(frame.view_tiles);
+  out.scattering_tiles = frame.counters.scattering_tiles;
+  out.copied_tiles = frame.counters.copied_tiles;
+  out.switches = frame.switches;
+  return out;
+}
+
+dermis_result get_choice(dermis_graph_t& graph, uint64_t completed, dermis_choice* out) {
+  const Log& log = graph.context->log;
+  const size_t size = stated_size(out);
+  if (const SizedRead read = check_size<dermis_choice>(size); read != SizedRead::ok)
+    return refused_size(log, read, "dermis_graph_choice: choice", size, first_version_size<dermis_choice>);
+  if (completed > graph.last_frame)
+    return bad_argument(log,
+                        "dermis_graph_choice: completed_frame_index is {}, the newest recorded frame is {}",
+                        completed, graph.last_frame);
+  if (!graph.running) return DERMIS_NOT_READY;
+  observe(graph.chooser, *graph.running, completed);
+  if (graph.chooser.newest.frame_index == 0 || graph.chooser.newest.program != graph.running->serial)
+    return DERMIS_NOT_READY;
+  write_sized(out, size, describe_choice(graph.chooser, *graph.running));
+  return DERMIS_OK;
+}
+
+} // namespace
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph, const dermis_budget* budget,
+                                                             dermis_report* report) {
+  if (report != nullptr) *report = nullptr;
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_set_budget: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_set_budget", [&] {
+    if (budget == nullptr) return bad_argument(log, "dermis_graph_set_budget: budget is NULL");
+    return set_budget(*graph, budget, report);
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph, uint64_t completed_frame_index,
+                                                         dermis_choice* choice) {
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_choice: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_choice", [&] {
+    if (choice == nullptr) return bad_argument(log, "dermis_graph_choice: choice is NULL");
+    return get_choice(*graph, completed_frame_index, choice);
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size, char* text) {
+  if (graph == nullptr) return bad_argument({}, "dermis_graph_calibration: graph is NULL");
+  const Log& log = graph->context->log;
+  return guarded(log, "dermis_graph_calibration", [&] {
+    if (size == nullptr) return bad_argument(log, "dermis_graph_calibration: size is NULL");
+    const std::string json = dermis::choice::write_calibration(
+        {graph->context->device.properties.deviceName, graph->chooser.costs.calibration()});
+    const size_t room = *size;
+    *size = json.size() + 1;
+    if (text == nullptr) return DERMIS_OK;
+    if (room < *size) return DERMIS_INCOMPLETE;
+    std::memcpy(text, json.c_str(), *size);
+    return DERMIS_OK;
+  });
+}

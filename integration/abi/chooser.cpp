@@ -1,0 +1,136 @@
+#include "integration/abi/chooser.hpp"
+
+#include "framegraph/text/document.hpp"
+#include "integration/abi/program.hpp"
+#include "passes/choice/defaults.hpp"
+
+#include <algorithm>
+
+namespace dermis::abi {
+namespace {
+
+constexpr double assumed_d_px = 1; // before any frame was counted
+constexpr double ns_per_ms = 1e6;
+
+// Both files are in tests: they are read without an error.
+choice::ErrorModel default_errors() {
+  Diagnostics diagnostics;
+  const auto document = parse_document("errors", std::string(choice::default_errors_text()), diagnostics);
+  auto read = document ? choice::read_error_model(*document, diagnostics) : std::nullopt;
+  return read ? std::move(*read) : choice::ErrorModel{"", {{1, 1}}, {}};
+}
+
+choice::Calibration default_calibration() {
+  Diagnostics diagnostics;
+  const auto document =
+      parse_document("calibration", std::string(choice::default_calibration_text()), diagnostics);
+  auto read = document ? choice::read_calibration(*document, diagnostics) : std::nullopt;
+  return read ? std::move(*read) : choice::Calibration{};
+}
+
+choice::FrameLoad load_of(const subsurface::FrameCounters& counters, uint64_t view_tiles) {
+  return {view_tiles,
+          std::min<uint64_t>(view_tiles, uint64_t{counters.scattering_tiles} + counters.copied_tiles)};
+}
+
+FrameChoice& place_of(Chooser& chooser, uint64_t frame_index) {
+  return chooser.frames[frame_index % chooser.frames.size()];
+}
+
+void learn(Chooser& chooser, const choice::Outcome& outcome, FrameChoice& frame) {
+  const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles);
+  frame.measured_ms = 0;
+  for (size_t p = 0; p < outcome.passes.size(); ++p) {
+    const double ms = static_cast<double>(chooser.times[p].nanoseconds) / ns_per_ms;
+    frame.measured_ms += ms;
+    if (!frame.first_of_plan)
+      chooser.costs.observe(outcome.passes[p].cost, groups_of(outcome.passes[p], load), ms);
+  }
+}
+
+void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
+  const choice::Outcome& outcome = program.outcomes[frame.outcome];
+  vulkan::Executor& executor = *program.variants[outcome.plan].executor;
+  std::array<uint32_t, sizeof(subsurface::FrameCounters) / sizeof(uint32_t)> words{};
+  const bool counted = executor.read_counters(frame.frame_index, words);
+  if (counted) frame.counters = {words[0], words[1], words[2]};
+  uint64_t timed_frame = 0;
+  const std::span times(chooser.times.data(), outcome.passes.size());
+  frame.timed =
+      executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
+  frame.metered_ms = metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles)).ms;
+  if (counted && frame.timed) learn(chooser, outcome, frame);
+  frame.observed = true;
+  if (frame.frame_index <= chooser.newest.frame_index) return;
+  chooser.newest = frame;
+  chooser.counted = chooser.counted || counted;
+  if (counted) chooser.counters = frame.counters;
+}
+
+} // namespace
+
+Chooser make_chooser() {
+  Chooser chooser;
+  chooser.errors = default_errors();
+  chooser.calibration = default_calibration();
+  chooser.costs = choice::CostModel(chooser.calibration.costs);
+  return chooser;
+}
+
+void describe_program(Chooser& chooser, const KindRegistry& kinds, Program& program) {
+  std::vector<const Plan*> plans;
+  for (const Variant& variant : program.variants)
+    plans.push_back(&variant.compiled.plan);
+  describe_outcomes(kinds, plans, chooser.errors, chooser.costs, program.outcomes);
+}
+
+void make_room(Chooser& chooser, const Program& program) {
+  size_t passes = chooser.times.size();
+  for (const Variant& variant : program.variants)
+    passes = std::max(passes, variant.compiled.plan.passes.size());
+  chooser.times.resize(passes);
+  chooser.forecasts.resize(std::max(chooser.forecasts.size(), program.outcomes.size()));
+}
+
+void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept {
+  for (FrameChoice& frame : chooser.frames)
+    if (frame.frame_index != 0 && !frame.observed && frame.frame_index <= completed_frame_index &&
+        frame.program == program.serial)
+      observe_frame(chooser, program, frame);
+}
+
+FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles,
+                   std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept {
+  choice::FrameLoad load{view_tiles, view_tiles}; // nothing counted yet: all of the view may scatter
+  double d_px = assumed_d_px;
+  if (chooser.counted) {
+    load = load_of(chooser.counters, view_tiles);
+    if (chooser.counters.scattering_tiles > 0) d_px = subsurface::mean_d_px(chooser.counters);
+  }
+  for (size_t i = 0; i < program.outcomes.size(); ++i) {
+    const choice::Outcome& outcome = program.outcomes[i];
+    const choice::Estimate cost =
+        chooser.metered ? metered(outcome, chooser.costs, load) : estimate(outcome, chooser.costs, load);
+    forecasts[i] = {cost.ms, cost.spread_ms, expected_rmse(chooser.errors, outcome.technique, d_px)};
+  }
+  FrameChoice frame;
+  frame.program = program.serial;
+  frame.view_tiles = view_tiles;
+  frame.budget_ms = chooser.budget_ms;
+  if (chooser.budget_ms > 0)
+    frame.decision = decide(forecasts.first(program.outcomes.size()), chooser.budget_ms, state);
+  else
+    frame.decision = {0, choice::Why::no_budget};
+  frame.outcome = frame.decision.outcome;
+  frame.switches = state.switches;
+  frame.forecast = forecasts[frame.outcome];
+  return frame;
+}
+
+void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept {
+  place_of(chooser, frame.frame_index) = frame;
+  chooser.state = state;
+  chooser.decided_for = frame.program;
+}
+
+} // namespace dermis::abi

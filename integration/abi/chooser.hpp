@@ -1,0 +1,77 @@
+#pragma once
+// The library's choice for one graph: what it knows of costs and errors, what it decided for recent frames
+// and what became of them.
+
+#include "framegraph/vulkan/executor.hpp"
+#include "integration/include/dermis/dermis.h"
+#include "passes/choice/calibration.hpp"
+#include "passes/choice/decide.hpp"
+#include "passes/choice/outcomes.hpp"
+#include "passes/subsurface/environment.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace dermis::abi {
+
+struct Program;
+
+// A frame that was recorded: what was expected, and once the device has finished it, what was.
+struct FrameChoice {
+  uint64_t frame_index = 0; // 0: none
+  uint64_t program = 0;     // Program::serial
+  uint32_t outcome = 0;     // into Program::outcomes
+  choice::Decision decision;
+  uint32_t switches = 0; // since the graph began
+  double budget_ms = 0;  // 0: none
+  choice::Forecast forecast;
+  uint64_t view_tiles = 0;
+  bool first_of_plan =
+      false; // drivers finish kernels when they first run: nothing is learned from such a frame
+  bool observed = false;
+  bool timed = false;
+  double measured_ms = 0; // where timed
+  double metered_ms = 0;  // by the calibration alone, for what was counted
+  subsurface::FrameCounters counters;
+};
+
+struct Chooser {
+  choice::ErrorModel errors;
+  choice::Calibration calibration; // costs start from it
+  choice::CostModel costs;
+  double budget_ms = 0; // 0: choices keep their defaults
+  bool metered = false; // DERMIS_BUDGET_METER
+  choice::DecisionState state;
+  uint64_t decided_for = 0;           // Program::serial that `state` is about
+  subsurface::FrameCounters counters; // of the newest observed frame
+  bool counted = false;
+  std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
+  FrameChoice newest;                                               // the newest observed frame
+  uint64_t programs = 0;                                            // built so far
+  // Room, so that recording allocates nothing: see make_room().
+  std::vector<choice::Forecast> forecasts;
+  std::vector<vulkan::PassTiming> times;
+};
+
+// With the tables that the library carries.
+Chooser make_chooser();
+
+// Allocates what deciding and observing need for `program`. Before its first record.
+void make_room(Chooser& chooser, const Program& program);
+
+// Tells the outcomes of `program` what their passes cost and which technique they are: after its making,
+// after a setting or a table changed.
+void describe_program(Chooser& chooser, const KindRegistry& kinds, Program& program);
+
+// Learns from frames of `program` that the device has finished. Allocates nothing.
+void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;
+
+// The outcome for a frame whose render rectangle has `view_tiles` tiles, with what is expected of it;
+// remembered by remember() once the frame is recorded. Allocates nothing. Changes `chooser` only through
+// remember().
+FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles,
+                   std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
+void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
+
+} // namespace dermis::abi

@@ -1,0 +1,46 @@
+#pragma once
+// What the verbs' options have in common, and how a verb is added. Internal to arguments/.
+
+#include "integration/command/arguments/arguments.hpp"
+#include "integration/command/verbs.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+inline constexpr uint32_t max_side = 16384; // pixels; dermis.h, dermis_graph_desc
+inline constexpr uint32_t max_frames = 100000;
+
+CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
+void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
+void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
+void add_parts(CLI::App& verb, GraphParts& parts);
+void add_common(CLI::App& verb, Session& session, bool json_is_file);
+
+// The verb's options live as long as the function that runs it.
+template <class Options, class Declare>
+void add_verb(CLI::App& app, Invocation& invocation, const char* name, const char* what, const char* example,
+              ExitCode (*work)(const Session&, const Options&), Declare declare, bool json_is_file = false) {
+  CLI::App& verb = *app.add_subcommand(name, what);
+  verb.footer(fmt::format("Example:\n  {}", example));
+  auto options = std::make_shared<Options>();
+  add_common(verb, invocation.session, json_is_file);
+  declare(verb, *options);
+  verb.callback([&invocation, options, work] {
+    invocation.run = [options, work](const Session& session) { return work(session, *options); };
+  });
+}
+
+// Verbs by what they do; each function adds its own.
+void add_text_verbs(CLI::App& app, Invocation& invocation);
+void add_plan_verbs(CLI::App& app, Invocation& invocation);
+void add_schema_verb(CLI::App& app, Invocation& invocation);
+void add_picture_verbs(CLI::App& app, Invocation& invocation);
+void add_bench_verbs(CLI::App& app, Invocation& invocation);
+
+} // namespace dermis::tools

@@ -1,0 +1,98 @@
+#include "integration/command/arguments/arguments.hpp"
+
+#include "framegraph/text/suggest.hpp"
+#include "integration/command/arguments/add_verb.hpp"
+
+#include <CLI/CLI.hpp>
+#include <dermis/dermis.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+std::string_view name_part(std::string_view argument) {
+  return argument.substr(0, argument.find('='));
+}
+
+// A misspelt verb or option, said before CLI11 complains of what else is missing; "" when all are known.
+std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2) return "";
+  const std::string first = argv[1];
+  if (first.starts_with("-")) return "";
+  const std::vector<CLI::App*> verbs = app.get_subcommands([](CLI::App*) { return true; });
+  const auto found =
+      std::find_if(verbs.begin(), verbs.end(), [&](const CLI::App* one) { return one->get_name() == first; });
+  std::vector<std::string> names;
+  if (found == verbs.end()) {
+    for (const CLI::App* one : verbs)
+      names.push_back(one->get_name());
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    const std::string suggestion = did_you_mean(first, words);
+    return fmt::format("there is no verb '{}'; {}", first,
+                       suggestion.empty() ? "verbs: " + list_words(words) : suggestion);
+  }
+  CLI::App* verb = *found;
+  int options_from = 2;
+  if (argc > 2)
+    for (CLI::App* inner : verb->get_subcommands([](CLI::App*) { return true; }))
+      if (inner->get_name() == argv[2]) {
+        verb = inner;
+        options_from = 3;
+      }
+  for (int i = options_from; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string name(name_part(argv[i]));
+    if (!name.starts_with("--") || verb->get_option_no_throw(name) != nullptr) continue;
+    for (const CLI::Option* one : verb->get_options())
+      for (const std::string& known : one->get_lnames())
+        names.push_back("--" + known);
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    const std::string suggestion = did_you_mean(name, words);
+    return fmt::format("'{}' has no option '{}'; {}", first, name,
+                       suggestion.empty() ? fmt::format("'dermis {} --help' lists them", first) : suggestion);
+  }
+  return "";
+}
+
+} // namespace
+
+Invocation read_arguments(int argc, const char* const* argv) {
+  Invocation invocation;
+  CLI::App app("Frame graphs that scatter light under the skin.\n", "dermis");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", fmt::format("dermis {}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR,
+                                                DERMIS_VERSION_PATCH));
+  app.footer("Exit codes: 0 done; 1 the input has problems; 2 bad option or value; 3 no driver, unwritable "
+             "output or\n"
+             "missing package; 4 a defect of the program.");
+  add_text_verbs(app, invocation);
+  add_plan_verbs(app, invocation);
+  add_schema_verb(app, invocation);
+  add_picture_verbs(app, invocation);
+  add_bench_verbs(app, invocation);
+
+  for (int i = 0; i < argc; ++i)
+    invocation.session.command += (i == 0 ? "" : " ") + std::string(argv[i]);
+
+  // Also a line that cannot be read is answered in the way it asks for.
+  invocation.session.json = std::count(argv, argv + argc, std::string_view("--json")) > 0;
+  invocation.message = find_misspelling(app, argc, argv);
+  if (!invocation.message.empty()) return invocation;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const CLI::App* chosen = &app;
+    while (!chosen->get_subcommands().empty())
+      chosen = chosen->get_subcommands().front();
+    invocation.help = chosen->help();
+  } catch (const CLI::CallForVersion& version) {
+    invocation.help = std::string(version.what()) + "\n";
+  } catch (const CLI::ParseError& error) {
+    invocation.message = error.what();
+    invocation.run = nullptr;
+  }
+  return invocation;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,142 @@
+// Verbs that measure.
+#include "integration/command/arguments/add_verb.hpp"
+
+namespace dermis::tools {
+namespace {
+
+constexpr uint32_t most_sequence_frames = 3600, most_supplement_runs = 1u << 20;
+
+} // namespace
+
+void add_bench_verbs(CLI::App& app, Invocation& invocation) {
+  CLI::App& bench = *app.add_subcommand("bench", "Measure the library on this machine");
+  bench.require_subcommand(1);
+  add_verb<BenchCompileOptions>(
+      bench, invocation, "compile", "Time and memory of compiling drawn graphs, or those of a folder",
+      "dermis bench compile --json build/bench_compile.json", bench_compile,
+      [](CLI::App& verb, BenchCompileOptions& options) {
+        verb.add_option("--shapes", options.shapes, "What is drawn [tests/benchmark/shapes.json]")
+            ->type_name("FILE");
+        verb.add_option("--graphs", options.graphs, "Measure the graph files of a folder instead")
+            ->type_name("DIR");
+        verb.add_flag("--optimize", options.optimize, "Also the packing level that takes seconds a graph");
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+      },
+      true);
+  add_verb<BenchRecordOptions>(
+      bench, invocation, "record", "Time and allocations of recording graphs, on a device that only counts",
+      "dermis bench record --json build/bench_record.json", bench_record,
+      [](CLI::App& verb, BenchRecordOptions& options) {
+        verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")
+            ->type_name("DIR");
+        verb.add_option("--profile", options.profile, "Profile of id 1 [configs/profiles/skin.json]")
+            ->type_name("FILE");
+        add_size(verb, options.size);
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+      },
+      true);
+  add_verb<BenchErrorTimeOptions>(
+      bench, invocation, "error-time", "Run time against error of every technique at every still scene",
+      "dermis bench error-time --size 640x360 --json build/error_time.json --html build/error_time.html",
+      bench_error_time,
+      [](CLI::App& verb, BenchErrorTimeOptions& options) {
+        add_size(verb, options.size);
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with plots and pictures")->type_name("FILE");
+        verb.add_option("--head", options.head, "Folder of the head scan (LeePerrySmith.glb and its maps)")
+            ->type_name("DIR");
+        verb.add_flag("--study", options.study, "Also the framings that study one head");
+        verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--techniques", options.techniques, "Only these techniques, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--file", options.file, "What is measured [tests/benchmark/error_time.json]")
+            ->type_name("FILE");
+        verb.add_option("--cache", options.cache, "Folder that keeps references [build/bench_truth]")
+            ->type_name("DIR");
+      },
+      true);
+  add_verb<BenchBudgetOptions>(
+      bench, invocation, "budget", "How well frames keep to a budget, and what error that costs",
+      "dermis bench budget --json build/budget.json", bench_budget,
+      [](CLI::App& verb, BenchBudgetOptions& options) {
+        add_size(verb, options.size);
+        verb.add_option("--graph", options.graph, "Graph with choices by budget [configs/graphs/skin.json]")
+            ->type_name("FILE");
+        verb.add_option("--calibration", options.calibration, "What dermis calibrate wrote for this device")
+            ->type_name("FILE");
+        verb.add_option("--scenes", options.scenes, "Scenes of configs/scenes, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--frames", options.frames, "Judged frames of each run [40]")
+            ->check(CLI::Range(4u, max_frames));
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
+        verb.add_option("--cache", options.cache, "Folder that keeps references [build/bench_truth]")
+            ->type_name("DIR");
+      },
+      true);
+  add_verb<BenchTruthOptions>(
+      bench, invocation, "truth", "Laws with known answers, beside what every technique makes of them",
+      "dermis bench truth --json build/truth.json", bench_truth,
+      [](CLI::App& verb, BenchTruthOptions& options) {
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
+        verb.add_option("--file", options.file, "Techniques and tolerances [tests/benchmark/truth.json]")
+            ->type_name("FILE");
+      },
+      true);
+  add_verb<BenchDynamicOptions>(
+      bench, invocation, "dynamic", "Samples, time, error and flicker while light, camera or things change",
+      "dermis bench dynamic --json build/dynamic.json --html build/dynamic.html", bench_dynamic,
+      [](CLI::App& verb, BenchDynamicOptions& options) {
+        add_size(verb, options.size);
+        verb.add_option("--frames", options.frames, "Frames of each sequence [as the file says]")
+            ->check(CLI::Range(1u, most_sequence_frames));
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with plots")->type_name("FILE");
+        verb.add_option("--head", options.head, "Folder of the head scan, which takes the bust's place")
+            ->type_name("DIR");
+        verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--framings", options.framings, "Only these framings, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--techniques", options.techniques, "Only these techniques, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--file", options.file, "What is measured [tests/benchmark/dynamic.json]")
+            ->type_name("FILE");
+        verb.add_option("--cache", options.cache, "Folder that keeps references [build/bench_truth]")
+            ->type_name("DIR");
+      },
+      true);
+  add_verb<BenchSupplementOptions>(
+      bench, invocation, "supplement", "Table 1 of the supplement on control variates, from many runs",
+      "dermis bench supplement --json build/supplement.json", bench_supplement,
+      [](CLI::App& verb, BenchSupplementOptions& options) {
+        verb.add_option("--runs", options.runs, "Runs of 100 frames [4096]")
+            ->check(CLI::Range(16u, most_supplement_runs));
+        verb.add_option("--json", options.json, "File for the rows, - for standard output")
+            ->type_name("FILE");
+        verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
+      },
+      true);
+}
+
+} // namespace dermis::tools

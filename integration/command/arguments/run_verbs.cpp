@@ -1,0 +1,121 @@
+// Verbs that render and run graphs.
+#include "integration/command/arguments/add_verb.hpp"
+
+namespace dermis::tools {
+namespace {
+
+constexpr uint32_t max_repeat = 10000;
+constexpr uint32_t max_subset = 1u << 24u; // pixels
+
+// How the graph's choices are made.
+void add_budget(CLI::App& verb, RenderOptions& options) {
+  const char* group = "The choice";
+  constexpr double most_ms = 1e6;
+  verb.add_option("--budget", options.budget_ms,
+                  "Device milliseconds a frame for settings \"by\": \"budget\"")
+      ->check(CLI::Range(0.0, most_ms))
+      ->type_name("MS")
+      ->group(group);
+  verb.add_flag("--meter", options.metered, "Judge times by the calibration alone: the same on every machine")
+      ->group(group);
+  verb.add_option("--calibration", options.calibration, "What dermis calibrate wrote for this device")
+      ->type_name("FILE")
+      ->group(group);
+}
+
+} // namespace
+
+void add_picture_verbs(CLI::App& app, Invocation& invocation) {
+  add_verb<RenderOptions>(
+      app, invocation, "render", "Render a scene with the demo engine and a graph, and measure the error",
+      "dermis render configs/scenes/bust.json --graph configs/graphs/burley.json --size 640x360 --frames 8 "
+      "--out out/",
+      render, [](CLI::App& verb, RenderOptions& options) {
+        verb.add_option("scene", options.scene, "Scene file")->required()->type_name("FILE");
+        verb.add_option("--graph,-g", options.graph, "Graph file, or none to render without Dermis")
+            ->required()
+            ->type_name("FILE");
+        verb.add_option("--out,-o", options.out, "Folder for pictures")->required()->type_name("DIR");
+        add_size(verb, options.size);
+        verb.add_option("--frames,-n", options.frames, "Frames to render [8]")
+            ->check(CLI::Range(1u, max_frames));
+        verb.add_option("--capture", options.capture, "Folder for what the graph saw")->type_name("DIR");
+        verb.add_option("--subset", options.subset,
+                        "Pixels of the last frame compared with the truth; 0: none [4096]")
+            ->check(CLI::Range(0u, max_subset));
+        add_settings(verb, options.settings);
+        add_parts(verb, options.parts);
+        add_budget(verb, options);
+        const char* group = "Model, for scenes that show one";
+        verb.add_option("--model", options.model.model, "glTF file")->type_name("FILE")->group(group);
+        verb.add_option("--albedo", options.model.albedo, "Picture, sRGB")->type_name("FILE")->group(group);
+        verb.add_option("--normal", options.model.normal, "Tangent-space normal map")
+            ->type_name("FILE")
+            ->group(group);
+        verb.add_option("--specular", options.model.specular, "Picture, linear")
+            ->type_name("FILE")
+            ->group(group);
+        verb.add_option("--height", options.model.height, "Height in metres that the model is scaled to")
+            ->check(CLI::Range(1e-3, 1e3))
+            ->group(group);
+      });
+  add_verb<SheetOptions>(
+      app, invocation, "sheet", "Render a scene with every technique and material into one picture",
+      "dermis sheet --out out/sheet.png", sheet, [](CLI::App& verb, SheetOptions& options) {
+        verb.add_option("scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
+        verb.add_option("--out,-o", options.out, "Picture, PNG")->required()->type_name("FILE");
+        verb.add_option("--graphs", options.graphs,
+                        "Graph files, one row each, below one without a graph [those that ship]")
+            ->delimiter(',')
+            ->type_name("FILE ...");
+        verb.add_option(
+                "--profiles", options.profiles,
+                "Profile files, one column each, for all objects that scatter [skin, jade, marble, wax, "
+                "ketchup, milk]")
+            ->delimiter(',')
+            ->type_name("FILE ...");
+        add_size(verb, options.size);
+      });
+  add_verb<CalibrateOptions>(
+      app, invocation, "calibrate", "Measure what a graph's passes cost on this device",
+      "dermis calibrate --out build/calibration.json", calibrate,
+      [](CLI::App& verb, CalibrateOptions& options) {
+        verb.add_option("graph", options.graph, "Graph file [configs/graphs/skin.json]")->type_name("FILE");
+        verb.add_option("--scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
+        verb.add_option("--out,-o", options.out, "File, or - for standard output [-]")->type_name("FILE");
+        verb.add_option("--frames,-n", options.frames,
+                        "Frames of each combination of choices, near and far [16]")
+            ->check(CLI::Range(2u, max_frames));
+        add_size(verb, options.size);
+        add_parts(verb, options.parts);
+      });
+  add_verb<ApplyOptions>(
+      app, invocation, "apply", "Run a graph on captured frames",
+      "dermis apply --graph configs/graphs/burley.json --frames capture/ --out out/", apply,
+      [](CLI::App& verb, ApplyOptions& options) {
+        verb.add_option("--graph,-g", options.graph, "Graph file")->required()->type_name("FILE");
+        verb.add_option("--frames", options.frames, "Capture folder")->required()->type_name("DIR");
+        verb.add_option("--out,-o", options.out, "Folder for EXRs")->required()->type_name("DIR");
+        verb.add_option("--profiles", options.profiles,
+                        "Folder of profiles that frames name [configs/profiles]")
+            ->type_name("DIR");
+        verb.add_option("--repeat", options.repeat, "Times each frame is run; times are medians [1]")
+            ->check(CLI::Range(1u, max_repeat));
+        add_settings(verb, options.settings);
+        add_parts(verb, options.parts);
+      });
+  add_verb<ReferenceOptions>(
+      app, invocation, "reference", "Compute the exact scattered light of captured frames",
+      "dermis reference --frames capture/ --out truth/", reference,
+      [](CLI::App& verb, ReferenceOptions& options) {
+        verb.add_option("--frames", options.frames, "Capture folder")->required()->type_name("DIR");
+        verb.add_option("--out,-o", options.out, "Folder for EXRs")->required()->type_name("DIR");
+        verb.add_option("--profiles", options.profiles,
+                        "Folder of profiles that frames name [configs/profiles]")
+            ->type_name("DIR");
+        verb.add_option("--subset", options.subset, "Pixels of a frame, chosen evenly; 0: all [0]")
+            ->check(CLI::Range(0u, max_subset));
+      });
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,205 @@
+// dermis bench budget: how well frames keep to a budget, and what error that costs, beside the best single
+// technique.
+
+#include "framegraph/model/graph.hpp"
+#include "integration/command/bench/choice/scene_run.hpp"
+#include "integration/command/bench/report/report.hpp"
+#include "integration/command/inspect/graph_input.hpp"
+#include "integration/command/interrupt.hpp"
+#include "integration/command/run/choice_sets.hpp"
+#include "integration/demo_engine/files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace dermis::tools {
+namespace {
+
+constexpr uint32_t warm_up = 10;                                    // frames that are not judged
+constexpr double measured_tolerance = 1.15, meter_tolerance = 1.05; // of the budget: over it beyond that
+constexpr double shares[] = {0.25, 0.5, 1, 2}; // x: of the way from the cheapest to the best outcome
+constexpr double within = 0.99;                // share of frames whose meter a single technique must keep
+
+// One outcome alone over the whole scene.
+struct Single {
+  std::vector<NamedValue> set; // as JSON
+  std::vector<double> metered_ms;
+  double rmse = 0;
+
+  double metered_at(double share) const { // nearest rank
+    std::vector<double> sorted = metered_ms;
+    std::sort(sorted.begin(), sorted.end());
+    const auto rank = static_cast<size_t>(std::ceil(share * double(sorted.size())));
+    return sorted[std::clamp<size_t>(rank, 1, sorted.size()) - 1];
+  }
+};
+
+struct Figures {
+  double mean_ms = 0, p95_ms = 0, over = 0, over_meter = 0, rmse = 0;
+  uint32_t switches = 0;
+};
+
+// Root of the mean square over the frames that were compared.
+double pooled_rmse(const SceneRun& run) {
+  double sum = 0;
+  uint32_t count = 0;
+  for (const RunFrame& frame : run.frames)
+    if (frame.rmse) {
+      sum += *frame.rmse * *frame.rmse;
+      ++count;
+    }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+Figures judge(const SceneRun& timed, const SceneRun& metered, double budget_ms) {
+  Figures out;
+  std::vector<double> times;
+  for (size_t i = warm_up; i < timed.frames.size(); ++i)
+    times.push_back(timed.frames[i].choice.measured_ms);
+  std::sort(times.begin(), times.end());
+  for (const double ms : times) {
+    out.mean_ms += ms / double(times.size());
+    out.over += ms > measured_tolerance * budget_ms ? 1.0 / double(times.size()) : 0;
+  }
+  constexpr double tail = 0.95;
+  out.p95_ms = times[static_cast<size_t>(tail * double(times.size() - 1) + 0.5)];
+  const double judged = double(metered.frames.size() - warm_up);
+  for (size_t i = warm_up; i < metered.frames.size(); ++i)
+    out.over_meter += metered.frames[i].choice.metered_ms > meter_tolerance * budget_ms ? 1 / judged : 0;
+  out.rmse = pooled_rmse(metered);
+  out.switches = timed.frames.back().choice.switches;
+  return out;
+}
+
+const std::vector<ReportColumn> columns = {
+    {"scene", "scene"},
+    {"x", "x"},
+    {"budget_ms", "budget, ms"},
+    {"mean_ms", "mean, ms"},
+    {"p95_ms", "95 %, ms"},
+    {"over_budget_fraction", "over, timed", 2},
+    {"over_budget_fraction_meter", "over, meter", 2},
+    {"mean_rmse", "RMSE"},
+    {"best_single_rmse_within_budget", "best single RMSE"},
+    {"best_single", "best single"},
+    {"switches", "switches"},
+};
+
+} // namespace
+
+ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options) {
+  Diagnostics diagnostics;
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, {}, diagnostics);
+  if (!loaded) return fail_graph(session, options.graph, diagnostics);
+  SceneRunRequest request;
+  request.graph = options.graph;
+  request.size = options.size;
+  request.frames = warm_up + options.frames;
+  request.error_every = std::max(1u, options.frames / 4);
+  request.cache = options.cache;
+  if (!options.calibration.empty()) {
+    auto text = demo::read_text_file(options.calibration);
+    if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
+    request.calibration = text.take();
+  }
+  Report report;
+  report.bench = "budget";
+  report.title = "Frames within a budget";
+  report.summary = fmt::format(
+      "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the meter",
+      options.frames, warm_up, measured_tolerance, meter_tolerance);
+  report.table.columns = columns;
+  const auto sets = choice_sets(*loaded, options.size, diagnostics);
+  if (sets.empty()) return fail_graph(session, options.graph, diagnostics);
+  Progress progress(progress_style(session.quiet, false), "budget", "run",
+                    options.scenes.size() * (sets.size() + 2 * std::size(shares)));
+  uint64_t done = 0;
+  std::string device;
+  for (const std::string& scene : options.scenes) {
+    request.scene = fmt::format("configs/scenes/{}.json", scene);
+    if (!std::filesystem::exists(request.scene)) {
+      report.notes.push_back(fmt::format("scene {}: there is no '{}'", scene, request.scene));
+      continue;
+    }
+    std::vector<Single> singles;
+    request.budget_ms = 0;
+    request.metered = true;
+    for (const auto& set : sets) {
+      request.set = set;
+      const auto run = run_scene(session, request);
+      progress.update(++done);
+      if (!run)
+        return fail(session, interrupted() ? ExitCode::interrupted : static_cast<ExitCode>(run.error().kind),
+                    run.error().text);
+      device = run->device;
+      Single& single = singles.emplace_back();
+      single.set = set;
+      single.rmse = pooled_rmse(*run);
+      for (size_t i = warm_up; i < run->frames.size(); ++i)
+        single.metered_ms.push_back(run->frames[i].choice.metered_ms);
+    }
+    request.set.clear();
+    const auto cheapest =
+        std::min_element(singles.begin(), singles.end(), [](const Single& a, const Single& b) {
+          return a.metered_at(within) < b.metered_at(within);
+        });
+    const auto best = std::min_element(singles.begin(), singles.end(),
+                                       [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
+    const double floor_ms = cheapest->metered_at(within), best_ms = best->metered_at(within);
+    for (const double x : shares) {
+      request.budget_ms = floor_ms + x * (best_ms - floor_ms);
+      const SceneRunRequest as_is = request;
+      request.metered = false;
+      const auto timed = run_scene(session, request);
+      progress.update(++done);
+      request.metered = true;
+      const auto metered = timed ? run_scene(session, request) : timed;
+      progress.update(++done);
+      if (!metered)
+        return fail(session,
+                    interrupted() ? ExitCode::interrupted : static_cast<ExitCode>(metered.error().kind),
+                    metered.error().text);
+      const Figures figures = judge(*timed, *metered, as_is.budget_ms);
+      const Single* single = nullptr;
+      for (const Single& one : singles)
+        if (one.metered_at(within) <= meter_tolerance * as_is.budget_ms &&
+            (single == nullptr || one.rmse < single->rmse))
+          single = &one;
+      std::string name;
+      if (single != nullptr)
+        for (const auto& [setting, value] : single->set)
+          name += fmt::format("{}{}={}", name.empty() ? "" : " ", setting, value.substr(1, value.size() - 2));
+      report.table.rows.push_back({scene, x, as_is.budget_ms, figures.mean_ms, figures.p95_ms, figures.over,
+                                   figures.over_meter, figures.rmse,
+                                   single != nullptr ? ReportValue(single->rmse) : ReportValue(), name,
+                                   int64_t{figures.switches}});
+    }
+  }
+  report.facts = machine_facts(session.command, device);
+  if (report.table.rows.empty()) return fail(session, ExitCode::usage, "no scene is left to measure");
+  if (const std::string problem = deliver_report(report, options.json, "", options.html); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
+  Table table;
+  for (const ReportColumn& column : columns)
+    table.columns.push_back({column.title, column.key != "scene" && column.key != "best_single"});
+  for (const auto& row : report.table.rows) {
+    auto& cells = table.rows.emplace_back();
+    for (const ReportValue& value : row) {
+      if (const auto* text = std::get_if<std::string>(&value))
+        cells.push_back(*text);
+      else if (const auto* number = std::get_if<double>(&value))
+        cells.push_back(fmt::format("{:.3g}", *number));
+      else if (const auto* count = std::get_if<int64_t>(&value))
+        cells.push_back(fmt::format("{}", *count));
+      else
+        cells.emplace_back("-");
+    }
+  }
+  if (!session.quiet && options.json != "-") print(format_table(table));
+  return ExitCode::ok;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,64 @@
+#include "integration/command/bench/choice/scene_run.hpp"
+
+#include "integration/command/bench/reference.hpp"
+#include "integration/command/interrupt.hpp"
+#include "integration/command/run/rendered_frame.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis::tools {
+namespace {
+
+demo::Error stopped() {
+  return {demo::ErrorKind::environment, "stopped"};
+}
+
+} // namespace
+
+demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& request) {
+  demo::RenderOptions engine;
+  engine.scene = request.scene;
+  engine.graph = request.graph;
+  engine.width = request.size.width;
+  engine.height = request.size.height;
+  engine.frames = request.frames;
+  engine.settings = request.set;
+  engine.budget_ms = request.budget_ms;
+  engine.metered = request.metered;
+  engine.calibration = request.calibration;
+  SceneRun run;
+  std::vector<CaptureProfile> profiles;
+  demo::RenderCallbacks callbacks;
+  callbacks.on_start = [&](const demo::RenderInfo& info) -> demo::Result<> {
+    run.device = info.device;
+    auto read = read_profiles(info.profiles);
+    if (!read) return read.error();
+    profiles = read.take();
+    return demo::success();
+  };
+  callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
+    if (interrupted()) return stopped();
+    RunFrame& out = run.frames.emplace_back();
+    out.choice = frame.choice.value_or(demo::FrameChoice{});
+    const bool compare =
+        request.error_every > 0 && frame.frame % request.error_every == request.error_every - 1;
+    if (!compare || frame.scattered.texels.empty()) return demo::success();
+    const auto captured = captured_frame(frame, profiles);
+    if (!captured) return captured.error();
+    const auto reference =
+        make_reference(session, *captured, fmt::format("{} frame {}", request.scene, frame.frame),
+                       request.subset, request.cache);
+    if (!reference) return stopped();
+    if (reference->population > 0)
+      out.rmse = measure_error(frame.scattered.texels, reference->light, reference->pixels,
+                               reference->exposure, reference->population)
+                     .rmse;
+    return demo::success();
+  };
+  const auto summary = demo::render(engine, callbacks);
+  if (interrupted()) return stopped();
+  if (!summary) return summary.error();
+  return run;
+}
+
+} // namespace dermis::tools

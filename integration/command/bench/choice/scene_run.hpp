@@ -1,0 +1,41 @@
+#pragma once
+// A scene rendered over some frames with choices by budget: what was chosen, what it took and how far it was
+// off.
+
+#include "integration/command/session.hpp"
+#include "integration/command/verbs.hpp"
+#include "integration/demo_engine/engine.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+struct SceneRunRequest {
+  std::string scene, graph; // files
+  Size size;
+  uint32_t frames = 0;
+  uint32_t error_every = 0; // frames; 0: errors are not measured
+  uint32_t subset = 1024;   // pixels of a frame that are compared with the truth
+  double budget_ms = 0;     // 0: the defaults, with `set`
+  bool metered = false;
+  std::vector<NamedValue> set; // JSON texts
+  std::string calibration;     // text; "": the library's own
+  std::string cache;           // folder for references
+};
+
+struct RunFrame {
+  demo::FrameChoice choice;
+  std::optional<double> rmse;
+};
+
+struct SceneRun {
+  std::string device;
+  std::vector<RunFrame> frames;
+};
+
+// Errors: those of demo::render; environment "stopped" when interrupted.
+demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& request);
+
+} // namespace dermis::tools

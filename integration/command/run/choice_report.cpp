@@ -1,0 +1,71 @@
+#include "integration/command/run/choice_report.hpp"
+
+#include "integration/command/present.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis::tools {
+
+void ChoiceReport::add(uint32_t frame, const demo::FrameChoice& choice) {
+  frames_.push_back({frame, choice});
+}
+
+std::string describe_choice(const demo::FrameChoice& choice) {
+  const uint32_t listed = choice.scattering_tiles + choice.copied_tiles;
+  std::string text = fmt::format("{}: {} tiles", choice.outcome, choice.scattering_tiles);
+  if (choice.mean_d_px > 0) text += fmt::format(" (d {:.1f} px)", choice.mean_d_px);
+  text += fmt::format(", copied {}, skipped {}: {:.2f} ms predicted", choice.copied_tiles,
+                      choice.view_tiles - std::min(choice.view_tiles, listed), choice.predicted_ms);
+  text += choice.measured_ms < 0 ? ", not timed" : fmt::format(", {:.2f} measured", choice.measured_ms);
+  if (choice.budget_ms > 0) text += fmt::format(", budget {:.2f}", choice.budget_ms);
+  text += fmt::format("; error {:.1e} expected ({})", choice.predicted_rmse, choice.why);
+  if (!choice.next_better.empty())
+    text += fmt::format("; next better {} would need {:.2f} ms more", choice.next_better,
+                        choice.next_better_missing_ms);
+  return text;
+}
+
+std::string ChoiceReport::text() const {
+  if (frames_.empty()) return "";
+  const demo::FrameChoice& newest = frames_.back().choice;
+  std::string text;
+  if (newest.outcomes > 1 && frames_.size() > 1) {
+    std::vector<std::string> seen;
+    for (const Frame& frame : frames_)
+      if (std::find(seen.begin(), seen.end(), frame.choice.outcome) == seen.end())
+        seen.push_back(frame.choice.outcome);
+    for (const std::string& outcome : seen) {
+      const auto count = std::count_if(frames_.begin(), frames_.end(),
+                                       [&](const Frame& frame) { return frame.choice.outcome == outcome; });
+      text += fmt::format("{} of {} frames ran {}\n", count, frames_.size(), outcome);
+    }
+  }
+  return text + fmt::format("frame {}: {}\n", frames_.back().frame, describe_choice(newest));
+}
+
+void ChoiceReport::write(JsonWriter& writer) const {
+  writer.open_array();
+  for (const Frame& frame : frames_) {
+    const demo::FrameChoice& choice = frame.choice;
+    writer.open_object(true).member("frame", frame.frame).member("outcome", std::string_view(choice.outcome));
+    writer.member("technique", std::string_view(choice.technique))
+        .member("why", std::string_view(choice.why));
+    writer.member("budget_ms", choice.budget_ms).member("predicted_ms", choice.predicted_ms);
+    writer.member("predicted_spread_ms", choice.predicted_spread_ms).key("measured_ms");
+    if (choice.measured_ms < 0)
+      writer.null();
+    else
+      writer.value(choice.measured_ms);
+    writer.member("metered_ms", choice.metered_ms);
+    writer.member("predicted_rmse", choice.predicted_rmse).member("mean_d_px", choice.mean_d_px);
+    writer.member("view_tiles", choice.view_tiles).member("scattering_tiles", choice.scattering_tiles);
+    writer.member("copied_tiles", choice.copied_tiles).member("switches", choice.switches);
+    writer.member("next_better", std::string_view(choice.next_better));
+    writer.member("next_better_missing_ms", choice.next_better_missing_ms).close();
+  }
+  writer.close();
+}
+
+} // namespace dermis::tools

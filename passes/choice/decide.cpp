@@ -1,0 +1,98 @@
+#include "passes/choice/decide.hpp"
+
+#include <cmath>
+
+namespace dermis::choice {
+namespace {
+
+constexpr double margin = 1.0;          // typical deviations that must fit beside the prediction
+constexpr double stay_tolerance = 1.03; // of the budget: what runs is not left for less
+constexpr double entry_margin = 1.05;   // room that an outcome needs before it is switched to
+constexpr double worth_a_switch = 0.9;  // of the error that runs now: less is no reason to switch
+constexpr uint32_t cool_down =
+    60; // frames between switches that no budget forces: with those back, 2 a second
+
+double bound_ms(const Forecast& forecast) {
+  return forecast.ms + margin * forecast.spread_ms;
+}
+
+bool less_error(const Forecast& a, const Forecast& b) {
+  return a.rmse != b.rmse ? a.rmse < b.rmse : a.ms < b.ms;
+}
+
+// Fewest milliseconds, the earlier of equal ones.
+uint32_t fastest(std::span<const Forecast> forecasts) {
+  uint32_t best = 0;
+  for (uint32_t i = 1; i < forecasts.size(); ++i)
+    if (forecasts[i].ms < forecasts[best].ms) best = i;
+  return best;
+}
+
+// Least error among those with `factor` times their bound in the budget; UINT32_MAX: none.
+uint32_t best_within(std::span<const Forecast> forecasts, double budget_ms, double factor) {
+  uint32_t best = UINT32_MAX;
+  for (uint32_t i = 0; i < forecasts.size(); ++i)
+    if (factor * bound_ms(forecasts[i]) <= budget_ms &&
+        (best == UINT32_MAX || less_error(forecasts[i], forecasts[best])))
+      best = i;
+  return best;
+}
+
+void find_next_better(std::span<const Forecast> forecasts, double budget_ms, Decision& decision) {
+  for (uint32_t i = 0; i < forecasts.size(); ++i) {
+    const double lacks = bound_ms(forecasts[i]) - budget_ms;
+    if (forecasts[i].rmse >= forecasts[decision.outcome].rmse || lacks <= 0) continue;
+    if (decision.next_better != UINT32_MAX && lacks >= decision.missing_ms) continue;
+    decision.next_better = i;
+    decision.missing_ms = lacks;
+  }
+}
+
+Decision choose(std::span<const Forecast> forecasts, double budget_ms, const DecisionState& state) {
+  const uint32_t best = best_within(forecasts, budget_ms, 1.0);
+  if (best == UINT32_MAX) return {fastest(forecasts), Why::nothing_fits};
+  if (state.outcome >= forecasts.size()) return {best, Why::first_frame};
+  const uint32_t now = state.outcome;
+  if (bound_ms(forecasts[now]) > stay_tolerance * budget_ms) return {best, Why::over_budget};
+  const uint32_t better = best_within(forecasts, budget_ms, entry_margin);
+  if (better == UINT32_MAX || better == now || !less_error(forecasts[better], forecasts[now]))
+    return {now, best == now ? Why::fits_best : Why::held};
+  const bool worth = forecasts[better].rmse <= worth_a_switch * forecasts[now].rmse;
+  if (!worth || state.frames_since_switch < cool_down) return {now, Why::held};
+  return {better, Why::better_fits};
+}
+
+} // namespace
+
+const char* why_text(Why why) {
+  switch (why) {
+  case Why::no_budget:
+    return "no budget is set";
+  case Why::first_frame:
+    return "least error that fits; nothing ran before";
+  case Why::fits_best:
+    return "least error that fits";
+  case Why::better_fits:
+    return "less error than before fits now";
+  case Why::over_budget:
+    return "what ran before no longer fits";
+  case Why::nothing_fits:
+    return "nothing fits: the fastest";
+  case Why::held:
+    return "kept, to switch less often";
+  }
+  return "";
+}
+
+Decision decide(std::span<const Forecast> forecasts, double budget_ms, DecisionState& state) {
+  Decision decision = choose(forecasts, budget_ms, state);
+  find_next_better(forecasts, budget_ms, decision);
+  const bool first = state.outcome == UINT32_MAX;
+  const bool switched = !first && decision.outcome != state.outcome;
+  state.frames_since_switch = switched || first ? 0 : state.frames_since_switch + 1;
+  state.switches += switched ? 1 : 0;
+  state.outcome = decision.outcome;
+  return decision;
+}
+
+} // namespace dermis::choice

@@ -1,0 +1,143 @@
+#include "passes/choice/error_model.hpp"
+
+#include "framegraph/text/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::choice {
+namespace {
+
+constexpr size_t most_points = 64, most_techniques = 256, most_kinds = 16;
+constexpr double least_d_px = 1e-3, largest_d_px = 1e4, least_rmse = 1e-9, largest_rmse = 1e3;
+
+std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner, std::string_view key,
+                                   Diagnostics& diagnostics) {
+  std::vector<ErrorPoint> curve;
+  const NodeId list = owner.array(key, 1, most_points);
+  if (!list.valid()) return curve;
+  for (const NodeId node : children(document, list)) {
+    const std::string what = fmt::format("point of '{}' of {}", key, owner.what());
+    if (!expect_kind(document, node, what, NodeKind::array, diagnostics)) continue;
+    const std::vector<NodeId> pair = children(document, node);
+    if (pair.size() != 2) {
+      diagnostics.add(DiagnosticId::out_of_range, document.where(node),
+                      fmt::format("{} has {} numbers, expected 2: d in pixels and RMSE", what, pair.size()));
+      continue;
+    }
+    const auto d_px = read_number(document, pair[0], "d of a " + what, least_d_px, largest_d_px, diagnostics);
+    const auto rmse =
+        read_number(document, pair[1], "RMSE of a " + what, least_rmse, largest_rmse, diagnostics);
+    if (!d_px || !rmse) continue;
+    if (!curve.empty() && *d_px <= curve.back().d_px)
+      diagnostics.add(DiagnosticId::error_curve, document.where(node),
+                      fmt::format("{} is at d = {} after d = {}; d has to grow from point to point", what,
+                                  *d_px, curve.back().d_px));
+    curve.push_back({*d_px, *rmse});
+  }
+  return curve;
+}
+
+KindMatch read_kind(const Document& document, NodeId node, const std::string& of, Diagnostics& diagnostics) {
+  KindMatch match;
+  ObjectReader object(document, node, fmt::format("kind of {}", of), diagnostics);
+  match.kind = object.string("kind").value_or("");
+  const NodeId set = object.object("set", Need::optional);
+  if (set.valid())
+    for (const NodeId value : children(document, set)) {
+      const Node& member = document[value];
+      SettingMatch& condition = match.settings.emplace_back();
+      condition.setting = document.key(value);
+      if (member.kind == NodeKind::string)
+        condition.value = document.text(value);
+      else if (member.kind == NodeKind::integer)
+        condition.value = fmt::format("{}", member.integer);
+      else if (member.kind == NodeKind::boolean)
+        condition.value = member.integer != 0 ? "true" : "false";
+      else if (member.kind == NodeKind::real)
+        condition.value = fmt::format("{}", member.real);
+      else
+        diagnostics.add(DiagnosticId::wrong_type, document.where(value),
+                        fmt::format("setting '{}' of {} expects a number, a string, true or false",
+                                    condition.setting, object.what()));
+    }
+  object.finish();
+  return match;
+}
+
+bool holds(const SettingMatch& condition, const RunningPass& pass) {
+  return std::any_of(pass.settings.begin(), pass.settings.end(), [&](const SettingMatch& value) {
+    return value.setting == condition.setting && value.value == condition.value;
+  });
+}
+
+bool runs(const KindMatch& match, const std::vector<RunningPass>& passes) {
+  return std::any_of(passes.begin(), passes.end(), [&](const RunningPass& pass) {
+    return pass.kind == match.kind &&
+           std::all_of(match.settings.begin(), match.settings.end(),
+                       [&](const SettingMatch& condition) { return holds(condition, pass); });
+  });
+}
+
+} // namespace
+
+std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics& diagnostics) {
+  const uint32_t errors = diagnostics.count(Severity::error);
+  if (!check_version(document, "dermis_errors", 1, diagnostics)) return std::nullopt;
+  ErrorModel model;
+  ObjectReader root(document, document.root(), "error table", diagnostics);
+  root.any("dermis_errors");
+  model.scenes = root.string("scenes").value_or("");
+  model.unscattered = read_curve(document, root, "unscattered", diagnostics);
+  const NodeId techniques = root.array("techniques", 0, most_techniques);
+  if (techniques.valid())
+    for (const NodeId node : children(document, techniques)) {
+      TechniqueError& technique = model.techniques.emplace_back();
+      ObjectReader object(document, node, "technique", diagnostics);
+      technique.name = object.string("name").value_or("");
+      const std::string what = fmt::format("technique '{}'", technique.name);
+      const NodeId kinds = object.array("kinds", 1, most_kinds);
+      if (kinds.valid())
+        for (const NodeId kind : children(document, kinds))
+          technique.kinds.push_back(read_kind(document, kind, what, diagnostics));
+      technique.curve = read_curve(document, object, "rmse", diagnostics);
+      object.finish();
+    }
+  root.finish();
+  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  return model;
+}
+
+int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& passes) {
+  int32_t found = -1;
+  size_t most = 0;
+  for (size_t t = 0; t < model.techniques.size(); ++t) {
+    const TechniqueError& technique = model.techniques[t];
+    size_t conditions = 0;
+    bool all = true;
+    for (const KindMatch& match : technique.kinds) {
+      all = all && runs(match, passes);
+      conditions += 1 + match.settings.size();
+    }
+    if (!all || conditions <= most) continue;
+    most = conditions;
+    found = static_cast<int32_t>(t);
+  }
+  return found;
+}
+
+double expected_rmse(const ErrorModel& model, int32_t technique, double d_px) {
+  const std::vector<ErrorPoint>& curve =
+      technique < 0 ? model.unscattered : model.techniques[static_cast<size_t>(technique)].curve;
+  if (d_px <= curve.front().d_px) return curve.front().rmse;
+  for (size_t i = 1; i < curve.size(); ++i) {
+    if (d_px > curve[i].d_px) continue;
+    const double part = std::log(d_px / curve[i - 1].d_px) / std::log(curve[i].d_px / curve[i - 1].d_px);
+    return curve[i - 1].rmse * std::pow(curve[i].rmse / curve[i - 1].rmse, part);
+  }
+  return curve.back().rmse;
+}
+
+} // namespace dermis::choice

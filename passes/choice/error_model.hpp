@@ -1,0 +1,55 @@
+#pragma once
+// How far a technique is off, as measured beforehand: RMSE of linear luminance over the projected shape
+// parameter, for each technique and quality setting (docs/choice.md says how the tables are made).
+
+#include "framegraph/text/document.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dermis::choice {
+
+struct ErrorPoint {
+  double d_px = 1; // of the widest channel, projected, > 0
+  double rmse = 0; // > 0; exposed so that the light's 99.9th percentile is 1
+};
+
+struct SettingMatch {
+  std::string setting, value; // as a graph file would write the value, without quotes
+};
+
+// A pass that a technique is known by.
+struct KindMatch {
+  std::string kind;
+  std::vector<SettingMatch> settings; // all of them, in any order; other settings do not matter
+};
+
+struct TechniqueError {
+  std::string name;              // for people: "separable 25"
+  std::vector<KindMatch> kinds;  // a graph that runs passes like all of these
+  std::vector<ErrorPoint> curve; // d_px grows; at least one
+};
+
+struct ErrorModel {
+  std::string scenes;                  // that the curves were measured on, for people
+  std::vector<ErrorPoint> unscattered; // where no technique runs
+  std::vector<TechniqueError> techniques;
+};
+
+// Reads `"dermis_errors": 1`. nullopt with errors in `diagnostics`. Thread: any.
+std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics& diagnostics);
+
+// A pass of a plan with the values it runs with, as texts.
+struct RunningPass {
+  std::string_view kind;
+  std::vector<SettingMatch> settings;
+};
+// The technique that most of its conditions name; -1: none runs.
+int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& passes);
+
+// Straight between points on logarithmic axes, constant beyond the ends. technique -1: unscattered.
+double expected_rmse(const ErrorModel& model, int32_t technique, double d_px);
+
+} // namespace dermis::choice

@@ -1,0 +1,249 @@
+#include "passes/choice/outcomes.hpp"
+
+#include "framegraph/model/expression.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::choice {
+namespace {
+
+constexpr uint64_t tile_side = 8;
+
+std::string value_text(const KindSetting& setting, const SettingValue& value) {
+  switch (setting.type) {
+  case SettingType::boolean:
+    return value.integer != 0 ? "true" : "false";
+  case SettingType::real:
+    return fmt::format("{}", value.real);
+  case SettingType::enumeration:
+  case SettingType::choice:
+    if (value.integer >= 0 && static_cast<size_t>(value.integer) < setting.options.size())
+      return std::string(setting.options[static_cast<size_t>(value.integer)]);
+    break;
+  case SettingType::integer:
+    break;
+  }
+  return fmt::format("{}", value.integer);
+}
+
+// Values that a pass runs with: those that follow a setting of the graph take the outcome's.
+std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, const PassKind& kind,
+                                    const std::vector<SettingValue>& settings) {
+  std::vector<SettingValue> out;
+  for (size_t i = 0; i < kind.settings.size(); ++i) {
+    const PlanSetting& setting = plan.settings[pass.first_setting + i];
+    out.push_back(setting.from.valid() ? settings[setting.from.value] : setting.value);
+  }
+  return out;
+}
+
+// The image whose size an over_written dispatch has.
+const PlanResource* first_written_image(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
+  for (uint32_t port = 0; port < kind.ports.size(); ++port)
+    for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+      const PlanAccess& access = plan.accesses[a];
+      const PlanResource& resource = plan.resources[access.resource];
+      if (access.port == port && (access.access & access::shader_storage_write) != 0 &&
+          resource.type == ResourceType::image)
+        return &resource;
+    }
+  return nullptr;
+}
+
+uint64_t tiles_along(uint64_t pixels) {
+  return (pixels + tile_side - 1) / tile_side;
+}
+
+PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
+  PassLoad load;
+  switch (kind.dispatch) {
+  case DispatchShape::over_view:
+    load.groups = PassLoad::Groups::view_tiles;
+    break;
+  case DispatchShape::over_tiles:
+    load.groups = PassLoad::Groups::listed_tiles;
+    break;
+  case DispatchShape::over_tile_grid:
+    load.groups = PassLoad::Groups::tile_grid;
+    break;
+  case DispatchShape::over_written:
+    if (const PlanResource* image = first_written_image(plan, pass, kind))
+      load.count = tiles_along(image->width) * tiles_along(image->height);
+    break;
+  case DispatchShape::single_group:
+  case DispatchShape::none:
+    break;
+  }
+  return load;
+}
+
+RunningPass running(const PassKind& kind, const std::vector<SettingValue>& values) {
+  RunningPass out{kind.name, {}};
+  for (size_t i = 0; i < values.size(); ++i)
+    out.settings.push_back({std::string(kind.settings[i].name), value_text(kind.settings[i], values[i])});
+  return out;
+}
+
+void describe(const KindRegistry& kinds, const Plan& plan, const ErrorModel& errors, CostModel& costs,
+              Outcome& outcome) {
+  std::vector<RunningPass> passes;
+  outcome.passes.clear();
+  for (const PlanPass& pass : plan.passes) {
+    const PassKind& kind = kinds[pass.kind];
+    const std::vector<SettingValue> values = values_of(plan, pass, kind, outcome.settings);
+    PassLoad load = load_of(plan, pass, kind);
+    load.cost = costs.add(work_name(kind, values));
+    outcome.passes.push_back(load);
+    passes.push_back(running(kind, values));
+  }
+  outcome.technique = find_technique(errors, passes);
+}
+
+bool same_work(const Outcome& a, const Outcome& b) {
+  return a.plan == b.plan &&
+         std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(), b.passes.end(),
+                    [](const PassLoad& x, const PassLoad& y) { return x.cost.value == y.cost.value; });
+}
+
+std::vector<bool> passes_on(const Graph& graph, const std::vector<SettingValue>& values) {
+  std::vector<bool> on;
+  for (const PassDeclaration& pass : graph.passes)
+    on.push_back(!pass.when.valid() || evaluate(graph, pass.when, values));
+  return on;
+}
+
+std::vector<uint32_t> choices_of(const Graph& graph) {
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < graph.settings.size(); ++i)
+    if (graph.settings[i].by_budget) out.push_back(i);
+  return out;
+}
+
+// Counts `digits` up like an odometer whose wheels are the choices' options; false after the last.
+bool count_up(const Graph& graph, const std::vector<uint32_t>& choices, std::vector<size_t>& digits) {
+  for (size_t i = choices.size(); i-- > 0;) {
+    if (++digits[i] < graph.settings[choices[i]].options.size()) return true;
+    digits[i] = 0;
+  }
+  return false;
+}
+
+std::string name_of(const Graph& graph, const std::vector<uint32_t>& choices,
+                    const std::vector<SettingValue>& values) {
+  std::string name;
+  for (const uint32_t choice : choices) {
+    const SettingDeclaration& setting = graph.settings[choice];
+    name += fmt::format("{}{}={}", name.empty() ? "" : ", ", setting.name,
+                        setting.options[static_cast<size_t>(values[choice].integer)]);
+  }
+  return name.empty() ? "the graph" : name;
+}
+
+} // namespace
+
+std::string work_name(const PassKind& kind, std::span<const SettingValue> values) {
+  std::string name(kind.name);
+  for (size_t i = 0; i < values.size(); ++i)
+    name += fmt::format(" {}={}", kind.settings[i].name, value_text(kind.settings[i], values[i]));
+  return name;
+}
+
+std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const ErrorModel& errors,
+                                          CostModel& costs, const CompileOne& compile,
+                                          Diagnostics& diagnostics) {
+  const Graph& graph = *input.graph;
+  std::vector<SettingValue> base = input.settings;
+  if (base.empty())
+    for (const SettingDeclaration& setting : graph.settings)
+      base.push_back(setting.default_value);
+  const std::vector<uint32_t> choices = choices_of(graph);
+  size_t combinations = 1;
+  for (const uint32_t choice : choices) {
+    combinations *= graph.settings[choice].options.size();
+    if (combinations <= most_outcomes) continue;
+    diagnostics.add(
+        DiagnosticId::too_many_outcomes, graph.settings[choice].where,
+        fmt::format("the options of the settings \"by\": \"budget\" combine to more than {} outcomes",
+                    most_outcomes));
+    return std::nullopt;
+  }
+
+  OutcomePlans out;
+  std::vector<std::vector<bool>> on_of_plan;
+  const auto add = [&](const std::vector<SettingValue>& values) {
+    Outcome outcome;
+    outcome.name = name_of(graph, choices, values);
+    outcome.settings = values;
+    std::vector<bool> on = passes_on(graph, values);
+    const auto known = std::find(on_of_plan.begin(), on_of_plan.end(), on);
+    outcome.plan = static_cast<uint32_t>(known - on_of_plan.begin());
+    if (known == on_of_plan.end()) {
+      CompileInput one = input;
+      one.settings = values;
+      auto compiled = compile(one, diagnostics);
+      if (!compiled) return false;
+      out.plans.push_back(std::move(*compiled));
+      on_of_plan.push_back(std::move(on));
+    }
+    describe(*input.kinds, out.plans[outcome.plan].plan, errors, costs, outcome);
+    const bool twice = std::any_of(out.outcomes.begin(), out.outcomes.end(),
+                                   [&](const Outcome& other) { return same_work(other, outcome); });
+    if (!twice) out.outcomes.push_back(std::move(outcome));
+    return true;
+  };
+  if (!add(base)) return std::nullopt;
+  std::vector<size_t> digits(choices.size(), 0);
+  do {
+    std::vector<SettingValue> values = base;
+    for (size_t i = 0; i < choices.size(); ++i)
+      values[choices[i]].integer = static_cast<int64_t>(digits[i]);
+    if (!add(values)) return std::nullopt;
+  } while (count_up(graph, choices, digits));
+  return out;
+}
+
+void describe_outcomes(const KindRegistry& kinds, std::span<const Plan* const> plans,
+                       const ErrorModel& errors, CostModel& costs, std::span<Outcome> outcomes) {
+  for (Outcome& outcome : outcomes)
+    describe(kinds, *plans[outcome.plan], errors, costs, outcome);
+}
+
+uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
+  constexpr uint64_t tiles_per_group = 64; // DispatchShape::over_tile_grid
+  switch (pass.groups) {
+  case PassLoad::Groups::view_tiles:
+    return load.view_tiles;
+  case PassLoad::Groups::tile_grid:
+    return (load.view_tiles + tiles_per_group - 1) / tiles_per_group;
+  case PassLoad::Groups::listed_tiles:
+    return load.listed_tiles;
+  case PassLoad::Groups::fixed:
+    break;
+  }
+  return pass.count;
+}
+
+Estimate metered(const Outcome& outcome, const CostModel& costs, const FrameLoad& load) {
+  Estimate sum;
+  for (const PassLoad& pass : outcome.passes)
+    sum.ms += costs.metered_ms(pass.cost, groups_of(pass, load));
+  return sum;
+}
+
+Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load) {
+  Estimate sum{0, 0, true};
+  double variance = 0;
+  for (const PassLoad& pass : outcome.passes) {
+    const Estimate one = costs.estimate(pass.cost, groups_of(pass, load));
+    sum.ms += one.ms;
+    variance += one.spread_ms * one.spread_ms;
+    sum.measured = sum.measured && one.measured;
+  }
+  sum.spread_ms = std::sqrt(variance);
+  return sum;
+}
+
+} // namespace dermis::choice

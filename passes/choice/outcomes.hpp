@@ -1,0 +1,68 @@
+#pragma once
+// Everything that a graph's choices by budget can come to: a value for each of them, the plan it leads to,
+// what work that is and which technique.
+
+#include "framegraph/compile/compile.hpp"
+#include "passes/choice/cost_model.hpp"
+#include "passes/choice/error_model.hpp"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dermis::choice {
+
+inline constexpr size_t most_outcomes = 64; // of a graph: the product of the options of its choices
+
+// How many workgroups a pass launches.
+struct PassLoad {
+  CostId cost;
+  enum class Groups : uint8_t { fixed, view_tiles, tile_grid, listed_tiles } groups = Groups::fixed;
+  uint64_t count = 1; // of fixed
+};
+
+struct Outcome {
+  std::string name;                   // "technique=sap, taps=25"
+  std::vector<SettingValue> settings; // one per Graph::settings
+  uint32_t plan = 0;                  // into OutcomePlans::plans
+  int32_t technique = -1;             // into ErrorModel::techniques; -1: none runs
+  std::vector<PassLoad> passes;       // in plan order
+};
+
+// Compiles one combination: dermis::compile, or from a cache.
+using CompileOne = std::function<std::optional<CompiledPlan>(const CompileInput&, Diagnostics&)>;
+
+struct OutcomePlans {
+  std::vector<Outcome> outcomes; // at least one: the first has the defaults' values
+  std::vector<CompiledPlan>
+      plans; // different ones only: outcomes whose settings turn no pass on or off share
+};
+
+// "subsurface.separable axis=vertical taps=25". `values`: one per setting of the kind.
+std::string work_name(const PassKind& kind, std::span<const SettingValue> values);
+
+// Values of all choices by budget in every combination, those of other settings as in `input` (empty: the
+// defaults). Combinations that run the same passes with the same values are one. Costs are added to `costs`.
+// nullopt with errors in `diagnostics`: as compile(), and more than most_outcomes.
+std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const ErrorModel& errors,
+                                          CostModel& costs, const CompileOne& compile,
+                                          Diagnostics& diagnostics);
+
+// What each outcome's passes are and which technique: again after a setting changed that turns no pass on or
+// off, or with other models. `plans` as Outcome::plan counts them.
+void describe_outcomes(const KindRegistry& kinds, std::span<const Plan* const> plans,
+                       const ErrorModel& errors, CostModel& costs, std::span<Outcome> outcomes);
+
+// What a frame is like, as far as it bears on costs.
+struct FrameLoad {
+  uint64_t view_tiles = 0;   // 8x8 tiles of the render rectangle
+  uint64_t listed_tiles = 0; // of them with subsurface
+};
+uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
+// By the calibration alone, as on any other machine; no spread.
+Estimate metered(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
+Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
+
+} // namespace dermis::choice

@@ -1,0 +1,76 @@
+// Choices by budget on the command line: render, calibrate, bench budget.
+#include "tests/command/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace dermis::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr const char* graph = "configs/graphs/skin.json";
+constexpr const char* scene = "configs/scenes/bust.json";
+
+struct Choice : CommandTest {};
+
+TEST_F(Choice, OfEachFrameIsToldWithWhatWasExpectedAndMeasured) {
+  const Outcome outcome =
+      run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "4", "--subset", "0", "--budget",
+           "1000", "--meter", "--out", path("out"), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json answer = json::parse(outcome.out);
+  ASSERT_EQ(answer["choices"].size(), 4u);
+  for (const json& frame : answer["choices"]) {
+    EXPECT_EQ(frame["technique"], "sap smooth"); // the least error, and a second is enough for it
+    EXPECT_EQ(frame["budget_ms"], 1000);
+    EXPECT_GT(frame["measured_ms"], 0);
+    EXPECT_GT(frame["metered_ms"], 0);
+    EXPECT_EQ(frame["view_tiles"], 8 * 5);
+    EXPECT_GT(frame["scattering_tiles"], 0);
+  }
+}
+
+TEST_F(Choice, IsASentenceForPeople) {
+  const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2",
+                               "--subset", "0", "--budget", "0.001", "--meter", "--out", path("out")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("frame 1: technique=off"));
+  EXPECT_THAT(outcome.out, HasSubstr("budget 0.00; error"));
+  EXPECT_THAT(outcome.out, HasSubstr("(nothing fits: the fastest); next better technique="));
+}
+
+TEST_F(Choice, CalibrateWritesWhatValidateAcceptsAndRenderTakes) {
+  const std::string file = path("calibration.json");
+  const Outcome made = run({"calibrate", graph, "--size", "64x36", "--frames", "2", "--out", file});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("costs on"));
+  const Outcome checked = run({"validate", file});
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("calibration, no problems"));
+  const Outcome used = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset",
+                            "0", "--calibration", file, "--budget", "5", "--out", path("out")});
+  EXPECT_EQ(used.exit_code, 0) << used.err;
+}
+
+TEST_F(Choice, ACalibrationThatIsNoneIsRefusedWithItsPlace) {
+  const std::string file =
+      write("calibration.json", "{ \"dermis_calibration\": 1,\n \"devise\": \"d\", \"costs\": [] }");
+  const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1",
+                               "--subset", "0", "--calibration", file, "--out", path("out")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("2:2"));
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'device'?"));
+}
+
+TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndShare) {
+  const std::string file = path("budget.json");
+  const Outcome outcome = run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
+                               "--cache", "", "--json", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome text = run({"bench", "budget", "--scenes", "no_such_scene", "--json", path("none.json")});
+  EXPECT_EQ(text.exit_code, 2);
+}
+
+} // namespace
+} // namespace dermis::test

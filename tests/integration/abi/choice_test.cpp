@@ -1,0 +1,193 @@
+// Budgets: what is chosen, what it does to the picture, and what is told about it.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <cmath>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::HasSubstr;
+
+// Times that no device has, so that what is chosen is known: 1 ms a dispatch of the pyramid, less for the
+// rest.
+constexpr const char* invented_times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
+  { "work": "subsurface.sap_up level=1 variant=smooth", "base_us": 1000, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_up level=1 variant=base", "base_us": 500, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.separable axis=horizontal taps=25 kernel=fitted", "base_us": 1000, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.separable axis=horizontal taps=11 kernel=fitted", "base_us": 400, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.classify", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.tile_list", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.setup texturing=post", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_setup texturing=post", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_down level=1", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_gather variant=smooth", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.combine texturing=post result=color", "base_us": 100, "group_us": 0, "spread": 0 } ] })";
+
+struct Choice : DermisTest {
+  dermis_graph graph = nullptr;
+
+  void make() {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/skin.json");
+    graph = make_graph(options);
+    ASSERT_NE(graph, nullptr);
+    make_images(graph);
+  }
+
+  void set_budget(float ms, uint32_t flags = DERMIS_BUDGET_METER) {
+    const std::string text = invented_times;
+    const dermis_source calibration = source_of(text, "invented");
+    dermis_budget budget = DERMIS_BUDGET_INIT;
+    budget.milliseconds = ms;
+    budget.flags = flags;
+    budget.calibration = &calibration;
+    dermis_report report = nullptr;
+    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, &report), DERMIS_OK) << take(report).all;
+    dermis_report_destroy(report);
+  }
+
+  dermis_choice run_frame() {
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    dermis_choice choice = DERMIS_CHOICE_INIT;
+    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    return choice;
+  }
+};
+
+TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
+  make();
+  const dermis_choice choice = run_frame();
+  EXPECT_STREQ(choice.outcome, "technique=sap, variant=smooth, taps=25");
+  EXPECT_STREQ(choice.technique, "sap smooth");
+  EXPECT_EQ(choice.budget_ms, 0);
+  EXPECT_EQ(choice.outcome_count, 6u); // sap with two variants, separable with three numbers of taps, off
+}
+
+TEST_F(Choice, EachBudgetGetsTheLeastErrorThatFits) {
+  make();
+  std::string before;
+  for (const float budget : {30.0f, 5.0f, 0.5f}) {
+    set_budget(budget);
+    const dermis_choice choice = run_frame();
+    if (budget > 1) {
+      EXPECT_LE(choice.predicted_ms, budget);
+    }
+    EXPECT_NE(choice.outcome, before) << budget; // a smaller budget leads elsewhere
+    before = choice.outcome;
+    EXPECT_EQ(choice.budget_ms, budget);
+  }
+  EXPECT_THAT(before, HasSubstr("technique=off")); // nothing fits half a millisecond: the fastest
+}
+
+TEST_F(Choice, SwitchingPlansShowsThePictureOfThePlanThatRuns) {
+  make();
+  const auto picture = [&] {
+    make_images(graph);
+    run_frame();
+    return texels("lighting");
+  };
+  set_budget(0);
+  const auto sap = picture();
+  set_budget(0.5f);
+  const auto off = picture();
+  set_budget(0);
+  const auto again = picture();
+  EXPECT_NE(sap, off);
+  EXPECT_EQ(sap, again); // the validation layer has watched over the memory that both share
+}
+
+TEST_F(Choice, FlippingEveryFrameKeepsMemoryInOrder) {
+  make();
+  set_budget(0);
+  const auto sap = [&] {
+    make_images(graph);
+    run_frame();
+    return texels("lighting");
+  }();
+  for (int i = 0; i < 12; ++i) {
+    set_budget(i % 2 == 0 ? 0.5f : 0.0f);
+    make_images(graph);
+    run_frame();
+  }
+  EXPECT_EQ(texels("lighting"), sap);
+}
+
+TEST_F(Choice, CountsTilesAndTellsHowFarLightGoes) {
+  make();
+  const dermis_choice choice = run_frame();
+  EXPECT_EQ(choice.view_tiles, 64u); // 64x64 pixels
+  EXPECT_EQ(choice.scattering_tiles, 64u);
+  EXPECT_EQ(choice.copied_tiles, 0u);
+  // Skin's widest d is 1.04 mm, a pixel half a millimetre; a step of the counter is a sixteenth of an octave.
+  EXPECT_NEAR(std::log2(choice.mean_d_px), std::log2(3.67 / 3.5 / 0.5), 1.0 / 16);
+}
+
+TEST_F(Choice, LearnsTheDevicesTimesAndHandsThemOut) {
+  make();
+  set_budget(0, 0);
+  for (int i = 0; i < 8; ++i)
+    run_frame();
+  size_t size = 0;
+  ASSERT_EQ(dermis_graph_calibration(graph, &size, nullptr), DERMIS_OK);
+  std::string text(size, ' ');
+  size_t small = 3;
+  EXPECT_EQ(dermis_graph_calibration(graph, &small, text.data()), DERMIS_INCOMPLETE);
+  ASSERT_EQ(dermis_graph_calibration(graph, &size, text.data()), DERMIS_OK);
+  text.resize(size - 1);
+  EXPECT_THAT(text, HasSubstr("subsurface.sap_gather variant=smooth"));
+  const dermis_source calibration = source_of(text, "learned");
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  budget.calibration = &calibration;
+  EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+}
+
+TEST_F(Choice, ChoicesByBudgetShareTheMemoryOfTheLargest) {
+  make();
+  dermis_memory all = DERMIS_MEMORY_INIT, one = DERMIS_MEMORY_INIT;
+  ASSERT_EQ(dermis_graph_memory(graph, &all), DERMIS_OK);
+  GraphOptions options;
+  options.text = read_text("configs/graphs/sap.json");
+  options.unbound = {"albedo", "scatter_scale", "scattered_light", "thickness", "back_lighting"};
+  const dermis_graph sap = make_graph(options);
+  ASSERT_NE(sap, nullptr);
+  ASSERT_EQ(dermis_graph_memory(sap, &one), DERMIS_OK);
+  EXPECT_EQ(all.transient_bytes, one.transient_bytes); // the pyramid's is the largest
+}
+
+TEST_F(Choice, AFrameThatIsNotThereYetIsNotReady) {
+  make();
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  EXPECT_EQ(dermis_graph_choice(graph, 0, &choice), DERMIS_NOT_READY);
+  EXPECT_EQ(dermis_graph_choice(graph, 5, &choice), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("completed_frame_index"));
+}
+
+TEST_F(Choice, WrongBudgetsAreRefusedAndChangeNothing) {
+  make();
+  set_budget(30);
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  for (const float ms : {-1.0f, std::nanf(""), INFINITY}) {
+    budget.milliseconds = ms;
+    EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT) << ms;
+  }
+  budget.milliseconds = 1;
+  budget.flags = 8;
+  EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT);
+  budget.flags = 0;
+  const std::string text =
+      "{ \"dermis_errors\": 1,\n \"scenes\": \"s\", \"unscatterd\": [[1, 1]], \"techniques\": [] }";
+  const dermis_source errors = source_of(text, "errors.json");
+  budget.errors = &errors;
+  dermis_report report = nullptr;
+  EXPECT_EQ(dermis_graph_set_budget(graph, &budget, &report), DERMIS_ERROR_CONFIG);
+  const Said said = take(report);
+  ASSERT_EQ(said.places.size(), 1u) << said.all;
+  EXPECT_EQ(said.places[0].first, 2u);
+  EXPECT_EQ(run_frame().budget_ms, 30);
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,145 @@
+#include "framegraph/model/read_graph.hpp"
+#include "passes/choice/outcomes.hpp"
+#include "passes/subsurface/kinds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::choice;
+
+constexpr const char* errors_text = R"({ "dermis_errors": 1, "scenes": "invented",
+"unscattered": [[1, 0.02], [4, 0.04]],
+"techniques": [
+ { "name": "burley 16", "kinds": [{ "kind": "subsurface.burley", "set": { "samples": 16 } }], "rmse": [[1, 0.004], [16, 0.016]] },
+ { "name": "separable", "kinds": [{ "kind": "subsurface.separable" }], "rmse": [[1, 0.003]] },
+ { "name": "separable 11", "kinds": [{ "kind": "subsurface.separable", "set": { "taps": "11" } }], "rmse": [[1, 0.005]] }] })";
+
+struct Outcomes : ::testing::Test {
+  KindRegistry kinds = subsurface::make_kinds();
+  DeviceProfile device = generic_profile();
+  Diagnostics diagnostics;
+  ErrorModel errors;
+  CostModel costs;
+  std::optional<Graph> graph;
+
+  void SetUp() override {
+    const auto document = parse_document("errors.json", errors_text, diagnostics);
+    ASSERT_TRUE(document);
+    auto model = read_error_model(*document, diagnostics);
+    ASSERT_TRUE(model) << format_as_json(diagnostics);
+    errors = std::move(*model);
+  }
+
+  std::optional<OutcomePlans> outcomes_of(const std::string& settings, const std::string& extra_set = "") {
+    const std::string common = R"("read": { "light": "light", "material": "material", "depth": "depth",
+      "tiles": "tiles", "arguments": "arguments")";
+    const std::string text = R"({ "dermis": 1, "name": "g", "settings": {)" + settings + R"(},
+    "imports": { "lighting": { "format": "rgba16f", "size": "view" }, "depth": { "format": "depth", "size": "view" },
+                 "material": { "format": "r8_uint", "size": "view" } },
+    "resources": { "classes": { "buffer": { "stride": 4, "count": "view/8" } },
+      "tiles": { "buffer": { "stride": 4, "count": "view/8", "extra": 1 } },
+      "arguments": { "buffer": { "stride": 4, "count": [4, 1] } },
+      "light": { "format": "rgba16f", "size": "view" }, "slope": { "format": "rg16f", "size": "view" },
+      "blurred": { "format": "rgba16f", "size": "view" }, "scattered": { "format": "rgba16f", "size": "view" } },
+    "passes": [
+      { "pass": "classify", "kind": "subsurface.classify", "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" } },
+      { "pass": "list", "kind": "subsurface.tile_list", "read": { "classes": "classes" }, "write": { "tiles": "tiles", "arguments": "arguments" } },
+      { "pass": "setup", "kind": "subsurface.setup",
+        "read": { "lighting": "lighting", "material": "material", "depth": "depth", "tiles": "tiles", "arguments": "arguments" },
+        "write": { "light": "light" } },
+      { "pass": "horizontal", "kind": "subsurface.separable", "when": "technique == 'separable'", )" +
+                             common + R"(},
+        "write": { "scattered": "blurred" }, "set": { "axis": "horizontal")" +
+                             extra_set + R"( } },
+      { "pass": "vertical", "kind": "subsurface.separable", "when": "technique == 'separable'", )" +
+                             common + R"(, "blurred": "blurred" },
+        "write": { "scattered": "scattered" }, "set": { "axis": "vertical")" +
+                             extra_set + R"( }, "otherwise": { "scattered": "light" } },
+      { "pass": "combine", "kind": "subsurface.combine",
+        "read": { "scattered": "scattered", "material": "material", "tiles": "tiles", "arguments": "arguments" },
+        "write": { "lighting": "lighting" } } ],
+    "exports": ["lighting"] })";
+    const auto document = parse_document("graph.json", text, diagnostics);
+    if (!document) return std::nullopt;
+    graph = read_graph(*document, kinds, diagnostics);
+    if (!graph) return std::nullopt;
+    CompileInput input;
+    input.graph = &*graph;
+    input.kinds = &kinds;
+    input.device = &device;
+    input.view_width = 640;
+    input.view_height = 360;
+    return make_outcomes(
+        input, errors, costs, [](const CompileInput& one, Diagnostics& told) { return compile(one, told); },
+        diagnostics);
+  }
+};
+
+TEST_F(Outcomes, AGraphWithoutChoicesHasOne) {
+  const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
+  ASSERT_TRUE(all) << format_as_json(diagnostics);
+  ASSERT_EQ(all->outcomes.size(), 1u);
+  EXPECT_EQ(all->plans.size(), 1u);
+}
+
+TEST_F(Outcomes, CombinationsThatRunTheSameWorkAreOne) {
+  const auto all =
+      outcomes_of(R"("technique": { "choice": ["separable", "off"], "by": "budget", "default": "separable" },
+    "taps": { "choice": ["11", "17", "25"], "by": "budget", "default": "25" })",
+                  R"(, "taps": "$taps")");
+  ASSERT_TRUE(all) << format_as_json(diagnostics);
+  ASSERT_EQ(all->outcomes.size(), 4u); // three with taps; without the technique they do not matter
+  EXPECT_EQ(all->plans.size(), 2u);
+  EXPECT_EQ(all->outcomes[0].name, "technique=separable, taps=25");
+  EXPECT_EQ(all->outcomes[0].technique, 1); // any taps
+  EXPECT_EQ(all->outcomes[1].technique, 2); // the row for 11 taps says more
+  EXPECT_EQ(all->outcomes.back().technique, -1);
+}
+
+TEST_F(Outcomes, ErrorsRunStraightOnLogarithmicAxes) {
+  EXPECT_NEAR(expected_rmse(errors, 0, 4), 0.008, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, 0.1), 0.004, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, 100), 0.016, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, -1, 2), std::sqrt(0.02 * 0.04), 1e-12);
+}
+
+TEST_F(Outcomes, CostsGrowWithTheTilesThatAreListed) {
+  const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
+  ASSERT_TRUE(all);
+  for (uint64_t groups = 200; groups <= 3600; groups += 200)
+    for (const PassLoad& pass : all->outcomes[0].passes)
+      costs.observe(pass.cost, groups, 0.01 + 1e-4 * static_cast<double>(groups));
+  const double few = estimate(all->outcomes[0], costs, {3600, 100}).ms;
+  const double many = estimate(all->outcomes[0], costs, {3600, 3600}).ms;
+  EXPECT_GT(many, few + 4 * 1e-4 * 3400); // setup, two passes and combine run over listed tiles
+}
+
+TEST_F(Outcomes, TooManyAreRefusedAtTheChoiceThatIsOneTooMuch) {
+  EXPECT_FALSE(outcomes_of("\"technique\": { \"choice\": [\"separable\", \"b\", \"c\", \"d\", \"e\", \"f\", "
+                           "\"g\", \"h\"], \"by\": \"budget\", "
+                           "\"default\": \"b\" },\n"
+                           "\"two\": { \"choice\": [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\", \"g\", \"h\", "
+                           "\"i\"], \"by\": \"budget\", \"default\": \"a\" }"));
+  ASSERT_EQ(diagnostics.count(Severity::error), 1u) << format_as_json(diagnostics);
+  EXPECT_EQ(diagnostics.list.back().id, DiagnosticId::too_many_outcomes);
+  EXPECT_EQ(diagnostics.list.back().where.line, 2u);
+}
+
+TEST_F(Outcomes, CurvesThatDoNotGrowAreRefused) {
+  Diagnostics other;
+  const auto document = parse_document("errors.json",
+                                       "{ \"dermis_errors\": 1, \"scenes\": \"s\", \"techniques\": "
+                                       "[],\n\"unscattered\": [[4, 0.1], [2, 0.2]] }",
+                                       other);
+  ASSERT_TRUE(document);
+  EXPECT_FALSE(read_error_model(*document, other));
+  ASSERT_EQ(other.count(Severity::error), 1u) << format_as_json(other);
+  EXPECT_EQ(other.list[0].id, DiagnosticId::error_curve);
+  EXPECT_EQ(other.list[0].where.pointer, "/unscattered/1");
+}
+
+} // namespace
