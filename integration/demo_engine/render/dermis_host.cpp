@@ -169,7 +169,8 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
 
 Result<> set_budget(DermisHost& host, const DermisDesc& desc) {
   if (desc.budget_ms == 0 && !desc.metered && desc.calibration.empty()) return success();
-  const dermis_source calibration = source_of("calibration", desc.calibration);
+  const std::string name = "calibration"; // lives as long as what points to it
+  const dermis_source calibration = source_of(name, desc.calibration);
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.milliseconds = static_cast<float>(desc.budget_ms);
   budget.flags = desc.metered ? DERMIS_BUDGET_METER : 0;
