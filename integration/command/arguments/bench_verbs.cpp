@@ -6,6 +6,19 @@ namespace {
 
 constexpr uint32_t most_sequence_frames = 3600, most_supplement_runs = 1u << 20;
 
+// Files that a bench writes its rows to; `csv` may be null.
+void add_report_files(CLI::App& verb, std::string& json, std::string* csv, std::string& html,
+                      const char* page) {
+  verb.add_option("--json", json, "File for the rows, - for standard output")->type_name("FILE");
+  if (csv != nullptr)
+    verb.add_option("--csv", *csv, "File for the rows as a table, - for standard output")->type_name("FILE");
+  verb.add_option("--html", html, page)->type_name("FILE");
+}
+
+void add_cache(CLI::App& verb, std::string& cache) {
+  verb.add_option("--cache", cache, "Folder that keeps references [build/bench_truth]")->type_name("DIR");
+}
+
 } // namespace
 
 void add_bench_verbs(CLI::App& app, Invocation& invocation) {
@@ -43,11 +56,8 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       bench_error_time,
       [](CLI::App& verb, BenchErrorTimeOptions& options) {
         add_size(verb, options.size);
-        verb.add_option("--json", options.json, "File for the rows, - for standard output")
-            ->type_name("FILE");
-        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
-            ->type_name("FILE");
-        verb.add_option("--html", options.html, "File for a page with plots and pictures")->type_name("FILE");
+        add_report_files(verb, options.json, &options.csv, options.html,
+                         "File for a page with plots and pictures");
         verb.add_option("--head", options.head, "Folder of the head scan (LeePerrySmith.glb and its maps)")
             ->type_name("DIR");
         verb.add_flag("--study", options.study, "Also the framings that study one head");
@@ -59,8 +69,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         verb.add_option("--file", options.file, "What is measured [tests/benchmark/error_time.json]")
             ->type_name("FILE");
-        verb.add_option("--cache", options.cache, "Folder that keeps references [build/bench_truth]")
-            ->type_name("DIR");
+        add_cache(verb, options.cache);
       },
       true);
   add_verb<BenchBudgetOptions>(
@@ -77,22 +86,15 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         verb.add_option("--frames", options.frames, "Judged frames of each run [40]")
             ->check(CLI::Range(4u, max_frames));
-        verb.add_option("--json", options.json, "File for the rows, - for standard output")
-            ->type_name("FILE");
-        verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
-        verb.add_option("--cache", options.cache, "Folder that keeps references [build/bench_truth]")
-            ->type_name("DIR");
+        add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
+        add_cache(verb, options.cache);
       },
       true);
   add_verb<BenchTruthOptions>(
       bench, invocation, "truth", "Laws with known answers, beside what every technique makes of them",
       "dermis bench truth --json build/truth.json", bench_truth,
       [](CLI::App& verb, BenchTruthOptions& options) {
-        verb.add_option("--json", options.json, "File for the rows, - for standard output")
-            ->type_name("FILE");
-        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
-            ->type_name("FILE");
-        verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
+        add_report_files(verb, options.json, &options.csv, options.html, "File for a page with the rows");
         verb.add_option("--file", options.file, "Techniques and tolerances [tests/benchmark/truth.json]")
             ->type_name("FILE");
       },
@@ -104,11 +106,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         verb.add_option("--frames", options.frames, "Frames of each sequence [as the file says]")
             ->check(CLI::Range(1u, most_sequence_frames));
-        verb.add_option("--json", options.json, "File for the rows, - for standard output")
-            ->type_name("FILE");
-        verb.add_option("--csv", options.csv, "File for the rows as a table, - for standard output")
-            ->type_name("FILE");
-        verb.add_option("--html", options.html, "File for a page with plots")->type_name("FILE");
+        add_report_files(verb, options.json, &options.csv, options.html, "File for a page with plots");
         verb.add_option("--head", options.head, "Folder of the head scan, which takes the bust's place")
             ->type_name("DIR");
         verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
@@ -122,8 +120,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         verb.add_option("--file", options.file, "What is measured [tests/benchmark/dynamic.json]")
             ->type_name("FILE");
-        verb.add_option("--cache", options.cache, "Folder that keeps references [build/bench_truth]")
-            ->type_name("DIR");
+        add_cache(verb, options.cache);
       },
       true);
   add_verb<BenchSupplementOptions>(
@@ -132,9 +129,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, BenchSupplementOptions& options) {
         verb.add_option("--runs", options.runs, "Runs of 100 frames [4096]")
             ->check(CLI::Range(16u, most_supplement_runs));
-        verb.add_option("--json", options.json, "File for the rows, - for standard output")
-            ->type_name("FILE");
-        verb.add_option("--html", options.html, "File for a page with the rows")->type_name("FILE");
+        add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);
 }
