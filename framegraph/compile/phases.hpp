@@ -123,7 +123,7 @@ struct PassTouch { // all accesses of one pass to one object
   Layout layout = Layout::undefined;
 };
 
-struct Loan {               // memory of a history that a transient uses while it holds nothing: see lend.cpp
+struct Loan { // memory of a history that a transient uses while it holds nothing: see packing/lend.cpp
   uint32_t from = no_value; // into Plan::resources: the history
   bool after = false;       // the last read of its oldest frame; false: before it is written
   uint64_t offset = 0;      // in each of its instances

@@ -1,6 +1,6 @@
 // Which passes run on the async queue, and at which points the queues wait for each other.
 
-#include "framegraph/compile/synchronize.hpp"
+#include "framegraph/compile/barriers/steps.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "framegraph/compile/synchronize.hpp"
+#include "framegraph/compile/barriers/steps.hpp"
 
 namespace dermis {
 namespace {

@@ -1,6 +1,6 @@
 // Barriers of one batch that differ in the parts of an image alone become one.
 
-#include "framegraph/compile/synchronize.hpp"
+#include "framegraph/compile/barriers/steps.hpp"
 
 #include <algorithm>
 #include <set>

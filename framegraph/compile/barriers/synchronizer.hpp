@@ -1,0 +1,171 @@
+#pragma once
+// The walk through a frame that finds what must wait for what: see synchronize.cpp. Internal to compile/.
+
+#include "framegraph/compile/barriers/steps.hpp"
+
+#include <utility>
+
+namespace dermis {
+
+struct Scope {
+  Stage stages = 0;
+  Access access = 0;
+};
+
+// Where a dependency on everything done so far starts.
+inline Scope tail(const ObjectState& state) {
+  if (!state.touched) return {};
+  return {state.readers != 0 && state.source_access == 0 ? state.readers
+                                                         : state.source_stages | state.readers,
+          state.source_access};
+}
+
+struct Synchronizer {
+  CompileContext& c;
+  Plan& plan;
+  const std::array<UsageSet, usage_sets>& sets;
+  std::vector<std::pair<uint32_t, uint32_t>> waiting_parts =
+      {};                         // barriers for parts, and what they stand behind
+  uint32_t current = 0;           // position
+  bool emit = false;              // barriers; otherwise only how each object ends
+  uint32_t last_batch = no_value; // position of the pass behind it
+
+  void because(uint32_t barrier, Reason::Why why, uint32_t resource, uint32_t b = 0) {
+    c.because(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
+  }
+  bool host_owned(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
+
+  const Lifetime& life(uint32_t resource) const {
+    return c.lifetimes[plan.resources[resource].declared.value];
+  }
+  // Frames of a resource that a frame touches, this one included: each is an object.
+  uint32_t roles(uint32_t resource) const { return life(resource).deepest_read + 1; }
+  // Parts of a resource that ports tell apart: each is an object. Histories have one.
+  uint32_t parts(uint32_t resource) const {
+    return c.graph->parts ? c.facts[plan.resources[resource].declared.value].parts : 1;
+  }
+  // This frame's and the oldest are one object where the one is written over the other.
+  uint32_t object_of(uint32_t resource, uint32_t frames_back, uint32_t part = 0) const {
+    const bool oldest = frames_back == 0 && life(resource).updates_oldest;
+    return c.first_object[resource] + (oldest ? life(resource).deepest_read : frames_back) + part;
+  }
+  SubresourceRange range_of(uint32_t resource, uint32_t part) const {
+    if (parts(resource) == 1) return plan.resources[resource].whole();
+    return c.parts[c.part_number(plan.resources[resource].declared, part)];
+  }
+
+  // Returns whether the plan has histories.
+  bool number_objects();
+
+  // Earlier frames of a history start where the frame before left them, one role younger; everything else
+  // arrives with its first barrier.
+  void carry_over();
+
+  // The oldest instance of a history was one role younger when the frame before ended, and so on.
+  void find_ends();
+
+  bool two_queues() const { return !c.queue.empty(); }
+  Queue queue_at(uint32_t position) const { return plan.passes[position].queue; }
+
+  // The pass at `position` comes after the one at `earlier`, of the other queue.
+  void need(uint32_t position, uint32_t earlier) {
+    c.needs_point[position] = std::max(c.needs_point[position], earlier + 2);
+  }
+  // Likewise, after one of the frame before.
+  void need_frame_before(uint32_t position, uint32_t earlier) {
+    c.needs_frame_before[position] = std::max(c.needs_frame_before[position], earlier + 2);
+  }
+
+  // The object leaves one queue for the other, with its contents.
+  void transfer(const PassTouch& touch, const ObjectState& state, const UsageSet& set, uint32_t position);
+
+  Layout layout_of(const PassTouch& touch) const;
+
+  // What the pass does to each object; by use: which of them it touches.
+  void collect(uint32_t first_use, uint32_t end);
+
+  // A port sees all its parts in one layout: `general` where they would have several.
+  void unify_layouts(uint32_t first_use, uint32_t end);
+
+  void add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end);
+
+  // Adds a barrier for the pass at `position` that waits for nothing of this frame behind the pass at
+  // `after`.
+  void batch(uint32_t index, uint32_t after, uint32_t position);
+
+  uint32_t draft();
+
+  // Brings the drafts into the order of their batches, those of one batch as they were found.
+  void sort_into_batches();
+
+  void run_pass(uint32_t position);
+
+  // Barriers for parts of one image stand in one batch, so that they can become one barrier.
+  void batch_parts(uint32_t position);
+
+  void place(uint32_t index, uint32_t after, uint32_t position);
+
+  void run_touch(const PassTouch& touch, uint32_t position);
+
+  // Fills in the barrier that an access needs behind `state`; false if it needs none.
+  bool dependency(const ObjectState& state, uint8_t usages, const UsageSet& set, Layout layout,
+                  PlanBarrier& barrier) const;
+
+  void wait_for(PlanBarrier& barrier, const Scope& scope) const {
+    barrier.source_stages |= scope.stages;
+    barrier.source_access |= scope.access;
+  }
+
+  // The first barrier of an object whose old contents do not count.
+  void arrive(const PassTouch& touch, const UsageSet& set, Layout layout, uint32_t position);
+
+  // The last pass of this frame that touched any part of the resource.
+  uint32_t last_pass(const Segment& of) const;
+
+  // Memory passes from those that had its bytes before in this frame; where there is none, from those that
+  // had them last in the frame before, which are known when the walk is over. Earlier ones than the last had
+  // to be done before it: the wait reaches them through it.
+  // Returns the last pass of this frame that had any of them, no_value if none had.
+  uint32_t take_over(uint32_t resource, uint32_t barrier);
+
+  // The first segment that ends behind `at`.
+  static std::vector<Segment>::iterator behind(std::vector<Segment>& segments, uint64_t at);
+
+  void inherit(const ObjectState& state, uint32_t barrier, bool frame_before);
+
+  // Barriers that change no layout, and whose work the waits for points do: those behind which the other
+  // queue has waited, and this one for it; and those of buffers that take over what the other queue had
+  // alone.
+  void drop_needless();
+
+  // Behind the wait for a point, which ends where the barrier begins.
+  void wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier, bool frame_before);
+
+  void inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before);
+
+  // The bytes in which a resource arrives. What a history lends is memory of its own, twice: before it is
+  // written, and after the last read of its oldest frame. The instance of the latter is that of the former in
+  // the next frame.
+  struct MemoryRange {
+    uint32_t memory = 0; // into c.memory
+    uint64_t begin = 0, end = 0;
+  };
+  MemoryRange memory_of(uint32_t resource) const;
+
+  // The memory that histories lend: the oldest frame has it first.
+  void lend();
+
+  // A resource's own last use in the frame before counts wherever the others lie: a plan whose placements are
+  // moved apart stays in order.
+  void settle_arrivals();
+
+  // Each part waits for those that had the memory before, and for its own last use in the frame before.
+  void settle_parts();
+
+  // Every slot is handed back in the state the host asked for, also one that no pass touched.
+  void hand_back(uint32_t resource);
+
+  void describe_histories();
+};
+
+} // namespace dermis
