@@ -131,10 +131,28 @@ bool count_up(const Graph& graph, const std::vector<uint32_t>& choices, std::vec
   return false;
 }
 
-std::string name_of(const Graph& graph, const std::vector<uint32_t>& choices,
+bool refers_to(const Graph& graph, ExpressionId id, uint32_t setting) {
+  if (!id.valid()) return false;
+  const Expression& one = graph.expressions[id.value];
+  return (one.setting.valid() && one.setting.value == setting) || refers_to(graph, one.left, setting) ||
+         refers_to(graph, one.right, setting);
+}
+
+// Does it decide which passes run, or what one of those that run does?
+bool matters(const Graph& graph, const Plan& plan, uint32_t setting) {
+  const auto decides = [&](const PassDeclaration& pass) { return refers_to(graph, pass.when, setting); };
+  const auto follows = [&](const PlanSetting& value) {
+    return value.from.valid() && value.from.value == setting;
+  };
+  return std::any_of(graph.passes.begin(), graph.passes.end(), decides) ||
+         std::any_of(plan.settings.begin(), plan.settings.end(), follows);
+}
+
+std::string name_of(const Graph& graph, const Plan& plan, const std::vector<uint32_t>& choices,
                     const std::vector<SettingValue>& values) {
   std::string name;
   for (const uint32_t choice : choices) {
+    if (!matters(graph, plan, choice)) continue;
     const SettingDeclaration& setting = graph.settings[choice];
     name += fmt::format("{}{}={}", name.empty() ? "" : ", ", setting.name,
                         setting.options[static_cast<size_t>(values[choice].integer)]);
@@ -175,7 +193,6 @@ std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const Error
   std::vector<std::vector<bool>> on_of_plan;
   const auto add = [&](const std::vector<SettingValue>& values) {
     Outcome outcome;
-    outcome.name = name_of(graph, choices, values);
     outcome.settings = values;
     std::vector<bool> on = passes_on(graph, values);
     const auto known = std::find(on_of_plan.begin(), on_of_plan.end(), on);
@@ -188,6 +205,7 @@ std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const Error
       out.plans.push_back(std::move(*compiled));
       on_of_plan.push_back(std::move(on));
     }
+    outcome.name = name_of(graph, out.plans[outcome.plan].plan, choices, values);
     describe(*input.kinds, out.plans[outcome.plan].plan, errors, costs, outcome);
     const bool twice = std::any_of(out.outcomes.begin(), out.outcomes.end(),
                                    [&](const Outcome& other) { return same_work(other, outcome); });

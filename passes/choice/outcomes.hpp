@@ -24,7 +24,7 @@ struct PassLoad {
 };
 
 struct Outcome {
-  std::string name;                   // "technique=sap, taps=25"
+  std::string name;                   // "technique=separable, taps=25": the choices that matter to what runs
   std::vector<SettingValue> settings; // one per Graph::settings
   uint32_t plan = 0;                  // into OutcomePlans::plans
   int32_t technique = -1;             // into ErrorModel::techniques; -1: none runs

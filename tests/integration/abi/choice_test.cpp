@@ -60,7 +60,7 @@ struct Choice : DermisTest {
 TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
   make();
   const dermis_choice choice = run_frame();
-  EXPECT_STREQ(choice.outcome, "technique=sap, variant=smooth, taps=25");
+  EXPECT_STREQ(choice.outcome, "technique=sap, variant=smooth");
   EXPECT_STREQ(choice.technique, "sap smooth");
   EXPECT_EQ(choice.budget_ms, 0);
   EXPECT_EQ(choice.outcome_count, 6u); // sap with two variants, separable with three numbers of taps, off

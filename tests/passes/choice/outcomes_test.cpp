@@ -98,6 +98,7 @@ TEST_F(Outcomes, CombinationsThatRunTheSameWorkAreOne) {
   EXPECT_EQ(all->outcomes[0].technique, 1); // any taps
   EXPECT_EQ(all->outcomes[1].technique, 2); // the row for 11 taps says more
   EXPECT_EQ(all->outcomes.back().technique, -1);
+  EXPECT_EQ(all->outcomes.back().name, "technique=off"); // no pass that runs has taps
 }
 
 TEST_F(Outcomes, ErrorsRunStraightOnLogarithmicAxes) {
