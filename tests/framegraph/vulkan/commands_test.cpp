@@ -15,12 +15,19 @@ struct Recorded { // static: functions of the driver have no user pointer
   VkImageMemoryBarrier2 barriers[most_barriers];
   size_t barrier_count = 0, batches = 0, dispatches = 0, labels = 0;
   uint32_t groups[3];
+  VkMemoryBarrier2 all_memory; // the last that names no resource
+  size_t all_memory_count = 0, dispatches_before_it = 0;
 };
 Recorded recorded;
 
 void make_recording(vulkan::FunctionTable& table) {
   table.vkCmdPipelineBarrier2 = [](VkCommandBuffer, const VkDependencyInfo* info) {
     ++recorded.batches;
+    for (uint32_t i = 0; i < info->memoryBarrierCount; ++i) {
+      recorded.all_memory = info->pMemoryBarriers[i];
+      recorded.dispatches_before_it = recorded.dispatches;
+      ++recorded.all_memory_count;
+    }
     for (uint32_t i = 0; i < info->imageMemoryBarrierCount && recorded.barrier_count < most_barriers; ++i)
       recorded.barriers[recorded.barrier_count++] = info->pImageMemoryBarriers[i];
   };
@@ -56,11 +63,12 @@ protected:
     make_recording(dermis_device.vk);
     recorded = {};
   }
-  vulkan::RecordResult record(vulkan::Rectangle rectangle = {}) {
+  vulkan::RecordResult record(vulkan::Rectangle rectangle = {}, bool taken_over = false) {
     vulkan::FrameInput input;
     input.command_buffer = reinterpret_cast<VkCommandBuffer>(this); // never looked at
     input.images = images;
     input.rectangle = rectangle;
+    input.taken_over = taken_over;
     input.frame_index = ++frame_index;
     return executor->record(input);
   }
@@ -124,6 +132,22 @@ TEST_F(CommandsTest, NoBarrierWhereTheHostHasNothingToWaitForAndTheLayoutFits) {
     before_dispatch += recorded.barriers[i].image == images[light].image &&
                        recorded.barriers[i].oldLayout == recorded.barriers[i].newLayout;
   EXPECT_EQ(before_dispatch, 0u);
+}
+
+TEST_F(CommandsTest, AFrameAfterThoseOfAnotherPlanFirstWaitsForAllTheyWrote) {
+  const SmallGraph g = update();
+  make_executor(g, 16, 16);
+  bind(g, "light", {});
+  ASSERT_FALSE(record());
+  EXPECT_EQ(recorded.all_memory_count, 0u);
+  recorded = {};
+  ASSERT_FALSE(record({}, true));
+  ASSERT_EQ(recorded.all_memory_count, 1u);
+  EXPECT_EQ(recorded.dispatches_before_it, 0u);
+  EXPECT_EQ(recorded.all_memory.srcStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  EXPECT_EQ(recorded.all_memory.dstStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  EXPECT_EQ(recorded.all_memory.srcAccessMask, VK_ACCESS_2_MEMORY_WRITE_BIT);
+  EXPECT_EQ(recorded.all_memory.dstAccessMask, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
 TEST_F(CommandsTest, GroupsCoverTheRenderRectangleAndEveryPassHasALabel) {

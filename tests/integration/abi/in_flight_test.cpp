@@ -65,6 +65,29 @@ struct InFlight : DermisTest {
   }
 };
 
+// Plans of one graph lie in the same memory: without a wait in between, only their own barriers keep them
+// apart.
+TEST_F(InFlight, PlansThatTakeTurnsWaitForEachOthersMemory) {
+  GraphOptions options;
+  options.text = read_text("configs/graphs/skin.json");
+  const dermis_graph graph = make_graph(options);
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  const auto bound = bindings(graph);
+  for (uint64_t index = 1; index <= 9; ++index) {
+    dermis_budget budget = DERMIS_BUDGET_INIT;
+    budget.milliseconds = index % 2 == 0 ? 0.001f : 0; // the fastest outcome, or the defaults
+    budget.flags = DERMIS_BUDGET_METER;
+    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+    run(graph, bound, index);
+  }
+  host->vk.vkDeviceWaitIdle(host->device);
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  ASSERT_EQ(dermis_graph_choice(graph, 9, &choice), DERMIS_OK) << dermis_last_error();
+  EXPECT_STREQ(choice.outcome, "technique=sap, variant=smooth");
+  ASSERT_EQ(choice.frame_index, 9u);
+}
+
 TEST_F(InFlight, AReplacedProgramLivesUntilTheDeviceHasFinishedItsFrames) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);

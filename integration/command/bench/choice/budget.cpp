@@ -42,13 +42,13 @@ struct Figures {
   uint32_t switches = 0;
 };
 
-// Root of the mean square over the frames that were compared.
+// Root of the mean square over the judged frames that were compared.
 double pooled_rmse(const SceneRun& run) {
   double sum = 0;
   uint32_t count = 0;
-  for (const RunFrame& frame : run.frames)
-    if (frame.rmse) {
-      sum += *frame.rmse * *frame.rmse;
+  for (size_t i = warm_up; i < run.frames.size(); ++i)
+    if (const auto& rmse = run.frames[i].rmse) {
+      sum += *rmse * *rmse;
       ++count;
     }
   return count > 0 ? std::sqrt(sum / count) : 0;
@@ -88,12 +88,114 @@ const std::vector<ReportColumn> columns = {
     {"switches", "switches"},
 };
 
+struct Bench {
+  const Session& session;
+  const BenchBudgetOptions& options;
+  SceneRunRequest request;
+  std::vector<std::vector<NamedValue>> sets; // one for each outcome
+  Progress& progress;
+  uint64_t done = 0;
+  std::string device = {};
+  Report report = {};
+};
+
+demo::Result<SceneRun> run_counted(Bench& bench) {
+  auto run = run_scene(bench.session, bench.request);
+  bench.progress.update(++bench.done);
+  return run;
+}
+
+demo::Result<std::vector<Single>> measure_singles(Bench& bench) {
+  std::vector<Single> singles;
+  bench.request.budget_ms = 0;
+  bench.request.metered = true;
+  for (const auto& set : bench.sets) {
+    bench.request.set = set;
+    const auto run = run_counted(bench);
+    if (!run) return run.error();
+    bench.device = run->device;
+    Single& single = singles.emplace_back();
+    single.set = set;
+    single.rmse = pooled_rmse(*run);
+    for (size_t i = warm_up; i < run->frames.size(); ++i)
+      single.metered_ms.push_back(run->frames[i].choice.metered_ms);
+  }
+  bench.request.set.clear();
+  return singles;
+}
+
+// The least error among those whose meter keeps to the budget; null: none does.
+const Single* best_within(const std::vector<Single>& singles, double budget_ms) {
+  const Single* best = nullptr;
+  for (const Single& one : singles)
+    if (one.metered_at(within) <= meter_tolerance * budget_ms && (best == nullptr || one.rmse < best->rmse))
+      best = &one;
+  return best;
+}
+
+std::string name_of(const Single* single) {
+  std::string name;
+  if (single != nullptr)
+    for (const auto& [setting, value] : single->set)
+      name += fmt::format("{}{}={}", name.empty() ? "" : " ", setting, value.substr(1, value.size() - 2));
+  return name;
+}
+
+// A row for each share of the way from the cheapest outcome to the best.
+demo::Result<> measure_scene(Bench& bench, const std::string& scene) {
+  const auto singles = measure_singles(bench);
+  if (!singles) return singles.error();
+  double floor_ms = singles->front().metered_at(within);
+  for (const Single& single : *singles)
+    floor_ms = std::min(floor_ms, single.metered_at(within));
+  const auto best = std::min_element(singles->begin(), singles->end(),
+                                     [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
+  for (const double x : shares) {
+    const double budget_ms = floor_ms + x * (best->metered_at(within) - floor_ms);
+    bench.request.budget_ms = budget_ms;
+    bench.request.metered = false;
+    const auto timed = run_counted(bench);
+    if (!timed) return timed.error();
+    bench.request.metered = true;
+    const auto metered = run_counted(bench);
+    if (!metered) return metered.error();
+    const Figures figures = judge(*timed, *metered, budget_ms);
+    const Single* single = best_within(*singles, budget_ms);
+    bench.report.table.rows.push_back({scene, x, budget_ms, figures.mean_ms, figures.p95_ms, figures.over,
+                                       figures.over_meter, figures.rmse,
+                                       single != nullptr ? ReportValue(single->rmse) : ReportValue(),
+                                       name_of(single), int64_t{figures.switches}});
+  }
+  return demo::success();
+}
+
+std::string cell(const ReportValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.3g}", *number);
+  if (const auto* count = std::get_if<int64_t>(&value)) return fmt::format("{}", *count);
+  return "-";
+}
+
+std::string text_of(const Report& report) {
+  Table table;
+  for (const ReportColumn& column : report.table.columns)
+    table.columns.push_back({column.title, column.key != "scene" && column.key != "best_single"});
+  for (const auto& row : report.table.rows) {
+    auto& cells = table.rows.emplace_back();
+    for (const ReportValue& value : row)
+      cells.push_back(cell(value));
+  }
+  return format_table(table);
+}
+
 } // namespace
 
 ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options) {
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> loaded = load_graph(options.graph, {}, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
+  auto sets = choice_sets(*loaded, options.size, diagnostics);
+  if (sets.empty()) return fail_graph(session, options.graph, diagnostics);
   SceneRunRequest request;
   request.graph = options.graph;
   request.size = options.size;
@@ -105,101 +207,31 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options)
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
     request.calibration = text.take();
   }
-  Report report;
+  Progress progress(progress_style(session.quiet, false), "budget", "run",
+                    options.scenes.size() * (sets.size() + 2 * std::size(shares)));
+  Bench bench{session, options, std::move(request), std::move(sets), progress};
+  Report& report = bench.report;
   report.bench = "budget";
   report.title = "Frames within a budget";
   report.summary = fmt::format(
       "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the meter",
       options.frames, warm_up, measured_tolerance, meter_tolerance);
   report.table.columns = columns;
-  const auto sets = choice_sets(*loaded, options.size, diagnostics);
-  if (sets.empty()) return fail_graph(session, options.graph, diagnostics);
-  Progress progress(progress_style(session.quiet, false), "budget", "run",
-                    options.scenes.size() * (sets.size() + 2 * std::size(shares)));
-  uint64_t done = 0;
-  std::string device;
   for (const std::string& scene : options.scenes) {
-    request.scene = fmt::format("configs/scenes/{}.json", scene);
-    if (!std::filesystem::exists(request.scene)) {
-      report.notes.push_back(fmt::format("scene {}: there is no '{}'", scene, request.scene));
+    bench.request.scene = fmt::format("configs/scenes/{}.json", scene);
+    if (!std::filesystem::exists(bench.request.scene)) {
+      report.notes.push_back(fmt::format("scene {}: there is no '{}'", scene, bench.request.scene));
       continue;
     }
-    std::vector<Single> singles;
-    request.budget_ms = 0;
-    request.metered = true;
-    for (const auto& set : sets) {
-      request.set = set;
-      const auto run = run_scene(session, request);
-      progress.update(++done);
-      if (!run)
-        return fail(session, interrupted() ? ExitCode::interrupted : static_cast<ExitCode>(run.error().kind),
-                    run.error().text);
-      device = run->device;
-      Single& single = singles.emplace_back();
-      single.set = set;
-      single.rmse = pooled_rmse(*run);
-      for (size_t i = warm_up; i < run->frames.size(); ++i)
-        single.metered_ms.push_back(run->frames[i].choice.metered_ms);
-    }
-    request.set.clear();
-    const auto cheapest =
-        std::min_element(singles.begin(), singles.end(), [](const Single& a, const Single& b) {
-          return a.metered_at(within) < b.metered_at(within);
-        });
-    const auto best = std::min_element(singles.begin(), singles.end(),
-                                       [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
-    const double floor_ms = cheapest->metered_at(within), best_ms = best->metered_at(within);
-    for (const double x : shares) {
-      request.budget_ms = floor_ms + x * (best_ms - floor_ms);
-      const SceneRunRequest as_is = request;
-      request.metered = false;
-      const auto timed = run_scene(session, request);
-      progress.update(++done);
-      request.metered = true;
-      const auto metered = timed ? run_scene(session, request) : timed;
-      progress.update(++done);
-      if (!metered)
-        return fail(session,
-                    interrupted() ? ExitCode::interrupted : static_cast<ExitCode>(metered.error().kind),
-                    metered.error().text);
-      const Figures figures = judge(*timed, *metered, as_is.budget_ms);
-      const Single* single = nullptr;
-      for (const Single& one : singles)
-        if (one.metered_at(within) <= meter_tolerance * as_is.budget_ms &&
-            (single == nullptr || one.rmse < single->rmse))
-          single = &one;
-      std::string name;
-      if (single != nullptr)
-        for (const auto& [setting, value] : single->set)
-          name += fmt::format("{}{}={}", name.empty() ? "" : " ", setting, value.substr(1, value.size() - 2));
-      report.table.rows.push_back({scene, x, as_is.budget_ms, figures.mean_ms, figures.p95_ms, figures.over,
-                                   figures.over_meter, figures.rmse,
-                                   single != nullptr ? ReportValue(single->rmse) : ReportValue(), name,
-                                   int64_t{figures.switches}});
-    }
+    const auto measured = measure_scene(bench, scene);
+    if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+    if (!measured) return fail(session, static_cast<ExitCode>(measured.error().kind), measured.error().text);
   }
-  report.facts = machine_facts(session.command, device);
   if (report.table.rows.empty()) return fail(session, ExitCode::usage, "no scene is left to measure");
-  if (const std::string problem = deliver_report(report, options.json, "", options.html); !problem.empty())
-    return fail(session, ExitCode::environment, problem);
-  Table table;
-  for (const ReportColumn& column : columns)
-    table.columns.push_back({column.title, column.key != "scene" && column.key != "best_single"});
-  for (const auto& row : report.table.rows) {
-    auto& cells = table.rows.emplace_back();
-    for (const ReportValue& value : row) {
-      if (const auto* text = std::get_if<std::string>(&value))
-        cells.push_back(*text);
-      else if (const auto* number = std::get_if<double>(&value))
-        cells.push_back(fmt::format("{:.3g}", *number));
-      else if (const auto* count = std::get_if<int64_t>(&value))
-        cells.push_back(fmt::format("{}", *count));
-      else
-        cells.emplace_back("-");
-    }
-  }
-  if (!session.quiet && options.json != "-") print(format_table(table));
-  return ExitCode::ok;
+  report.facts = machine_facts(session.command, bench.device);
+  if (!session.quiet && options.json != "-" && options.html != "-") print(text_of(report));
+  const std::string problem = deliver_report(report, options.json, "", options.html);
+  return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }
 
 } // namespace dermis::tools
