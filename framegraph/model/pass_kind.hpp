@@ -49,7 +49,8 @@ enum class DispatchShape : uint8_t {
   over_tile_grid, // one 64-invocation group per 64 tiles of the render rectangle
   over_written,   // one 8x8 group per 8x8 texels of the first image that the kind writes
   single_group,   // one group
-  none            // not a dispatch (clear)
+  none,           // not a dispatch (clear)
+  host            // the host records it
 };
 
 struct PassKind {

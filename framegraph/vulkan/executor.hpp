@@ -52,6 +52,35 @@ const char* history_reason_text(HistoryReason reason);
 
 class HeapPool;
 
+struct Rectangle { // pixels; inside the allocated view size
+  uint32_t x = 0, y = 0, width = 0, height = 0;
+};
+
+// What stands at a port of a pass that the host records: image or buffer; both null where nothing is bound.
+struct HostPort {
+  VkImage image = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE; // of the part that the port names; storage images: of one mip
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; // that the image is in, and must be left in
+  uint32_t width = 0, height = 0;                   // of the view's first mip
+  VkBuffer buffer = VK_NULL_HANDLE;
+  uint64_t bytes = 0;
+};
+
+// One call of a host's pass. Everything lives until the call returns.
+struct HostPass {
+  KindId kind;
+  const char* pass = ""; // name
+  VkCommandBuffer command_buffer = VK_NULL_HANDLE;
+  std::span<const HostPort> ports;        // by PassKind::ports
+  std::span<const SettingValue> settings; // by PassKind::settings
+  Rectangle rectangle;                    // that is rendered
+  uint64_t frame_index = 0;
+};
+
+// Records passes whose kind has DispatchShape::host, between the plan's barriers. Must not throw.
+using HostPassFunction = void (*)(void* user, const HostPass& call);
+
 struct ExecutorInput { // nothing is kept but `device`; all the rest is copied or consumed during the call
   const Device* device = nullptr; // must outlive the executor
   const Graph* graph = nullptr;   // that the plan was compiled from: names
@@ -64,8 +93,11 @@ struct ExecutorInput { // nothing is kept but `device`; all the rest is copied o
   const HeapPool* heap_pool = nullptr; // made with this plan among others: transients lie in its memory, and
                                        // no other user of it may run at the same time. Null: its own memory.
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid
-  // For tests: each frame fills whatever the plan says nobody may read, before it is first written, with NaN, or
-  // 0xCD in each byte. The plan must be compiled with CompileInput::poison.
+  HostPassFunction host_pass =
+      nullptr; // needed where the plan has passes that the host records; called by record()
+  void* host_pass_user = nullptr;
+  // For tests: each frame fills whatever the plan says nobody may read, before it is first written, with NaN,
+  // or 0xCD in each byte. The plan must be compiled with CompileInput::poison.
   bool poison = false;
 };
 
@@ -85,10 +117,6 @@ struct HostImage {
   HostState before, after;
 };
 
-struct Rectangle { // pixels; inside the allocated view size
-  uint32_t x = 0, y = 0, width = 0, height = 0;
-};
-
 struct FrameInput {
   VkCommandBuffer command_buffer =
       VK_NULL_HANDLE;                         // recording, outside a render pass, of Device::queue_family
@@ -97,8 +125,8 @@ struct FrameInput {
   std::span<const SettingValue> settings;     // one per Graph::settings; empty: those of the plan
   Rectangle rectangle;                        // width 0: the allocated view size
   uint64_t frame_index = 1;                   // grows; the frame `frame_index - frames_in_flight` is finished
-  bool taken_over = false; // frames ran elsewhere since the last record: the pool's memory was used by
-                           // others, and histories start anew
+  bool taken_over = false;    // frames ran elsewhere since the last record: the pool's memory was used by
+                              // others, and histories start anew
   bool reset_history = false; // camera cut: histories with on_cut invalidate become invalid
 };
 

@@ -5,6 +5,7 @@
 #include "framegraph/vulkan/device.hpp"
 #include "framegraph/vulkan/device_profile.hpp"
 #include "integration/abi/failure.hpp"
+#include "integration/abi/host_kinds.hpp"
 
 #include <atomic>
 #include <mutex>
@@ -15,6 +16,7 @@ struct dermis_context_t {
   dermis::vulkan::Device device;
   dermis::DeviceProfile profile; // refers to `device`
   dermis::KindRegistry kinds;
+  dermis::abi::HostPasses host_passes; // its kinds are among `kinds`
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
   uint32_t queue_family_count = 0; // of the physical device
   uint32_t frames_in_flight = 2;

@@ -108,12 +108,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
       return bad_argument(log, "dermis_graph_describe: format is {}, expected 0..2",
                           static_cast<int>(format));
     }
-    const size_t room = *size;
-    *size = description.size() + 1;
-    if (text == nullptr) return DERMIS_OK;
-    if (room < *size) return DERMIS_INCOMPLETE;
-    std::memcpy(text, description.c_str(), *size);
-    return DERMIS_OK;
+    return fill_text(description, size, text);
   });
 }
 

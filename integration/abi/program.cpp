@@ -117,6 +117,8 @@ vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vul
   executor.frames_in_flight = context.frames_in_flight;
   executor.pipeline_cache = context.pipeline_cache;
   executor.history = history;
+  executor.host_pass = record_host_pass;
+  executor.host_pass_user = &context.host_passes;
   if (program.variants.size() > 1) {
     std::vector<const Plan*> plans;
     for (const Variant& variant : program.variants)

@@ -52,6 +52,14 @@ template <>
 inline constexpr size_t first_version_size<dermis_choice> = offsetof(dermis_choice, reserved) +
                                                             sizeof(uint32_t);
 template <>
+inline constexpr size_t first_version_size<dermis_port> = offsetof(dermis_port, optional) + sizeof(uint32_t);
+template <>
+inline constexpr size_t first_version_size<dermis_kind_setting> = offsetof(dermis_kind_setting, maximum) +
+                                                                  sizeof(double);
+template <>
+inline constexpr size_t first_version_size<dermis_pass_kind> = offsetof(dermis_pass_kind, user) +
+                                                               sizeof(void*);
+template <>
 inline constexpr size_t first_version_size<dermis_image_binding> = offsetof(dermis_image_binding, after) +
                                                                    sizeof(dermis_image_state);
 template <>

@@ -4,6 +4,8 @@
 #include "integration/abi/failure.hpp"
 #include "integration/abi/sized_struct.hpp"
 
+#include <string>
+
 namespace dermis::abi {
 
 // `at(i)` gives item i. *count in: room in `items`; out: how many there are.
@@ -26,6 +28,16 @@ dermis_result fill_array(const Log& log, const char* what, uint32_t* count, T* i
   }
   *count = available;
   return room < available ? DERMIS_INCOMPLETE : DERMIS_OK;
+}
+
+// The two-call text: *size in: room in `text`; out: bytes needed with the final 0.
+inline dermis_result fill_text(const std::string& whole, size_t* size, char* text) {
+  const size_t room = *size;
+  *size = whole.size() + 1;
+  if (text == nullptr) return DERMIS_OK;
+  if (room < *size) return DERMIS_INCOMPLETE;
+  std::memcpy(text, whole.c_str(), *size);
+  return DERMIS_OK;
 }
 
 } // namespace dermis::abi

@@ -21,6 +21,7 @@ using NamedValue = std::pair<std::string, std::string>;
 struct GraphParts {
   std::vector<std::string> overlays; // files, applied in this order
   std::vector<std::string> roots;    // folders that included files are read from, beside the graph's own
+  std::vector<std::string> kinds;    // files of the host's pass kinds, for verbs that do not run the graph
 };
 
 struct ValidateOptions {
@@ -106,6 +107,9 @@ struct SchemaOptions {
 };
 ExitCode schema(const Session& session, const SchemaOptions& options);
 
+struct DoctorOptions {};
+ExitCode doctor(const Session& session, const DoctorOptions& options);
+
 struct RenderOptions {
   std::string scene, graph, out, capture; // capture "": none
   Size size{640, 360};
@@ -148,6 +152,19 @@ struct ReferenceOptions {
   uint32_t subset = 0; // pixels of a frame; 0: all
 };
 ExitCode reference(const Session& session, const ReferenceOptions& options);
+
+struct PictureRegion {
+  uint32_t x = 0, y = 0;
+  Size size;
+  std::string text; // as given
+};
+struct CompareOptions {
+  std::string a, b;
+  std::vector<PictureRegion> regions;
+  std::string heat;      // file for a picture of the differences; "": none
+  double least_psnr = 0; // dB; fail below
+};
+ExitCode compare(const Session& session, const CompareOptions& options);
 
 struct BenchCompileOptions {
   std::string shapes = "tests/benchmark/shapes.json";
@@ -199,6 +216,14 @@ struct BenchSupplementOptions {
   std::string json, html; // files to write; "": none
 };
 ExitCode bench_supplement(const Session& session, const BenchSupplementOptions& options);
+
+struct BenchStabilityOptions {
+  std::string file = "tests/benchmark/stability.json"; // techniques
+  std::vector<std::string> cases, techniques;          // only these; empty: all
+  uint64_t updates = 1000000;                          // of moving values in half floats
+  std::string json, html;                              // files to write; "": none
+};
+ExitCode bench_stability(const Session& session, const BenchStabilityOptions& options);
 
 struct BenchBudgetOptions {
   std::string graph = "configs/graphs/skin.json";

@@ -2,28 +2,12 @@
 // The host side of Vulkan without a window: instance, device, one queue, and the wait for its work.
 // Nothing here knows of Dermis; it is what an engine has before it embeds it.
 
-#include "integration/demo_engine/result.hpp"
-
-#include <volk.h>
+#include "integration/demo_engine/vulkan_instance.hpp"
 
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <string>
-#include <vector>
 
 namespace demo {
-
-struct HostOptions {
-  bool validation = false; // Khronos layer with core and synchronization checks, also across submissions
-  std::string device;      // part of the device's name; "" = the first discrete GPU, else the first device
-};
-
-// What the validation layer said. Filled from any thread that calls Vulkan.
-struct ValidationLog {
-  std::mutex mutex;
-  std::vector<std::string> messages; // warnings and errors
-};
 
 // Owns instance, device and a command pool. Images, buffers and pipelines made with it must die before it.
 // One thread at a time.
@@ -54,16 +38,6 @@ Result<std::unique_ptr<VulkanHost>> create_vulkan_host(const HostOptions& option
 
 // Records with `record`, submits and waits. Errors: environment (Vulkan failed), or what `record` returns.
 Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBuffer)>& record);
-
-// "vkQueueSubmit2 failed: VK_ERROR_DEVICE_LOST", as an Error of kind environment.
-Error vulkan_error(const char* call, VkResult result);
-
-// A zeroed Vulkan struct with its type set.
-template <class T> T vulkan_struct(VkStructureType type) {
-  T value{};
-  value.sType = type;
-  return value;
-}
 
 // Index of a memory type with all `wanted` flags, else with `needed`; UINT32_MAX when there is none.
 uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits, VkMemoryPropertyFlags wanted,

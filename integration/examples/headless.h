@@ -8,12 +8,23 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
+enum { HEADLESS_MOST_IMAGES = 32 };
+
+typedef struct headless_texture {
+  VkImage image;
+  VkImageView view;
+  VkDeviceMemory memory;
+} headless_texture;
+
 typedef struct headless {
   VkInstance instance;
   VkPhysicalDevice gpu;
   VkDevice device;
   VkQueue queue; /* of family 0 */
+  VkCommandPool pool;
   VkCommandBuffer commands;
+  headless_texture textures[HEADLESS_MOST_IMAGES];
+  uint32_t texture_count;
 } headless;
 
 static void headless_die(const char* what, const char* which) {
@@ -45,6 +56,7 @@ static headless headless_create(void) {
   HEADLESS_STRUCT(VkCommandPoolCreateInfo, pool_info, COMMAND_POOL_CREATE_INFO);
   HEADLESS_STRUCT(VkCommandBufferAllocateInfo, allocate, COMMAND_BUFFER_ALLOCATE_INFO);
   HEADLESS_STRUCT(VkCommandBufferBeginInfo, begin, COMMAND_BUFFER_BEGIN_INFO);
+  memset(&host, 0, sizeof host);
   app.apiVersion = VK_API_VERSION_1_3;
   instance.pApplicationInfo = &app;
   HEADLESS_CHECK(vkCreateInstance(&instance, NULL, &host.instance));
@@ -61,7 +73,8 @@ static headless headless_create(void) {
   device.pQueueCreateInfos = &queue;
   HEADLESS_CHECK(vkCreateDevice(host.gpu, &device, NULL, &host.device));
   vkGetDeviceQueue(host.device, 0, 0, &host.queue);
-  HEADLESS_CHECK(vkCreateCommandPool(host.device, &pool_info, NULL, &allocate.commandPool));
+  HEADLESS_CHECK(vkCreateCommandPool(host.device, &pool_info, NULL, &host.pool));
+  allocate.commandPool = host.pool;
   allocate.commandBufferCount = 1;
   HEADLESS_CHECK(vkAllocateCommandBuffers(host.device, &allocate, &host.commands));
   HEADLESS_CHECK(vkBeginCommandBuffer(host.commands, &begin));
@@ -78,8 +91,8 @@ static uint32_t headless_memory_type(const headless* host, uint32_t allowed, VkM
   return 0;
 }
 
-/* An image in layout GENERAL that the recorded commands clear to `value`; it lives as long as the device. */
-static VkImage headless_image(const headless* host, VkFormat format, uint32_t width, uint32_t height,
+/* An image in layout GENERAL that the recorded commands clear to `value`; it lives as long as the host. */
+static VkImage headless_image(headless* host, VkFormat format, uint32_t width, uint32_t height,
                               VkImageUsageFlags usage, VkClearColorValue value, VkImageView* view) {
   HEADLESS_STRUCT(VkImageCreateInfo, image_info, IMAGE_CREATE_INFO);
   HEADLESS_STRUCT(VkMemoryAllocateInfo, memory_info, MEMORY_ALLOCATE_INFO);
@@ -88,8 +101,8 @@ static VkImage headless_image(const headless* host, VkFormat format, uint32_t wi
   HEADLESS_STRUCT(VkDependencyInfo, dependency, DEPENDENCY_INFO);
   const VkImageSubresourceRange whole = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
   VkMemoryRequirements needs;
-  VkDeviceMemory memory;
-  VkImage image;
+  headless_texture made;
+  if (host->texture_count == HEADLESS_MOST_IMAGES) headless_die("too many images", "");
   image_info.imageType = VK_IMAGE_TYPE_2D;
   image_info.format = format;
   image_info.extent.width = width;
@@ -97,17 +110,17 @@ static VkImage headless_image(const headless* host, VkFormat format, uint32_t wi
   image_info.extent.depth = image_info.mipLevels = image_info.arrayLayers = 1;
   image_info.samples = VK_SAMPLE_COUNT_1_BIT;
   image_info.usage = usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-  HEADLESS_CHECK(vkCreateImage(host->device, &image_info, NULL, &image));
-  vkGetImageMemoryRequirements(host->device, image, &needs);
+  HEADLESS_CHECK(vkCreateImage(host->device, &image_info, NULL, &made.image));
+  vkGetImageMemoryRequirements(host->device, made.image, &needs);
   memory_info.allocationSize = needs.size;
   memory_info.memoryTypeIndex = headless_memory_type(host, needs.memoryTypeBits, 0);
-  HEADLESS_CHECK(vkAllocateMemory(host->device, &memory_info, NULL, &memory));
-  HEADLESS_CHECK(vkBindImageMemory(host->device, image, memory, 0));
-  view_info.image = to_general.image = image;
+  HEADLESS_CHECK(vkAllocateMemory(host->device, &memory_info, NULL, &made.memory));
+  HEADLESS_CHECK(vkBindImageMemory(host->device, made.image, made.memory, 0));
+  view_info.image = to_general.image = made.image;
   view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
   view_info.format = format;
   view_info.subresourceRange = to_general.subresourceRange = whole;
-  HEADLESS_CHECK(vkCreateImageView(host->device, &view_info, NULL, view));
+  HEADLESS_CHECK(vkCreateImageView(host->device, &view_info, NULL, &made.view));
   to_general.dstStageMask = VK_PIPELINE_STAGE_2_CLEAR_BIT;
   to_general.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
   to_general.newLayout = VK_IMAGE_LAYOUT_GENERAL;
@@ -115,8 +128,10 @@ static VkImage headless_image(const headless* host, VkFormat format, uint32_t wi
   dependency.imageMemoryBarrierCount = 1;
   dependency.pImageMemoryBarriers = &to_general;
   vkCmdPipelineBarrier2(host->commands, &dependency);
-  vkCmdClearColorImage(host->commands, image, VK_IMAGE_LAYOUT_GENERAL, &value, 1, &whole);
-  return image;
+  vkCmdClearColorImage(host->commands, made.image, VK_IMAGE_LAYOUT_GENERAL, &value, 1, &whole);
+  host->textures[host->texture_count++] = made;
+  *view = made.view;
+  return made.image;
 }
 
 static size_t headless_read_file(const char* path, char* text, size_t room) {
@@ -135,6 +150,18 @@ static void headless_submit_and_wait(const headless* host) {
   submit.pCommandBuffers = &host->commands;
   HEADLESS_CHECK(vkQueueSubmit(host->queue, 1, &submit, VK_NULL_HANDLE));
   HEADLESS_CHECK(vkDeviceWaitIdle(host->device));
+}
+
+static void headless_destroy(headless* host) {
+  uint32_t i;
+  for (i = 0; i < host->texture_count; ++i) {
+    vkDestroyImageView(host->device, host->textures[i].view, NULL);
+    vkDestroyImage(host->device, host->textures[i].image, NULL);
+    vkFreeMemory(host->device, host->textures[i].memory, NULL);
+  }
+  vkDestroyCommandPool(host->device, host->pool, NULL);
+  vkDestroyDevice(host->device, NULL);
+  vkDestroyInstance(host->instance, NULL);
 }
 
 #endif

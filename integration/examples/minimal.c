@@ -1,5 +1,4 @@
-/* The smallest host of Dermis: one frame of a lit wall of skin. C99 and C++.
- * usage: minimal configs/graphs/burley.json configs/profiles/skin.json */
+/* One frame of a lit wall of skin. usage: minimal configs/graphs/burley.json configs/profiles/skin.json */
 #include "headless.h"
 
 #include <dermis/dermis.h>
@@ -42,7 +41,7 @@ int main(int argc, char** argv) {
   dermis_context context;
   dermis_graph graph;
   uint32_t i, slot_count = MOST, pass_count = MOST;
-  const headless host = headless_create();
+  headless host = headless_create();
   if (argc != 3) headless_die("usage: minimal GRAPH.json PROFILE.json", "");
   context_desc.flags = DERMIS_CONTEXT_TIMINGS;
   context_desc.instance = host.instance;
@@ -96,5 +95,6 @@ int main(int argc, char** argv) {
     printf("%-12s %8.3f ms\n", timings[i].pass, (double)timings[i].nanoseconds * 1e-6);
   dermis_graph_destroy(graph);
   dermis_context_destroy(context);
+  headless_destroy(&host);
   return 0;
 }

@@ -75,6 +75,7 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
     break;
   case DispatchShape::single_group:
   case DispatchShape::none:
+  case DispatchShape::host:
     break;
   }
   return load;

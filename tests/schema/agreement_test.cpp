@@ -3,6 +3,7 @@
 // alone.
 
 #include "framegraph/compose/compose.hpp"
+#include "framegraph/model/host_kind.hpp"
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/schema/graph_schema.hpp"
 #include "integration/command/expect/expectation.hpp"
@@ -72,6 +73,10 @@ void read_errors_text(const std::string& text, Diagnostics& diagnostics) {
 void read_calibration_text(const std::string& text, Diagnostics& diagnostics) {
   if (const auto document = parse_document("calibration.json", text, diagnostics))
     choice::read_calibration(*document, diagnostics);
+}
+void read_kinds_text(const std::string& text, Diagnostics& diagnostics) {
+  if (const auto document = parse_document("kinds.json", text, diagnostics))
+    read_host_kinds(*document, diagnostics);
 }
 void read_scene_text(const std::string& text, Diagnostics& diagnostics) {
   demo::parse_scene("scene.json", text, diagnostics);
@@ -341,6 +346,18 @@ TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
         { "work": "a", "base_us": 1, "group_us": 0.5, "spread": 0.1, "note": "n" },
         { "work": "b", "base_us": 0, "group_us": 0, "spread": 1 } ] })")};
   expect_agreement("configs/schema/calibration.schema.json", read_calibration_text, files, 3000);
+}
+
+TEST(Schema, OfPassKindsAgreesWithTheParserOnMutatedFiles) {
+  const std::vector<json> files = {parse(R"({ "$schema": "x", "dermis_kinds": 1, "note": "n", "kinds": [
+        { "name": "studio.bloom", "doc": "d", "side_effects": true, "note": "n",
+          "ports": [ { "name": "light", "usage": "sampled_image", "doc": "d", "note": "n" },
+                     { "name": "glow", "usage": "storage_image_write", "optional": true } ],
+          "settings": [ { "name": "level", "type": "real", "default": 1, "min": 0, "max": 4.5, "unit": "px", "doc": "d" },
+                        { "name": "taps", "type": "int", "default": 3, "min": 1, "max": 9, "note": "n" },
+                        { "name": "wide", "type": "bool", "default": 1 } ] },
+        { "name": "studio.count", "ports": [ { "name": "sums", "usage": "storage_buffer_update" } ] } ] })")};
+  expect_agreement("configs/schema/kinds.schema.json", read_kinds_text, files, 3000);
 }
 
 TEST(Schema, OfGraphsIsTheOneThatTheKindsGive) {

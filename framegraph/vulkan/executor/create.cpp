@@ -71,6 +71,7 @@ void make_passes(State& state, const ExecutorInput& input) {
     const PassKind& kind = (*input.kinds)[planned.kind];
     Pass& pass = state.passes[p];
     pass.name = input.graph->passes[planned.declared.value].name;
+    if (kind.dispatch == DispatchShape::host) pass.host = planned.kind;
     pass.ports.resize(kind.ports.size());
     for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a)
       bind_port(state.plan, pass, a);
@@ -102,6 +103,7 @@ Error check_passes(State& state, const KindRegistry& kinds) {
       }
       continue;
     }
+    if (pass.host.valid()) continue;
     for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
       const PlanResource& resource = state.plan.resources[state.plan.accesses[a].resource];
       if (resource.type == ResourceType::image && format_info(resource.format).depth)
@@ -178,6 +180,7 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   if (Error error = create_environment(*state, input.environment)) return error;
   if (Error error = create_kernels(*state, input)) return error;
   if (Error error = check_passes(*state, *input.kinds)) return error;
+  if (Error error = check_host_passes(*state, input)) return error;
   if (Error error = create_memory(*state, *input.graph)) return error;
   if (Error error = create_descriptors(*state, *input.kinds)) return error;
   if (Error error = create_stand_ins(*state)) return error;

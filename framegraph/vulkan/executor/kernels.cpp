@@ -169,7 +169,8 @@ Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel&
 Error create_kernels(State& state, const ExecutorInput& input) {
   for (uint32_t p = 0; p < state.passes.size(); ++p) {
     const KindId kind = state.plan.passes[p].kind;
-    if ((*input.kinds)[kind].dispatch == DispatchShape::none) continue;
+    const DispatchShape dispatch = (*input.kinds)[kind].dispatch;
+    if (dispatch == DispatchShape::none || dispatch == DispatchShape::host) continue;
     const auto existing = std::find_if(state.kernels.begin(), state.kernels.end(),
                                        [&](const Kernel& kernel) { return kernel.kind == kind; });
     state.passes[p].kernel = static_cast<uint32_t>(existing - state.kernels.begin());

@@ -61,12 +61,6 @@ void invalidate_for_cut(State& state) {
   state.stand_ins_ready = false;
 }
 
-SettingValue value_of(const State& state, const FrameInput& frame, const PlanPass& planned, uint32_t index) {
-  const PlanSetting& setting = state.plan.settings[planned.first_setting + index];
-  const bool live = setting.from.valid() && setting.from.value < frame.settings.size();
-  return live ? frame.settings[setting.from.value] : setting.value;
-}
-
 void push_settings(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
                    const Kernel& kernel) {
   const uint32_t words = kernel.push_bytes / static_cast<uint32_t>(sizeof(uint32_t));
@@ -138,6 +132,7 @@ void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, co
     vk.vkCmdDispatch(commands, 1, 1, 1);
     break;
   case DispatchShape::none:
+  case DispatchShape::host:
     break;
   }
 }
@@ -238,7 +233,9 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
     begin_label(device, commands, state.passes[p].name.c_str());
     record_barriers(state, frame, planned.first_barrier, planned.barrier_count,
                     state.passes[p].writable_stand_ins);
-    if (state.passes[p].kernel == no_index)
+    if (state.passes[p].host.valid())
+      run_host_pass(state, frame, p, rectangle);
+    else if (state.passes[p].kernel == no_index)
       run_clear(state, frame, p);
     else
       run_kernel(state, frame, frame_slot, p, rectangle);

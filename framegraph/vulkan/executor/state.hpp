@@ -93,7 +93,9 @@ struct PortAccess {              // what stands at a port, into Plan::accesses
 
 struct Pass {
   std::string name;
-  uint32_t kernel = no_index; // into State::kernels; none: clear
+  uint32_t kernel = no_index; // into State::kernels; none: clear, or the host's
+  KindId host;                // valid: the host records it
+  uint32_t host_settings = 0; // that its kind has
   std::vector<PortAccess> ports;
   uint32_t port_mask = 0;                   // ports that are bound in every frame
   std::vector<uint32_t> conditional_ports;  // the others that may be
@@ -139,6 +141,10 @@ struct Executor::State {
   std::vector<VkImageMemoryBarrier2> image_barriers; // room for the largest batch
   std::vector<VkBufferMemoryBarrier2> buffer_barriers;
   std::vector<uint32_t> push_constants;
+  HostPassFunction host_pass = nullptr;
+  void* host_pass_user = nullptr;
+  std::vector<HostPort> host_ports; // room for the largest call
+  std::vector<SettingValue> host_settings;
   uint64_t frame_counter = 0; // frames recorded
   uint64_t last_frame_index = 0;
   std::vector<uint64_t> frame_of_slot; // frame_index recorded there last; 0: none
@@ -206,6 +212,12 @@ void record_releases(State& state, const FrameInput& frame) noexcept; // and fro
 // ---- history.cpp
 // Every history starts anew at the next record.
 void forget_histories(State& state, HistoryReason reason) noexcept;
+
+// ---- host_pass.cpp
+Error check_host_passes(State& state, const ExecutorInput& input); // and makes room for their calls
+SettingValue value_of(const State& state, const FrameInput& frame, const PlanPass& planned,
+                      uint32_t index) noexcept;
+void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectangle& rectangle) noexcept;
 
 // ---- initialise.cpp
 // Brings stand-ins and new or invalid history instances to zero and to the layout that the plan expects.

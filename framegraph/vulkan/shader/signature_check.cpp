@@ -109,6 +109,7 @@ struct Checker {
       break;
     case DispatchShape::single_group:
     case DispatchShape::none:
+    case DispatchShape::host:
       break;
     }
   }

@@ -60,6 +60,14 @@ void add_parts(CLI::App& verb, GraphParts& parts) {
            "Folder that included files are read from, beside the graph's own; may be repeated");
 }
 
+void add_kinds(CLI::App& verb, GraphParts& parts) {
+  verb.add_option("--kinds", parts.kinds,
+                  "File of the host's pass kinds (dermis_export_pass_kinds); may be repeated")
+      ->type_name("FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void add_common(CLI::App& verb, Session& session, bool json_is_file) {
   static const std::map<std::string, ColorMode> modes{
       {"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}};

@@ -20,6 +20,7 @@ CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
 void add_parts(CLI::App& verb, GraphParts& parts);
+void add_kinds(CLI::App& verb, GraphParts& parts);
 void add_common(CLI::App& verb, Session& session, bool json_is_file);
 
 // The verb's options live as long as the function that runs it.
@@ -40,6 +41,7 @@ void add_verb(CLI::App& app, Invocation& invocation, const char* name, const cha
 void add_text_verbs(CLI::App& app, Invocation& invocation);
 void add_plan_verbs(CLI::App& app, Invocation& invocation);
 void add_schema_verb(CLI::App& app, Invocation& invocation);
+void add_doctor_verb(CLI::App& app, Invocation& invocation);
 void add_picture_verbs(CLI::App& app, Invocation& invocation);
 void add_bench_verbs(CLI::App& app, Invocation& invocation);
 

@@ -90,6 +90,26 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_cache(verb, options.cache);
       },
       true);
+  add_verb<BenchStabilityOptions>(
+      bench, invocation, "stability",
+      "Every technique under everything that is known to break such techniques",
+      "dermis bench stability --json build/stability.json", bench_stability,
+      [](CLI::App& verb, BenchStabilityOptions& options) {
+        verb.add_option("--file", options.file, "Techniques [tests/benchmark/stability.json]")
+            ->type_name("FILE");
+        verb.add_option("--cases", options.cases, "Only these cases, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--techniques", options.techniques,
+                        "Only these techniques, or formula; separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--updates", options.updates,
+                        "Updates of moving values that are kept in half floats [1000000]")
+            ->check(CLI::Range(uint64_t{1000}, uint64_t{1} << 40));
+        add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
+      },
+      true);
   add_verb<BenchTruthOptions>(
       bench, invocation, "truth", "Laws with known answers, beside what every technique makes of them",
       "dermis bench truth --json build/truth.json", bench_truth,

@@ -30,6 +30,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
                         "Folder of profiles that captures name [configs/profiles]")
             ->type_name("DIR");
         add_parts(verb, options.parts);
+        add_kinds(verb, options.parts);
         verb.add_option("--sarif", options.sarif,
                         "File for the messages as SARIF 2.1.0, - for standard output")
             ->type_name("FILE");
@@ -55,6 +56,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         add_two_queues(verb, options.two_queues);
         add_parts(verb, options.parts);
+        add_kinds(verb, options.parts);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
       });
@@ -69,6 +71,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_parts(verb, options.parts);
+        add_kinds(verb, options.parts);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
       });
@@ -105,6 +108,7 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
             ->expected(1, 2)
             ->type_name("FILE");
         add_parts(verb, options.parts);
+        add_kinds(verb, options.parts);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
@@ -127,6 +131,7 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, PlanSaveOptions& options) {
         verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
         add_parts(verb, options.parts);
+        add_kinds(verb, options.parts);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_two_queues(verb, options.two_queues);
@@ -151,6 +156,12 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
                         "File to write, - for standard output [-]; a folder where all are written")
             ->type_name("PATH");
       });
+}
+
+void add_doctor_verb(CLI::App& app, Invocation& invocation) {
+  add_verb<DoctorOptions>(app, invocation, "doctor",
+                          "Show what this machine has of what Dermis needs, and what is done without",
+                          "dermis doctor\n  dermis doctor --json", doctor, [](CLI::App&, DoctorOptions&) {});
 }
 
 } // namespace dermis::tools

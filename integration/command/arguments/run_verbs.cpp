@@ -1,6 +1,8 @@
 // Verbs that render and run graphs.
 #include "integration/command/arguments/add_verb.hpp"
 
+#include <cstdio>
+
 namespace dermis::tools {
 namespace {
 
@@ -21,6 +23,22 @@ void add_budget(CLI::App& verb, RenderOptions& options) {
   verb.add_option("--calibration", options.calibration, "What dermis calibrate wrote for this device")
       ->type_name("FILE")
       ->group(group);
+}
+
+// X,Y,WxH: the corner, then the size.
+bool parse_region(const std::string& text, PictureRegion& region) {
+  int read = 0;
+  const int fields = std::sscanf(text.c_str(), "%5u,%5u,%5ux%5u%n", &region.x, &region.y, &region.size.width,
+                                 &region.size.height, &read);
+  region.text = text;
+  return fields == 4 && static_cast<size_t>(read) == text.size() && region.size.width > 0 &&
+         region.size.height > 0;
+}
+std::string check_region(const std::string& text) {
+  PictureRegion region;
+  return parse_region(text, region)
+             ? ""
+             : fmt::format("'{}' is no region; expected X,Y,WIDTHxHEIGHT as in 100,20,64x64", text);
 }
 
 } // namespace
@@ -115,6 +133,29 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("DIR");
         verb.add_option("--subset", options.subset, "Pixels of a frame, chosen evenly; 0: all [0]")
             ->check(CLI::Range(0u, max_subset));
+      });
+  add_verb<CompareOptions>(
+      app, invocation, "compare", "Say how far two pictures, or two folders of them, are apart",
+      "dermis compare out/a/frame_0007.png out/b/frame_0007.png --heat out/heat.png\n  dermis compare out/a "
+      "out/b --least-psnr 40",
+      compare, [](CLI::App& verb, CompareOptions& options) {
+        verb.add_option("a", options.a, "PNG, EXR, or a folder of them")->required()->type_name("A");
+        verb.add_option("b", options.b, "What it is compared with")->required()->type_name("B");
+        verb.add_option("--heat", options.heat, "PNG for a picture of the differences")->type_name("FILE");
+        verb.add_option_function<std::vector<std::string>>(
+                "--region",
+                [&options](const std::vector<std::string>& all) {
+                  for (const std::string& one : all)
+                    parse_region(one, options.regions.emplace_back());
+                },
+                "Also these pixels alone; may be repeated")
+            ->check(CLI::Validator(check_region, "X,Y,WxH"))
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        constexpr double most_db = 100;
+        verb.add_option("--least-psnr", options.least_psnr, "Fail where a picture or region has less")
+            ->check(CLI::Range(0.0, most_db))
+            ->type_name("DB");
       });
 }
 

@@ -104,6 +104,10 @@ demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& fram
   return device_->read_rgb("scattered_light");
 }
 
+void TechniqueRun::skip_to(uint64_t frame_index) {
+  if (device_ != nullptr) device_->skip_to(frame_index);
+}
+
 demo::Result<std::vector<float>> TechniqueRun::sampling() {
   if (!device_->has("sampling")) return std::vector<float>();
   return device_->read_rgb("sampling");
@@ -146,7 +150,7 @@ TechniqueCounts TechniqueRun::counts(double sampled_share, const subsurface::Per
   for (const PlanPass& pass : plan.passes) {
     const PassKind& kind = loaded_.kinds[pass.kind];
     if (kind.name == hand_out_kind) continue;
-    counts.dispatches += kind.dispatch != DispatchShape::none;
+    counts.dispatches += kind.dispatch != DispatchShape::none && kind.dispatch != DispatchShape::host;
     std::vector<SettingValue> settings;
     for (size_t i = 0; i < kind.settings.size(); ++i)
       settings.push_back(plan.settings[pass.first_setting + i].value);

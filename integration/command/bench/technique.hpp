@@ -40,6 +40,8 @@ public:
   // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel. `follows`: it comes
   // after the frame that was scattered last, so histories go on; otherwise they begin anew.
   demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false);
+  // The next frame has this number, if it is higher than the one that would follow.
+  void skip_to(uint64_t frame_index);
   // Of the last run. Errors: environment (no timestamps).
   demo::Result<TechniqueTimes> times();
   // What the last run's kernels say of their sampling, 3 values a pixel: samples, those behind the history,

@@ -13,6 +13,7 @@ constexpr FileKind kinds[] = {
     {"dermis_fragment", "fragment", 1},
     {"dermis_errors", "error table", 1},
     {"dermis_calibration", "calibration", 1},
+    {"dermis_kinds", "pass kinds", 1},
 };
 
 } // namespace

@@ -23,7 +23,8 @@ enum class FileKindId : uint8_t {
   overlay,
   fragment,
   errors,
-  calibration
+  calibration,
+  kinds
 };
 
 std::span<const FileKind> file_kinds(); // by FileKindId

@@ -90,13 +90,37 @@ std::string unknown(std::string_view what, std::string_view name, const Declarat
                      suggestion.empty() ? "it has " + list_words(names) : suggestion);
 }
 
-std::optional<LoadedGraph> read_composed(std::optional<Composition> composed, Diagnostics& diagnostics) {
+// The library's kinds and those of the files; nullopt when one of them has errors.
+std::optional<LoadedGraph> with_kinds(std::span<const std::string> files, Diagnostics& diagnostics) {
+  LoadedGraph loaded{subsurface::make_kinds(), nullptr, {}, {}, {}};
+  const auto host = std::make_shared<HostKinds>();
+  const uint32_t errors = diagnostics.count(Severity::error);
+  for (const std::string& file : files) {
+    const std::optional<Document> document = read_document(file, diagnostics);
+    auto kinds = document ? read_host_kinds(*document, diagnostics) : std::nullopt;
+    if (!kinds) continue;
+    for (HostKindDeclaration& kind : *kinds) {
+      const std::string name = kind.name;
+      if (!host->add(std::move(kind), loaded.kinds).valid())
+        diagnostics.add(DiagnosticId::duplicate_name, document->where(document->root()),
+                        fmt::format("there is a kind '{}' already", name));
+    }
+  }
+  loaded.host_kinds = host;
+  return diagnostics.count(Severity::error) == errors ? std::optional(std::move(loaded)) : std::nullopt;
+}
+
+std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
+                                         std::span<const std::string> kind_files, Diagnostics& diagnostics) {
   if (!composed) return std::nullopt;
-  LoadedGraph loaded{subsurface::make_kinds(), {}, std::move(composed->changes), {}};
+  std::optional<LoadedGraph> known = with_kinds(kind_files, diagnostics);
+  if (!known) return std::nullopt;
+  LoadedGraph& loaded = *known;
+  loaded.changes = std::move(composed->changes);
   std::optional<Graph> graph = read_graph(composed->document, loaded.kinds, diagnostics);
   if (!graph) return std::nullopt;
   loaded.graph = std::move(*graph);
-  return loaded;
+  return known;
 }
 
 } // namespace
@@ -125,24 +149,26 @@ std::optional<LoadedGraph> load_graph(const std::string& path, const GraphParts&
   std::optional<Document> document = read_input(path, diagnostics);
   auto overlays = read_overlays(parts.overlays, diagnostics);
   if (!document || !overlays) return std::nullopt;
-  return load_graph(std::move(*document), std::move(*overlays), open_beside(path, parts.roots), diagnostics);
+  return load_graph(std::move(*document), std::move(*overlays), open_beside(path, parts.roots), diagnostics,
+                    parts.kinds);
 }
 
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
-                                      Diagnostics& diagnostics) {
+                                      Diagnostics& diagnostics, std::span<const std::string> kind_files) {
   std::vector<std::pair<std::string, std::string>> texts;
   for (const Document& overlay : overlays) {
     const SourceFile& file = diagnostics.files[overlay.file.value];
     texts.emplace_back(file.name, file.text);
   }
-  auto loaded =
-      read_composed(compose(std::move(document), std::move(overlays), open, diagnostics), diagnostics);
+  auto loaded = read_composed(compose(std::move(document), std::move(overlays), open, diagnostics),
+                              kind_files, diagnostics);
   if (loaded) loaded->overlays = std::move(texts);
   return loaded;
 }
 
-std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics) {
-  return read_composed(compose_fragment(std::move(document), open, diagnostics), diagnostics);
+std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics,
+                                         std::span<const std::string> kind_files) {
+  return read_composed(compose_fragment(std::move(document), open, diagnostics), kind_files, diagnostics);
 }
 
 CompileChoices read_choices(const Graph& graph, std::span<const NamedValue> settings,

@@ -3,9 +3,11 @@
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/compose/compose.hpp"
+#include "framegraph/model/host_kind.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/command/verbs.hpp"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +16,7 @@ namespace dermis::tools {
 
 struct LoadedGraph {
   KindRegistry kinds;
+  std::shared_ptr<const HostKinds> host_kinds; // that some of `kinds` live in
   Graph graph;
   std::vector<Change> changes;                               // what included files and overlays did
   std::vector<std::pair<std::string, std::string>> overlays; // name and text of each, for the C interface
@@ -25,16 +28,18 @@ inline constexpr Size default_size{1920, 1080}; // where nobody says one
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics);
 // Opens what graph files may include: below the folder of `path`, then below each of `roots`.
 OpenFile open_beside(const std::string& path, const std::vector<std::string>& roots);
-// The graph of a document or file with its overlays and included files.
+// The graph of a document or file with its overlays and included files. `kind_files` hold pass kinds of the
+// host.
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
-                                      Diagnostics& diagnostics);
+                                      Diagnostics& diagnostics, std::span<const std::string> kind_files = {});
 // Overlay files by their paths; nullopt when one of them cannot be read.
 std::optional<std::vector<Document>> read_overlays(const std::vector<std::string>& paths,
                                                    Diagnostics& diagnostics);
 std::optional<LoadedGraph> load_graph(const std::string& path, const GraphParts& parts,
                                       Diagnostics& diagnostics);
 // A fragment as a graph of its own.
-std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics);
+std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics,
+                                         std::span<const std::string> kind_files = {});
 
 // What --set and --unbound say, in the graph's terms. `problem` not empty: a usage error, nothing else is
 // filled.

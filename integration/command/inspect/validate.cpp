@@ -28,7 +28,7 @@ bool check_graph(const Document& document, const std::string& path, const GraphP
   auto overlays = read_overlays(parts.overlays, diagnostics);
   if (!overlays) return false;
   const std::optional<LoadedGraph> loaded =
-      load_graph(document, std::move(*overlays), open_beside(path, parts.roots), diagnostics);
+      load_graph(document, std::move(*overlays), open_beside(path, parts.roots), diagnostics, parts.kinds);
   if (!loaded) return false;
   const CompileChoices choices = read_choices(loaded->graph);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, default_size, choices, diagnostics);
@@ -97,13 +97,18 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
     checked.good = check_overlay(*document, diagnostics);
     break;
   case FileKindId::fragment:
-    checked.good = load_fragment(*document, open_beside(path, options.parts.roots), diagnostics).has_value();
+    checked.good =
+        load_fragment(*document, open_beside(path, options.parts.roots), diagnostics, options.parts.kinds)
+            .has_value();
     break;
   case FileKindId::errors:
     checked.good = choice::read_error_model(*document, diagnostics).has_value();
     break;
   case FileKindId::calibration:
     checked.good = choice::read_calibration(*document, diagnostics).has_value();
+    break;
+  case FileKindId::kinds:
+    checked.good = read_host_kinds(*document, diagnostics).has_value();
     break;
   }
   return checked;

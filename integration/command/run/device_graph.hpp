@@ -7,6 +7,7 @@
 
 #include <dermis/dermis.h>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -46,6 +47,10 @@ public:
   demo::Result<> upload(std::string_view slot, std::span<const float> texels, uint32_t channels);
   // Three floats a texel of an image with at least three channels.
   demo::Result<std::vector<float>> read_rgb(std::string_view slot);
+  // The next frame has this number, if it is higher than the one that would follow.
+  void skip_to(uint64_t frame_index) {
+    frame_index_ = std::max(frame_index_, frame_index > 0 ? frame_index - 1 : 0);
+  }
   // Runs one frame and waits. Command buffer, bindings and frame numbers are filled in here.
   demo::Result<> run(dermis_frame frame);
 

@@ -382,6 +382,109 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph, uin
  * `text`; out: bytes needed with the final 0. text may be NULL. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size, char* text);
 
+/* ---- passes of the host ---------------------------------------------------------------------------------- */
+
+/* What a pass of the host does with what a graph binds to a port. All of it in compute shaders: the graph's barriers
+ * wait for, and make visible to, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT. */
+typedef enum dermis_port_usage {
+  DERMIS_PORT_SAMPLED_IMAGE = 0,        /* read; SHADER_READ_ONLY_OPTIMAL or GENERAL, as dermis_pass_port.layout tells */
+  DERMIS_PORT_STORAGE_IMAGE_WRITE = 1,  /* written, GENERAL */
+  DERMIS_PORT_STORAGE_IMAGE_UPDATE = 2, /* read and written, GENERAL */
+  DERMIS_PORT_STORAGE_BUFFER_READ = 3,
+  DERMIS_PORT_STORAGE_BUFFER_WRITE = 4,
+  DERMIS_PORT_STORAGE_BUFFER_UPDATE = 5,
+  DERMIS_PORT_USAGE_FORCE_32BIT = 0x7fffffff
+} dermis_port_usage;
+
+typedef struct dermis_port {
+  size_t struct_size;
+  const char* name;        /* key below "read" or "write" of a pass: a-z, 0-9, '_' */
+  const char* doc;         /* for schemas and messages; may be NULL */
+  dermis_port_usage usage;
+  uint32_t optional;       /* 1: a graph may leave it out */
+} dermis_port;
+#define DERMIS_PORT_INIT {sizeof(dermis_port), NULL, NULL, DERMIS_PORT_SAMPLED_IMAGE, 0}
+
+typedef enum dermis_kind_setting_type {
+  DERMIS_KIND_SETTING_BOOL = 0,
+  DERMIS_KIND_SETTING_INT = 1,
+  DERMIS_KIND_SETTING_REAL = 2,
+  DERMIS_KIND_SETTING_TYPE_FORCE_32BIT = 0x7fffffff
+} dermis_kind_setting_type;
+
+typedef struct dermis_kind_setting {
+  size_t struct_size;
+  const char* name;         /* key below "set" of a pass */
+  const char* unit;         /* "px"; NULL or "": none */
+  const char* doc;          /* may be NULL */
+  dermis_kind_setting_type type;
+  uint32_t reserved;        /* 0 */
+  double default_value;     /* bool: 0 or 1 */
+  double minimum, maximum;  /* inclusive; of int and real */
+} dermis_kind_setting;
+#define DERMIS_KIND_SETTING_INIT \
+  {sizeof(dermis_kind_setting), NULL, NULL, NULL, DERMIS_KIND_SETTING_BOOL, 0, 0, 0, 0}
+
+/* What stands at a port while a pass of the host is recorded: an image, a buffer, or nothing (both null). */
+typedef struct dermis_pass_port {
+  size_t struct_size;
+  VkImage image;
+  VkImageView view;      /* of the part that the graph names; storage images: of one mip */
+  VkFormat format;
+  VkImageLayout layout;  /* the image is in it, and must be in it when the function returns */
+  uint32_t width, height; /* of the view's first mip, in texels: the allocated size, see rect_... of the call */
+  VkBuffer buffer;
+  uint64_t bytes;        /* of the buffer */
+} dermis_pass_port;
+#define DERMIS_PASS_PORT_INIT \
+  {sizeof(dermis_pass_port), VK_NULL_HANDLE, VK_NULL_HANDLE, VK_FORMAT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, \
+   VK_NULL_HANDLE, 0}
+
+/* All of it is valid until the function returns. The images and views of a graph are the same from frame to frame until
+ * it is reloaded, resized or given a setting that changes its passes, but for those with history, which take turns. */
+typedef struct dermis_pass_call {
+  size_t struct_size;
+  const char* pass;              /* name of the pass in the graph */
+  VkCommandBuffer command_buffer;
+  const dermis_pass_port* ports; /* as declared, in that order; stepped by ports[0].struct_size */
+  const double* settings;        /* as declared, in that order */
+  uint32_t port_count, setting_count;
+  uint32_t rect_x, rect_y, rect_width, rect_height; /* rendered part of the view in pixels */
+  uint64_t frame_index;
+} dermis_pass_call;
+#define DERMIS_PASS_CALL_INIT \
+  {sizeof(dermis_pass_call), NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0}
+
+/* Records the pass into the command buffer; called inside dermis_graph_record, by its thread. The library has put the
+ * barriers before it and will put those after it, by what the ports declare: touch nothing but the ports that way, put
+ * no barrier around. May bind pipelines and sets as it likes. Must not call Dermis, and must not throw. */
+typedef void(DERMIS_CALL* dermis_pass_fn)(void* user, const dermis_pass_call* call);
+
+typedef struct dermis_pass_kind {
+  size_t struct_size;
+  const char* name;  /* "studio.bloom": with a dot, and not beginning with "subsurface." */
+  const char* doc;   /* may be NULL */
+  const dermis_port* ports;
+  const dermis_kind_setting* settings;
+  uint32_t port_count;    /* 1..32 */
+  uint32_t setting_count; /* 0..32 */
+  uint32_t side_effects;  /* 1: passes of this kind run though nobody reads what they write */
+  uint32_t reserved;      /* 0 */
+  dermis_pass_fn record;
+  void* user;             /* given to `record` */
+} dermis_pass_kind;
+#define DERMIS_PASS_KIND_INIT {sizeof(dermis_pass_kind), NULL, NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL}
+
+/* Makes a kind of pass known to the graphs of a context: the host's own passes then stand in the same graph, with the
+ * same barriers, shared memory and history. Copied, but for `record` and `user`, which are called as long as the
+ * context lives. Before the context's first graph. Thread: any, alone with this context.
+ * Errors: ARGUMENT (also for a name that exists, or when there are graphs), VERSION, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_register_pass_kind(dermis_context context, const dermis_pass_kind* kind);
+/* The kinds that were registered, as a JSON file for `dermis validate --kinds FILE`, so that graphs with them can be
+ * checked without the host. *size in: room in `text`; out: bytes needed with the final 0. text may be NULL. Thread: any.
+ * Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_kinds(dermis_context context, size_t* size, char* text);
+
 /* ---- each frame ------------------------------------------------------------------------------------------ */
 
 typedef struct dermis_image_state {

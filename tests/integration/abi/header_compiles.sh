@@ -23,9 +23,18 @@ size_t use(void) {
   dermis_memory memory = DERMIS_MEMORY_INIT;
   dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
   dermis_frame frame = DERMIS_FRAME_INIT;
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  dermis_port port = DERMIS_PORT_INIT;
+  dermis_kind_setting setting = DERMIS_KIND_SETTING_INIT;
+  dermis_pass_port pass_port = DERMIS_PASS_PORT_INIT;
+  dermis_pass_call call = DERMIS_PASS_CALL_INIT;
+  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
   return context_desc.struct_size + graph_desc.struct_size + binding.struct_size + source.struct_size +
          profile.struct_size + slot_format.struct_size + message.struct_size + requirement.struct_size +
-         slot.struct_size + memory.struct_size + timing.struct_size + frame.struct_size;
+         slot.struct_size + memory.struct_size + timing.struct_size + frame.struct_size + budget.struct_size +
+         choice.struct_size + port.struct_size + setting.struct_size + pass_port.struct_size + call.struct_size +
+         kind.struct_size;
 }
 EOF
 cp "$scratch/alone.c" "$scratch/alone.cpp"
@@ -52,5 +61,16 @@ for compiler in g++ clang++; do
   command -v $compiler > /dev/null || continue
   for standard in c++11 c++14 c++17 c++20; do check $compiler $standard "$scratch/alone.cpp"; done
 done
+# Other machines, by clang alone: their structs are laid out alike. Vulkan's headers come from this one.
+if command -v clang > /dev/null; then
+  for target in aarch64-linux-gnu riscv64-linux-gnu armv7-linux-gnueabihf i686-linux-gnu x86_64-w64-mingw32; do
+    if ! clang --target=$target -std=c11 -ffreestanding -nostdlibinc -idirafter /usr/include -Wall -Wextra -Werror \
+         -fsyntax-only -I"$include" "$1/tests/integration/abi/layout.c" > "$scratch/out" 2>&1; then
+      echo "$target:"
+      cat "$scratch/out"
+      failed=1
+    fi
+  done
+fi
 [ $checked = 1 ] || { echo "no C compiler found"; exit 1; }
 exit $failed

@@ -4,7 +4,12 @@
 #include "integration/command/bench/reference.hpp"
 #include "integration/command/bench/report/report.hpp"
 
+#include <array>
+
 namespace dermis::tools {
+
+// The colour of an error, sRGB: logarithmic from 1e-4 to 1e-1.
+std::array<uint8_t, 3> heat_color(double error);
 
 // One cell of 2x2 pixels (8x8 where the truth is known at a subset only) shows the root mean square of the
 // exposed luminance error of its measured pixels, on a logarithmic scale from 1e-4 to 1e-1. Cells of

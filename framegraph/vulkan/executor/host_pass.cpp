@@ -1,0 +1,92 @@
+// Passes that the host records itself: what stands at their ports is handed to its function.
+#include "framegraph/vulkan/executor/state.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis::vulkan {
+namespace {
+
+HostPort port_now(const State& state, const FrameInput& frame, const PortAccess& bound, bool storage) {
+  const uint32_t index = access_now(state, bound);
+  if (index == no_index) return {};
+  const PlanAccess& access = state.plan.accesses[index];
+  const PlanResource& resource = state.plan.resources[access.resource];
+  HostPort port;
+  port.format = static_cast<VkFormat>(format_info(resource.format).vulkan);
+  port.layout = static_cast<VkImageLayout>(access.layout);
+  port.width = std::max(resource.width >> access.range.first_mip, 1u);
+  port.height = std::max(resource.height >> access.range.first_mip, 1u);
+  if (resource.first_instance == no_instance) {
+    const HostImage& image = frame.images[static_cast<size_t>(resource.slot)];
+    port.image = image.image;
+    port.view = image.view;
+    return port;
+  }
+  const uint32_t number = instance_of(state, resource, access.frames_back);
+  const Instance& instance = state.instances[number];
+  if (resource.type == ResourceType::buffer) {
+    port = {};
+    port.buffer = instance.buffer;
+    port.bytes = resource.bytes;
+    return port;
+  }
+  const uint32_t part = state.view_of_access[index];
+  port.image = instance.image;
+  port.view = part != no_index ? state.part_views[part + number - resource.first_instance].view
+              : storage        ? instance.first_mip
+                               : instance.all_mips;
+  return port;
+}
+
+} // namespace
+
+SettingValue value_of(const State& state, const FrameInput& frame, const PlanPass& planned,
+                      uint32_t index) noexcept {
+  const PlanSetting& setting = state.plan.settings[planned.first_setting + index];
+  const bool live = setting.from.valid() && setting.from.value < frame.settings.size();
+  return live ? frame.settings[setting.from.value] : setting.value;
+}
+
+Error check_host_passes(State& state, const ExecutorInput& input) {
+  size_t ports = 0, settings = 0;
+  for (Pass& pass : state.passes) {
+    if (!pass.host.valid()) continue;
+    if (input.host_pass == nullptr)
+      return {ErrorKind::argument, VK_SUCCESS,
+              fmt::format("pass '{}' is recorded by the host, which gives no function for it", pass.name)};
+    const PassKind& kind = (*input.kinds)[pass.host];
+    pass.host_settings = static_cast<uint32_t>(kind.settings.size());
+    ports = std::max(ports, kind.ports.size());
+    settings = std::max(settings, kind.settings.size());
+  }
+  state.host_pass = input.host_pass;
+  state.host_pass_user = input.host_pass_user;
+  state.host_ports.resize(ports);
+  state.host_settings.resize(settings);
+  return {};
+}
+
+void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectangle& rectangle) noexcept {
+  const Pass& pass = state.passes[p];
+  const PlanPass& planned = state.plan.passes[p];
+  for (size_t port = 0; port < pass.ports.size(); ++port) {
+    const uint32_t bound = pass.ports[port].access;
+    const bool storage =
+        bound != no_index && (state.plan.accesses[bound].access & access::shader_sampled_read) == 0;
+    state.host_ports[port] = port_now(state, frame, pass.ports[port], storage);
+  }
+  for (uint32_t i = 0; i < pass.host_settings; ++i)
+    state.host_settings[i] = value_of(state, frame, planned, i);
+  HostPass call;
+  call.kind = pass.host;
+  call.pass = pass.name.c_str();
+  call.command_buffer = frame.command_buffer;
+  call.ports = {state.host_ports.data(), pass.ports.size()};
+  call.settings = {state.host_settings.data(), pass.host_settings};
+  call.rectangle = rectangle;
+  call.frame_index = frame.frame_index;
+  state.host_pass(state.host_pass_user, call);
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,162 @@
+#include "integration/abi/host_kinds.hpp"
+
+#include "integration/abi/context.hpp"
+#include "integration/abi/two_call.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace dermis::abi {
+namespace {
+
+constexpr const char* registering = "dermis_register_pass_kind";
+
+std::string text_of(const char* text) {
+  return text == nullptr ? "" : text;
+}
+
+// One element of an array that is stepped by what its first element states.
+template <class T> const void* element(const T* items, uint32_t i) {
+  return reinterpret_cast<const std::byte*>(items) + i * stated_size(items);
+}
+
+constexpr std::array usages{Usage::sampled_image,        Usage::storage_image_write,
+                            Usage::storage_image_update, Usage::storage_buffer_read,
+                            Usage::storage_buffer_write, Usage::storage_buffer_update};
+constexpr std::array setting_types{SettingType::boolean, SettingType::integer, SettingType::real};
+
+dermis_result read_ports(const Log& log, const dermis_pass_kind& given, HostKindDeclaration& kind) {
+  if (given.port_count > 0 && given.ports == nullptr)
+    return bad_argument(log, "{}: kind.ports is NULL, port_count is {}", registering, given.port_count);
+  for (uint32_t i = 0; i < given.port_count; ++i) {
+    dermis_port port = DERMIS_PORT_INIT;
+    if (const SizedRead read = read_sized(element(given.ports, i), port); read != SizedRead::ok)
+      return refused_size(log, read, "dermis_register_pass_kind: kind.ports", stated_size(given.ports),
+                          first_version_size<dermis_port>);
+    const auto usage = static_cast<size_t>(port.usage);
+    if (usage >= usages.size())
+      return bad_argument(log, "{}: kind.ports[{}].usage is {}, expected 0..{}", registering, i,
+                          static_cast<int>(port.usage), usages.size() - 1);
+    kind.ports.push_back({text_of(port.name), text_of(port.doc), usages[usage], port.optional != 0});
+  }
+  return DERMIS_OK;
+}
+
+dermis_result read_settings(const Log& log, const dermis_pass_kind& given, HostKindDeclaration& kind) {
+  if (given.setting_count > 0 && given.settings == nullptr)
+    return bad_argument(log, "{}: kind.settings is NULL, setting_count is {}", registering,
+                        given.setting_count);
+  for (uint32_t i = 0; i < given.setting_count; ++i) {
+    dermis_kind_setting setting = DERMIS_KIND_SETTING_INIT;
+    if (const SizedRead read = read_sized(element(given.settings, i), setting); read != SizedRead::ok)
+      return refused_size(log, read, "dermis_register_pass_kind: kind.settings", stated_size(given.settings),
+                          first_version_size<dermis_kind_setting>);
+    const auto type = static_cast<size_t>(setting.type);
+    if (type >= setting_types.size())
+      return bad_argument(log, "{}: kind.settings[{}].type is {}, expected 0..{}", registering, i,
+                          static_cast<int>(setting.type), setting_types.size() - 1);
+    kind.settings.push_back({text_of(setting.name), text_of(setting.unit), text_of(setting.doc),
+                             setting_types[type], setting.default_value, setting.minimum, setting.maximum});
+  }
+  return DERMIS_OK;
+}
+
+dermis_result add(dermis_context_t& context, const dermis_pass_kind* given) {
+  const Log& log = context.log;
+  dermis_pass_kind desc = DERMIS_PASS_KIND_INIT;
+  if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
+    return refused_size(log, read, "dermis_register_pass_kind: kind", stated_size(given),
+                        first_version_size<dermis_pass_kind>);
+  if (desc.record == nullptr) return bad_argument(log, "{}: kind.record is NULL", registering);
+  if (desc.port_count > limits::host_kind_ports || desc.setting_count > limits::host_kind_settings)
+    return bad_argument(log, "{}: kind.port_count is {} and setting_count {}, at most {} and {} are possible",
+                        registering, desc.port_count, desc.setting_count, limits::host_kind_ports,
+                        limits::host_kind_settings);
+  HostKindDeclaration kind;
+  kind.name = text_of(desc.name);
+  kind.doc = text_of(desc.doc);
+  kind.side_effects = desc.side_effects != 0;
+  if (const dermis_result result = read_ports(log, desc, kind); result != DERMIS_OK) return result;
+  if (const dermis_result result = read_settings(log, desc, kind); result != DERMIS_OK) return result;
+  if (const KindProblem problem = problem_of(kind); !problem.text.empty())
+    return bad_argument(log, "{}: kind.{}", registering, problem.text);
+
+  const std::lock_guard lock(context.mutex);
+  if (!context.graphs.empty())
+    return bad_argument(log, "{}: the context has graphs already; register '{}' before the first",
+                        registering, kind.name);
+  HostPasses& passes = context.host_passes;
+  if (passes.kinds.size() == limits::host_kinds)
+    return bad_argument(log, "{}: the context has {} kinds already", registering, limits::host_kinds);
+  if (context.kinds.find(kind.name).valid())
+    return bad_argument(log, "{}: there is a kind '{}' already", registering, kind.name);
+  passes.recorders.reserve(passes.recorders.size() + 1); // from here on nothing may fail half way
+  const KindId id = passes.kinds.add(std::move(kind), context.kinds);
+  passes.recorders.push_back({id, desc.record, desc.user});
+  return DERMIS_OK;
+}
+
+double number_of(const SettingValue& value) {
+  return value.type == SettingType::real ? value.real : static_cast<double>(value.integer);
+}
+
+dermis_pass_port port_of(const vulkan::HostPort& port) {
+  dermis_pass_port out = DERMIS_PASS_PORT_INIT;
+  out.image = port.image;
+  out.view = port.view;
+  out.format = port.format;
+  out.layout = port.layout;
+  out.width = port.width;
+  out.height = port.height;
+  out.buffer = port.buffer;
+  out.bytes = port.bytes;
+  return out;
+}
+
+} // namespace
+
+void record_host_pass(void* host_passes, const vulkan::HostPass& call) {
+  const auto& passes = *static_cast<const HostPasses*>(host_passes);
+  const auto found = std::find_if(passes.recorders.begin(), passes.recorders.end(),
+                                  [&](const HostPasses::Recorder& one) { return one.kind == call.kind; });
+  std::array<dermis_pass_port, limits::host_kind_ports> ports;
+  std::array<double, limits::host_kind_settings> settings{};
+  std::transform(call.ports.begin(), call.ports.end(), ports.begin(), port_of);
+  std::transform(call.settings.begin(), call.settings.end(), settings.begin(), number_of);
+  dermis_pass_call out = DERMIS_PASS_CALL_INIT;
+  out.pass = call.pass;
+  out.command_buffer = call.command_buffer;
+  out.ports = ports.data();
+  out.settings = settings.data();
+  out.port_count = static_cast<uint32_t>(call.ports.size());
+  out.setting_count = static_cast<uint32_t>(call.settings.size());
+  out.rect_x = call.rectangle.x;
+  out.rect_y = call.rectangle.y;
+  out.rect_width = call.rectangle.width;
+  out.rect_height = call.rectangle.height;
+  out.frame_index = call.frame_index;
+  found->record(found->user, &out);
+}
+
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_register_pass_kind(dermis_context context,
+                                                               const dermis_pass_kind* kind) {
+  if (context == nullptr) return bad_argument({}, "dermis_register_pass_kind: context is NULL");
+  return guarded(context->log, registering, [&] {
+    if (kind == nullptr) return bad_argument(context->log, "dermis_register_pass_kind: kind is NULL");
+    return add(*context, kind);
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_export_pass_kinds(dermis_context context, size_t* size,
+                                                              char* text) {
+  if (context == nullptr) return bad_argument({}, "dermis_export_pass_kinds: context is NULL");
+  return guarded(context->log, "dermis_export_pass_kinds", [&] {
+    if (size == nullptr) return bad_argument(context->log, "dermis_export_pass_kinds: size is NULL");
+    return fill_text(dermis::write_host_kinds(context->host_passes.kinds), size, text);
+  });
+}

@@ -1,0 +1,53 @@
+#pragma once
+// What may go wrong with what a host hands over, as short sequences of small frames, each with what must come
+// out all the same. The list follows what is known to break scattering, pyramids and histories.
+
+#include "integration/files/capture.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace dermis::tools {
+
+struct StabilityCase {
+  std::string_view name;
+  uint32_t frames = 1;
+  std::function<CapturedFrame(uint32_t frame)> given;
+  // What must come out: the technique's own answer to this sequence, or, where there is none, what `wanted`
+  // says for pixels with a profile (all channels alike); others keep their light.
+  std::function<CapturedFrame(uint32_t frame)> same_as = nullptr;
+  std::function<double(uint32_t frame)> wanted = nullptr;
+  double bound = 0;          // of the error, in units of `scale`
+  double scale = 1;          // brightest light of the judged frames
+  uint32_t first_judged = 0; // errors count from here on; values that are not finite always do
+  uint32_t damage_ends =
+      0;               // frames from here on are sound: how many more until the error is within the bound
+  bool follows = true; // false: every frame is a cut
+  bool needs_history = false; // only for techniques that keep one
+  bool finite_only = false;   // nothing but finite values is asked
+  uint64_t frame_index = 0;   // of the first frame; 0: as it comes
+};
+
+inline constexpr uint32_t stability_side = 48; // pixels, of frames whose size is not the point
+inline constexpr double stability_d_px = 4;
+
+// Two profiles, ids 1 and 2, the second twice as wide.
+std::vector<CaptureProfile> stability_profiles();
+// A white plane under light 1, all of profile 1.
+CapturedFrame sound_frame(uint32_t width = stability_side, uint32_t height = stability_side,
+                          double d_px = stability_d_px);
+// Smooth light with contrast .4 around .5.
+CapturedFrame textured_frame();
+// The same value in three channels.
+void set_light(CapturedFrame& frame, uint32_t x, uint32_t y, float value);
+void fill_light(CapturedFrame& frame, float value);
+
+std::vector<StabilityCase> light_cases();
+std::vector<StabilityCase> shape_cases();
+std::vector<StabilityCase> time_cases();
+
+} // namespace dermis::tools

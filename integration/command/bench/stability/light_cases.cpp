@@ -1,0 +1,145 @@
+// Light and masks that are not what they should be.
+#include "integration/command/bench/stability/cases.hpp"
+
+#include "integration/command/bench/subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dermis::tools {
+namespace {
+
+constexpr float largest_half = 65504; // what clean_light of shaders/include/sanitise.glsl lets through
+constexpr double furnace = 2e-3;      // a white furnace through half floats: two steps of 2^-10
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
+
+// Three pixels of the textured frame hold `damage`; it counts as `taken`.
+StabilityCase damaged_light(std::string_view name, float damage, float taken) {
+  const auto with = [](float value) {
+    return [value](uint32_t) {
+      CapturedFrame frame = textured_frame();
+      for (uint32_t y = 20; y < 23; ++y)
+        set_light(frame, 20, y, value);
+      return frame;
+    };
+  };
+  StabilityCase made;
+  made.name = name;
+  made.given = with(damage);
+  made.same_as = with(taken);
+  return made;
+}
+
+StabilityCase uniform(std::string_view name, float value, double bound) {
+  StabilityCase made;
+  made.name = name;
+  made.given = [value](uint32_t) {
+    CapturedFrame frame = sound_frame();
+    fill_light(frame, value);
+    return frame;
+  };
+  made.wanted = [value](uint32_t) { return double(std::min(value, largest_half)); };
+  made.scale = std::max(1e-30, double(std::min(value, largest_half)));
+  made.bound = bound;
+  return made;
+}
+
+// A white plane of which `has_profile` says what scatters.
+template <class Mask> StabilityCase masked(std::string_view name, Mask has_profile) {
+  StabilityCase made;
+  made.name = name;
+  made.given = [has_profile](uint32_t) {
+    CapturedFrame frame = sound_frame();
+    for (uint32_t y = 0; y < stability_side; ++y)
+      for (uint32_t x = 0; x < stability_side; ++x)
+        frame.profile[y * stability_side + x] = has_profile(x, y) ? 1 : 0;
+    return frame;
+  };
+  made.wanted = [](uint32_t) { return 1.0; };
+  made.bound = furnace;
+  return made;
+}
+
+// Half of the plane lies in the dark; it scatters like the other half, whose light must arrive.
+StabilityCase black_half() {
+  const auto with = [](float dark) {
+    return [dark](uint32_t) {
+      CapturedFrame frame = sound_frame();
+      for (uint32_t y = 0; y < stability_side; ++y)
+        for (uint32_t x = stability_side / 2; x < stability_side; ++x)
+          set_light(frame, x, y, dark);
+      return frame;
+    };
+  };
+  StabilityCase made;
+  made.name = "black_subsurface";
+  made.given = with(0.0f);
+  made.same_as = with(1e-6f);
+  made.bound = furnace;
+  return made;
+}
+
+} // namespace
+
+std::vector<CaptureProfile> stability_profiles() {
+  subsurface::Profile wide = grey_profile();
+  wide.name = "wide";
+  for (double& dmfp : wide.dmfp_mm)
+    dmfp *= 2;
+  subsurface::derive(wide);
+  return {{1, grey_profile()}, {2, wide}};
+}
+
+CapturedFrame sound_frame(uint32_t width, uint32_t height, double d_px) {
+  const std::vector<CaptureProfile> profiles = stability_profiles();
+  return plane_frame(width, height, d_px, profiles);
+}
+
+CapturedFrame textured_frame() {
+  CapturedFrame frame = sound_frame();
+  for (uint32_t y = 0; y < stability_side; ++y)
+    for (uint32_t x = 0; x < stability_side; ++x)
+      set_light(frame, x, y, static_cast<float>(0.5 + 0.4 * std::sin(x * 0.2) * std::cos(y * 0.3)));
+  return frame;
+}
+
+void set_light(CapturedFrame& frame, uint32_t x, uint32_t y, float value) {
+  for (uint32_t c = 0; c < 3; ++c)
+    frame.lighting.at(x, y, c) = value;
+}
+
+void fill_light(CapturedFrame& frame, float value) {
+  std::fill(frame.lighting.values.begin(), frame.lighting.values.end(), value);
+}
+
+std::vector<StabilityCase> light_cases() {
+  StabilityCase albedo;
+  albedo.name = "albedo_out_of_range";
+  albedo.given = [](uint32_t) {
+    CapturedFrame frame = textured_frame();
+    constexpr std::array values{-1.0f, 2.0f, nan, infinity};
+    for (size_t i = 0; i < frame.albedo.values.size(); ++i)
+      frame.albedo.values[i] = values[i % values.size()];
+    return frame;
+  };
+  albedo.finite_only = true;
+  return {damaged_light("light_nan", nan, 0),
+          damaged_light("light_negative", -1, 0),
+          damaged_light("light_minus_infinity", -infinity, 0),
+          damaged_light("light_infinity", infinity, largest_half),
+          damaged_light("light_beyond_half", 1e30f, largest_half),
+          uniform("light_denormal", 1e-40f, 1e30), // may become 0
+          uniform("light_faint", 1e-4f, 4e-3),     // half floats are 6e-8 apart below 6e-5
+          uniform("light_brightest", 6e4f, furnace),
+          uniform("light_too_bright", 1e6f, furnace),
+          albedo,
+          black_half(),
+          masked("isolated_pixel", [](uint32_t x, uint32_t y) { return x == 13 && y == 17; }),
+          masked("hair_thin_holes", [](uint32_t x, uint32_t y) { return x % 7 != 3 && y % 11 != 5; }),
+          masked("checkerboard_mask", [](uint32_t x, uint32_t y) { return (x + y) % 2 == 0; }),
+          masked("empty_mask", [](uint32_t, uint32_t) { return false; })};
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,194 @@
+// dermis compare: how far two pictures, or two folders of them, are apart.
+
+#include "framegraph/text/json_writer.hpp"
+#include "integration/command/bench/report/heat_map.hpp"
+#include "integration/command/output.hpp"
+#include "integration/command/verbs.hpp"
+#include "integration/files/difference.hpp"
+#include "integration/files/exr.hpp"
+#include "integration/files/metrics.hpp"
+#include "integration/files/png.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace dermis::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Pair {
+  std::string name; // below both folders, or of the first file
+  fs::path a, b;
+};
+
+struct Compared {
+  std::string name, region; // region "": the whole picture
+  Difference difference;
+};
+
+bool is_picture(const fs::path& path) {
+  return path.extension() == ".png" || path.extension() == ".exr";
+}
+
+std::vector<std::string> pictures_below(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (at->is_regular_file(error) && is_picture(at->path()))
+      names.push_back(fs::relative(at->path(), folder).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// Every picture of both folders has its like in the other one; else `problem` says which has not.
+std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::string& problem) {
+  std::error_code ignored;
+  const bool folder = fs::is_directory(a, ignored);
+  if (folder != fs::is_directory(b, ignored)) {
+    problem = fmt::format("'{}' is a {}, '{}' is not: name two pictures, or two folders", folder ? a : b,
+                          "folder", folder ? b : a);
+    return {};
+  }
+  if (!folder) return {{fs::path(a).filename().string(), a, b}};
+  const std::vector<std::string> in_a = pictures_below(a), in_b = pictures_below(b);
+  std::vector<std::string> alone;
+  std::set_symmetric_difference(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
+                                std::back_inserter(alone));
+  if (!alone.empty())
+    problem = fmt::format("'{}' is in one of the folders only{}", alone.front(),
+                          alone.size() > 1 ? fmt::format(", and {} more", alone.size() - 1) : "");
+  if (in_a.empty() && in_b.empty()) problem = fmt::format("there are no .png or .exr files below '{}'", a);
+  std::vector<Pair> pairs;
+  for (const std::string& name : in_a)
+    pairs.push_back({name, fs::path(a) / name, fs::path(b) / name});
+  return pairs;
+}
+
+std::optional<Image> read_picture(const fs::path& path, std::string& problem) {
+  if (path.extension() == ".png") return read_png(path, problem);
+  if (path.extension() == ".exr")
+    return read_exr(path, std::vector<ChannelNames>{{"R", "G", "B"}, {"*"}}, problem);
+  problem = fmt::format("'{}' is neither a .png nor a .exr file", path.string());
+  return std::nullopt;
+}
+
+// Both as values with peak 1: what a PNG shows, and the exposed luminance of an EXR, by the exposure of B.
+bool read_both(const Pair& pair, Image& a, Image& b, std::string& problem) {
+  const auto first = read_picture(pair.a, problem);
+  const auto second = first ? read_picture(pair.b, problem) : std::nullopt;
+  if (!second) return false;
+  if (first->width != second->width || first->height != second->height ||
+      first->channels != second->channels) {
+    problem = fmt::format("'{}' is {}x{} with {} channels, '{}' {}x{} with {}", pair.a.string(), first->width,
+                          first->height, first->channels, pair.b.string(), second->width, second->height,
+                          second->channels);
+    return false;
+  }
+  if (pair.a.extension() == ".png") {
+    a = encoded(*first);
+    b = encoded(*second);
+    return true;
+  }
+  const double exposure = exposure_of(*second);
+  a = exposed_luminance(*first, exposure);
+  b = exposed_luminance(*second, exposure);
+  return true;
+}
+
+std::string write_heat(const std::string& path, const Image& a, const Image& b) {
+  std::vector<uint8_t> rgb;
+  for (uint32_t y = 0; y < a.height; ++y)
+    for (uint32_t x = 0; x < a.width; ++x) {
+      double squares = 0;
+      for (uint32_t c = 0; c < a.channels; ++c) {
+        const double error = double(a.at(x, y, c)) - double(b.at(x, y, c));
+        squares += error * error / a.channels;
+      }
+      for (const uint8_t value : heat_color(std::sqrt(squares)))
+        rgb.push_back(value);
+    }
+  std::string problem;
+  write_png(path, a.width, a.height, rgb, problem);
+  return problem;
+}
+
+std::string as_json(const std::vector<Compared>& rows, bool ok) {
+  JsonWriter json;
+  json.open_object().member("ok", ok).key("rows").open_array();
+  for (const Compared& row : rows) {
+    const Difference& d = row.difference;
+    json.open_object(true).member("picture", row.name);
+    if (!row.region.empty()) json.member("region", row.region);
+    json.member("psnr_db", d.psnr_db)
+        .member("ssim", d.ssim)
+        .member("rmse", d.rmse)
+        .member("max_error", d.max_error);
+    json.member("worst_x", d.worst_x).member("worst_y", d.worst_y).member("nonfinite_pixels", d.nonfinite);
+    json.member("pixels", d.pixels).close();
+  }
+  json.close().close();
+  return std::move(json).finish();
+}
+
+std::string as_table(const std::vector<Compared>& rows) {
+  Table table{{{"picture"},
+               {"region"},
+               {"PSNR", true},
+               {"SSIM", true},
+               {"RMSE", true},
+               {"largest", true},
+               {"at"},
+               {"not finite", true}},
+              {}};
+  for (const Compared& row : rows) {
+    const Difference& d = row.difference;
+    table.rows.push_back({row.name, row.region, format_decibels(d.psnr_db), fmt::format("{:.4f}", d.ssim),
+                          fmt::format("{:.5f}", d.rmse), fmt::format("{:.4f}", d.max_error),
+                          d.max_error > 0 ? fmt::format("{},{}", d.worst_x, d.worst_y) : "",
+                          d.nonfinite > 0 ? fmt::format("{}", d.nonfinite) : ""});
+  }
+  return format_table(table);
+}
+
+} // namespace
+
+ExitCode compare(const Session& session, const CompareOptions& options) {
+  std::string problem;
+  const std::vector<Pair> pairs = pairs_of(options.a, options.b, problem);
+  if (!problem.empty()) return fail(session, ExitCode::problems, problem);
+  if (!options.heat.empty() && pairs.size() > 1)
+    return fail(session, ExitCode::usage, "--heat draws one picture; name two files instead of folders");
+  std::vector<Compared> rows;
+  for (const Pair& pair : pairs) {
+    Image a, b;
+    if (!read_both(pair, a, b, problem)) return fail(session, ExitCode::problems, problem);
+    rows.push_back({pair.name, "", compare_pictures(a, b, {0, 0, a.width, a.height})});
+    for (const PictureRegion& region : options.regions) {
+      if (uint64_t{region.x} + region.size.width > a.width ||
+          uint64_t{region.y} + region.size.height > a.height)
+        return fail(session, ExitCode::usage,
+                    fmt::format("the region {} is not inside of the {}x{} pixels of '{}'", region.text,
+                                a.width, a.height, pair.name));
+      rows.push_back({pair.name, region.text,
+                      compare_pictures(a, b, {region.x, region.y, region.size.width, region.size.height})});
+    }
+    if (!options.heat.empty()) problem = write_heat(options.heat, a, b);
+    if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+  }
+  const bool ok = std::all_of(rows.begin(), rows.end(), [&](const Compared& row) {
+    return row.difference.nonfinite == 0 && row.difference.psnr_db >= options.least_psnr;
+  });
+  say(session, as_table(rows));
+  if (session.json) print(as_json(rows, ok));
+  if (ok) return ExitCode::ok;
+  if (session.json) return ExitCode::problems;
+  return fail(session, ExitCode::problems,
+              options.least_psnr > 0 ? fmt::format("the pictures differ by more than {} allow",
+                                                   format_decibels(options.least_psnr))
+                                     : "there are values that are not finite");
+}
+
+} // namespace dermis::tools

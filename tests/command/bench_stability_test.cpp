@@ -1,0 +1,40 @@
+// dermis bench stability: rows, exit code, and that it sees what is broken.
+#include "tests/command/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+namespace dermis::test {
+namespace {
+
+using testing::HasSubstr;
+class BenchStability : public CommandTest {};
+
+TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
+  const std::string rows = path("rows.json"), page = path("rows.html");
+  const Outcome outcome = run({"bench", "stability", "--techniques", "formula,sap,burley", "--cases",
+                               "light_nan,history_poisoned,size_1x7,velocity_nan,xi_1,guidance_updates_at_1",
+                               "--updates", "20000", "--json", rows, "--html", page});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
+  // Three cases of two settings of sap and one of burley; none of them keeps a history; two formulas.
+  EXPECT_EQ(document["rows"].size(), 3u * 3u + 2u);
+  for (const auto& row : document["rows"]) {
+    EXPECT_TRUE(row["holds"]) << row;
+    EXPECT_EQ(row["nonfinite_pixels"], 0) << row;
+    EXPECT_LE(row["max_abs_error"], row["bound"]) << row;
+    EXPECT_EQ(row["recovered_after_frames"].is_null(), row["case"] != "history_poisoned") << row;
+  }
+  EXPECT_THAT(outcome.out, HasSubstr("0 of 11 rows do not hold"));
+}
+
+TEST_F(BenchStability, RefusesNamesThatNothingHas) {
+  const Outcome outcome =
+      run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no case and technique has these names"));
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,100 @@
+// dermis compare: figures that can be worked out by hand, and what it refuses.
+#include "integration/files/exr.hpp"
+#include "integration/files/png.hpp"
+#include "tests/command/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace dermis::test {
+namespace {
+
+using testing::HasSubstr;
+
+class Compare : public CommandTest {
+protected:
+  std::string png(const std::string& name, uint8_t value, uint8_t corner) const {
+    std::vector<uint8_t> rgb(32 * 16 * 3, value);
+    rgb[0] = rgb[1] = rgb[2] = corner;
+    std::string error;
+    EXPECT_TRUE(tools::write_png(path(name), 32, 16, rgb, error)) << error;
+    return path(name);
+  }
+  std::string exr(const std::string& name, float value) const {
+    tools::Image image = tools::Image::sized(16, 16, 3);
+    std::fill(image.values.begin(), image.values.end(), value);
+    std::string error;
+    EXPECT_TRUE(tools::write_exr(path(name), image, {"R", "G", "B"}, error)) << error;
+    return path(name);
+  }
+};
+
+TEST_F(Compare, GivesTheFiguresOfPicturesThatDifferInOneKnownPlace) {
+  const std::string a = png("a.png", 100, 151), b = png("b.png", 100, 100);
+  const Outcome outcome = run({"compare", a, b, "--region", "8,8,4x4", "--json", "--heat", path("heat.png")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json rows = nlohmann::json::parse(outcome.out)["rows"];
+  ASSERT_EQ(rows.size(), 2u);
+  // One of 512 pixels differs by 51/255 in every channel.
+  EXPECT_NEAR(rows[0]["max_error"], 0.2, 1e-6);
+  EXPECT_NEAR(rows[0]["rmse"], 0.2 / std::sqrt(512.0), 1e-6);
+  EXPECT_NEAR(rows[0]["psnr_db"], -20 * std::log10(0.2 / std::sqrt(512.0)), 1e-4);
+  EXPECT_LT(rows[0]["ssim"], 1.0);
+  EXPECT_EQ(rows[0]["worst_x"], 0);
+  EXPECT_EQ(rows[1]["psnr_db"], 100);
+  EXPECT_NEAR(rows[1]["ssim"], 1.0, 1e-9);
+  std::string error;
+  const auto heat = tools::read_png(path("heat.png"), error);
+  ASSERT_TRUE(heat) << error;
+  EXPECT_GT(heat->at(0, 0, 0), heat->at(9, 9, 0));
+}
+
+TEST_F(Compare, ExposesLinearLightBeforeItCompares) {
+  // 2.2 against 2: the exposure of the second is one half.
+  const Outcome outcome = run({"compare", exr("a.exr", 2.2f), exr("b.exr", 2.0f), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NEAR(nlohmann::json::parse(outcome.out)["rows"][0]["rmse"], 0.1, 1e-5);
+}
+
+TEST_F(Compare, FailsBelowTheAskedFor) {
+  const std::string a = png("a.png", 100, 151), b = png("b.png", 100, 100);
+  const Outcome outcome = run({"compare", a, b, "--least-psnr", "60"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("60.00 dB"));
+  EXPECT_EQ(run({"compare", a, b, "--least-psnr", "20"}).exit_code, 0);
+  const Outcome damaged =
+      run({"compare", exr("a.exr", std::numeric_limits<float>::quiet_NaN()), exr("b.exr", 1)});
+  EXPECT_EQ(damaged.exit_code, 1);
+  EXPECT_THAT(damaged.err, HasSubstr("not finite"));
+}
+
+TEST_F(Compare, GoesThroughFoldersAndNamesWhatIsInOneAlone) {
+  std::filesystem::create_directories(path("a/deep"));
+  std::filesystem::create_directories(path("b/deep"));
+  png("a/one.png", 10, 10);
+  png("b/one.png", 10, 10);
+  png("a/deep/two.png", 10, 10);
+  png("b/deep/two.png", 20, 20);
+  const Outcome both = run({"compare", path("a"), path("b"), "--json"});
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_EQ(nlohmann::json::parse(both.out)["rows"].size(), 2u);
+  png("a/three.png", 10, 10);
+  const Outcome alone = run({"compare", path("a"), path("b")});
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.err, HasSubstr("three.png"));
+}
+
+TEST_F(Compare, RefusesWhatCannotBeCompared) {
+  const std::string a = png("a.png", 100, 100), light = exr("light.exr", 1);
+  EXPECT_THAT(run({"compare", a, light}).err, HasSubstr("16x16"));
+  EXPECT_EQ(run({"compare", a, path("none.png")}).exit_code, 1);
+  EXPECT_EQ(run({"compare", a, path("")}).exit_code, 1);
+  EXPECT_EQ(run({"compare", a, a, "--region", "30,0,8x8"}).exit_code, 2);
+  EXPECT_EQ(run({"compare", a, a, "--region", "a,b"}).exit_code, 2);
+  EXPECT_EQ(run({"compare", a}).exit_code, 2);
+}
+
+} // namespace
+} // namespace dermis::test

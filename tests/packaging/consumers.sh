@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Installs the build to a folder of its own, moves it, and lets tiny hosts find the library in four ways: plain compiler,
+# pkg-config, find_package (shared and static) and add_subdirectory. Each one runs a graph.
+# usage: consumers.sh BUILD_DIR SOURCE_DIR [--subdirectory]: with the option only that, since it builds the library anew
+set -euo pipefail
+build=$1
+source=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+run() { # a host
+  echo "== $(basename "$1")"
+  "$@" "$source/configs/graphs/burley.json" "$source/configs/profiles/skin.json"
+}
+
+if [[ ${3:-} == --subdirectory ]]; then
+  cmake -G Ninja -S "$source/tests/packaging/subdirectory" -B "$scratch/build" -DDERMIS="$source" -DCMAKE_BUILD_TYPE=Release \
+    ${DERMIS_LAUNCHER:+-DCMAKE_CXX_COMPILER_LAUNCHER="$DERMIS_LAUNCHER"} >/dev/null
+  cmake --build "$scratch/build" >/dev/null
+  run "$scratch/build/host_dermis"
+  run "$scratch/build/host_dermis_static"
+  exit
+fi
+
+cmake --install "$build" --prefix "$scratch/first" >/dev/null
+mv "$scratch/first" "$scratch/moved" # nothing may hold on to where it was
+prefix=$scratch/moved
+lib=$(dirname "$(find "$prefix" -name libdermis.so)")
+export LD_LIBRARY_PATH=$lib
+
+flags=(-std=c99 -Wall -Wextra -Werror -I"$source/integration/examples" "$source/integration/examples/minimal.c")
+cc "${flags[@]}" -I"$prefix/include" -o "$scratch/host_cc" -L"$lib" -ldermis -lvulkan
+run "$scratch/host_cc"
+
+if command -v pkg-config >/dev/null; then
+  export PKG_CONFIG_PATH=$lib/pkgconfig
+  # shellcheck disable=SC2046
+  cc "${flags[@]}" -o "$scratch/host_pkg_config" $(pkg-config --cflags --libs dermis) -lvulkan
+  run "$scratch/host_pkg_config"
+else
+  echo "== pkg-config: skipped, not installed"
+fi
+
+cmake -G Ninja -S "$source/tests/packaging/find_package" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$prefix" \
+  -DEXAMPLES="$source/integration/examples" -DCMAKE_BUILD_TYPE=Release >/dev/null
+cmake --build "$scratch/build" >/dev/null
+run "$scratch/build/host_dermis"
+run "$scratch/build/host_dermis_static"
+
+# What is installed works alone: the command finds its library, and graphs validate.
+unset LD_LIBRARY_PATH
+"$prefix/bin/dermis" validate "$prefix/share/dermis/graphs/sap.json"
+
+# A host that links the static library sees the interface and nothing else.
+others=$(nm -g --defined-only "$lib/libdermis.a" | awk 'NF == 3 { print $3 }' | grep -v '^dermis_' || true)
+[[ -z $others ]] || { echo "libdermis.a exports more than dermis_*:"; echo "$others" | head; exit 1; }
+# The shared library asks for the C and C++ run time alone: no Vulkan loader, no JSON or shader library.
+needed=$(readelf -d "$lib/libdermis.so" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
+others=$(echo "$needed" | grep -v -E '^(libc|libm|libstdc\+\+|libgcc_s|ld-linux.*)\.so' || true)
+[[ -z $others ]] || { echo "libdermis.so needs more than the C and C++ run time:"; echo "$others"; exit 1; }
+readelf -d "$lib/libdermis.so" | grep -q 'SONAME.*libdermis\.so\.0\]' || { echo "the SONAME is not libdermis.so.0"; exit 1; }
