@@ -73,8 +73,11 @@ void add_optional(VkPhysicalDevice device, bool timestamps, std::vector<SurveyIt
     vkGetPhysicalDeviceFormatProperties(device, wanted.format, &properties);
     constexpr VkFormatFeatureFlags needed =
         VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
-    items.push_back(
-        {wanted.name, (properties.optimalTilingFeatures & needed) == needed, false, wanted.otherwise});
+    SurveyItem& item = items.emplace_back();
+    item.name = wanted.name;
+    item.present = (properties.optimalTilingFeatures & needed) == needed;
+    item.why = item.present ? std::string(wanted.use)
+                            : fmt::format("{}; graphs that name no other format do not compile", wanted.use);
   }
 }
 
