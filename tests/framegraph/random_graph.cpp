@@ -64,13 +64,14 @@ struct Draft {
   void parts() {
     const auto name = fresh("parts");
     auto& declared = b.image(name);
-    declared.size.x = declared.size.y = {1, 4}; // no larger than others: see docs/limits.md on implied barriers
+    declared.size.x =
+        declared.size.y = {1, 4}; // no larger than others: see docs/limits.md on implied barriers
     declared.mips = 1 + random.below(3);
     declared.layers = 1 + random.below(2);
     const uint32_t mips = declared.mips, layers = declared.layers;
     if (random.chance(20)) b.pass(fresh("fill"), "test.fill", {}, {{"target", name}});
     const bool filled =
-        b.graph.passes.size() > 0 && b.graph.passes.back().writes[0].resource == b.resource(name);
+        b.graph.passes.size() > 0 && b.graph.writes(b.graph.passes.back())[0].resource == b.resource(name);
     for (uint32_t m = 0; m < mips; ++m) {
       const bool by_layer = random.chance(50);
       for (uint32_t l = 0; l < (by_layer ? layers : 1); ++l) {
@@ -88,7 +89,8 @@ struct Draft {
     }
     readable.push_back(name);
     readable.push_back(fmt::format("{}#{}", name, random.below(mips)));
-    const uint32_t first_mip = random.below(mips); // a statement a draw: compilers order arguments as they like
+    const uint32_t first_mip =
+        random.below(mips); // a statement a draw: compilers order arguments as they like
     readable.push_back(fmt::format("{}#{}..[{}]", name, first_mip, random.below(layers)));
   }
 
