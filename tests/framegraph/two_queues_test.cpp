@@ -102,6 +102,15 @@ TEST(TwoQueues, TheOracleAcceptsWhatTheCompilerMakes) {
   EXPECT_GT(transfers, 100u);
 }
 
+// Two passes of the async queue wait for the frame before, the second for more of it: compiled() asks the
+// verifier. These seeds draw it.
+TEST(TwoQueues, TheFrameBeforeIsWaitedForAsFarAsAnyPassNeeds) {
+  for (const uint64_t seed : {2642u, 4607u, 4977u}) {
+    const auto builder = random_graph(seed, Sizes::one_page);
+    EXPECT_GT(async_passes(compiled(builder, two_queues(builder)).plan), 0u) << "seed " << seed;
+  }
+}
+
 TEST(TwoQueues, WhateverOrderThePointsAllowGivesThePixelsThatTheGraphMeans) {
   for_random_plans(1500, 10000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
     const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
