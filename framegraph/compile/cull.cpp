@@ -86,7 +86,7 @@ struct Culler {
     if (c.reported[use.asked.value]) return;
     c.reported[use.asked.value] = 1;
     const auto refuse = [&](DiagnosticId id, std::string text) {
-      auto& diagnostic = c.diagnostics->add(id, c.binding(use).where, std::move(text));
+      auto& diagnostic = c.diagnostics->add(id, c.place_of(use), std::move(text));
       diagnostic.related.emplace_back(c.graph->resources[use.asked.value].where,
                                       fmt::format("'{}' is declared here", c.name(use.asked)));
       relate_producers(diagnostic, use.asked);
@@ -122,9 +122,9 @@ struct Culler {
   // Where the passes stand that would write `resource`, on or off: the likely cause.
   void relate_producers(Diagnostic& diagnostic, ResourceId resource) {
     for (uint32_t i = 0; i < c.graph->passes.size(); ++i)
-      for (const PortBinding& binding : c.graph->passes[i].writes)
+      for (const PortBinding& binding : c.graph->writes(c.graph->passes[i]))
         if (binding.resource == resource)
-          diagnostic.related.emplace_back(binding.where,
+          diagnostic.related.emplace_back(c.graph->place_of(binding),
                                           fmt::format("'{}' writes it and is {}", c.name(PassId{i}),
                                                       c.on[i] ? "on" : "off with these settings"));
   }

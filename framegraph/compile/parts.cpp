@@ -36,7 +36,7 @@ struct Divider {
     const ResourceDeclaration& resource = c.graph->resources[binding.resource.value];
     const Extent& extent = c.extents[binding.resource.value];
     c.diagnostics
-        ->add(DiagnosticId::part_missing, binding.where,
+        ->add(DiagnosticId::part_missing, c.graph->place_of(binding),
               fmt::format("pass '{}' binds '{}{}', but at {}x{} texels '{}' has {} mips and {} layers",
                           c.name(pass), resource.name, part_text(binding.part), extent.width, extent.height,
                           resource.name, extent.mips, resource.layers))
@@ -44,21 +44,19 @@ struct Divider {
   }
 
   void cut(PassId pass) {
-    const PassDeclaration& declared = c.graph->passes[pass.value];
-    for (const auto* bindings : {&declared.reads, &declared.writes})
-      for (const PortBinding& binding : *bindings) {
-        if (binding.part.whole()) continue;
-        SubresourceRange range;
-        if (!range_of(binding, range)) {
-          refuse(pass, binding);
-          continue;
-        }
-        auto& cuts = c.cuts[binding.resource.value];
-        cuts[mips].push_back(range.first_mip);
-        cuts[mips].push_back(static_cast<uint16_t>(range.first_mip + range.mips));
-        cuts[layers].push_back(range.first_layer);
-        cuts[layers].push_back(static_cast<uint16_t>(range.first_layer + range.layers));
+    for (const PortBinding& binding : c.graph->bindings_of(c.graph->passes[pass.value])) {
+      if (binding.part.whole()) continue;
+      SubresourceRange range;
+      if (!range_of(binding, range)) {
+        refuse(pass, binding);
+        continue;
       }
+      auto& cuts = c.cuts[binding.resource.value];
+      cuts[mips].push_back(range.first_mip);
+      cuts[mips].push_back(static_cast<uint16_t>(range.first_mip + range.mips));
+      cuts[layers].push_back(range.first_layer);
+      cuts[layers].push_back(static_cast<uint16_t>(range.first_layer + range.layers));
+    }
   }
 
   // Adds 0 and `end`, and leaves each place once.

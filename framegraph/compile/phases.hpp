@@ -251,10 +251,8 @@ struct CompileContext {
   const std::string& name(ResourceId id) const { return graph->resources[id.value].name; }
   const std::string& name(PassId id) const { return graph->passes[id.value].name; }
   const PassKind& kind(PassId id) const { return (*kinds)[kind_of[id.value]]; }
-  const PortBinding& binding(const Use& use) const {
-    const PassDeclaration& pass = graph->passes[use.pass.value];
-    return use.binding < pass.reads.size() ? pass.reads[use.binding]
-                                           : pass.writes[use.binding - pass.reads.size()];
+  const SourceLocation& place_of(const Use& use) const { // in the file
+    return graph->binding_places[graph->passes[use.pass.value].first_binding + use.binding];
   }
   bool split(ResourceId id) const { return facts[id.value].parts > 1; }
   uint32_t part_number(ResourceId id, uint32_t index) const {

@@ -290,7 +290,7 @@ void resolve_formats(CompileContext& c) {
   int32_t slot = 0;
   for (uint32_t i = 0; i < count; ++i) {
     const ResourceId id{i};
-    if (i + ahead < count) fetch(c.graph->resources[i + ahead].formats.data());
+    if (i + ahead < count) fetch(&c.graph->resources[i + ahead].formats);
     const bool is_slot = c.facts[i].imported || c.facts[i].exported;
     const int32_t own_slot = is_slot ? slot++ : -1;
     const Lifetime& life = c.lifetimes[i];

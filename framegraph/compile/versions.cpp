@@ -79,25 +79,24 @@ struct VersionScan {
     const auto first = static_cast<uint32_t>(c.uses.size());
     c.first_use.push_back(first);
     uint16_t number = 0;
-    for (const auto* bindings : {&declared.reads, &declared.writes})
-      for (const PortBinding& binding : *bindings) {
-        Use use;
-        use.pass = pass;
-        use.port = static_cast<uint16_t>(binding.port);
-        use.usage = kind.ports[binding.port].usage;
-        const UsageInfo& usage = usage_info(use.usage);
-        use.reads = usage.reads;
-        use.writes = usage.writes;
-        use.resource = use.asked = binding.resource;
-        use.frames_back = binding.frames_back;
-        use.when = binding.when;
-        use.part = use.asked.value;
-        use.binding = number++;
-        if (c.split(use.asked))
-          add_parts(use, binding.part);
-        else
-          c.uses.push_back(use);
-      }
+    for (const PortBinding& binding : c.graph->bindings_of(declared)) {
+      Use use;
+      use.pass = pass;
+      use.port = static_cast<uint16_t>(binding.port);
+      use.usage = kind.ports[binding.port].usage;
+      const UsageInfo& usage = usage_info(use.usage);
+      use.reads = usage.reads;
+      use.writes = usage.writes;
+      use.resource = use.asked = binding.resource;
+      use.frames_back = binding.frames_back;
+      use.when = binding.when;
+      use.part = use.asked.value;
+      use.binding = number++;
+      if (c.split(use.asked))
+        add_parts(use, binding.part);
+      else
+        c.uses.push_back(use);
+    }
     constexpr uint32_t many = 64; // parts of images
     if (c.uses.size() - first > many)
       std::stable_sort(c.uses.begin() + first, c.uses.end(),
@@ -165,7 +164,7 @@ struct VersionScan {
     const std::pair port{use.pass, use.port};
     if (std::exchange(refused, port) == port) return; // another part of what it writes
     auto& diagnostic = c.diagnostics->add(
-        DiagnosticId::second_producer, c.binding(use).where,
+        DiagnosticId::second_producer, c.place_of(use),
         producer == use.pass
             ? fmt::format("pass '{}' writes '{}' through two ports", c.name(use.pass), c.name(use.asked))
             : fmt::format("passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
@@ -238,14 +237,6 @@ struct VersionScan {
   }
 };
 
-// Bindings lie all over the heap, and waiting for them is most of this phase's work: ask for them in time.
-constexpr uint32_t ahead = 8; // passes
-void fetch_bindings(const PassDeclaration& pass) {
-  for (const auto* bindings : {&pass.reads, &pass.writes})
-    for (const PortBinding& binding : *bindings)
-      fetch(&binding);
-}
-
 } // namespace
 
 void resolve_versions(CompileContext& c) {
@@ -253,7 +244,6 @@ void resolve_versions(CompileContext& c) {
   scan.begin();
   const auto passes = static_cast<uint32_t>(c.graph->passes.size());
   for (uint32_t i = 0; i < passes; ++i) {
-    if (i + ahead < passes) fetch_bindings(c.graph->passes[i + ahead]);
     if (c.on[i])
       scan.scan_uses(PassId{i});
     else

@@ -61,10 +61,9 @@ std::string graph_dot(const Graph& graph, const KindRegistry& kinds) {
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
     const PassDeclaration& declared = graph.passes[p];
     out += pass_node(graph, kinds, p, "", declared.when.valid() ? ", style=dashed" : "");
-    for (const auto* bindings : {&declared.reads, &declared.writes})
-      for (const PortBinding& binding : *bindings)
-        out += arrows(p, binding.resource.value, binding.frames_back, part_text(binding.part),
-                      kinds[declared.kind].ports[binding.port]);
+    for (const PortBinding& binding : graph.bindings_of(declared))
+      out += arrows(p, binding.resource.value, binding.frames_back, part_text(binding.part),
+                    kinds[declared.kind].ports[binding.port]);
   }
   return out + "}\n";
 }

@@ -32,7 +32,7 @@ struct Speaker {
 
   std::string not_needed() const {
     std::string names;
-    for (const PortBinding& binding : graph.passes[reason.index].writes)
+    for (const PortBinding& binding : graph.writes(graph.passes[reason.index]))
       names += fmt::format("{}'{}'", names.empty() ? "" : ", ", resource(binding.resource.value));
     return names.empty() ? "culled: it writes nothing" : "culled: nothing that is bound needs " + names;
   }

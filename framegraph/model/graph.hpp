@@ -2,11 +2,13 @@
 // What was declared: a graph read from a file, with every name resolved to an index and every value still
 // knowing where it came from. Pure data; reading it is in read_graph.hpp, compiling it in compile/.
 
+#include "framegraph/model/format_list.hpp"
 #include "framegraph/model/ids.hpp"
 #include "framegraph/model/pass_kind.hpp"
 #include "framegraph/text/diagnostic.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,10 +41,10 @@ struct HistoryDeclaration {
   enum class OnResize : uint8_t { invalidate, rescale } on_resize = OnResize::invalidate;
 };
 
-struct ResourceDeclaration {   // what every compile reads comes first
-  std::vector<Format> formats; // in order of preference
-  SizeExpression size;         // images; buffers: element count = ceil-size x*y + extra_elements
-  uint32_t mips = 1;           // 0 = full chain
+struct ResourceDeclaration { // what every compile reads comes first
+  FormatList formats;
+  SizeExpression size; // images; buffers: element count = ceil-size x*y + extra_elements
+  uint32_t mips = 1;   // 0 = full chain
   uint32_t layers = 1;
   uint32_t stride = 0; // buffers: bytes an element
   ResourceType type = ResourceType::image;
@@ -109,7 +111,6 @@ struct PortBinding {
   // same port, is not valid.
   ReadWhen when = ReadWhen::always;
   ImagePart part; // images of one frame that the graph owns
-  SourceLocation where;
 };
 
 struct SettingBinding {
@@ -135,7 +136,7 @@ struct PassDeclaration { // what every compile reads comes first
   KindId kind;
   ExpressionId when;  // invalid: always
   bool async = false; // may run beside the others, where there are two queues
-  std::vector<PortBinding> reads, writes;
+  uint32_t first_binding = 0, read_count = 0, write_count = 0; // into Graph::bindings: reads, then writes
   std::vector<Ordering> after;
   std::vector<PassThrough> otherwise;
   std::vector<SettingBinding> settings;
@@ -151,6 +152,25 @@ struct Graph {
   std::vector<Expression> expressions;
   std::vector<PassDeclaration> passes; // in file order: versions of a resource follow it
   bool parts = false;                  // some port names a part of an image; if not, nobody looks for any
+  // Of all passes. What compiling looks at lies close together; where it stands in the file lies apart.
+  std::vector<PortBinding> bindings;
+  std::vector<SourceLocation> binding_places;
+
+  std::span<const PortBinding> bindings_of(const PassDeclaration& pass) const {
+    return {bindings.data() + pass.first_binding, size_t{pass.read_count} + pass.write_count};
+  }
+  std::span<const PortBinding> reads(const PassDeclaration& pass) const {
+    return bindings_of(pass).first(pass.read_count);
+  }
+  std::span<const PortBinding> writes(const PassDeclaration& pass) const {
+    return bindings_of(pass).subspan(pass.read_count);
+  }
+  // `binding` is one of `bindings`.
+  const SourceLocation& place_of(const PortBinding& binding) const {
+    return binding_places[static_cast<size_t>(&binding - bindings.data())];
+  }
+  // Adds what the last pass to be bound reads or writes: first everything that it reads.
+  void bind(PassDeclaration& pass, PortSide side, const PortBinding& binding, SourceLocation where);
 };
 
 } // namespace dermis

@@ -69,7 +69,7 @@ struct GraphWriter {
     all(expression.list, [&](const SettingValue& one) { value(one); });
   }
 
-  void bindings(const std::vector<PortBinding>& bindings) {
+  void bindings(std::span<const PortBinding> bindings) {
     all(bindings, [&](const PortBinding& binding) {
       number(binding.port);
       index(binding.resource);
@@ -105,8 +105,8 @@ struct GraphWriter {
     index(pass.kind); // plans hold the number of the kind
     index(pass.when);
     number(pass.async);
-    bindings(pass.reads);
-    bindings(pass.writes);
+    bindings(graph.reads(pass));
+    bindings(graph.writes(pass));
     all(pass.settings, [&](const SettingBinding& binding) {
       number(binding.setting);
       index(binding.from);

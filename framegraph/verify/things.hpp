@@ -1,9 +1,10 @@
 #pragma once
 // The verifier's model. A *thing* is a piece of memory with one layout: a part of an image that no access and
 // no barrier divides, or a buffer, in a placement or in what the host bound to a slot. Parts of one image
-// share no byte; images and buffers whose placements overlap share all of them. Every access leaves an
-// *event* on its thing, which remembers at which stages later work is ordered behind it and where a write is
-// visible. Barriers extend both along execution chains (Vulkan 1.3, "Execution and Memory Dependencies").
+// share no byte; images and buffers whose placements overlap share those that the placements share. Every
+// access leaves an *event* on its thing, which remembers at which stages later work is ordered behind it and
+// where a write is visible. Barriers extend both along execution chains (Vulkan 1.3, "Execution and Memory
+// Dependencies"), on the bytes of their own thing alone: an event of a larger thing then falls into pieces.
 //
 //  read    Every earlier write to the same bytes is ordered before it, the last one to the same thing is
 //          visible to it, and the contents are defined and are those of the frame meant: written that many
@@ -45,13 +46,22 @@ struct Visible {
   Access access;
 };
 
+struct Bytes { // of a heap
+  uint64_t begin = 0, end = UINT64_MAX;
+
+  bool meets(const Bytes& other) const { return begin < other.end && other.begin < end; }
+  bool within(const Bytes& other) const { return begin >= other.begin && end <= other.end; }
+};
+
 struct Event {
+  Bytes bytes;       // on which it is what is said here
   Stage stages = 0;  // where it happened; 0 for a layout transition, which only chains
   Access writes = 0; // 0: a read
   bool is_write = false;
   bool certain = true; // false: a read that some frames leave out
   Queue queue = Queue::main;
   int64_t at = 0;                                  // which pass it was, counted through all frames
+  const PlanAccess* access = nullptr;              // and which of its accesses; none: a layout transition
   std::array<Stage, queues> ordered{};             // by queue: later work at these stages happens after it
   std::array<int64_t, queues> since{never, never}; // by queue: the pass from which on that is so
   bool available = false;

@@ -18,7 +18,8 @@ namespace {
 
 constexpr size_t most_objections = 32; // the first ones tell; the rest follow from them
 
-constexpr uint64_t most_things = 1u << 18; // a hostile plan could divide images without end
+// A hostile plan could divide images, and accesses by barriers for some of their bytes, without end.
+constexpr uint64_t most_things = 1u << 18, most_pieces = 1u << 21;
 
 struct Machine {
   const Plan& plan;
@@ -33,6 +34,7 @@ struct Machine {
   int64_t now = 0;                                       // which pass, counted through all frames
   std::array<std::vector<int64_t>, queues> reached = {}; // by queue and point: the pass behind which it was
   std::array<size_t, queues> points_before = {};         // those of earlier frames
+  uint64_t pieces = 0;                                   // that barriers made of events
 
   void prepare() {
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
@@ -105,6 +107,29 @@ struct Machine {
     for (const uint32_t i : overlapping[things[index].owner])
       for (uint32_t t = instances[i].first; t < instances[i].first + instances[i].count; ++t)
         visit(things[t], false);
+  }
+
+  Bytes bytes_of(uint32_t index) const {
+    const uint32_t placement = things[index].placement;
+    if (placement == no_instance) return {}; // the host's: nothing else lies there
+    const Placement& memory = plan.placements[placement];
+    return {memory.offset, memory.offset + memory.size};
+  }
+
+  // What a barrier for these bytes orders of an event, and what it does not, part ways.
+  void divide(std::vector<Event>& events, const Bytes& by, Stage source) {
+    for (size_t e = 0; e < events.size(); ++e) {
+      const Bytes whole = events[e].bytes;
+      if (whole.within(by) || !whole.meets(by) || !starts_from(events[e], source)) continue;
+      if (++pieces > most_pieces) return complain("barriers divide memory into too many pieces");
+      const auto cut = [&](uint64_t at) { // the upper piece stands behind the lower one
+        events[e].bytes.end = at;
+        events.insert(events.begin() + static_cast<std::ptrdiff_t>(e) + 1, events[e]);
+        events[++e].bytes = {at, whole.end};
+      };
+      if (whole.begin < by.begin) cut(by.begin);
+      if (whole.end > by.end) cut(by.end);
+    }
   }
 
   bool renewed_in_place(uint32_t resource) const {
@@ -191,8 +216,9 @@ struct Machine {
   }
 
   // A transition, as a write that its own barrier has made available.
-  Event left_by(const PlanBarrier& barrier) const {
+  Event left_by(const PlanBarrier& barrier, const Bytes& bytes) const {
     Event event;
+    event.bytes = bytes;
     event.is_write = event.available = true;
     event.queue = queue;
     event.at = now;
@@ -250,7 +276,7 @@ struct Machine {
       if (!thing.with_host) wrong("is taken over from the host twice");
       thing.with_host = barrier.to_host;
       thing.layout = barrier.new_layout;
-      thing.events = {left_by(barrier)};
+      thing.events = {left_by(barrier, bytes_of(index))};
       return;
     }
     if (thing.with_host) wrong("has a barrier while it is the host's");
@@ -264,8 +290,11 @@ struct Machine {
       if (!barrier.to_host && barrier.new_layout == Layout::undefined) wrong("is moved to no layout");
       thing.defined = false;
     }
+    const Bytes bytes = bytes_of(index);
     for_each_overlapping(index, [&](Thing& other, bool own) {
+      divide(other.events, bytes, barrier.source_stages);
       for (Event& event : other.events) {
+        if (!event.bytes.meets(bytes)) continue;
         extend(event, barrier);
         if (!transition) continue;
         if (!starts_from(event, barrier.source_stages))
@@ -276,7 +305,7 @@ struct Machine {
     });
     if (!transition) return;
     if (!release) thing.layout = barrier.new_layout;
-    thing.events = {left_by(barrier)};
+    thing.events = {left_by(barrier, bytes)};
     thing.with_host = barrier.to_host;
   }
 
@@ -314,10 +343,17 @@ struct Machine {
     if (reads && thing.defined && thing.placement != no_instance &&
         plan.placements[thing.placement].persistent && thing.of_frame != int64_t{frame} - access.frames_back)
       wrong("is read, but holds the contents of another frame");
+    const Bytes bytes = bytes_of(index);
     for_each_overlapping(index, [&](const Thing& other, bool own) {
-      bool followed = false; // by an access of every frame
+      bool followed = false,
+           certain = false; // by an access of every frame; this event, or a piece of it, is one
       for (size_t e = other.events.size(); e-- > 0;) {
         const Event& event = other.events[e];
+        const bool piece = e + 1 < other.events.size() && event.at == other.events[e + 1].at &&
+                           event.access == other.events[e + 1].access;
+        followed |= !piece && certain;
+        certain = event.certain || (piece && certain);
+        if (!event.bytes.meets(bytes)) continue;
         const bool ordered = (access.stages & ~event.ordered[index_of(queue)]) == 0;
         if ((event.is_write || writes) && !ordered) wrong("is touched before an earlier access is done");
         if (writes && event.is_write && !event.available)
@@ -327,7 +363,6 @@ struct Machine {
         // Where it was read since, in this frame whatever is valid, the wait for the reader is enough.
         if (writes && event.is_write && !followed && !visible(event, access.stages, as_write))
           wrong("is written where the last write is not visible");
-        followed |= event.certain;
       }
     });
   }
@@ -360,6 +395,8 @@ struct Machine {
       thing.queue = queue;
     }
     Event event;
+    event.bytes = bytes_of(index);
+    event.access = &access;
     event.stages = access.stages;
     event.writes = writes;
     event.is_write = writes != 0;

@@ -78,7 +78,7 @@ TEST(Parts, AMipIsReadWhileAnotherOneIsWritten) {
 
 TEST(Parts, WhatNobodyReadsOfAnImageIsNotMade) {
   auto b = pyramid();
-  b.graph.passes[3].reads[0].part = *parse_part("#0..1");
+  b.read(3, 0).part = *parse_part("#0..1");
   const auto plan = compiled(b);
   EXPECT_EQ(pass_names(b, plan.plan), "base down1 gather");
   EXPECT_THAT(reasons(b, plan, Reason::About::pass, 2), HasSubstr("culled"));
@@ -91,7 +91,7 @@ TEST(Parts, WhatIsReadOfAnImageHasBeenWritten) {
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
   EXPECT_THAT(errors[0].text, HasSubstr("'chain'"));
-  EXPECT_EQ(errors[0].where.line, b.graph.passes[3].reads[0].where.line);
+  EXPECT_EQ(errors[0].where.line, b.graph.place_of(b.read(3, 0)).line);
 }
 
 TEST(Parts, TwoWritersOfOneMipAreRefusedOnce) {
@@ -113,7 +113,7 @@ TEST(Parts, MipsBeyondThoseOfTheViewAreRefused) {
     EXPECT_THAT(error.text, HasSubstr("at 64x64 texels 'chain' has 7 mips and 1 layers"));
     EXPECT_EQ(error.related.size(), 1u);
   }
-  EXPECT_EQ(errors[0].where.line, b.graph.passes[4].reads[0].where.line);
+  EXPECT_EQ(errors[0].where.line, b.graph.place_of(b.read(4, 0)).line);
   EXPECT_THAT(errors[1].text, HasSubstr("'chain#8[1]'"));
 }
 

@@ -130,8 +130,8 @@ TEST(Formats, TheFirstOneThatEveryPortAndTheDeviceCanUseIsTaken) {
   EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
               HasSubstr("not rgba8_srgb: the device 'generic' does not support it"));
   b.graph.passes[1].kind = b.kinds.find("test.narrow"); // reads through the same port number, rgba16f only
-  b.graph.passes[1].reads[0].port = 0;
-  b.graph.passes[1].writes[0].port = 1;
+  b.read(1, 0).port = 0;
+  b.written(1, 0).port = 1;
   whole = compiled(b);
   EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::rgba16f);
   EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),

@@ -131,7 +131,7 @@ TEST(Overlay, ElementsOfArraysGoByNameOrIndexAndDashAppends) {
     { "set": "/resources/fixed/size/1", "to": 48 }, { "set": "/settings/style/enum/-", "to": "odd" },
     { "set": "/passes/blur/set/radius", "to": 3 })")});
   ASSERT_TRUE(composed.graph) << all_messages(composed.diagnostics);
-  EXPECT_EQ(composed.graph->resources[0].formats, (std::vector<Format>{Format::rgba16f, Format::r32f}));
+  EXPECT_EQ(composed.graph->resources[0].formats, (FormatList{Format::rgba16f, Format::r32f}));
   EXPECT_EQ(composed.graph->resources[5].size.y.numerator, 48);
   EXPECT_EQ(composed.graph->settings[4].options.size(), 3u);
   EXPECT_EQ(composed.graph->passes[1].settings.size(), 4u);

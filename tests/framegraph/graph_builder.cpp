@@ -146,7 +146,7 @@ PassId GraphBuilder::pass_id(const std::string& name) const {
   return {};
 }
 
-PortBinding GraphBuilder::reference(uint32_t port, const std::string& text) {
+PortBinding GraphBuilder::reference(uint32_t port, const std::string& text) const {
   const size_t at = std::min(text.find("@-"), text.size());
   const size_t end = std::min(text.find_first_of("#["), at);
   PortBinding binding;
@@ -155,9 +155,7 @@ PortBinding GraphBuilder::reference(uint32_t port, const std::string& text) {
   const auto part = parse_part(text.substr(end, at - end));
   EXPECT_TRUE(part) << text;
   if (part) binding.part = *part;
-  graph.parts |= !binding.part.whole();
   if (at != text.size()) binding.frames_back = static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
-  binding.where = next_line();
   return binding;
 }
 
@@ -168,23 +166,35 @@ PassDeclaration& GraphBuilder::pass(const std::string& name, const std::string& 
   declared.kind = kinds.find(kind_name);
   EXPECT_TRUE(declared.kind.valid()) << kind_name;
   declared.where = next_line();
-  const auto bind = [&](const Bindings& from, std::vector<PortBinding>& to) {
+  const auto add = [&](PortSide side, uint32_t port, const std::string& text, ReadWhen when) {
+    PortBinding binding = reference(port, text);
+    binding.when = when;
+    graph.bind(declared, side, binding, next_line());
+  };
+  const auto bind = [&](PortSide side, const Bindings& from) {
     for (const auto& [port, text] : from) {
-      const int index = find_port(kinds[declared.kind], port);
-      EXPECT_GE(index, 0) << port;
+      const int found = find_port(kinds[declared.kind], port);
+      EXPECT_GE(found, 0) << port;
+      const auto index = static_cast<uint32_t>(found);
       const size_t condition = text.find('?');
-      to.push_back(reference(static_cast<uint32_t>(index), text.substr(0, condition)));
-      if (condition == std::string::npos) continue;
-      to.back().when = ReadWhen::history_valid;
-      if (condition + 1 == text.size()) continue;
-      to.push_back(reference(static_cast<uint32_t>(index), text.substr(condition + 1)));
-      to.back().when = ReadWhen::history_invalid;
+      add(side, index, text.substr(0, condition),
+          condition == std::string::npos ? ReadWhen::always : ReadWhen::history_valid);
+      if (condition != std::string::npos && condition + 1 < text.size())
+        add(side, index, text.substr(condition + 1), ReadWhen::history_invalid);
     }
   };
-  bind(reads, declared.reads);
-  bind(writes, declared.writes);
+  bind(PortSide::read, reads);
+  bind(PortSide::write, writes);
   graph.passes.push_back(declared);
   return graph.passes.back();
+}
+
+PortBinding& GraphBuilder::read(uint32_t pass, uint32_t index) {
+  return graph.bindings[graph.passes[pass].first_binding + index];
+}
+
+PortBinding& GraphBuilder::written(uint32_t pass, uint32_t index) {
+  return read(pass, graph.passes[pass].read_count + index);
 }
 
 void GraphBuilder::otherwise(PassDeclaration& pass, const std::string& output, const std::string& instead) {

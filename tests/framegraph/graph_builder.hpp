@@ -41,7 +41,9 @@ struct GraphBuilder {
   ExpressionId when(const std::string& setting, bool wanted = true); // "setting" or "not setting"
   void otherwise(PassDeclaration& pass, const std::string& output, const std::string& instead);
 
-  PortBinding reference(uint32_t port, const std::string& text); // as there, without "?"
+  PortBinding reference(uint32_t port, const std::string& text) const; // as there, without "?"
+  PortBinding& read(uint32_t pass, uint32_t index); // what a pass reads, in the order of the call
+  PortBinding& written(uint32_t pass, uint32_t index);
   ResourceId resource(const std::string& name) const;
   PassId pass_id(const std::string& name) const;
   CompileInput input(uint32_t width = 64, uint32_t height = 64) const;

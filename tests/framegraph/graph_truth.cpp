@@ -81,17 +81,18 @@ Interpretation graph_truth(const Graph& graph, const KindRegistry& kinds, uint32
         continue;
       }
       std::vector<StandInInput> inputs;
-      for (size_t i = 0; i < pass.reads.size(); ++i) {
-        const PortBinding& binding = pass.reads[i];
+      const auto reads = graph.reads(pass), writes = graph.writes(pass);
+      for (size_t i = 0; i < reads.size(); ++i) {
+        const PortBinding& binding = reads[i];
         if (binding.when == ReadWhen::history_valid && !in_history(binding)) continue;
-        if (binding.when == ReadWhen::history_invalid && in_history(pass.reads[i - 1])) continue;
+        if (binding.when == ReadWhen::history_invalid && in_history(reads[i - 1])) continue;
         read(binding, inputs);
       }
-      for (const PortBinding& binding : pass.writes)
+      for (const PortBinding& binding : writes)
         if (usage_info(kinds[pass.kind].ports[binding.port].usage).reads) read(binding, inputs);
       std::stable_sort(inputs.begin(), inputs.end(),
                        [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
-      for (const PortBinding& binding : pass.writes) {
+      for (const PortBinding& binding : writes) {
         uint32_t part = 0;
         for (const size_t number : numbers(graph.resources[binding.resource.value], binding.part))
           contents_of[binding.resource.value][frame][number] = stand_in(p, binding.port, part++, inputs);

@@ -124,6 +124,27 @@ struct Oracle {
     const Placement& n = plan.placements[plan.resources[b.resource].first_instance + b.instance];
     return m.heap == n.heap && std::max(m.offset, n.offset) < std::min(m.offset + m.size, n.offset + n.size);
   }
+  // Does the operation reach this byte of the heap that `thing` lies in, or all of the thing itself?
+  bool reaches(const Operation& o, const Operation& thing, uint64_t byte) const {
+    if (same_instance(o, thing)) return same_thing(o, thing);
+    if (!overlap(o, thing)) return false;
+    const Placement& m = plan.placements[plan.resources[o.resource].first_instance + o.instance];
+    return m.offset <= byte && byte < m.offset + m.size;
+  }
+  // One byte of each piece of what two operations share that no placement divides.
+  std::vector<uint64_t> common_bytes(const Operation& a, const Operation& b) const {
+    if (host(a.resource)) return {0};
+    const Placement& m = plan.placements[plan.resources[a.resource].first_instance + a.instance];
+    const Placement& n = plan.placements[plan.resources[b.resource].first_instance + b.instance];
+    const uint64_t begin = std::max(m.offset, n.offset), end = std::min(m.offset + m.size, n.offset + n.size);
+    std::vector<uint64_t> bytes{begin};
+    for (const Placement& other : plan.placements)
+      for (const uint64_t border : {other.offset, other.offset + other.size})
+        if (other.heap == m.heap && border > begin && border < end) bytes.push_back(border);
+    std::sort(bytes.begin(), bytes.end());
+    bytes.erase(std::unique(bytes.begin(), bytes.end()), bytes.end());
+    return bytes;
+  }
   static bool is_barrier(const Operation& o) { return o.what == Operation::What::barrier; }
   // Barriers that are operations on the contents themselves: changes of layout and of owner.
   bool transition(const Operation& o) const {
@@ -159,7 +180,7 @@ struct Oracle {
     if (stages != 0) p.since[number(by.queue)] = std::min(p.since[number(by.queue)], by.step);
   }
 
-  Path path(size_t first, size_t second) const {
+  Path path(size_t first, size_t second, uint64_t byte) const {
     const Operation& a = all[first];
     Path p;
     if (is_barrier(a)) {
@@ -178,7 +199,7 @@ struct Oracle {
         show(p, all[second], o.queue, ~uint64_t{0}, ~uint64_t{0});
         continue;
       }
-      if (!is_barrier(o) || o.barrier->from_host || !overlap(a, o)) continue;
+      if (!is_barrier(o) || o.barrier->from_host || !reaches(o, a, byte)) continue;
       const PlanBarrier& b = *o.barrier;
       const bool directly = accesses(a) && a.queue == o.queue && (a.access->stages & ~b.source_stages) == 0;
       if (!directly && (p.ordered[number(o.queue)] & b.source_stages) == 0) continue;
@@ -214,7 +235,14 @@ struct Oracle {
     if (a.step == b.step || !acts(a) || !acts(b) || (!writes(a) && !writes(b)) || !overlap(a, b)) return "";
     if (is_barrier(b) && b.barrier->from_host) return ""; // the host has seen to that
     if (replaced(first, second)) return "";
-    const Path p = path(first, second);
+    for (const uint64_t byte : common_bytes(a, b))
+      if (std::string wrong = pair(first, second, byte); !wrong.empty()) return wrong;
+    return "";
+  }
+
+  std::string pair(size_t first, size_t second, uint64_t byte) const {
+    const Operation &a = all[first], &b = all[second];
+    const Path p = path(first, second, byte);
     const Stage before = p.ordered[number(b.queue)];
     const bool directly = is_barrier(b) && accesses(a) && a.queue == b.queue &&
                           (a.access->stages & ~b.barrier->source_stages) == 0;

@@ -32,10 +32,10 @@ TEST(Graph, EveryDeclarationOfAFileArrivesWithItsNamesResolved) {
   const ResourceDeclaration& light = graph.resources[0];
   EXPECT_EQ(light.origin, Origin::imported);
   EXPECT_TRUE(light.exported);
-  EXPECT_EQ(light.formats, (std::vector<Format>{Format::rgba16f, Format::rgba32f}));
+  EXPECT_EQ(light.formats, (FormatList{Format::rgba16f, Format::rgba32f}));
   EXPECT_TRUE(graph.resources[1].optional);
-  EXPECT_EQ(graph.resources[1].formats, (std::vector<Format>{Format::d32f, Format::d24, Format::d16,
-                                                             Format::d24s8, Format::d32fs8, Format::r32f}));
+  EXPECT_EQ(graph.resources[1].formats, (FormatList{Format::d32f, Format::d24, Format::d16, Format::d24s8,
+                                                    Format::d32fs8, Format::r32f}));
   const ResourceDeclaration& half = graph.resources[3];
   EXPECT_EQ(half.size.base, SizeExpression::Base::view);
   EXPECT_EQ(half.size.x.numerator, 3);
@@ -65,12 +65,12 @@ TEST(Graph, EveryDeclarationOfAFileArrivesWithItsNamesResolved) {
   const PassDeclaration& blur = graph.passes[1];
   EXPECT_EQ(blur.kind, (KindId{0}));
   ASSERT_TRUE(blur.when.valid());
-  ASSERT_EQ(blur.reads.size(), 4u);
-  EXPECT_EQ(blur.reads[3].port, 3u) << "the reading one of the two ports called history";
-  EXPECT_EQ(blur.reads[3].frames_back, 2u);
-  ASSERT_EQ(blur.writes.size(), 2u);
-  EXPECT_EQ(blur.writes[1].port, 5u);
-  EXPECT_EQ(blur.writes[1].resource, (ResourceId{4}));
+  ASSERT_EQ(graph.reads(blur).size(), 4u);
+  EXPECT_EQ(graph.reads(blur)[3].port, 3u) << "the reading one of the two ports called history";
+  EXPECT_EQ(graph.reads(blur)[3].frames_back, 2u);
+  ASSERT_EQ(graph.writes(blur).size(), 2u);
+  EXPECT_EQ(graph.writes(blur)[1].port, 5u);
+  EXPECT_EQ(graph.writes(blur)[1].resource, (ResourceId{4}));
   ASSERT_EQ(blur.settings.size(), 4u);
   EXPECT_EQ(blur.settings[0].from, (SettingId{1}));
   EXPECT_EQ(blur.settings[1].literal.real, 2.0);

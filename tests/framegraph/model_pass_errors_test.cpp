@@ -299,7 +299,7 @@ TEST(ValidHistory, IsReadAsTwoBindingsOfOnePort) {
       read(damaged("\"history\": \"kept@-2\"", "\"history\": { \"from\": \"kept@-2\", \"requires\": "
                                                "\"valid\", \"otherwise\": \"light\" }"));
   ASSERT_TRUE(result.graph) << all_messages(result.diagnostics);
-  const auto& reads = result.graph->passes[1].reads;
+  const auto reads = result.graph->reads(result.graph->passes[1]);
   ASSERT_EQ(reads.size(), 5u);
   EXPECT_EQ(reads[3].when, ReadWhen::history_valid);
   EXPECT_EQ(reads[3].frames_back, 2u);

@@ -19,6 +19,7 @@ struct Draft {
   std::vector<std::string> buffers;  // likewise
   std::vector<std::string>
       histories; // may be read at @-1 .. @-frames from the start, are all written in the end
+  Sizes sizes = Sizes::mixed;
   uint32_t count = 0;
 
   std::string fresh(const char* stem) { return fmt::format("{}{}", stem, count++); }
@@ -44,8 +45,10 @@ struct Draft {
   std::string new_image() {
     const auto name = fresh("image");
     auto& declared = random.chance(15) ? b.exported(name) : b.image(name);
+    // One page of memory, four or nine: several may follow each other in the memory of one.
+    const int64_t multiple = sizes == Sizes::mixed ? 1 + random.below(3) : 1;
     const int64_t divisor = 1 + random.below(3);
-    declared.size.x = declared.size.y = {1, divisor};
+    declared.size.x = declared.size.y = {multiple, divisor};
     return name;
   }
 
@@ -64,13 +67,15 @@ struct Draft {
   void parts() {
     const auto name = fresh("parts");
     auto& declared = b.image(name);
-    declared.size.x = declared.size.y = {1, 4}; // no larger than others: see docs/limits.md on implied barriers
+    const int64_t multiple = sizes == Sizes::mixed ? 1 + random.below(2) : 1;
+    const int64_t divisor = sizes == Sizes::mixed ? 1 : 4;
+    declared.size.x = declared.size.y = {multiple, divisor};
     declared.mips = 1 + random.below(3);
     declared.layers = 1 + random.below(2);
     const uint32_t mips = declared.mips, layers = declared.layers;
     if (random.chance(20)) b.pass(fresh("fill"), "test.fill", {}, {{"target", name}});
     const bool filled =
-        b.graph.passes.size() > 0 && b.graph.passes.back().writes[0].resource == b.resource(name);
+        b.graph.passes.size() > 0 && b.graph.writes(b.graph.passes.back())[0].resource == b.resource(name);
     for (uint32_t m = 0; m < mips; ++m) {
       const bool by_layer = random.chance(50);
       for (uint32_t l = 0; l < (by_layer ? layers : 1); ++l) {
@@ -88,7 +93,8 @@ struct Draft {
     }
     readable.push_back(name);
     readable.push_back(fmt::format("{}#{}", name, random.below(mips)));
-    const uint32_t first_mip = random.below(mips); // a statement a draw: compilers order arguments as they like
+    const uint32_t first_mip =
+        random.below(mips); // a statement a draw: compilers order arguments as they like
     readable.push_back(fmt::format("{}#{}..[{}]", name, first_mip, random.below(layers)));
   }
 
@@ -133,8 +139,8 @@ struct Draft {
 
 } // namespace
 
-GraphBuilder random_graph(uint64_t seed) {
-  Draft draft{{}, {seed}, {}, {}, {}, 0};
+GraphBuilder random_graph(uint64_t seed, Sizes sizes) {
+  Draft draft{{}, {seed}, {}, {}, {}, sizes, 0};
   const uint32_t imports = 1 + draft.random.below(3);
   for (uint32_t i = 0; i < imports; ++i) {
     draft.readable.push_back(draft.fresh("import"));

@@ -8,6 +8,11 @@
 
 namespace dermis::testing {
 
-GraphBuilder random_graph(uint64_t seed);
+enum class Sizes : uint8_t {
+  mixed,   // resources take one page of memory up to nine
+  one_page // each takes one
+};
+
+GraphBuilder random_graph(uint64_t seed, Sizes sizes = Sizes::mixed);
 
 } // namespace dermis::testing

@@ -46,12 +46,18 @@ void number_points(CompileContext& c) {
   std::vector<uint32_t> seen(plan.passes.size(), 0); // by position: how much of the other queue, likewise
   std::array<uint32_t, 2> returned{0, 0};
   c.round_trip.assign(plan.passes.size(), 0);
+  uint32_t awaited_by_async = 0; // of the main queue, in the whole frame
+  for (uint32_t position = 0; position < plan.passes.size(); ++position)
+    if (plan.passes[position].queue == Queue::async)
+      awaited_by_async = std::max(awaited_by_async, c.needs_point[position]);
   for (uint32_t position = 0; position < plan.passes.size(); ++position) {
     const Queue queue = plan.passes[position].queue;
     uint32_t& need = c.needs_point[position];
     uint32_t& before = waited[index(queue)];
-    const bool frame_before = c.needs_frame_before[position] != 0 && std::max(need, before) == 0;
-    if (frame_before && queue == Queue::async) {
+    // Nobody of this frame was waited for yet, who comes after the frame before.
+    const bool frame_before = c.needs_frame_before[position] != 0 && std::max(need, before) <= 1;
+    // In the frame before, the async queue has waited for part of it already.
+    if (frame_before && queue == Queue::async && c.needs_frame_before[position] > awaited_by_async) {
       need = 1;
       last_of_main = std::max(last_of_main, c.needs_frame_before[position]);
     }

@@ -33,6 +33,11 @@ std::string format_list(std::span<const Format> formats) {
   return list_words(names);
 }
 
+struct Found { // what a port is bound to, and where it says so
+  PortBinding binding;
+  SourceLocation where;
+};
+
 class Bindings {
 public:
   Bindings(GraphReader& reader, ObjectReader& object, PassDeclaration& pass)
@@ -76,26 +81,25 @@ private:
     const std::string what = fmt::format("port '{}' of {}", reader_.document.key(node), object_.what());
     if (side == PortSide::read && reader_.document[node].kind == NodeKind::object)
       return read_condition(node, port, what);
-    PortBinding binding;
-    if (!read_reference(side, node, port, what, binding) || !choose_mip(what, binding)) return false;
-    keep(side, what, binding);
+    Found found;
+    if (!read_reference(side, node, port, what, found) || !choose_mip(what, found)) return false;
+    keep(side, what, found);
     return true;
   }
 
-  bool read_reference(PortSide side, NodeId node, int port, const std::string& what, PortBinding& binding) {
+  bool read_reference(PortSide side, NodeId node, int port, const std::string& what, Found& found) {
     const auto text = read_string(reader_.document, node, what, reader_.diagnostics);
     if (!text) return false;
-    binding.where = reader_.document.where(node);
+    found.where = reader_.document.where(node);
     // Kept even where the port is unknown: who writes what must be known to judge the readers.
-    binding.port = port < 0 ? unknown_port : static_cast<uint32_t>(port);
-    return parse_reference(*text, what, side, binding.where, binding);
+    found.binding.port = port < 0 ? unknown_port : static_cast<uint32_t>(port);
+    return parse_reference(*text, what, side, found.where, found);
   }
 
-  void keep(PortSide side, const std::string& what, const PortBinding& binding) {
-    (side == PortSide::read ? pass_.reads : pass_.writes).push_back(binding);
-    reader_.graph.parts |= !binding.part.whole();
-    if (binding.port != unknown_port && !reader_.broken_resources[binding.resource.value])
-      check(kind_->ports[binding.port], what, binding);
+  void keep(PortSide side, const std::string& what, const Found& found) {
+    reader_.graph.bind(pass_, side, found.binding, found.where);
+    if (found.binding.port != unknown_port && !reader_.broken_resources[found.binding.resource.value])
+      check(kind_->ports[found.binding.port], what, found);
   }
 
   // { "from": "name@-N", "requires": "valid", "otherwise": "name" }
@@ -106,49 +110,49 @@ private:
     object.word("requires", requirements);
     const NodeId otherwise = object.any("otherwise", Need::optional);
     bool ok = object.finish();
-    PortBinding history, instead;
+    Found history, instead;
     ok &= from.valid() && read_reference(PortSide::read, from, port, "'from' of " + what, history);
     ok &= !otherwise.valid() ||
           read_reference(PortSide::read, otherwise, port, "'otherwise' of " + what, instead);
     if (!ok || !condition_fits(what, history, instead)) return false;
-    const HistoryDeclaration& declared = reader_.graph.resources[history.resource.value].history;
+    const HistoryDeclaration& declared = reader_.graph.resources[history.binding.resource.value].history;
     const bool zeros = !otherwise.valid() && declared.first == HistoryDeclaration::First::clear;
-    history.when = zeros ? ReadWhen::always : ReadWhen::history_valid;
+    history.binding.when = zeros ? ReadWhen::always : ReadWhen::history_valid;
     keep(PortSide::read, what, history);
     if (!otherwise.valid()) return true;
-    instead.when = ReadWhen::history_invalid;
+    instead.binding.when = ReadWhen::history_invalid;
     keep(PortSide::read, what, instead);
     return true;
   }
 
   // `instead` without a resource: the port says nothing of other frames.
-  bool condition_fits(const std::string& what, const PortBinding& history, const PortBinding& instead) {
-    const ResourceDeclaration& resource = reader_.graph.resources[history.resource.value];
+  bool condition_fits(const std::string& what, const Found& history, const Found& instead) {
+    const ResourceDeclaration& resource = reader_.graph.resources[history.binding.resource.value];
     const auto refuse = [&](const SourceLocation& where, std::string text) {
       reader_.error(DiagnosticId::bad_requires, where, std::move(text))
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
       return false;
     };
-    if (history.frames_back == 0)
+    if (history.binding.frames_back == 0)
       return refuse(history.where,
                     fmt::format("{} requires '{}' to be valid, which is this frame's", what, resource.name));
-    if (instead.frames_back > 0)
+    if (instead.binding.frames_back > 0)
       return refuse(
           instead.where,
           fmt::format("{} reads an earlier frame where '{}@-{}' is not valid, which may not be valid "
                       "either",
-                      what, resource.name, history.frames_back));
-    if (history.port == unknown_port) return true;
-    const Port& port = kind_->ports[history.port];
+                      what, resource.name, history.binding.frames_back));
+    if (history.binding.port == unknown_port) return true;
+    const Port& port = kind_->ports[history.binding.port];
     if (port.usage == Usage::indirect_arguments)
       return refuse(history.where,
                     fmt::format("{} holds the size of the dispatch, which is read in every frame", what));
-    const bool says = instead.resource.valid() || port.optional ||
+    const bool says = instead.binding.resource.valid() || port.optional ||
                       resource.history.first == HistoryDeclaration::First::clear;
     if (says) return true;
     return refuse(history.where,
                   fmt::format("{} must be bound, and nothing says to what where '{}@-{}' is not valid", what,
-                              resource.name, history.frames_back));
+                              resource.name, history.binding.frames_back));
   }
 
   int find(PortSide side, NodeId node) {
@@ -186,7 +190,7 @@ private:
 
   // "name", "name@-N", or "name#mips[layers]".
   bool parse_reference(std::string_view text, const std::string& what, PortSide side,
-                       const SourceLocation& where, PortBinding& out) {
+                       const SourceLocation& where, Found& out) {
     const size_t at = text.find('@');
     if (at != std::string_view::npos) {
       int64_t frame = 0;
@@ -198,7 +202,7 @@ private:
                       fmt::format("{} names '{}'; earlier frames are @-1, @-2 ...", what, text));
         return false;
       }
-      out.frames_back = static_cast<uint32_t>(-frame);
+      out.binding.frames_back = static_cast<uint32_t>(-frame);
     }
     const size_t end = std::min(text.find_first_of("#[@"), text.size());
     const auto part = parse_part(text.substr(end, std::min(at, text.size()) - end));
@@ -210,16 +214,17 @@ private:
                       what, text, limits::image_mips, limits::image_layers));
       return false;
     }
-    out.part = *part;
-    out.resource = find_resource(reader_, text.substr(0, end), what, where);
-    if (!out.resource.valid()) return false;
-    const ResourceDeclaration& resource = reader_.graph.resources[out.resource.value];
-    if (out.frames_back > 0 && side == PortSide::write) {
+    out.binding.part = *part;
+    out.binding.resource = find_resource(reader_, text.substr(0, end), what, where);
+    if (!out.binding.resource.valid()) return false;
+    const ResourceDeclaration& resource = reader_.graph.resources[out.binding.resource.value];
+    if (out.binding.frames_back > 0 && side == PortSide::write) {
       reader_.error(DiagnosticId::history_write, where,
                     fmt::format("{} writes '{}', an earlier frame", what, text));
       return false;
     }
-    if (out.frames_back > resource.history.frames && !reader_.broken_resources[out.resource.value]) {
+    if (out.binding.frames_back > resource.history.frames &&
+        !reader_.broken_resources[out.binding.resource.value]) {
       reader_
           .error(DiagnosticId::history_range, where,
                  resource.origin == Origin::imported
@@ -229,16 +234,18 @@ private:
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
       return false;
     }
-    return out.part.whole() || check_part(text, what, out);
+    return out.binding.part.whole() || check_part(text, what, out);
   }
 
   // Whether the resource has such parts, as far as that is known before there is a view.
-  bool check_part(std::string_view text, const std::string& what, const PortBinding& binding) {
-    const ResourceDeclaration& resource = reader_.graph.resources[binding.resource.value];
-    if (reader_.broken_resources[binding.resource.value]) return true;
+  bool check_part(std::string_view text, const std::string& what, const Found& found) {
+    const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
+    if (reader_.broken_resources[found.binding.resource.value]) return true;
     std::string problem;
-    const uint32_t last_mip = binding.part.first_mip + std::max<uint32_t>(binding.part.mips, 1) - 1;
-    const uint32_t last_layer = binding.part.first_layer + std::max<uint32_t>(binding.part.layers, 1) - 1;
+    const uint32_t last_mip =
+        found.binding.part.first_mip + std::max<uint32_t>(found.binding.part.mips, 1) - 1;
+    const uint32_t last_layer =
+        found.binding.part.first_layer + std::max<uint32_t>(found.binding.part.layers, 1) - 1;
     if (resource.type == ResourceType::buffer)
       problem = fmt::format("'{}' is a buffer", resource.name);
     else if (resource.origin == Origin::imported || resource.exported)
@@ -251,32 +258,31 @@ private:
       problem = fmt::format("'{}' has {} layers", resource.name, resource.layers);
     if (problem.empty()) return true;
     reader_
-        .error(DiagnosticId::bad_part, binding.where,
-               fmt::format("{} names '{}', but {}", what, text, problem))
+        .error(DiagnosticId::bad_part, found.where, fmt::format("{} names '{}', but {}", what, text, problem))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     return false;
   }
 
   // A storage image has one mip: of an image with several the first, unless another one is named.
-  bool choose_mip(const std::string& what, PortBinding& binding) {
-    const ResourceDeclaration& resource = reader_.graph.resources[binding.resource.value];
-    if (binding.port == unknown_port || resource.type == ResourceType::buffer || resource.mips == 1 ||
+  bool choose_mip(const std::string& what, Found& found) {
+    const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
+    if (found.binding.port == unknown_port || resource.type == ResourceType::buffer || resource.mips == 1 ||
         resource.origin == Origin::imported || resource.exported || resource.history.frames > 0)
       return true;
-    const Usage usage = kind_->ports[binding.port].usage;
+    const Usage usage = kind_->ports[found.binding.port].usage;
     if (usage != Usage::storage_image_write && usage != Usage::storage_image_update) return true;
-    if (binding.part.first_mip == 0 && binding.part.mips == 0) binding.part.mips = 1;
-    if (binding.part.mips == 1) return true;
+    if (found.binding.part.first_mip == 0 && found.binding.part.mips == 0) found.binding.part.mips = 1;
+    if (found.binding.part.mips == 1) return true;
     reader_
-        .error(DiagnosticId::bad_part, binding.where,
+        .error(DiagnosticId::bad_part, found.where,
                fmt::format("{} writes one mip, but '{}{}' are several", what, resource.name,
-                           part_text(binding.part)))
+                           part_text(found.binding.part)))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     return false;
   }
 
-  void check(const Port& port, const std::string& what, const PortBinding& binding) {
-    const ResourceDeclaration& resource = reader_.graph.resources[binding.resource.value];
+  void check(const Port& port, const std::string& what, const Found& found) {
+    const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
     const UsageInfo& usage = usage_info(port.usage);
     const bool image = resource.type == ResourceType::image;
     const auto declared_here = [&](Diagnostic& one) {
@@ -284,7 +290,7 @@ private:
     };
     if (image ? !usage.image : !usage.buffer) {
       declared_here(
-          reader_.error(DiagnosticId::usage_mismatch, binding.where,
+          reader_.error(DiagnosticId::usage_mismatch, found.where,
                         fmt::format("{} takes {}; '{}' is {}", what, image ? "a buffer" : "an image",
                                     resource.name, image ? "an image" : "a buffer")));
       return;
@@ -297,23 +303,23 @@ private:
     for (size_t i = 1; i < static_cast<size_t>(Format::count); ++i) {
       if (works_with(port, static_cast<Format>(i))) accepted.push_back(static_cast<Format>(i));
     }
-    report_formats(binding, fmt::format("{} works with {}", what, format_list(accepted)));
+    report_formats(found, fmt::format("{} works with {}", what, format_list(accepted)));
   }
 
   // One message a resource, however many ports its formats do not fit.
-  void report_formats(const PortBinding& binding, const std::string& port) {
-    const ResourceDeclaration& resource = reader_.graph.resources[binding.resource.value];
-    const auto known = reader_.format_mismatches.find(binding.resource);
+  void report_formats(const Found& found, const std::string& port) {
+    const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
+    const auto known = reader_.format_mismatches.find(found.binding.resource);
     if (known != reader_.format_mismatches.end()) {
       constexpr size_t most_related = 8;
       auto& related = reader_.diagnostics.list[known->second].related;
-      if (related.size() <= most_related) related.emplace_back(binding.where, port);
+      if (related.size() <= most_related) related.emplace_back(found.where, port);
       return;
     }
     if (!reader_.diagnostics.full())
-      reader_.format_mismatches.emplace(binding.resource, reader_.diagnostics.list.size());
+      reader_.format_mismatches.emplace(found.binding.resource, reader_.diagnostics.list.size());
     reader_
-        .error(DiagnosticId::format_mismatch, binding.where,
+        .error(DiagnosticId::format_mismatch, found.where,
                fmt::format("{}; '{}' declares {}", port, resource.name, format_list(resource.formats)))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
   }

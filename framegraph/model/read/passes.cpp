@@ -60,7 +60,8 @@ void read_otherwise(GraphReader& reader, ObjectReader& object, PassDeclaration& 
     if (!output.valid() || !instead.valid()) continue;
     const ResourceDeclaration& from = reader.graph.resources[output.value];
     const ResourceDeclaration& to = reader.graph.resources[instead.value];
-    const bool written = std::any_of(pass.writes.begin(), pass.writes.end(),
+    const auto writes = reader.graph.writes(pass);
+    const bool written = std::any_of(writes.begin(), writes.end(),
                                      [&](const PortBinding& one) { return one.resource == output; });
     if (!written && !writes_known) continue;
     if (!written) {

@@ -33,24 +33,23 @@ bool updates(const GraphReader& reader, const PassDeclaration& pass, const PortB
   return binding.port != unknown_port && usage_info(reader.kinds[pass.kind].ports[binding.port].usage).reads;
 }
 
-bool reads_now(const PassDeclaration& pass, const PortBinding& written) {
-  return std::any_of(pass.reads.begin(), pass.reads.end(), [&](const PortBinding& one) {
+bool reads_now(std::span<const PortBinding> reads, const PortBinding& written) {
+  return std::any_of(reads.begin(), reads.end(), [&](const PortBinding& one) {
     return one.resource == written.resource && one.frames_back == 0 && meet(one.part, written.part);
   });
 }
 
 // Two ports of one pass cannot write the same memory.
 void check_written_once(GraphReader& reader, const PassDeclaration& pass) {
-  for (size_t i = 0; i < pass.writes.size(); ++i) {
+  const auto writes = reader.graph.writes(pass);
+  for (size_t i = 0; i < writes.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
-      if (pass.writes[i].resource != pass.writes[j].resource ||
-          !meet(pass.writes[i].part, pass.writes[j].part))
-        continue;
+      if (writes[i].resource != writes[j].resource || !meet(writes[i].part, writes[j].part)) continue;
       reader
-          .error(DiagnosticId::two_producers, pass.writes[i].where,
+          .error(DiagnosticId::two_producers, reader.graph.place_of(writes[i]),
                  fmt::format("pass '{}' writes '{}' through two ports", pass.name,
-                             reader.graph.resources[pass.writes[i].resource.value].name))
-          .related.emplace_back(pass.writes[j].where, "the other port is bound here");
+                             reader.graph.resources[writes[i].resource.value].name))
+          .related.emplace_back(reader.graph.place_of(writes[j]), "the other port is bound here");
       break;
     }
   }
@@ -58,10 +57,10 @@ void check_written_once(GraphReader& reader, const PassDeclaration& pass) {
 
 void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
   const PassDeclaration& pass = reader.graph.passes[id.value];
-  for (const PortBinding& binding : pass.writes) {
+  for (const PortBinding& binding : reader.graph.writes(pass)) {
     Producers& producers = all[binding.resource.value];
     const ResourceDeclaration& resource = reader.graph.resources[binding.resource.value];
-    const bool continues = updates(reader, pass, binding) || reads_now(pass, binding);
+    const bool continues = updates(reader, pass, binding) || reads_now(reader.graph.reads(pass), binding);
     producers.any = true;
     if (continues) continue;
     producers.fresh = true;
@@ -72,11 +71,11 @@ void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
         !binding.part.whole())
       continue;
     if (!producers.first.pass.valid()) {
-      producers.first = {id, binding.where};
+      producers.first = {id, reader.graph.place_of(binding)};
     } else if (producers.first.pass != id) {
       const std::string& earlier = reader.graph.passes[producers.first.pass.value].name;
       reader
-          .error(DiagnosticId::two_producers, binding.where,
+          .error(DiagnosticId::two_producers, reader.graph.place_of(binding),
                  fmt::format("passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
                              earlier, pass.name, resource.name, pass.name, earlier))
           .related.emplace_back(producers.first.where, fmt::format("'{}' writes it here", earlier));
@@ -108,13 +107,13 @@ void check_producers(GraphReader& reader) {
   }
   if (reader.unknown_writes) return; // the producer that seems to be missing may be among them
   for (const PassDeclaration& pass : reader.graph.passes) {
-    for (const PortBinding& binding : pass.reads) {
-      require_producer(reader, all, binding.resource, binding.where,
+    for (const PortBinding& binding : reader.graph.reads(pass)) {
+      require_producer(reader, all, binding.resource, reader.graph.place_of(binding),
                        fmt::format("pass '{}' reads", pass.name));
     }
-    for (const PortBinding& binding : pass.writes) {
+    for (const PortBinding& binding : reader.graph.writes(pass)) {
       if (!updates(reader, pass, binding)) continue;
-      require_producer(reader, all, binding.resource, binding.where,
+      require_producer(reader, all, binding.resource, reader.graph.place_of(binding),
                        fmt::format("pass '{}' updates", pass.name));
     }
   }

@@ -24,7 +24,7 @@ std::vector<std::string_view> format_words() {
   return out;
 }
 
-bool read_format(GraphReader& reader, NodeId node, const std::string& what, std::vector<Format>& out) {
+bool read_format(GraphReader& reader, NodeId node, const std::string& what, FormatList& out) {
   const std::vector<std::string_view> words = format_words();
   const auto word = read_word(reader.document, node, what, words, reader.diagnostics);
   if (!word) return false;
@@ -40,7 +40,7 @@ bool read_format(GraphReader& reader, NodeId node, const std::string& what, std:
   return true;
 }
 
-bool read_formats(GraphReader& reader, ObjectReader& object, std::vector<Format>& out) {
+bool read_formats(GraphReader& reader, ObjectReader& object, FormatList& out) {
   const NodeId node = object.any("format");
   if (!node.valid()) return false;
   const std::string what = fmt::format("'format' of {}", object.what());
@@ -71,8 +71,8 @@ bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, 
   const std::string what = fmt::format("'{}' of {}", key, object.what());
   const bool count = key == "count";
   if (!count)
-    rounding.border = static_cast<uint32_t>(
-        object.integer("border", 0, limits::image_border, Need::optional).value_or(0));
+    rounding.border =
+        static_cast<uint32_t>(object.integer("border", 0, limits::image_border, Need::optional).value_or(0));
   const auto find = [&](std::string_view name) {
     return find_resource(reader, name, what, reader.document.where(node));
   };

@@ -150,11 +150,10 @@ PassDeclaration& SmallGraph::pass(const std::string& name, const std::string& ki
   PassDeclaration& added = graph.passes.emplace_back();
   added.name = name;
   added.kind = small_kinds().find(kind);
-  added.reads = bindings(small_kinds()[added.kind], reads);
-  added.writes = bindings(small_kinds()[added.kind], writes);
-  for (const auto* side : {&added.reads, &added.writes})
-    for (const PortBinding& one : *side)
-      graph.parts |= !one.part.whole();
+  for (const PortBinding& one : bindings(small_kinds()[added.kind], reads))
+    graph.bind(added, PortSide::read, one, {});
+  for (const PortBinding& one : bindings(small_kinds()[added.kind], writes))
+    graph.bind(added, PortSide::write, one, {});
   return added;
 }
 

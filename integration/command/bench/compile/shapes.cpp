@@ -51,9 +51,9 @@ struct Draft {
     declared.name = fmt::format("pass{}", graph.passes.size());
     declared.kind = plain;
     for (uint32_t i = 0; i < reads.size(); ++i)
-      declared.reads.push_back(bound(i, reads[i]));
+      graph.bind(declared, PortSide::read, bound(i, reads[i]), {});
     for (uint32_t i = 0; i < writes.size(); ++i)
-      declared.writes.push_back(bound(first_output + i, writes[i]));
+      graph.bind(declared, PortSide::write, bound(first_output + i, writes[i]), {});
     graph.passes.push_back(std::move(declared));
   }
 
