@@ -44,7 +44,7 @@ struct ExplainOptions {
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports that the host leaves out
-  bool two_queues = false; // passes declared async get a queue of their own where they can
+  bool two_queues = false;          // passes declared async get a queue of their own where they can
   std::string out = "-";
 };
 ExitCode explain(const Session& session, const ExplainOptions& options);
@@ -79,7 +79,7 @@ struct PlanSaveOptions {
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound;
   bool two_queues = false; // passes declared async get a queue of their own where they can
-  std::string out; // file
+  std::string out;         // file
 };
 ExitCode plan_save(const Session& session, const PlanSaveOptions& options);
 
@@ -121,6 +121,8 @@ struct RenderOptions {
   double budget_ms = 0;    // of device time for the graph's choices; 0: their defaults
   bool metered = false;    // judge times by the calibration alone
   std::string calibration; // file of dermis calibrate; "": the library's own
+  bool taa = false;        // temporal anti-aliasing in the engine
+  bool debug = false;      // also pictures of what the graph sampled
 };
 ExitCode render(const Session& session, const RenderOptions& options);
 
@@ -227,7 +229,7 @@ ExitCode bench_stability(const Session& session, const BenchStabilityOptions& op
 
 struct BenchBudgetOptions {
   std::string graph = "configs/graphs/skin.json";
-  std::string calibration;  // file of dermis calibrate; "": the library's own
+  std::string calibration; // file of dermis calibrate; "": the library's own
   std::vector<std::string> scenes{"flashing", "regular", "dynamic", "dolly", "cut"}; // in configs/scenes
   Size size{480, 270};
   uint32_t frames = 40;                    // judged, of each run

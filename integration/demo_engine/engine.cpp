@@ -3,6 +3,7 @@
 #include "integration/demo_engine/model/load_model.hpp"
 #include "integration/demo_engine/render/dermis_host.hpp"
 #include "integration/demo_engine/render/renderer.hpp"
+#include "integration/demo_engine/render/taa.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
 
 #include <fmt/format.h>
@@ -95,9 +96,8 @@ FrameCamera camera_of(const Scene& scene, const SceneState& state) {
   return camera;
 }
 
-// Reads a target and keeps its first `channels`.
-Result<> read(VulkanHost& host, const Renderer& renderer, Target target, uint32_t channels, FloatImage& out) {
-  const Image& image = renderer[target];
+// Reads an image and keeps its first `channels`.
+Result<> read(VulkanHost& host, const Image& image, uint32_t channels, FloatImage& out) {
   auto texels = read_image(host, image, resting);
   if (!texels) return texels.error();
   const uint32_t stored = find_pixel_format(image.format)->channels;
@@ -123,7 +123,7 @@ Result<> read_inputs(VulkanHost& host, const Renderer& renderer, const SceneStat
         Wanted{Target::material, 1, &inputs.profile}, Wanted{Target::velocity, 2, &inputs.velocity},
         Wanted{Target::specular, 3, &inputs.specular}, Wanted{Target::thickness, 1, &inputs.thickness},
         Wanted{Target::back_lighting, 3, &inputs.back_lighting}})
-    if (auto done = read(host, renderer, one.target, one.channels, *one.out); !done) return done;
+    if (auto done = read(host, renderer[one.target], one.channels, *one.out); !done) return done;
   const float nothing = renderer.view.reversed_depth ? 0.0f : 1.0f;
   for (float& depth : inputs.depth.texels) {
     const double metres = view_depth(state.now.clip_from_view, static_cast<double>(depth));
@@ -136,6 +136,7 @@ struct Session {
   VulkanHost& host;
   Renderer& renderer;
   DermisHost* dermis; // may be null
+  Taa* taa;           // may be null
   const Scene& scene;
 };
 
@@ -163,14 +164,19 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
       if (!recorded) return recorded;
     }
     record_composite(renderer, commands);
+    if (session.taa) record_taa(*session.taa, renderer, commands, state);
     return success();
   });
   if (!done) return done.error();
   if (session.dermis && hands_out_light(*session.dermis)) {
-    done = read(host, renderer, Target::scattered, 3, out.scattered);
+    done = read(host, renderer[Target::scattered], 3, out.scattered);
     if (!done) return done.error();
   }
-  done = read(host, renderer, Target::color, 3, out.color);
+  if (session.dermis && hands_out_sampling(*session.dermis)) {
+    done = read(host, renderer[Target::sampling], 4, out.sampling);
+    if (!done) return done.error();
+  }
+  done = read(host, session.taa ? taa_result(*session.taa) : renderer[Target::color], 3, out.color);
   if (!done) return done.error();
   out.display = tonemap(out.color);
   if (renderer.queries.host)
@@ -217,12 +223,13 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
     info.profiles.push_back({static_cast<uint32_t>(info.profiles.size()) + 1, profile.name,
                              options.profile.empty() ? profile.file : options.profile});
   RendererDesc desc;
-  desc.view = {options.width, options.height, options.reversed_depth, options.jitter};
+  desc.view = {options.width, options.height, options.reversed_depth, options.jitter || options.taa};
   DermisHandle dermis;
   if (!options.graph.empty()) {
-    auto made = create_dermis_host(**host, {options.graph, info.profiles, options.settings, options.width,
-                                            options.height, options.overlays, options.include,
-                                            options.budget_ms, options.metered, options.calibration});
+    auto made =
+        create_dermis_host(**host, {options.graph, info.profiles, options.settings, options.width,
+                                    options.height, options.overlays, options.include, options.budget_ms,
+                                    options.metered, options.calibration, options.sampling});
     if (!made) return made.error();
     dermis = made.take();
     desc.more_usage = usage_for_graph(*dermis);
@@ -231,13 +238,19 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   }
   auto renderer = create_renderer(**host, *scene, model, desc);
   if (!renderer) return renderer.error();
+  std::unique_ptr<Taa> taa;
+  if (options.taa) {
+    auto made = create_taa(**renderer);
+    if (!made) return made.error();
+    taa = made.take();
+  }
   info.triangles = (*renderer)->gpu.triangles;
   info.load_seconds = seconds_since(start);
   if (callbacks.on_start)
     if (auto done = callbacks.on_start(info); !done) return done.error();
 
   RenderSummary summary;
-  Session session{**host, **renderer, dermis.get(), *scene};
+  Session session{**host, **renderer, dermis.get(), taa.get(), *scene};
   for (uint32_t i = 0; i < options.frames; ++i) {
     auto frame = render_frame(session, options.first_frame + i, uint64_t{i} + 1);
     if (!frame) return frame.error();

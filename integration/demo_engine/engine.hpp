@@ -42,6 +42,8 @@ struct RenderOptions {
   uint32_t first_frame = 0, frames = 1;
   bool reversed_depth = false; // far plane at depth 0
   bool jitter = false;         // sub-pixel camera jitter (Halton 2, 3; period 8)
+  bool taa = false;            // temporal anti-aliasing of `color`, with jitter
+  bool sampling = false;       // hand out what the graph says of its samples
   bool validation = false;     // run under the Khronos validation layer
   std::string device;          // part of the device's name; "" = choose
   std::optional<CameraPlace> camera;
@@ -110,6 +112,8 @@ struct FrameOutputs {
   GraphInputs inputs;
   FloatImage scattered; // 3: light before albedo after scattering; empty when the graph does not export
                         // "scattered_light"
+  FloatImage sampling;  // 4: samples, those behind history, confidence or spread, 1 where a surface was new;
+                        // anything where there is no subsurface. Empty unless asked for and exported
   FloatImage color;     // 3: linear radiance times exposure
   std::vector<uint8_t> display;       // RGB, tonemapped and sRGB encoded
   std::vector<PassTime> host_times;   // shadows, gbuffer, lighting, composite

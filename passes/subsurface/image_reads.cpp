@@ -147,6 +147,12 @@ ImageReads residual(const PassKind& kind, const ReadsQuestion& question) {
   return reads;
 }
 
+// Light, material and depth of 3x3 pixels, its own once more; of the frame before one texel where the camera
+// rests, surface and light.
+ImageReads accumulate(const PassKind& kind, const ReadsQuestion& question) {
+  return {3 * 9 + 4 + one_if(kind, question, "velocity", PortSide::read) + 3};
+}
+
 // subsurface_pyramid_setup.comp: material, light, and the materials around if profiles are kept apart.
 ImageReads pyramid_setup(const PassKind& kind, const ReadsQuestion& question) {
   const bool textured = setting(kind, question, "texturing") != 0;
@@ -214,6 +220,7 @@ constexpr Entry entries[] = {
     {"subsurface.guided", guided},
     {"subsurface.blend", blend},
     {"subsurface.residual", residual},
+    {"subsurface.accumulate", accumulate},
 };
 
 } // namespace

@@ -1,140 +1,37 @@
 // What history must and must not do: the running ratio mends the pyramid where nothing changes, does not lag
 // behind light, follows cameras and things, and leaves no ghost. On the sculpted bust.
-#include "tests/laws/plane.hpp"
-
-#include "integration/command/bench/dynamic/figures.hpp"
-#include "integration/command/bench/dynamic/sequence.hpp"
-#include "integration/command/bench/technique.hpp"
+#include "tests/laws/sequences.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <map>
 
 namespace {
 
 using namespace dermis;
 using namespace dermis::tools;
+using laws::close_d_px;
+using laws::Frames;
+using laws::Judge;
+using laws::range;
+using laws::SequenceRun;
+using laws::standing_still;
+constexpr uint32_t width = laws::sequence_width, height = laws::sequence_height;
 
-const std::string root = DERMIS_SOURCE_DIR;
-constexpr uint32_t width = 240, height = 136, truth_pixels = 1024;
-constexpr double close_d_px = 4;
-
-class Temporal : public laws::DeviceTest {
+class Temporal : public laws::SequenceTest {
 protected:
-  void TearDown() override {
-    if (host_ == nullptr) return;
-    const std::lock_guard lock(host_->log.mutex);
-    for (const std::string& message : host_->log.messages)
-      ADD_FAILURE() << message;
+  using laws::SequenceTest::run;
+  SequenceRun run(Judge& judge, const std::string& graph, const Frames& judged,
+                  const std::vector<NamedValue>& set = {}, const laws::Follows& follows = {}) {
+    return run(judge, laws::request_of(graph, set), judged, follows);
   }
-
-  static Sequence frames_of(const std::string& scene, uint32_t first, uint32_t count) {
-    auto sequence = render_sequence(
-        {scene, "close", root + "/configs/scenes/" + scene + ".json", close_d_px, first, count, false}, width,
-        height, {});
-    EXPECT_TRUE(sequence) << sequence.error().text;
-    return sequence ? sequence.take() : Sequence{};
-  }
-
-  using Frames = std::vector<uint32_t>;
-  struct Run {
-    std::map<uint32_t, double> psnr_db; // of the frames asked for
-    double mean_psnr_db = 0;            // of their mean square error
-    std::vector<double> samples, lost;  // a subsurface pixel, each frame: samples; share without a past
-    uint64_t history_bytes = 0;
-  };
-
-  // Truths are shared by the techniques of a test.
-  struct Judge {
-    const Sequence& sequence;
-    std::map<uint32_t, Reference> references = {};
-
-    const Reference& at(uint32_t frame) {
-      auto found = references.find(frame);
-      if (found != references.end()) return found->second;
-      Session quiet;
-      quiet.quiet = true;
-      return references
-          .emplace(frame, *make_reference(quiet, sequence.frames[frame].captured, "truth", truth_pixels, ""))
-          .first->second;
-    }
-  };
-
-  // The truth counts pixels of the rendered rectangle.
-  static size_t in_picture(const FrameDescription& frame, uint32_t pixel) {
-    const uint32_t x = pixel % frame.render.width, y = pixel / frame.render.width;
-    return size_t{y + frame.render.y} * frame.width + x + frame.render.x;
-  }
-
-  Run run(Judge& judge, const std::string& graph, const Frames& judged,
-          const std::vector<NamedValue>& set = {}, const std::function<bool(uint32_t)>& follows = {}) {
-    Run result;
-    if (host_ == nullptr) { // after the frames were rendered: the engine has a device of its own
-      auto made = demo::create_vulkan_host({.validation = true, .device = ""});
-      EXPECT_TRUE(made) << made.error().text;
-      if (!made) return result;
-      host_ = made.take();
-    }
-    const TechniqueRequest request{graph, "", root + "/configs/graphs/" + graph + ".json", set, false};
-    auto made = TechniqueRun::create(*host_, request,
-                                     judge.sequence.frames.front().captured.description.profiles, {});
-    EXPECT_TRUE(made) << made.error().text;
-    if (!made) return result;
-    std::vector<FrameLight> light;
-    for (uint32_t t = 0; t < judge.sequence.frames.size(); ++t) {
-      const SequenceFrame& frame = judge.sequence.frames[t];
-      auto found = (*made)->scatter(frame.captured, follows ? follows(t) : t > 0 && !frame.cut);
-      EXPECT_TRUE(found) << found.error().text;
-      auto sampling = (*made)->sampling();
-      if (!found || !sampling) return result;
-      double samples = 0, pixels = 0;
-      for (size_t i = 0; i < frame.captured.profile.size() && !sampling->empty(); ++i)
-        if (frame.captured.profile[i] != 0) {
-          samples += double((*sampling)[3 * i]);
-          pixels += 1;
-        }
-      result.samples.push_back(pixels > 0 ? samples / pixels : 0);
-      if (std::find(judged.begin(), judged.end(), t) == judged.end()) continue;
-      const Reference& reference = judge.at(t);
-      FrameLight one{{}, reference.light};
-      for (const uint32_t pixel : reference.pixels)
-        for (size_t c = 0; c < 3; ++c)
-          one.found.push_back(double((*found)[3 * in_picture(frame.captured.description, pixel) + c]));
-      result.psnr_db[t] = sequence_figures({one}, 0, false, judge.sequence.exposure).psnr_db_frame;
-      light.push_back(std::move(one));
-    }
-    result.mean_psnr_db = sequence_figures(light, 0, false, judge.sequence.exposure).psnr_db_frame;
-    result.history_bytes = (*made)->history_bytes();
-    return result;
-  }
-
-  std::unique_ptr<demo::VulkanHost> host_;
 };
-
-std::vector<uint32_t> range(uint32_t first, uint32_t end) {
-  std::vector<uint32_t> frames;
-  for (uint32_t t = first; t < end; ++t)
-    frames.push_back(t);
-  return frames;
-}
-
-// Repeats one frame, as a host does whose scene stands still.
-Sequence standing_still(Sequence sequence, uint32_t count) {
-  SequenceFrame one = sequence.frames.front();
-  one.captured.description.previous_clip_from_view = one.captured.description.clip_from_view;
-  one.captured.description.previous_view_from_world = one.captured.description.view_from_world;
-  one.captured.velocity = {};
-  sequence.frames.assign(count, one);
-  return sequence;
-}
 
 TEST_F(Temporal, TheRatioMendsThePyramidOnASceneThatStandsStill) {
   const Sequence sequence = standing_still(frames_of("pan", 40, 1), 41);
   Judge judge{sequence};
-  const Run sap = run(judge, "sap", {40}), blend = run(judge, "sap_blend", {40}),
-            residual = run(judge, "sap_residual", {40});
+  const SequenceRun sap = run(judge, "sap", {40}), blend = run(judge, "sap_blend", {40}),
+                    residual = run(judge, "sap_residual", {40});
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("blend", std::to_string(blend.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
@@ -154,7 +51,7 @@ TEST_F(Temporal, TheRatioDoesNotLagBehindLightThatFlashes) {
   const Sequence sequence = frames_of("flashing", 0, 48);
   Judge judge{sequence};
   const Frames period = range(36, 48);
-  const Run sap = run(judge, "sap", period), residual = run(judge, "sap_residual", period);
+  const SequenceRun sap = run(judge, "sap", period), residual = run(judge, "sap_residual", period);
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.0);
@@ -164,8 +61,8 @@ TEST_F(Temporal, ACameraThatPansLeavesNoTrail) {
   const Sequence sequence = frames_of("pan", 20, 40);
   Judge judge{sequence};
   const Frames judged = {32, 35, 38, 39};
-  const Run sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),
-            never = run(judge, "sap_residual", judged, {}, [](uint32_t) { return false; });
+  const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),
+                    never = run(judge, "sap_residual", judged, {}, [](uint32_t) { return false; });
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("without_history", std::to_string(never.mean_psnr_db));
@@ -179,7 +76,7 @@ TEST_F(Temporal, AfterACutTheErrorIsBackWithinThreeFrames) {
   ASSERT_TRUE(sequence.frames[6].cut);
   Judge judge{sequence};
   const Frames judged = {6, 7, 8, 9, 40, 42, 44};
-  const Run signalled = run(judge, "sap_residual", judged);
+  const SequenceRun signalled = run(judge, "sap_residual", judged);
   const double steady = (signalled.psnr_db.at(40) + signalled.psnr_db.at(42) + signalled.psnr_db.at(44)) / 3;
   for (uint32_t t = 6; t <= 9; ++t)
     RecordProperty("db_" + std::to_string(t - 6), std::to_string(signalled.psnr_db.at(t)));
@@ -190,7 +87,7 @@ TEST_F(Temporal, AfterACutTheErrorIsBackWithinThreeFrames) {
   jumped.description.previous_clip_from_view = sequence.frames[5].captured.description.clip_from_view;
   jumped.description.previous_view_from_world = sequence.frames[5].captured.description.view_from_world;
   jumped.velocity = {};
-  const Run silent = run(judge, "sap_residual", {9}, {}, [](uint32_t t) { return t > 0; });
+  const SequenceRun silent = run(judge, "sap_residual", {9}, {}, [](uint32_t t) { return t > 0; });
   RecordProperty("silent_3", std::to_string(silent.psnr_db.at(9)));
   EXPECT_GT(silent.psnr_db.at(9), steady - 1);
 }
@@ -238,8 +135,8 @@ TEST_F(Temporal, HistoryIsFoundAgainWhereTheRenderedRectangleChanges) {
   }
   Judge judge{sequence};
   const Frames judged = {27, 28, 29}; // small at 28
-  const Run sap = run(judge, "sap", {27, 29}), residual = run(judge, "sap_residual", {27, 29}),
-            small_sap = run(judge, "sap", {28}), small_residual = run(judge, "sap_residual", {28});
+  const SequenceRun sap = run(judge, "sap", {27, 29}), residual = run(judge, "sap_residual", {27, 29}),
+                    small_sap = run(judge, "sap", {28}), small_residual = run(judge, "sap_residual", {28});
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("small_sap", std::to_string(small_sap.mean_psnr_db));
@@ -258,7 +155,7 @@ TEST_F(Temporal, AVelocityThatIsNoNumberCostsHistoryAndNothingElse) {
               std::numeric_limits<float>::quiet_NaN());
   }
   Judge judge{sequence};
-  const Run lost = run(judge, "sap_residual", {3});
+  const SequenceRun lost = run(judge, "sap_residual", {3});
   EXPECT_GT(lost.mean_psnr_db, 30); // NaN would have counted as an infinite error
   EXPECT_GT(lost.samples[3], 1.5 * 4 / 16);
 }

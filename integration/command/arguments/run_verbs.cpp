@@ -58,6 +58,12 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--frames,-n", options.frames, "Frames to render [8]")
             ->check(CLI::Range(1u, max_frames));
         verb.add_option("--capture", options.capture, "Folder for what the graph saw")->type_name("DIR");
+        verb.add_flag(
+            "--taa", options.taa,
+            "Temporal anti-aliasing in the engine, after the graph: sub-pixel jitter (Halton 2, 3)");
+        verb.add_flag("--debug", options.debug,
+                      "Also pictures debug_NNNN.png: green where the graph sampled, red where a surface had "
+                      "no past, black where nothing scatters");
         verb.add_option("--subset", options.subset,
                         "Pixels of the last frame compared with the truth; 0: none [4096]")
             ->check(CLI::Range(0u, max_subset));

@@ -17,25 +17,13 @@ struct FileReader {
   Diagnostics& diagnostics;
   ErrorTimeFile& file;
 
-  std::optional<demo::CameraPlace> camera(ObjectReader& entry) {
-    const NodeId node = entry.object("camera", Need::optional);
-    if (!node.valid()) return std::nullopt;
-    demo::CameraPlace place;
-    ObjectReader object(document, node, "the camera of " + entry.what(), diagnostics);
-    object.numbers("position", place.position, -1000, 1000);
-    object.numbers("target", place.target, -1000, 1000);
-    if (const auto fov = object.number("vertical_fov", 1, 150)) place.vertical_fov = *fov;
-    object.finish();
-    return place;
-  }
-
   void scene(NodeId node, size_t number) {
     ObjectReader object(document, node, fmt::format("scene {}", number), diagnostics);
     SceneRequest request;
     if (const auto name = object.name("scene")) request.scene = *name;
     if (const auto name = object.name("framing")) request.framing = *name;
     if (const auto path = object.string("file", Need::optional)) request.file = *path;
-    request.camera = camera(object);
+    request.camera = read_camera(document, object, diagnostics);
     if (const auto flag = object.boolean("model", Need::optional)) request.model = *flag;
     if (const auto flag = object.boolean("study", Need::optional)) request.study = *flag;
     const bool generated = request.file.empty();
@@ -114,6 +102,19 @@ struct FileReader {
 };
 
 } // namespace
+
+std::optional<demo::CameraPlace> read_camera(const Document& document, ObjectReader& entry,
+                                             Diagnostics& diagnostics) {
+  const NodeId node = entry.object("camera", Need::optional);
+  if (!node.valid()) return std::nullopt;
+  demo::CameraPlace place;
+  ObjectReader object(document, node, "the camera of " + entry.what(), diagnostics);
+  object.numbers("position", place.position, -1000, 1000);
+  object.numbers("target", place.target, -1000, 1000);
+  if (const auto fov = object.number("vertical_fov", 1, 150)) place.vertical_fov = *fov;
+  object.finish();
+  return place;
+}
 
 TechniqueRequest read_technique(const Document& document, ObjectReader& object, Diagnostics& diagnostics) {
   TechniqueRequest request;

@@ -13,10 +13,11 @@
 namespace dermis::tools {
 
 struct TechniqueRequest {
-  std::string technique, setting; // names in the report
-  std::string graph;              // file
-  std::vector<NamedValue> set;    // of the graph's settings
-  bool heat_map = false;          // show where it errs
+  std::string technique, setting;         // names in the report
+  std::string graph;                      // file
+  std::vector<NamedValue> set;            // of the graph's settings
+  bool heat_map = false;                  // show where it errs
+  std::vector<std::string> overlays = {}; // files, in order
 };
 
 struct ErrorTimeFile {
@@ -37,6 +38,10 @@ struct ErrorTimeFile {
 
 // The keys technique, setting, graph, set and heat_map of an entry; whoever calls finishes the object.
 TechniqueRequest read_technique(const Document& document, ObjectReader& object, Diagnostics& diagnostics);
+
+// The optional key camera of an entry.
+std::optional<demo::CameraPlace> read_camera(const Document& document, ObjectReader& object,
+                                             Diagnostics& diagnostics);
 
 // nullopt with located errors.
 std::optional<ErrorTimeFile> read_error_time(const std::string& path, Diagnostics& diagnostics);

@@ -51,7 +51,8 @@ demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHos
                                                                  std::span<const CaptureProfile> profiles,
                                                                  std::span<const float> sap_tables) {
   Diagnostics diagnostics;
-  std::optional<LoadedGraph> loaded = load_graph(request.graph, {}, diagnostics);
+  std::optional<LoadedGraph> loaded =
+      load_graph(request.graph, {.overlays = request.overlays, .roots = {}}, diagnostics);
   if (!loaded) return input_error(request.graph, text_of(diagnostics));
   const CompileChoices choices = read_choices(loaded->graph, request.set);
   if (!choices.problem.empty()) return input_error(request.graph, choices.problem);
@@ -68,6 +69,7 @@ demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoic
   DeviceGraphRequest wanted;
   wanted.graph_name = request_.graph;
   wanted.graph_text = text_;
+  wanted.overlays = loaded_.overlays;
   wanted.width = frame.description.width;
   wanted.height = frame.description.height;
   wanted.profiles = profiles_;

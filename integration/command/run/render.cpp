@@ -17,6 +17,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace dermis::tools {
 namespace {
 
@@ -63,6 +66,24 @@ demo::Result<> start(Run& run, const demo::RenderInfo& info) {
   return demo::success();
 }
 
+// Green by samples, up to the most that a graph takes by default; red where a surface was not to be seen in
+// the frame before; dim where there is subsurface and no sample; black where there is none.
+std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
+  constexpr float most_samples = 64, dim = 0.25f;
+  std::vector<uint8_t> rgb(frame.display.size());
+  for (size_t i = 0; i < frame.inputs.profile.texels.size(); ++i) {
+    if (!(frame.inputs.profile.texels[i] > 0)) continue;
+    const float* sampled = &frame.sampling.texels[4 * i];
+    for (size_t c = 0; c < 3; ++c)
+      rgb[3 * i + c] = static_cast<uint8_t>(dim * static_cast<float>(frame.display[3 * i + c]));
+    // The square root keeps one sample apart from none.
+    if (sampled[0] > 0)
+      rgb[3 * i + 1] = static_cast<uint8_t>(255 * std::sqrt(std::min(sampled[0] / most_samples, 1.0f)));
+    if (sampled[3] > 0.5f) rgb[3 * i] = 255;
+  }
+  return rgb;
+}
+
 demo::Result<> write_pictures(Run& run, const demo::FrameOutputs& frame) {
   std::string problem;
   const auto name = [&](const char* what, const char* extension) {
@@ -73,6 +94,9 @@ demo::Result<> write_pictures(Run& run, const demo::FrameOutputs& frame) {
     return cannot_write(problem);
   if (!frame.scattered.texels.empty() &&
       !write_exr(name("scattered", "exr"), to_image(frame.scattered), rgb_names, problem))
+    return cannot_write(problem);
+  if (!frame.sampling.texels.empty() && !write_png(name("debug", "png"), frame.color.width,
+                                                   frame.color.height, sampling_picture(frame), problem))
     return cannot_write(problem);
   return demo::success();
 }
@@ -184,6 +208,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.frames = options.frames;
   engine.budget_ms = options.budget_ms;
   engine.metered = options.metered;
+  engine.taa = options.taa;
+  engine.sampling = options.debug;
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);

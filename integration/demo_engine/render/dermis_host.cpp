@@ -209,7 +209,8 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   if (auto done = build_graph(*host, desc, *sources, {}); !done) return done.error();
   std::vector<std::string> unbound;
   for (const dermis_slot& slot : host->slots) {
-    if (target_of(slot.name)) continue;
+    const auto target = target_of(slot.name);
+    if (target && (target != Target::sampling || desc.sampling)) continue;
     if (slot.required)
       return Error{
           ErrorKind::input,
@@ -242,17 +243,26 @@ std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& ho
   return usage;
 }
 
-bool hands_out_light(const DermisHost& host) {
-  return std::any_of(host.slots.begin(), host.slots.end(), [](const dermis_slot& slot) {
-    return slot.written && slot.bound && target_of(slot.name) == Target::scattered;
+namespace {
+
+bool writes(const DermisHost& host, Target target) {
+  return std::any_of(host.slots.begin(), host.slots.end(), [&](const dermis_slot& slot) {
+    return slot.written && slot.bound && target_of(slot.name) == target;
   });
 }
 
+} // namespace
+
+bool hands_out_light(const DermisHost& host) {
+  return writes(host, Target::scattered);
+}
+
+bool hands_out_sampling(const DermisHost& host) {
+  return writes(host, Target::sampling);
+}
+
 Scattering scattering_of(const DermisHost& host) {
-  const bool in_place = std::any_of(host.slots.begin(), host.slots.end(), [](const dermis_slot& slot) {
-    return slot.written && slot.bound && target_of(slot.name) == Target::lighting;
-  });
-  if (in_place) return Scattering::in_place;
+  if (writes(host, Target::lighting)) return Scattering::in_place;
   return hands_out_light(host) ? Scattering::apart : Scattering::none;
 }
 

@@ -21,6 +21,7 @@ struct DermisDesc {
   double budget_ms = 0;
   bool metered = false;
   std::string calibration = {};
+  bool sampling = false; // bind `sampling`, which costs the graph a write
 };
 
 struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h
@@ -38,6 +39,7 @@ std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& ho
 // In place if the graph writes `lighting`, else apart if it writes `scattered_light`, else none.
 Scattering scattering_of(const DermisHost& host);
 bool hands_out_light(const DermisHost& host);
+bool hands_out_sampling(const DermisHost& host);
 const std::vector<std::string>& warnings_of(const DermisHost& host);
 
 // Records the graph between lighting and composite. All targets rest before and after. frame_index from 1.

@@ -28,8 +28,9 @@ enum class Target : uint8_t {
   color,
   thickness,     // metres, of the light that brings most through from behind
   back_lighting, // its irradiance on the far side
+  sampling,      // what the graph says of its samples, if it is asked to
 };
-inline constexpr size_t target_count = 13;
+inline constexpr size_t target_count = 14;
 
 struct TargetInfo {
   std::string_view slot;

@@ -1,5 +1,8 @@
 // dermis bench dynamic: techniques over sequences of frames in which light, camera or things change.
 
+#include "integration/command/bench/dynamic/accumulation.hpp"
+#include "integration/command/bench/dynamic/combined_truth.hpp"
+#include "integration/command/bench/dynamic/comparison.hpp"
 #include "integration/command/bench/dynamic/dynamic_file.hpp"
 #include "integration/command/bench/dynamic/figures.hpp"
 #include "integration/command/bench/report/report.hpp"
@@ -25,6 +28,7 @@ constexpr double head_height = 0.426;
 struct Measured {
   std::vector<FrameLight> light;                   // a frame each
   std::vector<double> device_ms, sampling_ms, spp; // likewise
+  Accumulation accumulation;                       // where camera or surfaces move
   SequenceFigures figures;
   TechniqueCounts counts;
   uint64_t history_bytes = 0;
@@ -96,6 +100,11 @@ demo::Result<> measure_frame(Bench& bench, const Sequence& sequence, size_t t, T
   for (const uint32_t pixel : reference.pixels)
     for (size_t c = 0; c < 3; ++c)
       chosen.found.push_back(double((*light)[size_t{3} * pixel + c]));
+  if (!sequence.request.still) {
+    const auto& mean = measured.accumulation.add(frame.captured, *light, t > 0 && !frame.cut);
+    for (const uint32_t pixel : reference.pixels)
+      chosen.accumulated.insert(chosen.accumulated.end(), mean[pixel].light.begin(), mean[pixel].light.end());
+  }
   measured.light.push_back(std::move(chosen));
   const auto times = run.times();
   if (!times) return times.error();
@@ -120,7 +129,13 @@ void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicT
   Plot plot{fmt::format("{} {}, error of each frame", sequence.request.scene, sequence.request.framing),
             "frame",
             "RMSE of linear luminance",
-            {}};
+            {},
+            true};
+  Plot samples{fmt::format("{} {}, samples of each frame", sequence.request.scene, sequence.request.framing),
+               "frame",
+               "samples a pixel",
+               {},
+               true};
   for (size_t i = 0; i < techniques.size(); ++i) {
     const DynamicTechnique& technique = techniques[i];
     const Measured& one = all[i];
@@ -128,10 +143,8 @@ void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicT
     const double peak_spp = one.spp.empty() ? one.counts.mean_spp : largest_of(one.spp, counted);
     ReportValue reads, accumulated, flicker;
     if (one.counts.reads_per_pixel) reads = *one.counts.reads_per_pixel;
-    if (still) {
-      accumulated = one.figures.psnr_db_accumulated;
-      flicker = one.figures.flicker;
-    }
+    accumulated = one.figures.psnr_db_accumulated;
+    if (still) flicker = one.figures.flicker;
     bench.report.table.rows.push_back(
         {sequence.request.scene, sequence.d_px, sequence.request.framing, technique.request.technique,
          technique.request.setting, technique.guidance, static_cast<int64_t>(technique.min_samples), mean_spp,
@@ -142,12 +155,20 @@ void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicT
     for (size_t t = 0; t < one.figures.psnr_db.size(); ++t) {
       const double rmse = std::pow(10.0, -one.figures.psnr_db[t] / 20);
       series.points.push_back(
-          {double(t + 1), rmse,
+          {double(t), rmse,
            fmt::format("{}, frame {}: {:.2f} dB", name_of(technique), t, one.figures.psnr_db[t]), false});
     }
     plot.series.push_back(std::move(series));
+    if (one.spp.empty()) continue;
+    constexpr double least_shown = 0.1; // the axis is logarithmic
+    PlotSeries taken{technique.request.technique + " " + technique.guidance, {}};
+    for (size_t t = 0; t < one.spp.size(); ++t)
+      taken.points.push_back({double(t), std::max(one.spp[t], least_shown),
+                              fmt::format("{}, frame {}: {:.2f}", name_of(technique), t, one.spp[t]), false});
+    samples.series.push_back(std::move(taken));
   }
   bench.report.plots.push_back(std::move(plot));
+  if (!samples.series.empty()) bench.report.plots.push_back(std::move(samples));
 }
 
 demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
@@ -177,11 +198,15 @@ demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
   std::vector<Measured> all(techniques.size());
   const std::string name = fmt::format("{} {}", request.scene, request.framing);
   Progress progress(progress_style(bench.session.quiet, false), name, "frame", sequence.frames.size());
+  KnownTruths known;
   for (size_t t = 0; t < sequence.frames.size(); ++t) {
     progress.update(t);
+    const CapturedFrame& frame = sequence.frames[t].captured;
+    const std::string what = fmt::format("truth of {}, frame {}", name, t);
     const auto reference =
-        make_reference(bench.session, sequence.frames[t].captured,
-                       fmt::format("truth of {}, frame {}", name, t), bench.file.subset, bench.options.cache);
+        request.still ? make_reference_of_still(bench.session, frame, what, bench.file.subset,
+                                                bench.options.cache, known)
+                      : make_reference(bench.session, frame, what, bench.file.subset, bench.options.cache);
     if (!reference || interrupted()) return stopped();
     for (size_t i = 0; i < runs.size(); ++i)
       if (auto done = measure_frame(bench, sequence, t, *runs[i], *reference, all[i]); !done) return done;
@@ -197,37 +222,6 @@ std::string facts_text(const Report& report) {
   for (const auto& [name, value] : report.facts)
     text += fmt::format("{}: {}\n", name, value);
   return text;
-}
-
-// sap_residual against afis + ccv (8..64) over the gated sequences with light that changes: samples and time
-// as ratios (geometric means), PSNR as a difference (mean).
-void add_comparison(Bench& bench) {
-  double log_samples = 0, log_ms = 0, difference = 0;
-  int count = 0;
-  ReportTable& table = bench.report.table;
-  const auto text = [&](size_t row, const char* key) { return std::get<std::string>(table.at(row, key)); };
-  const auto number = [&](size_t row, const char* key) { return std::get<double>(table.at(row, key)); };
-  const auto row_of = [&](const std::string& scene, const std::string& technique,
-                          const std::string& guidance) {
-    for (size_t i = 0; i < table.rows.size(); ++i)
-      if (text(i, "scene") == scene && text(i, "framing") == "close" && text(i, "technique") == technique &&
-          text(i, "guidance") == guidance)
-        return i;
-    return table.rows.size();
-  };
-  for (const char* scene : {"flashing", "regular", "dynamic"}) {
-    const size_t ours = row_of(scene, "sap_residual", "conf"), theirs = row_of(scene, "afis", "ccv");
-    if (ours == table.rows.size() || theirs == table.rows.size()) continue;
-    ++count;
-    log_samples += std::log(number(ours, "mean_spp") / number(theirs, "mean_spp"));
-    log_ms += std::log(number(ours, "mean_ms") / number(theirs, "mean_ms"));
-    difference += number(ours, "psnr_db_frame") - number(theirs, "psnr_db_frame");
-  }
-  if (count == 0) return;
-  bench.report.facts.emplace_back(
-      "sap_residual against afis + ccv",
-      fmt::format("{} sequences: samples x {:.3f}, time x {:.3f}, PSNR {:+.2f} dB", count,
-                  std::exp(log_samples / count), std::exp(log_ms / count), difference / count));
 }
 
 std::vector<ReportColumn> columns() {
@@ -307,7 +301,8 @@ ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& option
   bench.report.facts.emplace_back("truth", fmt::format("at {} stratified pixels a frame", file->subset));
   bench.report.facts.emplace_back("frames",
                                   fmt::format("counted from number {} of each sequence on", file->counted));
-  add_comparison(bench);
+  add_comparisons(bench.report);
+  add_published(bench.report);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   bench.report.facts.emplace_back("took", format_duration(seconds));
   if (!session.quiet && options.json != "-" && options.html != "-" && options.csv != "-")

@@ -16,6 +16,7 @@ void read_scene(const Document& document, NodeId node, Diagnostics& diagnostics,
   if (const auto name = object.name("framing")) request.framing = *name;
   if (const auto path = object.string("file")) request.file = *path;
   if (const auto d = object.number("d_px", least_d_px, most_d_px, Need::optional)) request.d_px = *d;
+  request.camera = read_camera(document, object, diagnostics);
   if (const auto n = object.integer("first", 0, most_frames, Need::optional)) request.first = uint32_t(*n);
   if (const auto n = object.integer("frames", 1, most_frames)) request.frames = uint32_t(*n);
   if (const auto flag = object.boolean("still", Need::optional)) request.still = *flag;

@@ -69,9 +69,10 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
     for (size_t i = 0; i < here.size(); ++i)
       eight_bit.add_square((double(here[i]) - double(there[i])) / 255.0);
     shown_sum += eight_bit.value();
-    if (!still) continue;
     Mean accumulated;
-    for (size_t i = 0; i < pixels; ++i) {
+    for (size_t i = 0; !still && i < now.accumulated.size() / 3; ++i)
+      accumulated.add_square(exposure * (luminance(now.accumulated, i) - luminance(now.truth, i)));
+    for (size_t i = 0; still && i < pixels; ++i) {
       accumulated.add_square(exposure * (luminance(found_mean, i) - luminance(truth_mean, i)));
       if (t == 0) continue;
       const FrameLight& last = frames[t - 1];
@@ -83,10 +84,8 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
   if (used == 0) return figures;
   figures.psnr_db_frame = psnr_from_mse(frame_sum / used);
   figures.psnr_db_sdr8 = psnr_from_mse(shown_sum / used);
-  if (still) {
-    figures.psnr_db_accumulated = psnr_from_mse(accumulated_sum / used);
-    figures.flicker = std::sqrt(flicker.value());
-  }
+  if (still || accumulated_sum > 0) figures.psnr_db_accumulated = psnr_from_mse(accumulated_sum / used);
+  if (still) figures.flicker = std::sqrt(flicker.value());
   return figures;
 }
 

@@ -53,6 +53,7 @@ demo::Result<Sequence> render_sequence(const SequenceRequest& request, uint32_t 
   demo::RenderOptions options;
   options.scene = request.file;
   options.model = model;
+  options.camera = request.camera;
   options.width = width;
   options.height = height;
   for (int i = 0; i < most_tries && request.d_px > 0; ++i) {

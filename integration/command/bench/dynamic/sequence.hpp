@@ -5,6 +5,7 @@
 #include "integration/demo_engine/engine.hpp"
 #include "integration/files/capture.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct SequenceRequest {
   double d_px = 0;  // the camera zooms until the first frame's median is within 2 % of it; 0: as it is
   uint32_t first = 0, frames = 60; // of the scene
   bool still = false;              // camera and surfaces rest, so that frames can be compared pixel by pixel
+  std::optional<demo::CameraPlace> camera = {}; // instead of the scene's own
 };
 
 struct SequenceFrame {

@@ -27,7 +27,7 @@ th{background:var(--head);position:sticky;top:0;cursor:pointer;user-select:none}
 tr.best td{background:var(--mark)}
 .plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(400px,1fr));gap:1.2rem}figure{margin:0}
 figcaption{font-size:.86rem;color:var(--dim)}svg{width:100%;height:auto}svg text{font-size:11px;fill:var(--dim)}
-.grid{stroke:var(--line)}.front{fill:none;stroke:var(--dim);stroke-width:1.2;stroke-dasharray:5 3}
+.line{fill:none;stroke:var(--c);stroke-width:1.3}.grid{stroke:var(--line)}.front{fill:none;stroke:var(--dim);stroke-width:1.2;stroke-dasharray:5 3}
 .legend{display:flex;flex-wrap:wrap;gap:.3rem 1.2rem;font-size:.9rem}.legend svg{width:14px;height:14px;vertical-align:-2px}
 circle{fill:var(--c);stroke:var(--c);stroke-width:1.8}circle.open{fill:var(--bg)}
 .maps{display:grid;grid-template-columns:repeat(auto-fill,minmax(250px,1fr));gap:.9rem}
@@ -89,9 +89,11 @@ void add_plots(std::string& page, const std::vector<Plot>& plots) {
   for (const Plot& plot : plots)
     for (const PlotSeries& series : plot.series)
       if (std::find(names.begin(), names.end(), series.name) == names.end()) names.push_back(series.name);
-  page += "<h2>Time against error</h2><p>Filled points are on the Pareto front: nothing else is both faster "
-          "and more "
-          "exact. Point at one to see what it is.</p><div class=legend>";
+  page += plots.front().over_frames
+              ? "<h2>Frame by frame</h2><p>Point at a frame to see its value.</p><div class=legend>"
+              : "<h2>Time against error</h2><p>Filled points are on the Pareto front: nothing else is both "
+                "faster "
+                "and more exact. Point at one to see what it is.</p><div class=legend>";
   for (size_t i = 0; i < names.size(); ++i)
     page += fmt::format("<span class=s{}><svg viewBox='0 0 14 14'><circle cx=7 cy=7 r=5 /></svg> {}</span>",
                         i, html_text(names[i]));
@@ -169,6 +171,10 @@ std::string report_as_html(const Report& report) {
     page += fmt::format("<li>{}\n", html_text(note));
   if (!report.notes.empty()) page += "</ul>\n";
   add_plots(page, report.plots);
+  if (!report.more.rows.empty()) {
+    page += fmt::format("<h2>{}</h2><p>{}</p>\n", html_text(report.more_title), html_text(report.more_text));
+    add_table(page, report.more);
+  }
   page += "<h2>All rows</h2><p>Click a title to sort. Marked rows are on the front.</p>\n";
   add_table(page, report.table);
   for (const ReportPictures& group : report.pictures)

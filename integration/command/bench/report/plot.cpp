@@ -1,5 +1,5 @@
-// Plots with logarithmic axes as SVG. Colours come from the page: classes s0, s1, ... by the series' place in
-// its list.
+// Plots with logarithmic axes, or over frames, as SVG. Colours come from the page: classes s0, s1, ... by the
+// series' place in its list.
 
 #include "integration/command/bench/report/html.hpp"
 #include "integration/command/bench/report/report.hpp"
@@ -16,11 +16,22 @@ constexpr double width = 460, height = 300; // of the picture
 constexpr double left = 58, right = 14, top = 12, bottom = 44;
 
 struct Axis {
-  double low = 0, high = 1; // log10
+  double low = 0, high = 1; // log10, or the values where the axis is even
   double from = 0, to = 1;  // picture
+  bool even = false;
 
-  double place(double value) const { return from + (std::log10(value) - low) / (high - low) * (to - from); }
+  double place(double value) const {
+    return from + ((even ? value : std::log10(value)) - low) / (high - low) * (to - from);
+  }
 };
+
+Axis frames_axis(const Plot& plot, double from, double to) {
+  double last = 1;
+  for (const PlotSeries& series : plot.series)
+    for (const PlotPoint& point : series.points)
+      last = std::max(last, point.x);
+  return {0, last, from, to, true};
+}
 
 Axis axis_over(const Plot& plot, double PlotPoint::*which, double from, double to) {
   double low = 1e300, high = 0;
@@ -40,6 +51,13 @@ std::string number(double value) {
 
 // 1, 2, 5 of each decade; 1 alone where the axis spans many, more where it spans little.
 std::vector<double> ticks(const Axis& axis) {
+  if (axis.even) {
+    const double step = axis.high > 100 ? 50 : axis.high > 40 ? 10 : 5; // frames
+    std::vector<double> frames;
+    for (double at = 0; at <= axis.high; at += step)
+      frames.push_back(at);
+    return frames;
+  }
   constexpr double mantissas[] = {1, 2, 5, 3, 7, 1.5, 4, 6, 8};
   const double decades = axis.high - axis.low;
   const size_t count = decades > 3.5 ? 1 : decades > 1 ? 3 : decades > 0.6 ? 5 : std::size(mantissas);
@@ -83,7 +101,8 @@ void add_front(std::string& svg, const Plot& plot, const Axis& x, const Axis& y)
 } // namespace
 
 std::string plot_as_svg(const Plot& plot, const std::vector<std::string>& names) {
-  const Axis x = axis_over(plot, &PlotPoint::x, left, width - right);
+  const Axis x = plot.over_frames ? frames_axis(plot, left, width - right)
+                                  : axis_over(plot, &PlotPoint::x, left, width - right);
   const Axis y = axis_over(plot, &PlotPoint::y, height - bottom, top);
   std::string svg =
       fmt::format("<svg viewBox='0 0 {} {}' role=img aria-label='{}'>", width, height, html_text(plot.title));
@@ -92,9 +111,16 @@ std::string plot_as_svg(const Plot& plot, const std::vector<std::string>& names)
   for (const PlotSeries& series : plot.series) {
     const auto place = std::find(names.begin(), names.end(), series.name) - names.begin();
     svg += fmt::format("<g class=s{}>", place);
+    if (plot.over_frames) {
+      svg += "<polyline class=line points='";
+      for (const PlotPoint& point : series.points)
+        svg += fmt::format("{:.1f},{:.1f} ", x.place(point.x), y.place(point.y));
+      svg += "' />";
+    }
     for (const PlotPoint& point : series.points)
-      svg += fmt::format("<circle cx={:.1f} cy={:.1f} r=5{}><title>{}</title></circle>", x.place(point.x),
-                         y.place(point.y), point.on_front ? "" : " class=open", html_text(point.label));
+      svg += fmt::format("<circle cx={:.1f} cy={:.1f} r={}{}><title>{}</title></circle>", x.place(point.x),
+                         y.place(point.y), plot.over_frames ? 1.5 : 5.0, point.on_front ? "" : " class=open",
+                         html_text(point.label));
     svg += "</g>";
   }
   return svg + "</svg>";

@@ -39,6 +39,7 @@ struct PlotSeries {
 struct Plot {
   std::string title, x_title, y_title;
   std::vector<PlotSeries> series;
+  bool over_frames = false; // x counts frames from 0: an even axis, a line through each series
 };
 
 struct ReportPicture {
@@ -59,6 +60,9 @@ struct Report {
   ReportTable table;
   std::vector<Plot> plots;
   std::vector<ReportPictures> pictures;
+  std::string more_title,
+      more_text; // of a second table, in HTML alone: where what was published is set beside ours
+  ReportTable more;
 };
 
 // Facts that every bench states: command, processor, threads, and where given the device.

@@ -1,0 +1,111 @@
+// Light over frames (subsurface.accumulate, configs/overlays/accumulate.json): it converges where nothing
+// changes, and starts anew where the camera cuts or a surface comes into sight.
+#include "tests/laws/sequences.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::tools;
+using laws::Judge;
+using laws::SequenceRun;
+
+class Accumulate : public laws::SequenceTest {
+protected:
+  // `clip` "0": history is believed however far it lies from what is around it now.
+  static TechniqueRequest over_frames(const std::string& graph, const std::string& clip,
+                                      std::vector<NamedValue> set = {}) {
+    set.emplace_back("accumulate_clip", clip);
+    TechniqueRequest request = laws::request_of(graph, set);
+    request.overlays = {laws::root() + "/configs/overlays/accumulate.json"};
+    if (graph == "sap_residual")
+      request.overlays.push_back(laws::root() + "/configs/overlays/accumulate_mended.json");
+    return request;
+  }
+};
+
+TEST_F(Accumulate, NoiseOfAStillSceneFallsAsAMovingMeanOfItsFramesSays) {
+  const Sequence sequence = laws::standing_still(frames_of("pan", 40, 1), 48);
+  Judge judge{sequence};
+  // Frames that begin anew are independent: their moving mean of weight .1 has .1 / 1.9 of the variance, 12.8
+  // dB.
+  const std::vector<NamedValue> independent = {{"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}};
+  const SequenceRun single = run(judge, laws::request_of("afis", independent), {44, 45, 46, 47});
+  const SequenceRun mean = run(judge, over_frames("afis", "0", independent), {44, 45, 46, 47});
+  const SequenceRun clipped = run(judge, over_frames("afis", "1.5", independent), {44, 45, 46, 47});
+  RecordProperty("single", std::to_string(single.mean_psnr_db));
+  RecordProperty("mean", std::to_string(mean.mean_psnr_db));
+  RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
+  // What does not average out is the bias of few samples divided by their own sum.
+  EXPECT_GT(mean.mean_psnr_db, single.mean_psnr_db + 8);
+  EXPECT_LT(mean.mean_psnr_db, single.mean_psnr_db + 12.8 + 0.5);
+  EXPECT_GT(clipped.mean_psnr_db, mean.mean_psnr_db - 1); // clipping leaves noise around the truth alone
+}
+
+TEST_F(Accumulate, LightThatIsTheSameInEachFrameComesOutAsItWentIn) {
+  const Sequence sequence = laws::standing_still(frames_of("pan", 40, 1), 12);
+  Judge judge{sequence};
+  const SequenceRun now = run(judge, laws::request_of("sap"), {11});
+  const SequenceRun mean = run(judge, over_frames("sap", "1.5"), {11});
+  EXPECT_NEAR(mean.mean_psnr_db, now.mean_psnr_db, 0.02); // half floats
+}
+
+TEST_F(Accumulate, AFrameAfterACutShowsNothingOfWhatWasBefore) {
+  const Sequence sequence = frames_of("cut", 54, 10); // the camera jumps at frame 60
+  ASSERT_TRUE(sequence.frames[6].cut);
+  Judge judge{sequence};
+  const SequenceRun now = run(judge, laws::request_of("sap"), {6});
+  const SequenceRun mean = run(judge, over_frames("sap", "0"), {6}); // nothing but validity keeps ghosts away
+  EXPECT_EQ(mean.pictures.at(6), now.pictures.at(6));
+}
+
+TEST_F(Accumulate, WhatComesIntoSightStartsAnewAndWhatStaysInSightDoesNot) {
+  const Sequence sequence = frames_of("pan", 20, 24);
+  Judge judge{sequence};
+  const SequenceRun now = run(judge, laws::request_of("sap"), {20, 23});
+  const SequenceRun mean = run(judge, over_frames("sap", "0"), {20, 23}),
+                    clipped = run(judge, over_frames("sap", "1.5"), {20, 23});
+  RecordProperty("now", std::to_string(now.mean_psnr_db));
+  RecordProperty("mean", std::to_string(mean.mean_psnr_db));
+  RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
+  // The truth is that of each frame's own light, whose edges fall between pixels anew in each frame; a mean
+  // of ten frames cannot follow that. Measured 1.2 dB, clipped .6.
+  EXPECT_GT(mean.mean_psnr_db, now.mean_psnr_db - 2);
+  EXPECT_GT(clipped.mean_psnr_db, now.mean_psnr_db - 1);
+  // At the edge that the camera moves towards no past is there: those pixels are this frame's, bit by bit.
+  const auto same = [&](uint32_t x0, uint32_t x1) {
+    size_t equal = 0, pixels = 0;
+    const SequenceFrame& frame = sequence.frames[23];
+    for (uint32_t y = 0; y < laws::sequence_height; ++y)
+      for (uint32_t x = x0; x < x1; ++x) {
+        const size_t i = size_t{y} * laws::sequence_width + x;
+        if (frame.captured.profile[i] == 0) continue;
+        ++pixels;
+        equal += std::equal(&now.pictures.at(23)[3 * i], &now.pictures.at(23)[3 * i] + 3,
+                            &mean.pictures.at(23)[3 * i]);
+      }
+    return pixels > 0 ? double(equal) / double(pixels) : -1;
+  };
+  const double left = same(0, 1), right = same(laws::sequence_width - 1, laws::sequence_width),
+               middle = same(laws::sequence_width / 2, laws::sequence_width / 2 + 8);
+  RecordProperty("left", std::to_string(left));
+  RecordProperty("right", std::to_string(right));
+  EXPECT_EQ(std::max(left, right), 1);
+  EXPECT_LT(middle, 0.2);
+}
+
+TEST_F(Accumulate, ClippingFollowsLightThatFlashes) {
+  const Sequence sequence = frames_of("flashing", 0, 30);
+  Judge judge{sequence};
+  const std::vector<uint32_t> judged = {20, 23, 26, 29};
+  const SequenceRun now = run(judge, laws::request_of("sap_residual"), judged);
+  const SequenceRun believing = run(judge, over_frames("sap_residual", "0"), judged),
+                    clipped = run(judge, over_frames("sap_residual", "1.5"), judged);
+  RecordProperty("now", std::to_string(now.mean_psnr_db));
+  RecordProperty("believing", std::to_string(believing.mean_psnr_db));
+  RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
+  EXPECT_GT(clipped.mean_psnr_db, believing.mean_psnr_db + 10);
+}
+
+} // namespace
