@@ -45,7 +45,8 @@ enum class HistoryReason : uint8_t {
   resized,     // the executor was made for a new size
   reloaded,    // the executor was made for a new graph
   discarded,   // discard_frames()
-  switched     // frames ran with another plan
+  switched,    // frames ran with another plan
+  left_out     // a frame ran without passes: FrameInput::left_out
 };
 // Static string for people, for example "camera cut". Free-threaded.
 const char* history_reason_text(HistoryReason reason);
@@ -64,8 +65,8 @@ struct ExecutorInput { // nothing is kept but `device`; all the rest is copied o
   const HeapPool* heap_pool = nullptr; // made with this plan among others: transients lie in its memory, and
                                        // no other user of it may run at the same time. Null: its own memory.
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid
-  // For tests: each frame fills whatever the plan says nobody may read, before it is first written, with NaN, or
-  // 0xCD in each byte. The plan must be compiled with CompileInput::poison.
+  // For tests: each frame fills whatever the plan says nobody may read, before it is first written, with NaN,
+  // or 0xCD in each byte. The plan must be compiled with CompileInput::poison.
   bool poison = false;
 };
 
@@ -97,9 +98,13 @@ struct FrameInput {
   std::span<const SettingValue> settings;     // one per Graph::settings; empty: those of the plan
   Rectangle rectangle;                        // width 0: the allocated view size
   uint64_t frame_index = 1;                   // grows; the frame `frame_index - frames_in_flight` is finished
-  bool taken_over = false; // frames ran elsewhere since the last record: the pool's memory was used by
-                           // others, and histories start anew
+  bool taken_over = false;    // frames ran elsewhere since the last record: the pool's memory was used by
+                              // others, and histories start anew
   bool reset_history = false; // camera cut: histories with on_cut invalidate become invalid
+  // By plan pass, not 0: the pass does not run, only its barriers are recorded. Histories start anew in the
+  // frame after such a one. Shorter: the rest runs. What runs must not read what a pass that is left out
+  // would write.
+  std::span<const uint8_t> left_out;
 };
 
 // Like Error, without memory of its own.

@@ -43,7 +43,7 @@ struct ExplainOptions {
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports that the host leaves out
-  bool two_queues = false; // passes declared async get a queue of their own where they can
+  bool two_queues = false;          // passes declared async get a queue of their own where they can
   std::string out = "-";
 };
 ExitCode explain(const Session& session, const ExplainOptions& options);
@@ -78,7 +78,7 @@ struct PlanSaveOptions {
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound;
   bool two_queues = false; // passes declared async get a queue of their own where they can
-  std::string out; // file
+  std::string out;         // file
 };
 ExitCode plan_save(const Session& session, const PlanSaveOptions& options);
 
@@ -202,7 +202,7 @@ ExitCode bench_supplement(const Session& session, const BenchSupplementOptions& 
 
 struct BenchBudgetOptions {
   std::string graph = "configs/graphs/skin.json";
-  std::string calibration;  // file of dermis calibrate; "": the library's own
+  std::string calibration; // file of dermis calibrate; "": the library's own
   std::vector<std::string> scenes{"flashing", "regular", "dynamic", "dolly", "cut"}; // in configs/scenes
   Size size{480, 270};
   uint32_t frames = 40;                    // judged, of each run
@@ -210,5 +210,13 @@ struct BenchBudgetOptions {
   std::string cache = "build/bench_truth"; // folder for references; "": none is kept
 };
 ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options);
+
+struct BenchSkipOptions {
+  std::string graph = "configs/graphs/skin.json", profile = "configs/profiles/skin.json";
+  Size size{480, 270};
+  uint32_t repetitions = 15;
+  std::string json, html; // files to write; "": none
+};
+ExitCode bench_skip(const Session& session, const BenchSkipOptions& options);
 
 } // namespace dermis::tools
