@@ -16,12 +16,12 @@ void main() {
   ivec2 texel = texel_of(pixel);
   vec3 light = clean_light(texelFetch(lighting_image, texel, 0).rgb);
   uint id = texelFetch(material_image, texel, 0).r;
-  if (id != 0u) {
+  if (id != 0u && inside_bounds(pixel)) {
     vec4 d = profiles[min(id, 255u)].d_mm;
     if (has_scatter_scale())
       d *= clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r);
     float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-    bool scatters = depth > 0.0 && projected_d(d.w, depth) >= copy_below_d_px;
+    bool scatters = has_scattered() && depth > 0.0 && projected_d(d.w, depth) >= copy_below_d_px;
     vec3 through = light;
     if (settings.texturing != TEXTURING_POST && has_albedo()) {
       vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);

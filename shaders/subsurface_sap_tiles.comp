@@ -5,6 +5,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "subsurface_sap_tiles.bindings.glsl"
 #include "environment.glsl"
+#include "constants.glsl"
+#include "counters.glsl"
 #include "sap_lists.glsl"
 
 const uint lanes = 256u;
@@ -13,6 +15,7 @@ layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
 const int flag_words = 1536; // a level with more tiles (views beyond 3500x3500) is listed whole
 shared uint flags[2][flag_words]; // of the level and of the finer one, a bit a tile
 shared uint counts[lanes];
+shared uint scatters; // any tile: where none does, no level but the first is needed
 
 bool fits(ivec2 tiles) { return tiles.x * tiles.y <= 32 * flag_words; }
 
@@ -24,6 +27,8 @@ bool is_flagged(int level, ivec2 tile) {
   int index = tile.y * tiles.x + tile.x;
   if (level == 0)
     return classes_data[index] != class_none;
+  if (scatters == 0u)
+    return false;
   return !fits(tiles) || (flags[level & 1][index >> 5] >> uint(index & 31) & 1u) != 0u;
 }
 // A bit for each of the 3x3 tiles from `first` on.
@@ -37,6 +42,13 @@ uint flags_from(int level, ivec2 first) {
 void main() {
   uint lane = gl_LocalInvocationIndex;
   uint next = uint(sap_levels); // the lists' heads come first
+  if (lane == 0u)
+    scatters = 0u;
+  barrier();
+  for (uint i = lane; i < uint(frame.tiles.x * frame.tiles.y); i += lanes)
+    if (classes_data[i] == class_scatter)
+      atomicOr(scatters, 1u);
+  barrier();
   for (int level = 0; level < sap_levels; ++level) {
     ivec2 tiles = sap_level_tiles(level);
     if (level > 0 && fits(tiles)) {
@@ -69,7 +81,7 @@ void main() {
       if (!is_flagged(level, tile))
         continue;
       uint place = uint(tile.x) | uint(tile.y) << 15;
-      uint copy = level == 0 && classes_data[i] == class_copy ? tile_copy_bit : 0u;
+      uint copy = level == 0 && classes_data[i] != class_scatter ? tile_copy_bit : 0u;
       uint children = level > 0 ? flags_from(level - 1, 2 * tile - 1) : 0u;
       if (level == 0)
         tiles_data[1u + at - next] = place | copy;
@@ -90,6 +102,7 @@ void main() {
       level_arguments_data[4 * level + 1] = (groups + tile_groups_per_row - 1u) / tile_groups_per_row;
       level_arguments_data[4 * level + 2] = 1u;
       level_arguments_data[4 * level + 3] = groups;
+      counters.level_groups[level] = groups;
     }
     next += listed;
     barrier();

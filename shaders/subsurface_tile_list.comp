@@ -35,7 +35,7 @@ void main() {
     if (tile_class == class_none)
       continue;
     uint x = i % uint(frame.tiles.x), y = i / uint(frame.tiles.x);
-    tiles_data[1u + at++] = x | (y << 15) | (tile_class == class_copy ? tile_copy_bit : 0u);
+    tiles_data[1u + at++] = x | (y << 15) | (tile_class != class_scatter ? tile_copy_bit : 0u);
   }
   if (lane == lanes - 1u) {
     uint listed = counts[lane];

@@ -45,7 +45,8 @@ enum class HistoryReason : uint8_t {
   resized,     // the executor was made for a new size
   reloaded,    // the executor was made for a new graph
   discarded,   // discard_frames()
-  switched     // frames ran with another plan
+  switched,    // frames ran with another plan
+  left_out     // a frame ran without passes: FrameInput::left_out
 };
 // Static string for people, for example "camera cut". Free-threaded.
 const char* history_reason_text(HistoryReason reason);
@@ -128,6 +129,10 @@ struct FrameInput {
   bool taken_over = false;    // frames ran elsewhere since the last record: the pool's memory was used by
                               // others, and histories start anew
   bool reset_history = false; // camera cut: histories with on_cut invalidate become invalid
+  // By plan pass, not 0: the pass does not run, only its barriers are recorded. Histories start anew in the
+  // frame after such a one. Shorter: the rest runs. What runs must not read what a pass that is left out
+  // would write.
+  std::span<const uint8_t> left_out;
 };
 
 // Like Error, without memory of its own.

@@ -5,6 +5,7 @@
 #include "integration/abi/graph_desc.hpp"
 #include "integration/abi/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -73,6 +74,31 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   return DERMIS_OK;
 }
 
+uint32_t skips_of(const FrameChoice& frame, const Program& program) {
+  const subsurface::FrameCounters& seen = frame.counters;
+  if (program.without_material) return DERMIS_SKIP_NO_MATERIAL;
+  if (frame.left_out) return DERMIS_SKIP_NO_BOUNDS;
+  uint32_t skips = 0;
+  if (seen.scattering_tiles + seen.copied_tiles + seen.flat_tiles == 0) skips |= DERMIS_SKIP_NOTHING_SEEN;
+  if (seen.copied_tiles > 0) skips |= DERMIS_SKIP_SUBPIXEL;
+  if (seen.flat_tiles > 0) skips |= DERMIS_SKIP_FLAT_LIGHT;
+  if (frame.history_invalid) skips |= DERMIS_SKIP_HISTORY;
+  return skips;
+}
+
+// Why a frame took longer than its budget and what was predicted.
+const char* miss_of(const FrameChoice& frame) {
+  constexpr double tolerance = 1.15; // of the budget, as dermis bench budget judges
+  constexpr double changed_by = 0.1; // share of the tiles
+  if (!frame.timed || frame.budget_ms <= 0 || frame.measured_ms <= tolerance * frame.budget_ms) return "";
+  if (frame.decision.why == choice::Why::nothing_fits) return "no outcome fits the budget";
+  const double expected = static_cast<double>(frame.expected_tiles);
+  const double seen = static_cast<double>(uint64_t{frame.counters.scattering_tiles} +
+                                          frame.counters.copied_tiles + frame.counters.flat_tiles);
+  return std::abs(seen - expected) > changed_by * std::max(expected, 1.0) ? "the scene changed"
+                                                                          : "the times were not as learned";
+}
+
 dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   const FrameChoice& frame = chooser.newest;
   const choice::Outcome& outcome = program.outcomes[frame.outcome];
@@ -98,6 +124,11 @@ dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   out.scattering_tiles = frame.counters.scattering_tiles;
   out.copied_tiles = frame.counters.copied_tiles;
   out.switches = frame.switches;
+  out.flat_tiles = frame.counters.flat_tiles;
+  out.skips = skips_of(frame, program);
+  out.dispatches = frame.dispatches;
+  out.groups = frame.groups;
+  out.miss = miss_of(frame);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include "passes/choice/defaults.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace dermis::abi {
 namespace {
@@ -29,8 +30,25 @@ choice::Calibration default_calibration() {
 }
 
 choice::FrameLoad load_of(const subsurface::FrameCounters& counters, uint64_t view_tiles) {
-  return {view_tiles,
-          std::min<uint64_t>(view_tiles, uint64_t{counters.scattering_tiles} + counters.copied_tiles)};
+  return {view_tiles, std::min<uint64_t>(view_tiles, uint64_t{counters.scattering_tiles} +
+                                                         counters.copied_tiles + counters.flat_tiles)};
+}
+
+uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
+                  const subsurface::FrameCounters& counters) {
+  if (pass.level < 0) return groups_of(pass, load);
+  return counters
+      .level_groups[std::min<size_t>(static_cast<size_t>(pass.level), counters.level_groups.size() - 1)];
+}
+
+void count_groups(const choice::Outcome& outcome, std::span<const uint8_t> serve_scattering,
+                  FrameChoice& frame) {
+  const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles);
+  for (size_t p = 0; p < outcome.passes.size(); ++p) {
+    if (!outcome.passes[p].launches || (frame.left_out && serve_scattering[p] != 0)) continue;
+    ++frame.dispatches;
+    frame.groups += launched(outcome.passes[p], load, frame.counters);
+  }
 }
 
 FrameChoice& place_of(Chooser& chooser, uint64_t frame_index) {
@@ -43,7 +61,7 @@ void learn(Chooser& chooser, const choice::Outcome& outcome, FrameChoice& frame)
   for (size_t p = 0; p < outcome.passes.size(); ++p) {
     const double ms = static_cast<double>(chooser.times[p].nanoseconds) / ns_per_ms;
     frame.measured_ms += ms;
-    if (!frame.first_of_plan)
+    if (!frame.first_of_plan && !frame.left_out)
       chooser.costs.observe(outcome.passes[p].cost, groups_of(outcome.passes[p], load), ms);
   }
 }
@@ -53,18 +71,21 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   vulkan::Executor& executor = *program.variants[outcome.plan].executor;
   std::array<uint32_t, sizeof(subsurface::FrameCounters) / sizeof(uint32_t)> words{};
   const bool counted = executor.read_counters(frame.frame_index, words);
-  if (counted) frame.counters = {words[0], words[1], words[2]};
+  if (counted) frame.counters = std::bit_cast<subsurface::FrameCounters>(words);
   uint64_t timed_frame = 0;
   const std::span times(chooser.times.data(), outcome.passes.size());
   frame.timed =
       executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
-  frame.metered_ms = metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles)).ms;
+  count_groups(outcome, program.variants[outcome.plan].serve_scattering, frame);
+  if (!frame.left_out)
+    frame.metered_ms = metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles)).ms;
   if (counted && frame.timed) learn(chooser, outcome, frame);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
-  chooser.counted = chooser.counted || counted;
-  if (counted) chooser.counters = frame.counters;
+  if (!counted || frame.left_out) return; // nothing was looked at
+  chooser.counted = true;
+  chooser.counters = frame.counters;
 }
 
 } // namespace
@@ -116,6 +137,7 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view
   FrameChoice frame;
   frame.program = program.serial;
   frame.view_tiles = view_tiles;
+  frame.expected_tiles = load.listed_tiles;
   frame.budget_ms = chooser.budget_ms;
   if (chooser.budget_ms > 0)
     frame.decision = decide(forecasts.first(program.outcomes.size()), chooser.budget_ms, state);

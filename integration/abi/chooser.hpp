@@ -28,11 +28,16 @@ struct FrameChoice {
   choice::Forecast forecast;
   uint64_t view_tiles = 0;
   bool first_of_plan =
-      false; // drivers finish kernels when they first run: nothing is learned from such a frame
+      false;             // drivers finish kernels when they first run: nothing is learned from such a frame
+  bool left_out = false; // its bounds were empty: passes that serve scattering did not run
+  bool history_invalid = false;
+  uint64_t expected_tiles = 0; // that the forecast counted on
   bool observed = false;
   bool timed = false;
   double measured_ms = 0; // where timed
   double metered_ms = 0;  // by the calibration alone, for what was counted
+  uint32_t dispatches = 0;
+  uint64_t groups = 0; // that these launched
   subsurface::FrameCounters counters;
 };
 

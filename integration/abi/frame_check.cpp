@@ -9,7 +9,7 @@ namespace dermis::abi {
 namespace {
 
 constexpr const char* function = "dermis_graph_record";
-constexpr uint32_t known_flags = DERMIS_FRAME_RESET_HISTORY;
+constexpr uint32_t known_flags = DERMIS_FRAME_RESET_HISTORY | DERMIS_FRAME_BOUNDS;
 
 dermis_result check_numbers(const dermis_graph_t& graph, const dermis_frame& frame) {
   const Log& log = graph.context->log;
@@ -68,6 +68,28 @@ dermis_result check_rectangle(const Log& log, const Plan& plan, const dermis_fra
   if (inside) return DERMIS_OK;
   return bad_argument(log, "{}: the rectangle {}x{} at ({}, {}) is not inside the allocated size {}x{}",
                       function, out.width, out.height, out.x, out.y, plan.view_width, plan.view_height);
+}
+
+// The part of `first` .. `first + size` that lies in 0 .. `extent`, counted from `corner`.
+std::pair<int32_t, int32_t> clip(uint32_t first, uint32_t size, uint32_t corner, uint32_t extent) {
+  const int64_t low = std::clamp<int64_t>(int64_t{first} - corner, 0, extent);
+  const int64_t high = std::clamp<int64_t>(int64_t{first} + size - corner, low, extent);
+  return {static_cast<int32_t>(low), static_cast<int32_t>(high - low)};
+}
+
+// Where subsurface may be, from the rectangle's corner.
+dermis_result check_bounds(const Log& log, const dermis_frame& frame, const vulkan::Rectangle& rectangle,
+                           std::array<int32_t, 4>& out) {
+  if ((frame.flags & DERMIS_FRAME_BOUNDS) == 0) {
+    if (frame.bounds_x != 0 || frame.bounds_y != 0 || frame.bounds_width != 0 || frame.bounds_height != 0)
+      return bad_argument(log, "{}: bounds are given, and flags is without DERMIS_FRAME_BOUNDS", function);
+    out = {0, 0, static_cast<int32_t>(rectangle.width), static_cast<int32_t>(rectangle.height)};
+    return DERMIS_OK;
+  }
+  const auto [x, width] = clip(frame.bounds_x, frame.bounds_width, rectangle.x, rectangle.width);
+  const auto [y, height] = clip(frame.bounds_y, frame.bounds_height, rectangle.y, rectangle.height);
+  out = {x, y, width, height};
+  return DERMIS_OK;
 }
 
 std::string_view format_name(VkFormat format) {
@@ -187,9 +209,10 @@ void remove_jitter(subsurface::Matrix4& clip_from_view, int row, double pixels, 
 }
 
 bool fill_constants(const dermis_frame& frame, const Program& program, const vulkan::Executor& executor,
-                    const vulkan::Rectangle& rectangle, bool history_invalid,
-                    subsurface::FrameConstants& constants) {
+                    const vulkan::Rectangle& rectangle, const std::array<int32_t, 4>& bounds,
+                    bool history_invalid, subsurface::FrameConstants& constants) {
   subsurface::FrameInput input;
+  input.bounds = bounds;
   input.rect_x = rectangle.x;
   input.rect_y = rectangle.y;
   input.rect_width = rectangle.width;
@@ -229,6 +252,9 @@ dermis_result check_frame(const dermis_graph_t& graph, Program& program, const d
           check_rectangle(log, program.variants.front().compiled.plan, frame, checked.input.rectangle);
       result != DERMIS_OK)
     return result;
+  if (const dermis_result result = check_bounds(log, frame, checked.input.rectangle, checked.bounds);
+      result != DERMIS_OK)
+    return result;
   return check_bindings(graph, program, frame);
 }
 
@@ -240,7 +266,8 @@ dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, ui
   bool history_invalid = taken_over;
   for (uint32_t i = 0; i < executor.history_count(); ++i)
     history_invalid = history_invalid || !executor.history_state(i, reset).valid;
-  if (!fill_constants(frame, program, executor, checked.input.rectangle, history_invalid, checked.constants))
+  if (!fill_constants(frame, program, executor, checked.input.rectangle, checked.bounds, history_invalid,
+                      checked.constants))
     return bad_argument(
         log,
         "{}: clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic "
@@ -253,6 +280,9 @@ dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, ui
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
   checked.input.taken_over = taken_over;
+  checked.history_invalid = history_invalid;
+  if (checked.bounds[2] == 0 || checked.bounds[3] == 0)
+    checked.input.left_out = program.variants[program.outcomes[outcome].plan].serve_scattering;
   return DERMIS_OK;
 }
 

@@ -9,6 +9,8 @@ namespace dermis::abi {
 struct CheckedFrame {
   vulkan::FrameInput input;
   subsurface::FrameConstants constants{};
+  std::array<int32_t, 4> bounds{}; // as FrameConstants::bounds
+  bool history_invalid = false;    // of any history
 };
 
 // Checks every field, fills program.images and what of `checked` does not hang on the outcome. ARGUMENT or

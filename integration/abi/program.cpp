@@ -5,6 +5,7 @@
 #include "framegraph/text/limits.hpp"
 #include "integration/abi/slots.hpp"
 #include "passes/kernels.hpp"
+#include "passes/subsurface/kinds.hpp"
 
 #include <fmt/format.h>
 
@@ -37,6 +38,17 @@ std::vector<SettingValue> settings_of(const Graph& graph, const std::vector<Host
                                                  : "the new declaration does not accept the value"));
   }
   return values;
+}
+
+// Settings that the host set: the library leaves them as they are.
+std::vector<bool> pinned_settings(const Graph& graph, const std::vector<HostSetting>& given) {
+  std::vector<bool> pinned;
+  for (const SettingDeclaration& declared : graph.settings)
+    pinned.push_back(std::any_of(given.begin(), given.end(), [&](const HostSetting& setting) {
+      Diagnostics scratch; // a value that does not fit was told and left at the default
+      return setting.name == declared.name && read_setting(declared, setting.json, scratch).has_value();
+    }));
+  return pinned;
 }
 
 void tell_lost_histories(const Program& program, vulkan::HistoryReason reason, Diagnostics& diagnostics) {
@@ -149,6 +161,38 @@ std::vector<Slot> slots_of(const Program& program) {
   return slots;
 }
 
+// Passes that serve scattering never run: without a profile there is nothing to scatter.
+void turn_scattering_off(Graph& graph, const KindRegistry& kinds) {
+  Expression never;
+  never.op = Expression::Op::literal;
+  never.literal = {SettingType::boolean, 0, 0.0};
+  const ExpressionId id{static_cast<uint32_t>(graph.expressions.size())};
+  graph.expressions.push_back(never);
+  for (PassDeclaration& pass : graph.passes)
+    if (subsurface::serves_scattering(kinds[pass.kind].name)) pass.when = id;
+}
+
+// A pass that serves scattering, or that none but such passes read.
+std::vector<uint8_t> serving_passes(const Plan& plan, const KindRegistry& kinds) {
+  std::vector<uint8_t> serving(plan.passes.size(), 1);
+  std::vector<uint8_t> wanted(plan.resources.size(), 0);
+  for (size_t r = 0; r < plan.resources.size(); ++r)
+    wanted[r] = plan.resources[r].slot >= 0;
+  for (size_t p = plan.passes.size(); p-- > 0;) {
+    const PlanPass& pass = plan.passes[p];
+    if (subsurface::serves_scattering(kinds[pass.kind].name)) continue;
+    const auto accesses = std::span(plan.accesses).subspan(pass.first_access, pass.access_count);
+    const bool needed = std::any_of(accesses.begin(), accesses.end(), [&](const PlanAccess& access) {
+      return (access.access & all_write_access) != 0 && wanted[access.resource] != 0;
+    });
+    if (!needed) continue;
+    serving[p] = 0;
+    for (const PlanAccess& access : accesses)
+      wanted[access.resource] = 1;
+  }
+  return serving;
+}
+
 } // namespace
 
 void set_value(Program& program, Chooser& chooser, const KindRegistry& kinds, uint32_t setting,
@@ -171,6 +215,8 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   candidate->changes = std::move(composition->changes);
   for (const SourceFile& file : diagnostics.files)
     candidate->files.push_back({file.name, ""});
+  candidate->without_material = input.profiles.empty();
+  if (candidate->without_material) turn_scattering_off(candidate->graph, context.kinds);
   candidate->settings = settings_of(candidate->graph, input.settings, diagnostics);
 
   CompileInput compile_input;
@@ -184,11 +230,14 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   compile_input.host_formats = host_formats(candidate->graph, input.formats, diagnostics);
   auto made = choice::make_outcomes(
       compile_input, chooser.errors, chooser.costs,
-      [&](const CompileInput& one, Diagnostics& told) { return compile(one, plans, told); }, diagnostics);
+      [&](const CompileInput& one, Diagnostics& told) { return compile(one, plans, told); }, diagnostics,
+      pinned_settings(candidate->graph, input.settings));
   if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
   candidate->outcomes = std::move(made->outcomes);
-  for (CompiledPlan& compiled : made->plans)
-    candidate->variants.push_back({std::move(compiled), nullptr, false});
+  for (CompiledPlan& compiled : made->plans) {
+    std::vector<uint8_t> serving = serving_passes(compiled.plan, context.kinds);
+    candidate->variants.push_back({std::move(compiled), nullptr, false, std::move(serving)});
+  }
   candidate->slots = slots_of(*candidate);
   candidate->images.resize(candidate->slots.size());
 

@@ -66,11 +66,13 @@ struct Slot {
 struct Variant {
   CompiledPlan compiled;
   std::unique_ptr<vulkan::Executor> executor;
-  bool recorded = false; // at least once
+  bool recorded = false;                   // at least once
+  std::vector<uint8_t> serve_scattering{}; // by plan pass, 1: nothing to do where there is no subsurface
 };
 
 struct Program {
-  uint64_t serial = 0; // no two programs of a graph have the same
+  bool without_material = false; // no profile: passes that serve scattering are off
+  uint64_t serial = 0;           // no two programs of a graph have the same
   Graph graph;
   std::vector<Change> changes;                 // what overlays and included files did
   std::vector<SourceFile> files;               // that the changes name; without their texts

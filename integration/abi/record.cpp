@@ -50,6 +50,9 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   if (const dermis_result result = fill_frame(graph, program, chosen.outcome, taken_over, frame, checked);
       result != DERMIS_OK)
     return result;
+  chosen.left_out = !checked.input.left_out.empty();
+  chosen.history_invalid = checked.history_invalid;
+  if (chosen.left_out) chosen.forecast.ms = chosen.forecast.spread_ms = 0;
   collect(graph, frame.completed_frame_index);
   if (const vulkan::RecordResult error = program.variants[variant].executor->record(checked.input)) {
     if (error.kind == vulkan::ErrorKind::device_lost) graph.context->lost = true;

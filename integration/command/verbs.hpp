@@ -238,4 +238,12 @@ struct BenchBudgetOptions {
 };
 ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options);
 
+struct BenchSkipOptions {
+  std::string graph = "configs/graphs/skin.json", profile = "configs/profiles/skin.json";
+  Size size{480, 270};
+  uint32_t repetitions = 15;
+  std::string json, html; // files to write; "": none
+};
+ExitCode bench_skip(const Session& session, const BenchSkipOptions& options);
+
 } // namespace dermis::tools

@@ -74,11 +74,19 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
       load.count = tiles_along(image->width) * tiles_along(image->height);
     break;
   case DispatchShape::single_group:
-  case DispatchShape::none:
   case DispatchShape::host:
+    break;
+  case DispatchShape::none:
+    load.launches = false;
     break;
   }
   return load;
+}
+
+int32_t level_of(const PassKind& kind, const std::vector<SettingValue>& values) {
+  if (find_port(kind, "level_tiles", PortSide::read) < 0) return -1;
+  const int level = find_setting(kind, "level");
+  return level < 0 ? 0 : static_cast<int32_t>(values[static_cast<size_t>(level)].integer);
 }
 
 RunningPass running(const PassKind& kind, const std::vector<SettingValue>& values) {
@@ -97,6 +105,7 @@ void describe(const KindRegistry& kinds, const Plan& plan, const ErrorModel& err
     const std::vector<SettingValue> values = values_of(plan, pass, kind, outcome.settings);
     PassLoad load = load_of(plan, pass, kind);
     load.cost = costs.add(work_name(kind, values));
+    load.level = level_of(kind, values);
     outcome.passes.push_back(load);
     passes.push_back(running(kind, values));
   }
@@ -172,15 +181,17 @@ std::string work_name(const PassKind& kind, std::span<const SettingValue> values
 
 std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const ErrorModel& errors,
                                           CostModel& costs, const CompileOne& compile,
-                                          Diagnostics& diagnostics) {
+                                          Diagnostics& diagnostics, const std::vector<bool>& pinned) {
   const Graph& graph = *input.graph;
   std::vector<SettingValue> base = input.settings;
   if (base.empty())
     for (const SettingDeclaration& setting : graph.settings)
       base.push_back(setting.default_value);
   const std::vector<uint32_t> choices = choices_of(graph);
+  std::vector<uint32_t> open = choices;
+  std::erase_if(open, [&](uint32_t choice) { return choice < pinned.size() && pinned[choice]; });
   size_t combinations = 1;
-  for (const uint32_t choice : choices) {
+  for (const uint32_t choice : open) {
     combinations *= graph.settings[choice].options.size();
     if (combinations <= most_outcomes) continue;
     diagnostics.add(
@@ -214,13 +225,13 @@ std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const Error
     return true;
   };
   if (!add(base)) return std::nullopt;
-  std::vector<size_t> digits(choices.size(), 0);
+  std::vector<size_t> digits(open.size(), 0);
   do {
     std::vector<SettingValue> values = base;
-    for (size_t i = 0; i < choices.size(); ++i)
-      values[choices[i]].integer = static_cast<int64_t>(digits[i]);
+    for (size_t i = 0; i < open.size(); ++i)
+      values[open[i]].integer = static_cast<int64_t>(digits[i]);
     if (!add(values)) return std::nullopt;
-  } while (count_up(graph, choices, digits));
+  } while (count_up(graph, open, digits));
   return out;
 }
 

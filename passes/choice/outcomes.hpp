@@ -20,7 +20,9 @@ inline constexpr size_t most_outcomes = 64; // of a graph: the product of the op
 struct PassLoad {
   CostId cost;
   enum class Groups : uint8_t { fixed, view_tiles, tile_grid, listed_tiles } groups = Groups::fixed;
-  uint64_t count = 1; // of fixed
+  uint64_t count = 1;   // of fixed
+  bool launches = true; // a kernel; clears do not
+  int32_t level = -1;   // of the surface-aware pyramid whose list of tiles it runs over; -1: none
 };
 
 struct Outcome {
@@ -44,11 +46,12 @@ struct OutcomePlans {
 std::string work_name(const PassKind& kind, std::span<const SettingValue> values);
 
 // Values of all choices by budget in every combination, those of other settings as in `input` (empty: the
-// defaults). Combinations that run the same passes with the same values are one. Costs are added to `costs`.
-// nullopt with errors in `diagnostics`: as compile(), and more than most_outcomes.
+// defaults); so are choices that the host made itself, `pinned` (one per setting; empty: none). Combinations
+// that run the same passes with the same values are one. Costs are added to `costs`. nullopt with errors in
+// `diagnostics`: as compile(), and more than most_outcomes.
 std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const ErrorModel& errors,
                                           CostModel& costs, const CompileOne& compile,
-                                          Diagnostics& diagnostics);
+                                          Diagnostics& diagnostics, const std::vector<bool>& pinned = {});
 
 // What each outcome's passes are and which technique: again after a setting changed that turns no pass on or
 // off, or with other models. `plans` as Outcome::plan counts them.

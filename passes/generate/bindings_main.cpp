@@ -1,5 +1,6 @@
 // Build tool: writes one GLSL header a kernel from its signature, so that bindings and push constants are
 // written once. Usage: write_bindings <output folder>
+#include "passes/subsurface/flat_light.hpp"
 #include "passes/subsurface/kinds.hpp"
 #include "passes/subsurface/profiles/radial_table.hpp"
 #include "passes/subsurface/sap/sap_tiles.hpp"
@@ -76,6 +77,9 @@ std::string shared_constants() {
   return fmt::format("// Generated from the constants of passes/subsurface/.\n"
                      "#ifndef DERMIS_CONSTANTS_GLSL\n#define DERMIS_CONSTANTS_GLSL\n\n"
                      "const float copy_below_d_px = {}; // kinds.hpp\n"
+                     "const float flat_reach_d = {:.1f}; // flat_light.hpp\n"
+                     "const float flat_tolerance = {};\n"
+                     "const int flat_most_reach = {};\n"
                      "const float min_patch_cosine = {}; // truth/surface.hpp\n"
                      "const int separable_nodes = {}; // separable_kernel.hpp\n"
                      "const float separable_first_log2_d = {:.1f};\n"
@@ -100,7 +104,8 @@ std::string shared_constants() {
                      "const float reproject_least_weight = {};\n"
                      "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
                      "const float counter_log2_steps = {:.1f};\n\n#endif\n",
-                     subsurface::copy_below_d_px, subsurface::min_patch_cosine, subsurface::separable_nodes,
+                     subsurface::copy_below_d_px, subsurface::flat_reach_d, subsurface::flat_tolerance,
+                     subsurface::flat_most_reach, subsurface::min_patch_cosine, subsurface::separable_nodes,
                      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
                      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
                      subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::plain),

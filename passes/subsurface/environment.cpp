@@ -59,6 +59,7 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.rect[1] = static_cast<int32_t>(input.rect_y);
   out.rect[2] = static_cast<int32_t>(input.rect_width);
   out.rect[3] = static_cast<int32_t>(input.rect_height);
+  std::copy(input.bounds.begin(), input.bounds.end(), out.bounds);
   out.tiles[0] = tiles_of(input.rect_width);
   out.tiles[1] = tiles_of(input.rect_height);
   out.frame_index = static_cast<uint32_t>(input.frame_index);

@@ -33,6 +33,9 @@ struct FrameCounters {
   uint32_t copied_tiles = 0;     // tiles with subsurface below that
   uint32_t log2_d_sum = 0; // over scattering tiles: counter_log2_steps * (log2 of the largest d in pixels
                            // + counter_log2_shift), rounded down
+  uint32_t flat_tiles = 0; // of subsurface.flat: would scatter, but the light is the same all around
+  // Groups that one dispatch over the tiles of a level of the surface-aware pyramid launches.
+  std::array<uint32_t, 9> level_groups{};
 };
 inline constexpr float counter_log2_shift = 8;  // d from 1/256 pixel
 inline constexpr float counter_log2_steps = 16; // an octave; the sum of 4 M tiles fits 32 bits
@@ -60,9 +63,10 @@ struct FrameConstants {
   float previous_ray_scale[2], previous_ray_offset[2]; // as ray_scale and ray_offset
   int32_t previous_rect[4];
   float previous_jitter[2]; // pixels
-  float unused[2];          // rounds the block to 16 bytes
+  float unused[2];          // rounds to 16 bytes
+  int32_t bounds[4]; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
 };
-static_assert(sizeof(FrameConstants) == 176);
+static_assert(sizeof(FrameConstants) == 192);
 
 // std430, one per profile id 0..255; entry 0 and undeclared ids have d = 0: light passes through.
 struct ProfileEntry {
@@ -82,7 +86,8 @@ inline constexpr uint32_t no_radial_row = 0xffffffffu;
 
 struct FrameInput {
   uint32_t rect_x = 0, rect_y = 0, rect_width = 0, rect_height = 0;
-  Matrix4 clip_from_view{}; // without jitter
+  std::array<int32_t, 4> bounds{}; // as FrameConstants::bounds
+  Matrix4 clip_from_view{};        // without jitter
   std::array<double, 2> jitter_px{};
   double metres_per_unit = 1.0;
   DepthKind depth_kind = DepthKind::device;

@@ -45,8 +45,13 @@ double largest_share(const ReadsQuestion& question, int64_t variant, uint32_t ro
   return largest;
 }
 
+// Material, depth; where light is looked at, that and what scales it.
 ImageReads classify(const PassKind& kind, const ReadsQuestion& question) {
-  return {2 + scale_read(kind, question)};
+  const double ranged = one_if(kind, question, "lighting", PortSide::read) *
+                        one_if(kind, question, "light_range", PortSide::write);
+  const bool textured = setting(kind, question, "texturing") != 0;
+  return {2 + scale_read(kind, question) +
+          ranged * (1 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0))};
 }
 
 ImageReads none(const PassKind&, const ReadsQuestion&) {
@@ -201,6 +206,7 @@ struct Entry {
 constexpr Entry entries[] = {
     {"subsurface.classify", classify},
     {"subsurface.tile_list", none},
+    {"subsurface.flat", none},
     {"subsurface.setup", setup},
     {"subsurface.burley", burley},
     {"subsurface.separable", separable},

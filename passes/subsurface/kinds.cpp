@@ -4,6 +4,10 @@
 
 namespace dermis::subsurface {
 
+bool serves_scattering(std::string_view kind) {
+  return kind != light_kind.name && kind != transmission_kind.name && kind != "clear";
+}
+
 KindRegistry make_kinds() {
   KindRegistry registry;
   for (const PassKind* kind :
@@ -11,7 +15,7 @@ KindRegistry make_kinds() {
         &combine_kind,        &light_kind,        &sap_tiles_kind, &sap_setup_kind,     &sap_down_kind,
         &sap_up_kind,         &sap_gather_kind,   &fixed_kind,     &pyramid_setup_kind, &pyramid_down_kind,
         &pyramid_gather_kind, &transmission_kind, &afis_kind,      &blend_kind,         &residual_kind,
-        &guided_kind,         &accumulate_kind})
+        &guided_kind,         &accumulate_kind,   &flat_kind})
     registry.add(*kind);
   return registry;
 }

@@ -6,12 +6,24 @@ layout(std430, set = 1, binding = 6) buffer counter_block {
   uint scattering_tiles;
   uint copied_tiles;
   uint log2_d_sum;
+  uint flat_tiles;
+  uint level_groups[9];
 } counters;
+
+uint counter_steps(float d_px) {
+  float steps = (log2(d_px) + counter_log2_shift) * counter_log2_steps;
+  return uint(clamp(steps, 0.0, 32.0 * counter_log2_steps - 1.0));
+}
 
 void count_scattering_tile(float d_px) {
   atomicAdd(counters.scattering_tiles, 1u);
-  float steps = (log2(d_px) + counter_log2_shift) * counter_log2_steps;
-  atomicAdd(counters.log2_d_sum, uint(clamp(steps, 0.0, 32.0 * counter_log2_steps - 1.0)));
+  atomicAdd(counters.log2_d_sum, counter_steps(d_px));
+}
+// What counted as scattering turned out to be flat in light.
+void recount_as_flat(float d_px) {
+  atomicAdd(counters.scattering_tiles, 0xffffffffu);
+  atomicAdd(counters.log2_d_sum, 0u - counter_steps(d_px));
+  atomicAdd(counters.flat_tiles, 1u);
 }
 
 #endif

@@ -21,6 +21,7 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   ivec4 previous_rect;
   vec2 previous_jitter; // pixels
   vec2 unused;
+  ivec4 bounds; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
 } frame;
 
 struct profile_entry {
@@ -63,6 +64,12 @@ vec3 view_position(vec2 pixel, float depth) {
 
 bool inside_rect(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, frame.rect.zw));
+}
+
+// May there be subsurface, as far as the host says?
+bool inside_bounds(ivec2 pixel) {
+  ivec2 from = pixel - frame.bounds.xy;
+  return all(greaterThanEqual(from, ivec2(0))) && all(lessThan(from, frame.bounds.zw));
 }
 
 // Where a pixel of the rectangle stands in the images.

@@ -5,6 +5,7 @@
 const uint class_none = 0u;    // no subsurface
 const uint class_scatter = 1u;
 const uint class_copy = 2u;    // every pixel scatters below a pixel
+const uint class_flat = 3u;    // would scatter, but light is the same as far as it reaches: copied
 
 const uint tile_copy_bit = 0x80000000u;
 const uint tile_groups_per_row = 32768u; // below the 65535 groups a dimension that Vulkan guarantees

@@ -175,6 +175,13 @@ void record_memory_takeover(State& state, const FrameInput& frame) noexcept {
                   all_commands, all_memory});
 }
 
+void record_counters_in_order(State& state, const FrameInput& frame) noexcept {
+  constexpr VkAccessFlags2 counted =
+      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  global_barrier(state, frame.command_buffer,
+                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, compute, counted, compute, counted});
+}
+
 void record_counters_to_host(State& state, const FrameInput& frame) noexcept {
   if (state.environment.counters_bytes == 0) return;
   global_barrier(state, frame.command_buffer,

@@ -19,6 +19,8 @@ const char* history_reason_text(HistoryReason reason) {
     return "a recorded frame was discarded";
   case HistoryReason::switched:
     return "frames ran with another plan";
+  case HistoryReason::left_out:
+    return "a frame ran without the passes that write it";
   }
   return "unknown";
 }

@@ -143,6 +143,9 @@ Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel&
   if (!mismatches.empty()) return {ErrorKind::shader, VK_SUCCESS, join_lines(mismatches)};
   kernel.kind = id;
   kernel.dispatch = kind.dispatch;
+  for (const ShaderBinding& binding : reflection->bindings)
+    kernel.counts = kernel.counts || (binding.set == 1 && binding.binding < input.environment.size() &&
+                                      input.environment[binding.binding].type == EnvironmentType::counters);
   kernel.ports.resize(kind.ports.size());
   for (uint32_t p = 0; p < kind.ports.size(); ++p) {
     kernel.ports[p].type = descriptor_type(kind.ports[p].usage);

@@ -142,6 +142,7 @@ void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size
   const FunctionTable& vk = state.device->vk;
   const Pass& pass = state.passes[p];
   const Kernel& kernel = state.kernels[pass.kernel];
+  if (kernel.counts) record_counters_in_order(state, frame);
   vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   const bool environment = state.environment.set_layout != VK_NULL_HANDLE;
   const VkDescriptorSet sets[] = {state.descriptors.sets[frame_slot * state.passes.size() + p],
@@ -177,6 +178,20 @@ void run_clear(State& state, const FrameInput& frame, size_t p) {
     vk.vkCmdClearColorImage(frame.command_buffer, image, static_cast<VkImageLayout>(access.layout), &zero, 1,
                             &range);
   }
+}
+
+bool is_left_out(const FrameInput& frame, size_t p) {
+  return p < frame.left_out.size() && frame.left_out[p] != 0;
+}
+
+void run_pass(State& state, const FrameInput& frame, uint32_t frame_slot, size_t p,
+              const Rectangle& rectangle) {
+  if (state.passes[p].host.valid())
+    run_host_pass(state, frame, p, rectangle);
+  else if (state.passes[p].kernel == no_index)
+    run_clear(state, frame, p);
+  else
+    run_kernel(state, frame, frame_slot, p, rectangle);
 }
 
 void begin_label(const Device& device, VkCommandBuffer commands, const char* name) {
@@ -233,12 +248,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
     begin_label(device, commands, state.passes[p].name.c_str());
     record_barriers(state, frame, planned.first_barrier, planned.barrier_count,
                     state.passes[p].writable_stand_ins);
-    if (state.passes[p].host.valid())
-      run_host_pass(state, frame, p, rectangle);
-    else if (state.passes[p].kernel == no_index)
-      run_clear(state, frame, p);
-    else
-      run_kernel(state, frame, frame_slot, p, rectangle);
+    if (!is_left_out(frame, p)) run_pass(state, frame, frame_slot, p, rectangle);
     end_label(device, commands);
     write_timestamp(state, commands, frame_slot, static_cast<uint32_t>(p) + 1);
   }
@@ -246,6 +256,8 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   record_counters_to_host(state, frame);
   record_releases(state, frame);
   finish_frame(state, frame, frame_slot, rectangle);
+  if (std::any_of(frame.left_out.begin(), frame.left_out.end(), [](uint8_t left) { return left != 0; }))
+    forget_histories(state, HistoryReason::left_out);
   return {};
 }
 

@@ -50,6 +50,7 @@ struct Kernel { // one per pass kind of the plan that dispatches
   uint32_t indirect_port = no_index;
   uint32_t entry_setting = no_index; // of the kind: says which entry of the indirect arguments counts
   std::vector<KernelPort> ports;
+  bool counts = false; // it uses the environment's counters
   uint32_t push_bytes = 0;
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -204,6 +205,8 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
                      std::span<const uint32_t> writable_stand_ins) noexcept;
 // Everything before is done and visible: other commands used the same memory.
 void record_memory_takeover(State& state, const FrameInput& frame) noexcept;
+// What passes before counted is visible to this one, which counts as well.
+void record_counters_in_order(State& state, const FrameInput& frame) noexcept;
 // What kernels counted becomes visible to the host; nothing where they do not count.
 void record_counters_to_host(State& state, const FrameInput& frame) noexcept;
 void record_acquires(State& state, const FrameInput& frame) noexcept; // queue family transfers to us

@@ -110,6 +110,19 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);
+  add_verb<BenchSkipOptions>(
+      bench, invocation, "skip", "What frames cost that do not need all of a graph",
+      "dermis bench skip --json build/skip.json", bench_skip,
+      [](CLI::App& verb, BenchSkipOptions& options) {
+        add_size(verb, options.size);
+        verb.add_option("--graph", options.graph, "Graph file [configs/graphs/skin.json]")->type_name("FILE");
+        verb.add_option("--profile", options.profile, "Profile of the plane [configs/profiles/skin.json]")
+            ->type_name("FILE");
+        verb.add_option("--repetitions", options.repetitions, "Timed frames of each case [15]")
+            ->check(CLI::Range(1u, most_sequence_frames));
+        add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
+      },
+      true);
   add_verb<BenchTruthOptions>(
       bench, invocation, "truth", "Laws with known answers, beside what every technique makes of them",
       "dermis bench truth --json build/truth.json", bench_truth,

@@ -254,6 +254,12 @@ std::vector<DeviceGraph::PassTime> DeviceGraph::times() {
   return times;
 }
 
+std::optional<dermis_choice> DeviceGraph::choice() {
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  if (dermis_graph_choice(graph_, frame_index_, &choice) != DERMIS_OK) return std::nullopt;
+  return choice;
+}
+
 dermis_memory DeviceGraph::memory() {
   dermis_memory memory = DERMIS_MEMORY_INIT;
   dermis_graph_memory(graph_, &memory);

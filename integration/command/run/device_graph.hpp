@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -61,6 +62,8 @@ public:
   // Of the last frame, in plan order; empty if the device has no timestamps.
   std::vector<PassTime> times();
   dermis_memory memory();
+  // Of the last frame; its strings live as long as the graph. nullopt: nothing was counted.
+  std::optional<dermis_choice> choice();
 
 private:
   struct Slot {

@@ -230,7 +230,7 @@ typedef struct dermis_graph_desc {
   size_t struct_size;
   dermis_source source;
   uint32_t width, height;          /* allocated view size in pixels, 1..16384; frames render a rectangle inside */
-  const dermis_profile* profiles;  /* at least one for graphs that scatter */
+  const dermis_profile* profiles;  /* none: nothing scatters, and no pass that serves scattering is in the plan */
   uint32_t profile_count;
   uint32_t unbound_count;          /* names of optional slots that will not be bound */
   const char* const* unbound;
@@ -348,6 +348,14 @@ typedef struct dermis_budget {
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph, const dermis_budget* budget,
                                                              dermis_report* report);
 
+/* What a frame did not need (dermis_choice.skips). */
+#define DERMIS_SKIP_NO_MATERIAL 0x1u    /* the graph has no profile: passes that scatter are not in the plan */
+#define DERMIS_SKIP_NO_BOUNDS 0x2u      /* the frame's bounds are empty: no kernel ran that scatters */
+#define DERMIS_SKIP_NOTHING_SEEN 0x4u   /* no pixel with subsurface: classified only, indirect dispatches of 0 groups */
+#define DERMIS_SKIP_SUBPIXEL 0x8u       /* copied: tiles that scatter less than a pixel */
+#define DERMIS_SKIP_FLAT_LIGHT 0x10u    /* copied: tiles as far as light reaches in which it is the same everywhere */
+#define DERMIS_SKIP_HISTORY 0x20u       /* history was invalid: nothing of it was read */
+
 /* What was chosen for a frame, and what became of it. Strings live until the next reload, resize, set_setting or
  * destroy. */
 typedef struct dermis_choice {
@@ -371,8 +379,15 @@ typedef struct dermis_choice {
   uint32_t copied_tiles;         /* with subsurface that scatters less than a pixel: copied */
   uint32_t switches;             /* since the graph was made */
   uint32_t reserved;             /* 0 */
+  uint32_t flat_tiles;           /* with subsurface whose light is the same all around: copied */
+  uint32_t skips;                /* DERMIS_SKIP_... */
+  uint32_t dispatches;           /* recorded */
+  uint32_t reserved_too;         /* 0 */
+  uint64_t groups;               /* workgroups that these launched */
+  const char* miss;              /* static string: why times were not as predicted; "" where they were, or not known */
 } dermis_choice;
-#define DERMIS_CHOICE_INIT {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+#define DERMIS_CHOICE_INIT \
+  {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, NULL}
 
 /* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame.
  * Thread: one per graph. Errors: ARGUMENT, NOT_READY. */
@@ -514,6 +529,7 @@ typedef enum dermis_depth_kind {
 } dermis_depth_kind;
 
 #define DERMIS_FRAME_RESET_HISTORY 0x1u /* camera cut, teleport, new level */
+#define DERMIS_FRAME_BOUNDS 0x2u        /* nothing with subsurface lies outside of dermis_frame.bounds_... */
 
 /* One frame. Matrices act on column vectors (clip = clip_from_view * view) and are stored row by row: element
  * [r * 4 + c]. View space: x right, y up, the camera looks down -z. Clip space is Vulkan's: y down, depth 0..1.
@@ -539,9 +555,12 @@ typedef struct dermis_frame {
   float exposure;                  /* linear factor the host applies later; 0 = 1 */
   float delta_seconds;
   dermis_depth_kind depth_kind;
+  /* With DERMIS_FRAME_BOUNDS: where subsurface may be seen, pixels of the images; what lies outside of the rendered part
+     does not count. Empty: no kernel runs but those that hand out pictures beside lighting. */
+  uint32_t bounds_x, bounds_y, bounds_width, bounds_height;
 } dermis_frame;
 #define DERMIS_FRAME_INIT \
-  {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, DERMIS_DEPTH_DEVICE}
+  {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, DERMIS_DEPTH_DEVICE, 0, 0, 0, 0}
 
 /* Records the plan. Never submits, waits, prints or allocates host memory. On an error nothing was recorded.
  * Thread: one per graph. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */

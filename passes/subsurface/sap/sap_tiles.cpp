@@ -1,5 +1,7 @@
 #include "passes/subsurface/sap/sap_tiles.hpp"
 
+#include <algorithm>
+
 namespace dermis::subsurface {
 
 namespace {
@@ -36,6 +38,8 @@ uint32_t SapTileList::groups(size_t level) const {
 
 std::array<SapTileList, sap_level_count> list_sap_tiles(uint32_t width, uint32_t height,
                                                         std::span<const uint32_t> classes) {
+  constexpr uint32_t scatters = 1;
+  const bool any = std::find(classes.begin(), classes.end(), scatters) != classes.end();
   std::array<SapTileList, sap_level_count> lists;
   Flags finer;
   for (uint32_t level = 0; level < sap_level_count; ++level) {
@@ -43,7 +47,7 @@ std::array<SapTileList, sap_level_count> list_sap_tiles(uint32_t width, uint32_t
     for (uint32_t y = 0; y < own.down; ++y)
       for (uint32_t x = 0; x < own.across; ++x)
         own.set.push_back(level == 0 ? classes[size_t{y} * own.across + x] != 0
-                                     : finer.from(2 * int64_t{x} - 1, 2 * int64_t{y} - 1) != 0);
+                                     : any && finer.from(2 * int64_t{x} - 1, 2 * int64_t{y} - 1) != 0);
     SapTileList& list = lists[level];
     list.across = own.across;
     list.down = own.down;

@@ -28,7 +28,7 @@ struct SapTileList {
 };
 
 // `classes`: of subsurface.classify, one a tile of a view of width x height pixels, row by row; 0: nothing
-// there.
+// there. Where no class is 1 (scatters) the first level alone has tiles: those are copied.
 std::array<SapTileList, sap_level_count> list_sap_tiles(uint32_t width, uint32_t height,
                                                         std::span<const uint32_t> classes);
 

@@ -52,7 +52,7 @@ constexpr KindSetting combine_settings[] = {
 
 constexpr Port light_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
-    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light", {}},
+    {"scattered", Usage::sampled_image, true, "texture2D", "scattered light; unbound: nothing scatters", {}},
     port::material,
     port::depth,
     port::scatter_scale,

@@ -6,7 +6,7 @@
 
 namespace dermis::subsurface {
 
-extern const PassKind classify_kind, tile_list_kind;                              // tile_signatures.cpp
+extern const PassKind classify_kind, flat_kind, tile_list_kind;                   // tile_signatures.cpp
 extern const PassKind setup_kind, combine_kind, light_kind, transmission_kind;    // light_signatures.cpp
 extern const PassKind burley_kind, fixed_kind, separable_kind;                    // scatter_signatures.cpp
 extern const PassKind afis_kind, guided_kind;                                     // afis_signatures.cpp

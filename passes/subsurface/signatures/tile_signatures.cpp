@@ -6,17 +6,34 @@ namespace dermis::subsurface {
 
 namespace {
 
+constexpr std::string_view light_range_doc =
+    "per tile: the least and the greatest light that can scatter, and the widest d (light_range.glsl)";
+
 constexpr Port classify_ports[] = {
     port::material,
     port::depth,
     port::scatter_scale,
+    {"lighting",
+     Usage::sampled_image,
+     true,
+     "texture2D",
+     "diffuse irradiance before albedo, linear; for light_range",
+     {}},
+    port::albedo,
     {"classes",
      Usage::storage_buffer_write,
      false,
      "uint",
      "per tile of the render rectangle, row by row: 0 = no subsurface, 1 = scatters, 2 = below a pixel "
-     "(copy)",
+     "(copy), 3 = flat in light (copy)",
      {}},
+    {"light_range", Usage::storage_buffer_write, true, "uvec4", light_range_doc, {}},
+};
+constexpr KindSetting classify_settings[] = {setting::texturing};
+
+constexpr Port flat_ports[] = {
+    {"light_range", Usage::storage_buffer_read, false, "uvec4", light_range_doc, {}},
+    {"classes", Usage::storage_buffer_update, false, "uint", "as subsurface.classify writes them", {}},
 };
 
 constexpr Port tile_list_ports[] = {
@@ -32,6 +49,16 @@ const PassKind classify_kind{
     .shader = "subsurface_classify",
     .doc = "Classifies 8x8 tiles by material and projected scattering radius.",
     .ports = classify_ports,
+    .settings = classify_settings,
+    .dispatch = DispatchShape::over_view,
+    .side_effects = false,
+};
+
+const PassKind flat_kind{
+    .name = "subsurface.flat",
+    .shader = "subsurface_flat",
+    .doc = "Leaves tiles alone whose light is the same as far as light reaches.",
+    .ports = flat_ports,
     .settings = {},
     .dispatch = DispatchShape::over_view,
     .side_effects = false,

@@ -82,6 +82,18 @@ TEST_F(Choice, EachBudgetGetsTheLeastErrorThatFits) {
   EXPECT_THAT(before, HasSubstr("technique=off")); // nothing fits half a millisecond: the fastest
 }
 
+TEST_F(Choice, WhatTheHostSetsItselfTheLibraryLeavesAlone) {
+  make();
+  ASSERT_EQ(dermis_graph_set_setting(graph, "technique", "\"separable\"", nullptr), DERMIS_OK);
+  make_images(graph);
+  for (const float budget : {30.0f, 0.5f}) {
+    set_budget(budget);
+    const dermis_choice choice = run_frame();
+    EXPECT_THAT(choice.outcome, HasSubstr("technique=separable")) << budget;
+    EXPECT_EQ(choice.outcome_count, 3u); // the taps are still open
+  }
+}
+
 TEST_F(Choice, SwitchingPlansShowsThePictureOfThePlanThatRuns) {
   make();
   const auto picture = [&] {

@@ -119,7 +119,7 @@ dermis_result DermisTest::create_graph(const GraphOptions& options, dermis_graph
   desc.width = options.width;
   desc.height = options.height;
   desc.profiles = &profile;
-  desc.profile_count = 1;
+  desc.profile_count = options.profiles ? 1 : 0;
   desc.unbound = unbound.data();
   desc.unbound_count = static_cast<uint32_t>(unbound.size());
   desc.formats = formats.data();
@@ -157,7 +157,8 @@ void DermisTest::make_images(dermis_graph graph) {
     desc.format = slot.format;
     desc.width = slot.width;
     desc.height = slot.height;
-    desc.usage = slot.usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    desc.usage = slot.usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     auto image = demo::create_image(*host, desc);
     ASSERT_TRUE(image) << image.error().text;
     const uint32_t channels = demo::find_pixel_format(slot.format)->channels;
@@ -166,6 +167,23 @@ void DermisTest::make_images(dermis_graph graph) {
     ASSERT_TRUE(uploaded) << uploaded.error().text;
     images.emplace(slot.name, image.take());
   }
+}
+
+void DermisTest::fill(const std::string& slot, const std::function<float(uint32_t, uint32_t)>& value) {
+  const demo::Image& image = images.at(slot);
+  const uint32_t channels = demo::find_pixel_format(image.format)->channels;
+  std::vector<float> values;
+  for (uint32_t y = 0; y < image.height; ++y)
+    for (uint32_t x = 0; x < image.width; ++x)
+      values.insert(values.end(), channels, value(x, y));
+  upload(slot, values);
+}
+
+void DermisTest::upload(const std::string& slot, const std::vector<float>& values) {
+  demo::Image& image = images.at(slot);
+  const uint32_t channels = demo::find_pixel_format(image.format)->channels;
+  const auto uploaded = demo::upload_image(*host, image, values, channels, sampled);
+  ASSERT_TRUE(uploaded) << uploaded.error().text;
 }
 
 std::vector<dermis_image_binding> DermisTest::bindings(dermis_graph graph) {

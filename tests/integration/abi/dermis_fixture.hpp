@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -37,6 +38,7 @@ struct GraphOptions {
   std::vector<std::string> overlays; // texts
   dermis_include_fn include = nullptr;
   void* include_user = nullptr;
+  bool profiles = true; // false: none
 };
 
 struct DermisTest : testing::Test {
@@ -58,6 +60,9 @@ struct DermisTest : testing::Test {
   dermis_frame frame(const std::vector<dermis_image_binding>& bound, uint32_t width = 64,
                      uint32_t height = 64);
   dermis_result record(dermis_graph graph, dermis_frame& frame); // records, submits and waits
+  // Gives an image new contents: `value(x, y)` in every channel.
+  void upload(const std::string& slot, const std::vector<float>& values); // channel by channel
+  void fill(const std::string& slot, const std::function<float(uint32_t, uint32_t)>& value);
   std::vector<float> texels(const std::string& slot);
 
   static std::unique_ptr<demo::VulkanHost> host;
