@@ -88,6 +88,11 @@ void main() {
       level_tiles_data[at++] = uvec2(place | copy, children | flags_from(level, tile - 1) << 9);
     }
     uint listed = counts[lanes - 1u];
+    if (lane == 0u && level == 0 && has_copy_arguments()) {
+      copy_arguments_data[0] = scatters == 0u ? min(listed, tile_groups_per_row) : 0u;
+      copy_arguments_data[1] = (listed + tile_groups_per_row - 1u) / tile_groups_per_row;
+      copy_arguments_data[2] = 1u;
+    }
     if (lane == 0u && level == 0) { // a group a tile
       tiles_data[0] = listed;
       arguments_data[0] = min(listed, tile_groups_per_row);
@@ -97,6 +102,8 @@ void main() {
     if (lane == 0u) {
       uint per_group = level == 0 ? sap_tiles_per_group_first : sap_tiles_per_group;
       uint groups = (listed + per_group - 1u) / per_group;
+      if (scatters == 0u && has_copy_arguments())
+        groups = 0u; // light is copied
       level_tiles_data[level] = uvec2(next, listed);
       level_arguments_data[4 * level] = min(groups, tile_groups_per_row);
       level_arguments_data[4 * level + 1] = (groups + tile_groups_per_row - 1u) / tile_groups_per_row;

@@ -128,6 +128,9 @@ dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   out.skips = skips_of(frame, program);
   out.dispatches = frame.dispatches;
   out.groups = frame.groups;
+  std::copy(frame.counters.sampled_tiles.begin(), frame.counters.sampled_tiles.end(), out.sampled_tiles);
+  out.sample_units = frame.counters.sample_units;
+  out.wanted_units = frame.counters.wanted_units;
   out.miss = miss_of(frame);
   return out;
 }

@@ -30,12 +30,15 @@ choice::Calibration default_calibration() {
 }
 
 choice::FrameLoad load_of(const subsurface::FrameCounters& counters, uint64_t view_tiles) {
-  return {view_tiles, std::min<uint64_t>(view_tiles, uint64_t{counters.scattering_tiles} +
-                                                         counters.copied_tiles + counters.flat_tiles)};
+  const uint64_t listed = std::min<uint64_t>(view_tiles, uint64_t{counters.scattering_tiles} +
+                                                             counters.copied_tiles + counters.flat_tiles);
+  return {view_tiles, listed, counters.scattering_tiles == 0 ? listed : 0, counters.sample_units};
 }
 
 uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
                   const subsurface::FrameCounters& counters) {
+  if (pass.groups == choice::PassLoad::Groups::sample_units) // a group a tile
+    return uint64_t{counters.sampled_tiles[0]} + counters.sampled_tiles[1] + counters.sampled_tiles[2];
   if (pass.level < 0) return groups_of(pass, load);
   return counters
       .level_groups[std::min<size_t>(static_cast<size_t>(pass.level), counters.level_groups.size() - 1)];
@@ -122,7 +125,7 @@ void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index)
 
 FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles,
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept {
-  choice::FrameLoad load{view_tiles, view_tiles}; // nothing counted yet: all of the view may scatter
+  choice::FrameLoad load{view_tiles, view_tiles, 0, 0}; // nothing counted yet: all of the view may scatter
   double d_px = assumed_d_px;
   if (chooser.counted) {
     load = load_of(chooser.counters, view_tiles);
@@ -130,6 +133,11 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view
   }
   for (size_t i = 0; i < program.outcomes.size(); ++i) {
     const choice::Outcome& outcome = program.outcomes[i];
+    load.sample_units =
+        chooser.budget_ms > 0
+            ? std::min(chooser.counters.wanted_units,
+                       units_within(outcome, chooser.costs, load, chooser.budget_ms, chooser.metered))
+            : chooser.counters.wanted_units;
     const choice::Estimate cost =
         chooser.metered ? metered(outcome, chooser.costs, load) : estimate(outcome, chooser.costs, load);
     forecasts[i] = {cost.ms, cost.spread_ms, expected_rmse(chooser.errors, outcome.technique, d_px)};
@@ -144,6 +152,9 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view
   else
     frame.decision = {0, choice::Why::no_budget};
   frame.outcome = frame.decision.outcome;
+  if (chooser.budget_ms > 0)
+    frame.sample_units = units_within(program.outcomes[frame.outcome], chooser.costs, load, chooser.budget_ms,
+                                      chooser.metered);
   frame.switches = state.switches;
   frame.forecast = forecasts[frame.outcome];
   return frame;

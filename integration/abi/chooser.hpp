@@ -31,7 +31,8 @@ struct FrameChoice {
       false;             // drivers finish kernels when they first run: nothing is learned from such a frame
   bool left_out = false; // its bounds were empty: passes that serve scattering did not run
   bool history_invalid = false;
-  uint64_t expected_tiles = 0; // that the forecast counted on
+  uint64_t expected_tiles = 0;        // that the forecast counted on
+  uint32_t sample_units = UINT32_MAX; // that tiles may take
   bool observed = false;
   bool timed = false;
   double measured_ms = 0; // where timed

@@ -259,7 +259,8 @@ dermis_result check_frame(const dermis_graph_t& graph, Program& program, const d
 }
 
 dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, uint32_t outcome,
-                         bool taken_over, const dermis_frame& frame, CheckedFrame& checked) {
+                         bool taken_over, uint32_t sample_units, const dermis_frame& frame,
+                         CheckedFrame& checked) {
   const Log& log = graph.context->log;
   const vulkan::Executor& executor = *program.variants[program.outcomes[outcome].plan].executor;
   const bool reset = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
@@ -273,6 +274,7 @@ dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, ui
         "{}: clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic "
         "projection with finite elements",
         function);
+  checked.constants.sample_units = sample_units;
   checked.input.command_buffer = frame.command_buffer;
   checked.input.images = program.images;
   checked.input.frame_constants = std::as_bytes(std::span(&checked.constants, 1));

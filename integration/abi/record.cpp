@@ -47,7 +47,8 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   const uint32_t variant = program.outcomes[chosen.outcome].plan;
   chosen.first_of_plan = !program.variants[variant].recorded;
   const bool taken_over = program.last_frame > 0 && variant != program.outcomes[program.outcome].plan;
-  if (const dermis_result result = fill_frame(graph, program, chosen.outcome, taken_over, frame, checked);
+  if (const dermis_result result =
+          fill_frame(graph, program, chosen.outcome, taken_over, chosen.sample_units, frame, checked);
       result != DERMIS_OK)
     return result;
   chosen.left_out = !checked.input.left_out.empty();

@@ -45,6 +45,10 @@ struct ExplainOptions {
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports that the host leaves out
   bool two_queues = false;          // passes declared async get a queue of their own where they can
+  bool frame = false;               // what was chosen for a frame of `scene`, instead of the plan
+  std::string scene = "configs/scenes/bust.json";
+  double budget_ms = 0; // of that frame; 0: none
+  bool metered = false;
   std::string out = "-";
 };
 ExitCode explain(const Session& session, const ExplainOptions& options);

@@ -101,6 +101,11 @@ struct FrameChoice {
          predicted_rmse = 0;
   double next_better_missing_ms = 0, mean_d_px = 0;
   uint32_t outcomes = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;
+  uint32_t flat_tiles = 0, dispatches = 0;
+  uint64_t groups = 0;
+  std::array<uint32_t, 3> sampled_tiles{};     // of the scattering ones, with 8, 16 and 32 samples a pixel
+  uint32_t sample_units = 0, wanted_units = 0; // taken; that would be without a budget
+  std::string miss;                            // why it took longer than the budget; "": it did not
 };
 
 struct FrameOutputs {

@@ -64,7 +64,9 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
     load.groups = PassLoad::Groups::view_tiles;
     break;
   case DispatchShape::over_tiles:
-    load.groups = PassLoad::Groups::listed_tiles;
+    load.groups = kind.name == "subsurface.mend"   ? PassLoad::Groups::sample_units
+                  : kind.name == "subsurface.copy" ? PassLoad::Groups::copied_tiles
+                                                   : PassLoad::Groups::listed_tiles;
     break;
   case DispatchShape::over_tile_grid:
     load.groups = PassLoad::Groups::tile_grid;
@@ -249,7 +251,13 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
   case PassLoad::Groups::tile_grid:
     return (load.view_tiles + tiles_per_group - 1) / tiles_per_group;
   case PassLoad::Groups::listed_tiles:
-    return load.listed_tiles;
+    // The pyramid is not built where light is copied.
+    return pass.level < 0 ? load.listed_tiles
+                          : load.listed_tiles - std::min(load.copied_tiles, load.listed_tiles);
+  case PassLoad::Groups::copied_tiles:
+    return load.copied_tiles;
+  case PassLoad::Groups::sample_units:
+    return load.sample_units;
   case PassLoad::Groups::fixed:
     break;
   }
@@ -274,6 +282,22 @@ Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoa
   }
   sum.spread_ms = std::sqrt(variance);
   return sum;
+}
+
+uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
+                      bool meter) {
+  constexpr uint64_t many = 1u << 16; // far apart, so that rounding does not matter
+  const auto takes_units = [](const PassLoad& pass) { return pass.groups == PassLoad::Groups::sample_units; };
+  if (std::none_of(outcome.passes.begin(), outcome.passes.end(), takes_units)) return UINT32_MAX;
+  const auto expected = [&](uint64_t units) {
+    load.sample_units = units;
+    return meter ? metered(outcome, costs, load) : estimate(outcome, costs, load);
+  };
+  const Estimate without = expected(0);
+  const double unit_ms = (expected(many).ms - without.ms) / double(many);
+  if (!(unit_ms > 0)) return UINT32_MAX;
+  const double units = (budget_ms - without.ms - without.spread_ms) / unit_ms;
+  return static_cast<uint32_t>(std::clamp(units, 0.0, double(UINT32_MAX)));
 }
 
 } // namespace dermis::choice

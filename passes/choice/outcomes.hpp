@@ -19,7 +19,14 @@ inline constexpr size_t most_outcomes = 64; // of a graph: the product of the op
 // How many workgroups a pass launches.
 struct PassLoad {
   CostId cost;
-  enum class Groups : uint8_t { fixed, view_tiles, tile_grid, listed_tiles } groups = Groups::fixed;
+  enum class Groups : uint8_t {
+    fixed,
+    view_tiles,
+    tile_grid,
+    listed_tiles,
+    copied_tiles,
+    sample_units
+  } groups = Groups::fixed;
   uint64_t count = 1;   // of fixed
   bool launches = true; // a kernel; clears do not
   int32_t level = -1;   // of the surface-aware pyramid whose list of tiles it runs over; -1: none
@@ -62,10 +69,16 @@ void describe_outcomes(const KindRegistry& kinds, std::span<const Plan* const> p
 struct FrameLoad {
   uint64_t view_tiles = 0;   // 8x8 tiles of the render rectangle
   uint64_t listed_tiles = 0; // of them with subsurface
+  uint64_t copied_tiles = 0; // where none scatters: all of them; else 0
+  uint64_t sample_units = 0; // that subsurface.allot spends
 };
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
 // By the calibration alone, as on any other machine; no spread.
 Estimate metered(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
 Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
+// Units of samples that fit into `budget_ms` beside everything else; UINT32_MAX where the outcome takes no
+// samples by tile, or a unit costs nothing.
+uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
+                      bool meter);
 
 } // namespace dermis::choice

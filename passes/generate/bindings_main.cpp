@@ -1,5 +1,6 @@
 // Build tool: writes one GLSL header a kernel from its signature, so that bindings and push constants are
 // written once. Usage: write_bindings <output folder>
+#include "passes/choice/allotment.hpp"
 #include "passes/subsurface/flat_light.hpp"
 #include "passes/subsurface/kinds.hpp"
 #include "passes/subsurface/profiles/radial_table.hpp"
@@ -33,6 +34,8 @@ std::string declare_port(const Port& port, uint32_t binding) {
     return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
   case Usage::storage_image_write:
     return fmt::format("layout({}) writeonly uniform {} {}_image;\n", layout, port.glsl_type, port.name);
+  case Usage::storage_image_update: // a load needs to know the format
+    return fmt::format("layout({}, rgba16f) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
   case Usage::storage_buffer_read:
     return fmt::format("layout(std430, {}) readonly buffer {}_block {{ {} {}_data[]; }};\n", layout,
                        port.name, port.glsl_type, port.name);
@@ -74,49 +77,53 @@ std::string header_of(const PassKind& kind) {
 
 // Numbers that C++ and GLSL must agree on.
 std::string shared_constants() {
-  return fmt::format("// Generated from the constants of passes/subsurface/.\n"
-                     "#ifndef DERMIS_CONSTANTS_GLSL\n#define DERMIS_CONSTANTS_GLSL\n\n"
-                     "const float copy_below_d_px = {}; // kinds.hpp\n"
-                     "const float flat_reach_d = {:.1f}; // flat_light.hpp\n"
-                     "const float flat_tolerance = {};\n"
-                     "const int flat_most_reach = {};\n"
-                     "const float min_patch_cosine = {}; // truth/surface.hpp\n"
-                     "const int separable_nodes = {}; // separable_kernel.hpp\n"
-                     "const float separable_first_log2_d = {:.1f};\n"
-                     "const float separable_log2_d_step = {:.1f};\n"
-                     "const int separable_rows_per_kernel = {};\n"
-                     "const int sap_levels = {}; // sap_weights.hpp\n"
-                     "const int sap_variants = {};\n"
-                     "const int sap_plain = {};\n"
-                     "const int sap_nodes = {};\n"
-                     "const float sap_nodes_per_octave = {:.1f};\n"
-                     "const float sap_log2_d_first = {};\n"
-                     "const uint sap_tiles_per_group_first = {}u; // sap_tiles.hpp\n"
-                     "const uint sap_tiles_per_group = {}u;\n"
-                     "const int radial_nodes = {}; // profiles/radial_table.hpp\n"
-                     "const float radial_log2_r_first = {:.1f};\n"
-                     "const float radial_nodes_per_octave = {:.1f};\n"
-                     "const float radial_inverse_nodes_per_unit = {:.1f};\n"
-                     "const float reproject_snap_px = {}; // temporal/reproject.hpp\n"
-                     "const float reproject_largest_velocity = {:.1f};\n"
-                     "const float reproject_depth_share = {};\n"
-                     "const float reproject_slope_pixels = {:.1f};\n"
-                     "const float reproject_least_weight = {};\n"
-                     "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
-                     "const float counter_log2_steps = {:.1f};\n\n#endif\n",
-                     subsurface::copy_below_d_px, subsurface::flat_reach_d, subsurface::flat_tolerance,
-                     subsurface::flat_most_reach, subsurface::min_patch_cosine, subsurface::separable_nodes,
-                     subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
-                     subsurface::separable_rows_per_profile, subsurface::sap_level_count,
-                     subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::plain),
-                     subsurface::sap_node_count, double(subsurface::sap_nodes_per_octave),
-                     subsurface::sap_log2_d_first, subsurface::sap_tiles_per_group_first,
-                     subsurface::sap_tiles_per_group, subsurface::radial_nodes,
-                     subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
-                     subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
-                     subsurface::reproject_largest_velocity, subsurface::reproject_depth_share,
-                     subsurface::reproject_slope_pixels, subsurface::reproject_least_weight,
-                     subsurface::counter_log2_shift, subsurface::counter_log2_steps);
+  return fmt::format(
+      "// Generated from the constants of passes/subsurface/.\n"
+      "#ifndef DERMIS_CONSTANTS_GLSL\n#define DERMIS_CONSTANTS_GLSL\n\n"
+      "const float copy_below_d_px = {}; // kinds.hpp\n"
+      "const float flat_reach_d = {:.1f}; // flat_light.hpp\n"
+      "const float flat_tolerance = {};\n"
+      "const int flat_most_reach = {};\n"
+      "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // allotment.hpp\n"
+      "const float allot_stay = {};\n"
+      "const int allot_first_bin = {};\n"
+      "const float min_patch_cosine = {}; // truth/surface.hpp\n"
+      "const int separable_nodes = {}; // separable_kernel.hpp\n"
+      "const float separable_first_log2_d = {:.1f};\n"
+      "const float separable_log2_d_step = {:.1f};\n"
+      "const int separable_rows_per_kernel = {};\n"
+      "const int sap_levels = {}; // sap_weights.hpp\n"
+      "const int sap_variants = {};\n"
+      "const int sap_plain = {};\n"
+      "const int sap_nodes = {};\n"
+      "const float sap_nodes_per_octave = {:.1f};\n"
+      "const float sap_log2_d_first = {};\n"
+      "const uint sap_tiles_per_group_first = {}u; // sap_tiles.hpp\n"
+      "const uint sap_tiles_per_group = {}u;\n"
+      "const int radial_nodes = {}; // profiles/radial_table.hpp\n"
+      "const float radial_log2_r_first = {:.1f};\n"
+      "const float radial_nodes_per_octave = {:.1f};\n"
+      "const float radial_inverse_nodes_per_unit = {:.1f};\n"
+      "const float reproject_snap_px = {}; // temporal/reproject.hpp\n"
+      "const float reproject_largest_velocity = {:.1f};\n"
+      "const float reproject_depth_share = {};\n"
+      "const float reproject_slope_pixels = {:.1f};\n"
+      "const float reproject_least_weight = {};\n"
+      "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
+      "const float counter_log2_steps = {:.1f};\n\n#endif\n",
+      subsurface::copy_below_d_px, subsurface::flat_reach_d, subsurface::flat_tolerance,
+      subsurface::flat_most_reach, choice::allot_gain[0], choice::allot_gain[1], choice::allot_gain[2],
+      choice::allot_stay, choice::allot_first_bin, subsurface::min_patch_cosine, subsurface::separable_nodes,
+      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
+      subsurface::separable_rows_per_profile, subsurface::sap_level_count, subsurface::sap_variant_count,
+      static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
+      double(subsurface::sap_nodes_per_octave), subsurface::sap_log2_d_first,
+      subsurface::sap_tiles_per_group_first, subsurface::sap_tiles_per_group, subsurface::radial_nodes,
+      subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
+      subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
+      subsurface::reproject_largest_velocity, subsurface::reproject_depth_share,
+      subsurface::reproject_slope_pixels, subsurface::reproject_least_weight, subsurface::counter_log2_shift,
+      subsurface::counter_log2_steps);
 }
 
 bool write(const std::string& path, const std::string& text) {

@@ -75,6 +75,7 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.depth_decode[3] = static_cast<float>(decode.e);
   out.depth_unit = static_cast<float>(input.metres_per_unit * mm_per_metre);
   out.exposure = input.exposure;
+  out.sample_units = input.sample_units;
   out.jitter[0] = static_cast<float>(input.jitter_px[0]);
   out.jitter[1] = static_cast<float>(input.jitter_px[1]);
   if (!fill_previous(input, out)) out.flags |= 4u;

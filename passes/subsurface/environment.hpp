@@ -36,6 +36,10 @@ struct FrameCounters {
   uint32_t flat_tiles = 0; // of subsurface.flat: would scatter, but the light is the same all around
   // Groups that one dispatch over the tiles of a level of the surface-aware pyramid launches.
   std::array<uint32_t, 9> level_groups{};
+  // Of subsurface.allot: tiles that took one, two and three steps of samples; units that they spend, and that
+  // all tiles would.
+  std::array<uint32_t, 3> sampled_tiles{};
+  uint32_t sample_units = 0, wanted_units = 0;
 };
 inline constexpr float counter_log2_shift = 8;  // d from 1/256 pixel
 inline constexpr float counter_log2_steps = 16; // an octave; the sum of 4 M tiles fits 32 bits
@@ -63,7 +67,8 @@ struct FrameConstants {
   float previous_ray_scale[2], previous_ray_offset[2]; // as ray_scale and ray_offset
   int32_t previous_rect[4];
   float previous_jitter[2]; // pixels
-  float unused[2];          // rounds to 16 bytes
+  uint32_t sample_units;    // that subsurface.allot may spend
+  float unused;             // rounds to 16 bytes
   int32_t bounds[4]; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
 };
 static_assert(sizeof(FrameConstants) == 192);
@@ -94,6 +99,7 @@ struct FrameInput {
   float exposure = 1.0f;
   uint64_t frame_index = 0;
   bool history_invalid = false;
+  uint32_t sample_units = UINT32_MAX; // as FrameConstants::sample_units
   // Of the frame before: its rectangle (width 0: there is none), its matrix as pictures were rendered with
   // it, jitter included, and that jitter. Where they are no projection, history counts as invalid.
   uint32_t previous_x = 0, previous_y = 0, previous_width = 0, previous_height = 0;

@@ -193,10 +193,28 @@ ImageReads combine(const PassKind& kind, const ReadsQuestion& question) {
   return {2 + one_if(kind, question, "albedo", PortSide::read)};
 }
 
+// Lighting.
+ImageReads copy(const PassKind& kind, const ReadsQuestion& question) {
+  const bool textured = setting(kind, question, "texturing") != 0;
+  return {1 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+}
+
 // Lighting, material, depth, scattered light.
 ImageReads light(const PassKind& kind, const ReadsQuestion& question) {
   const bool textured = setting(kind, question, "texturing") != 0;
   return {4 + scale_read(kind, question) + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+}
+
+// Scattered light, material, importance.
+ImageReads doubt(const PassKind& kind, const ReadsQuestion& question) {
+  return {2 + one_if(kind, question, "importance", PortSide::read)};
+}
+
+// In tiles that were given 16 samples: light twice, surface, and for each sample its surface, and the level's
+// surface and light.
+ImageReads mend(const PassKind&, const ReadsQuestion& question) {
+  constexpr double samples = 16;
+  return {3 + 3 * samples * question.sampled_share, samples};
 }
 
 struct Entry {
@@ -207,6 +225,7 @@ constexpr Entry entries[] = {
     {"subsurface.classify", classify},
     {"subsurface.tile_list", none},
     {"subsurface.flat", none},
+    {"subsurface.copy", copy},
     {"subsurface.setup", setup},
     {"subsurface.burley", burley},
     {"subsurface.separable", separable},
@@ -227,6 +246,9 @@ constexpr Entry entries[] = {
     {"subsurface.blend", blend},
     {"subsurface.residual", residual},
     {"subsurface.accumulate", accumulate},
+    {"subsurface.doubt", doubt},
+    {"subsurface.allot", none},
+    {"subsurface.mend", mend},
 };
 
 } // namespace

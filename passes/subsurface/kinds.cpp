@@ -15,7 +15,8 @@ KindRegistry make_kinds() {
         &combine_kind,        &light_kind,        &sap_tiles_kind, &sap_setup_kind,     &sap_down_kind,
         &sap_up_kind,         &sap_gather_kind,   &fixed_kind,     &pyramid_setup_kind, &pyramid_down_kind,
         &pyramid_gather_kind, &transmission_kind, &afis_kind,      &blend_kind,         &residual_kind,
-        &guided_kind,         &accumulate_kind,   &flat_kind})
+        &guided_kind,         &flat_kind,         &copy_kind,      &doubt_kind,         &allot_kind,
+        &mend_kind,           &accumulate_kind})
     registry.add(*kind);
   return registry;
 }

@@ -8,6 +8,9 @@ layout(std430, set = 1, binding = 6) buffer counter_block {
   uint log2_d_sum;
   uint flat_tiles;
   uint level_groups[9];
+  uint sampled_tiles[3];
+  uint sample_units;
+  uint wanted_units;
 } counters;
 
 uint counter_steps(float d_px) {

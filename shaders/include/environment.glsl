@@ -20,7 +20,8 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   vec2 previous_ray_offset;
   ivec4 previous_rect;
   vec2 previous_jitter; // pixels
-  vec2 unused;
+  uint sample_units;    // that subsurface.allot may spend
+  float unused;
   ivec4 bounds; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
 } frame;
 

@@ -63,6 +63,22 @@ TEST_F(Choice, ACalibrationThatIsNoneIsRefusedWithItsPlace) {
   EXPECT_THAT(outcome.err, HasSubstr("did you mean 'device'?"));
 }
 
+TEST_F(Choice, ExplainTellsOfAFrame) {
+  const Outcome outcome = run(
+      {"explain", "configs/graphs/hybrid.json", "--frame", "--size", "64x36", "--budget", "1000", "--meter"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("frame 5: "));
+  EXPECT_THAT(outcome.out, HasSubstr("of them with 32 samples"));   // a second pays for all
+  EXPECT_EQ(run({"explain", graph, "--budget", "2"}).exit_code, 2); // of which frame?
+}
+
+TEST_F(Choice, BenchSkipGivesARowForEachCase) {
+  const std::string file = path("skip.json");
+  const Outcome outcome = run({"bench", "skip", "--size", "48x27", "--repetitions", "1", "--json", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("no_material"));
+}
+
 TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndShare) {
   const std::string file = path("budget.json");
   const Outcome outcome = run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",

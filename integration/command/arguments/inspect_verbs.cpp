@@ -57,6 +57,16 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_two_queues(verb, options.two_queues);
         add_parts(verb, options.parts);
         add_kinds(verb, options.parts);
+        CLI::Option* frame =
+            verb.add_flag("--frame", options.frame, "What the library chose for a frame, and why");
+        verb.add_option("--scene", options.scene, "Scene of the frame [configs/scenes/bust.json]")
+            ->needs(frame)
+            ->type_name("FILE");
+        verb.add_option("--budget", options.budget_ms, "Its milliseconds of device time")
+            ->needs(frame)
+            ->check(CLI::PositiveNumber)
+            ->type_name("MS");
+        verb.add_flag("--meter", options.metered, "Judge its times by the calibration alone")->needs(frame);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
       });

@@ -4,7 +4,10 @@
 #include "framegraph/explain/plan_text.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "integration/command/inspect/graph_input.hpp"
+#include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
+#include "integration/command/run/choice_report.hpp"
+#include "integration/demo_engine/engine.hpp"
 
 #include <fmt/format.h>
 
@@ -40,6 +43,41 @@ ExitCode deliver(const Session& session, const std::string& path, std::string_vi
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }
 
+// Some frames of a scene, so that times and counts are known; the newest is told of.
+ExitCode explain_frame(const Session& session, const ExplainOptions& options, const LoadedGraph& loaded) {
+  constexpr uint32_t frames = 6;
+  demo::RenderOptions engine;
+  engine.scene = options.scene;
+  engine.graph = options.graph;
+  engine.width = options.size.width;
+  engine.height = options.size.height;
+  engine.frames = frames;
+  engine.settings = settings_as_json(loaded.graph, options.settings);
+  engine.budget_ms = options.budget_ms;
+  engine.metered = options.metered;
+  for (const auto& [name, text] : loaded.overlays)
+    engine.overlays.push_back({name, text});
+  engine.include = [open = open_beside(options.graph, options.parts.roots)](
+                       const std::string& name) -> std::optional<demo::NamedText> {
+    const FileText file = open(name);
+    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+  };
+  ChoiceReport report;
+  demo::RenderCallbacks callbacks;
+  callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
+    if (frame.choice && frame.frame + 1 == frames) report.add(frame.frame, *frame.choice);
+    return interrupted() ? demo::Result<>(demo::Error{demo::ErrorKind::environment, "stopped"})
+                         : demo::success();
+  };
+  const auto summary = demo::render(engine, callbacks);
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  if (!summary) return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+  if (!session.json) return deliver(session, options.out, report.text());
+  JsonWriter answer;
+  report.write(answer);
+  return deliver(session, options.out, std::move(answer).finish());
+}
+
 } // namespace
 
 ExitCode explain(const Session& session, const ExplainOptions& options) {
@@ -52,6 +90,7 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   CompileChoices choices = read_choices(loaded->graph, options.settings, options.unbound);
   choices.two_queues = options.two_queues;
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+  if (options.frame) return explain_frame(session, options, *loaded);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   print_diagnostics(session, diagnostics);

@@ -353,6 +353,13 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   out.scattering_tiles = choice.scattering_tiles;
   out.copied_tiles = choice.copied_tiles;
   out.switches = choice.switches;
+  out.flat_tiles = choice.flat_tiles;
+  out.dispatches = choice.dispatches;
+  out.groups = choice.groups;
+  std::copy(std::begin(choice.sampled_tiles), std::end(choice.sampled_tiles), out.sampled_tiles.begin());
+  out.sample_units = choice.sample_units;
+  out.wanted_units = choice.wanted_units;
+  out.miss = choice.miss;
   return out;
 }
 

@@ -384,10 +384,14 @@ typedef struct dermis_choice {
   uint32_t dispatches;           /* recorded */
   uint32_t reserved_too;         /* 0 */
   uint64_t groups;               /* workgroups that these launched */
+  uint32_t sampled_tiles[3];     /* that were given 8, 16 and 32 samples a pixel; of scattering_tiles */
+  uint32_t sample_units;         /* of 8 samples a pixel of a tile, taken */
+  uint32_t wanted_units;         /* that would have been taken without a budget */
+  uint32_t reserved_three;       /* 0 */
   const char* miss;              /* static string: why times were not as predicted; "" where they were, or not known */
 } dermis_choice;
 #define DERMIS_CHOICE_INIT \
-  {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, NULL}
+  {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL}
 
 /* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame.
  * Thread: one per graph. Errors: ARGUMENT, NOT_READY. */

@@ -50,6 +50,17 @@ constexpr KindSetting combine_settings[] = {
         "color: scattered light times albedo; light: scattered light alone, for hosts that texture later"),
 };
 
+constexpr Format scattered_formats[] = {Format::rgba16f}; // that a shader may load
+constexpr Port copy_ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    port::albedo,
+    port::tiles,
+    port::arguments,
+    {"scattered", Usage::storage_image_update, false, "image2D",
+     "written where no tile scatters, else left as it is", scattered_formats},
+};
+constexpr KindSetting copy_settings[] = {setting::texturing};
+
 constexpr Port light_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
     {"scattered", Usage::sampled_image, true, "texture2D", "scattered light; unbound: nothing scatters", {}},
@@ -116,6 +127,16 @@ const PassKind combine_kind{
     .doc = "Puts scattered light back into the host's lighting. Specular stays with the host.",
     .ports = combine_ports,
     .settings = combine_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind copy_kind{
+    .name = "subsurface.copy",
+    .shader = "subsurface_copy",
+    .doc = "Passes light on as it is, where no tile of the screen scatters.",
+    .ports = copy_ports,
+    .settings = copy_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
 };

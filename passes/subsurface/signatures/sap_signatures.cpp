@@ -61,6 +61,14 @@ constexpr Port tiles_ports[] = {
      {}},
     {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
     {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
+    {"copy_arguments",
+     Usage::storage_buffer_write,
+     true,
+     "uint",
+     "as arguments, of 0 groups where any tile scatters: then the pyramid copies the others, too. Bound, the "
+     "pyramid's "
+     "lists are empty where none does",
+     {}},
 };
 
 constexpr Port setup_ports[] = {

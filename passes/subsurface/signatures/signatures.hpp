@@ -6,15 +6,17 @@
 
 namespace dermis::subsurface {
 
-extern const PassKind classify_kind, flat_kind, tile_list_kind;                   // tile_signatures.cpp
-extern const PassKind setup_kind, combine_kind, light_kind, transmission_kind;    // light_signatures.cpp
+extern const PassKind classify_kind, flat_kind, tile_list_kind; // tile_signatures.cpp
+extern const PassKind setup_kind, combine_kind, light_kind, copy_kind,
+    transmission_kind;                                                            // light_signatures.cpp
 extern const PassKind burley_kind, fixed_kind, separable_kind;                    // scatter_signatures.cpp
 extern const PassKind afis_kind, guided_kind;                                     // afis_signatures.cpp
 extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind; // pyramid_signatures.cpp
 extern const PassKind sap_tiles_kind, sap_setup_kind, sap_down_kind, sap_up_kind,
-    sap_gather_kind;                             // sap_signatures.cpp
-extern const PassKind blend_kind, residual_kind; // residual_signatures.cpp
-extern const PassKind accumulate_kind;           // accumulate_signature.cpp
+    sap_gather_kind;                                     // sap_signatures.cpp
+extern const PassKind blend_kind, residual_kind;         // residual_signatures.cpp
+extern const PassKind doubt_kind, allot_kind, mend_kind; // allot_signatures.cpp
+extern const PassKind accumulate_kind;                   // accumulate_signature.cpp
 
 // Ports that several kinds declare with the same meaning.
 namespace port {

@@ -60,7 +60,7 @@ const PassKind flat_kind{
     .doc = "Leaves tiles alone whose light is the same as far as light reaches.",
     .ports = flat_ports,
     .settings = {},
-    .dispatch = DispatchShape::over_view,
+    .dispatch = DispatchShape::over_tile_grid,
     .side_effects = false,
 };
 

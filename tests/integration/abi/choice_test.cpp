@@ -166,7 +166,9 @@ TEST_F(Choice, ChoicesByBudgetShareTheMemoryOfTheLargest) {
   const dermis_graph sap = make_graph(options);
   ASSERT_NE(sap, nullptr);
   ASSERT_EQ(dermis_graph_memory(sap, &one), DERMIS_OK);
-  EXPECT_EQ(all.transient_bytes, one.transient_bytes); // the pyramid's is the largest
+  // The pyramid's is the largest; the arguments of copying lie beside it.
+  EXPECT_GE(all.transient_bytes, one.transient_bytes);
+  EXPECT_LT(all.transient_bytes, one.transient_bytes + one.transient_bytes / 100);
 }
 
 TEST_F(Choice, AFrameThatIsNotThereYetIsNotReady) {

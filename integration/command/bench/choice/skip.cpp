@@ -121,13 +121,15 @@ double reads_of(const Bench& bench, const Case& one, std::span<const float> sap_
   double sum = 0;
   for (const PlanPass& pass : one.plan.plan.passes) {
     const PassKind& kind = loaded.kinds[pass.kind];
+    const bool copies = kind.name == "subsurface.copy"; // runs where nothing scatters, else the pyramid does
+    const bool pyramid = find_port(kind, "level_tiles", PortSide::read) >= 0;
+    if ((copies || pyramid) && copies != (one.choice.scattering_tiles == 0)) continue;
     std::vector<SettingValue> settings;
     double finer = 1; // texels of level 0 for one of the pass's
     for (size_t i = 0; i < kind.settings.size(); ++i) {
       settings.push_back(one.plan.plan.settings[pass.first_setting + i].value);
       if (kind.settings[i].name == "level") {
         finer = std::exp2(2.0 * double(settings.back().integer));
-        if (one.choice.scattering_tiles == 0) finer = INFINITY; // its list is empty
       }
     }
     subsurface::ReadsQuestion question{

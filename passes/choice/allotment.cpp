@@ -1,0 +1,61 @@
+#include "passes/choice/allotment.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace dermis::choice {
+
+uint32_t step_cost(int k) {
+  return k < 2 ? 1 : 2;
+}
+
+int samples_of(uint32_t steps) {
+  return steps == 0 ? 0 : 4 << steps;
+}
+
+uint32_t step_bin(uint32_t doubt, int k, uint32_t before) {
+  if (doubt == 0) return no_bin;
+  float priority = static_cast<float>(doubt) * allot_gain[static_cast<size_t>(k)];
+  if (before > static_cast<uint32_t>(k)) priority *= allot_stay;
+  const auto bits = static_cast<int32_t>(std::bit_cast<uint32_t>(priority) >> 20);
+  return static_cast<uint32_t>(std::clamp(bits - allot_first_bin, 0, static_cast<int32_t>(allot_bins) - 1));
+}
+
+Allotment allot(std::span<const uint32_t> doubts, std::span<const uint32_t> before, uint32_t units) {
+  const auto bin_of = [&](size_t tile, int k) {
+    return step_bin(doubts[tile], k, before.empty() ? 0 : before[tile]);
+  };
+  std::array<uint32_t, allot_bins> cost_of_bin{};
+  for (size_t i = 0; i < doubts.size(); ++i)
+    for (int k = 0; k < allot_steps; ++k)
+      if (const uint32_t bin = bin_of(i, k); bin != no_bin) cost_of_bin[bin] += step_cost(k);
+
+  Allotment out;
+  for (const uint32_t cost : cost_of_bin)
+    out.wanted += cost;
+  int32_t last_bin = static_cast<int32_t>(allot_bins) - 1;
+  uint32_t left = units;
+  for (; last_bin >= 0 && cost_of_bin[static_cast<size_t>(last_bin)] <= left; --last_bin)
+    left -= cost_of_bin[static_cast<size_t>(last_bin)];
+
+  uint32_t spent = 0; // that tiles so far wanted of the last bin
+  for (size_t i = 0; i < doubts.size(); ++i) {
+    uint32_t steps = 0;
+    for (int k = 0; k < allot_steps; ++k) {
+      const uint32_t bin = bin_of(i, k);
+      if (bin == no_bin) break;
+      bool taken = static_cast<int32_t>(bin) > last_bin;
+      if (static_cast<int32_t>(bin) == last_bin) {
+        spent += step_cost(k);
+        taken = spent <= left;
+      }
+      if (!taken) break;
+      ++steps;
+      out.units += step_cost(k);
+    }
+    out.steps.push_back(steps);
+  }
+  return out;
+}
+
+} // namespace dermis::choice

@@ -1,0 +1,114 @@
+// Samples by tile: how far off each tile is expected to be, which tiles get samples, and the samples
+// themselves.
+
+#include "passes/subsurface/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr Format surface_formats[] = {Format::rgba32_uint};
+constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
+constexpr Format mended_formats[] = {Format::rgba16f};
+constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format::r32f};
+constexpr std::string_view light_doc = "as subsurface.sap_down writes it";
+constexpr std::string_view doubts_doc =
+    "by tile of the render rectangle: how far off it is expected to be, 0 = not at all";
+constexpr std::string_view shares_doc =
+    "by tile of the render rectangle: steps of samples it was given, 0 to 3";
+
+constexpr Port light_port(std::string_view name) {
+  return {name, Usage::sampled_image, false, "texture2D", light_doc, light_formats};
+}
+constexpr Port surface_port(std::string_view name) {
+  return {name, Usage::sampled_image, false, "utexture2D", light_doc, surface_formats};
+}
+constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
+                       "uint",    "as subsurface.classify writes them", {}};
+
+constexpr KindSetting below =
+    setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel may be sampled");
+
+constexpr Port doubt_ports[] = {
+    {"scattered", Usage::sampled_image, false, "texture2D",
+     "of the pyramid; rgb scattered light, a = confidence", light_formats},
+    port::material,
+    {"importance", Usage::sampled_image, true, "texture2D",
+     "how much an error matters to the host, 0 to 1; unbound: 1 everywhere", importance_formats},
+    port::tiles,
+    port::arguments,
+    {"doubts", Usage::storage_buffer_write, false, "uint", doubts_doc, {}},
+};
+constexpr KindSetting doubt_settings[] = {below};
+
+constexpr Port allot_ports[] = {
+    classes,
+    {"doubts", Usage::storage_buffer_read, false, "uint", doubts_doc, {}},
+    {"before", Usage::storage_buffer_read, true, "uint", "the shares of the frame before", {}},
+    {"shares", Usage::storage_buffer_write, false, "uint", shares_doc, {}},
+    {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
+    {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
+};
+
+constexpr Port mend_ports[] = {
+    light_port("light"),
+    light_port("light_1"),
+    light_port("light_2"),
+    light_port("light_3"),
+    light_port("light_4"),
+    light_port("light_5"),
+    surface_port("surface"),
+    surface_port("surface_1"),
+    surface_port("surface_2"),
+    surface_port("surface_3"),
+    surface_port("surface_4"),
+    surface_port("surface_5"),
+    classes,
+    {"shares", Usage::storage_buffer_read, false, "uint", shares_doc, {}},
+    port::tiles,
+    port::arguments,
+    {"scattered", Usage::storage_image_update, false, "image2D",
+     "rgb scattered light, a = confidence; mended in place", mended_formats},
+};
+constexpr KindSetting mend_settings[] = {
+    setting::real("lod_bias", -1.5, -8, 4, "levels",
+                  "on the level whose texels have the area that a sample stands for"),
+    below,
+    setting::real("share", 0.5, 0, 1, "", "of the samples in the result"),
+};
+
+} // namespace
+
+const PassKind doubt_kind{
+    .name = "subsurface.doubt",
+    .shader = "subsurface_doubt",
+    .doc = "How far off each tile is expected to be: what the pyramid's confidence lacks, times light and "
+           "importance.",
+    .ports = doubt_ports,
+    .settings = doubt_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind allot_kind{
+    .name = "subsurface.allot",
+    .shader = "subsurface_allot",
+    .doc = "Gives tiles samples, those first that gain most for what they cost, until the frame's budget is "
+           "spent.",
+    .ports = allot_ports,
+    .settings = {},
+    .dispatch = DispatchShape::single_group,
+    .side_effects = false,
+};
+
+const PassKind mend_kind{
+    .name = "subsurface.mend",
+    .shader = "subsurface_mend",
+    .doc = "Blends samples into the pyramid's light where a tile was given some.",
+    .ports = mend_ports,
+    .settings = mend_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

@@ -1,0 +1,210 @@
+// Samples by tile: the device gives them as the rule on the CPU does, and where they matter to the host.
+
+#include "passes/choice/allotment.hpp"
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::abi_test {
+namespace {
+
+constexpr uint32_t side = 64, tiles_across = side / 8;
+
+// A unit of samples costs a microsecond, everything else nothing.
+constexpr const char* unit_times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
+  { "work": "subsurface.mend lod_bias=-1.5 below=0.8 share=0.5", "base_us": 0, "group_us": 1, "spread": 0 },
+  { "work": "subsurface.classify texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.flat", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_tiles", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_setup texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_down level=1", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_up level=1 variant=smooth", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_gather variant=smooth", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.doubt below=0.8", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.allot", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.light texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.combine texturing=post result=color", "base_us": 0, "group_us": 0, "spread": 0 } ] })";
+
+// Doubts are painted, and tiles that get samples show what is painted.
+constexpr const char* painted = R"({ "dermis_overlay": 1, "edits": [
+  { "set": "/imports/painted", "to": { "format": "rgba16f", "size": "view" } },
+  { "set": "/passes/doubt/read/scattered", "to": "painted" },
+  { "set": "/passes/doubt/set/below", "to": 1 },
+  { "set": "/passes/combine/read/scattered", "to": "painted" },
+  { "set": "/passes/combine/read/tiles", "to": "sampled_tiles" },
+  { "set": "/passes/combine/read/arguments", "to": "sampled_arguments" } ] })";
+
+struct Hybrid : DermisTest {
+  dermis_graph graph = nullptr;
+
+  dermis_choice run_frame() {
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    dermis_choice choice = DERMIS_CHOICE_INIT;
+    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    return choice;
+  }
+
+  void set_units(uint32_t units) {
+    const std::string text = unit_times;
+    const dermis_source calibration = source_of(text, "invented");
+    dermis_budget budget = DERMIS_BUDGET_INIT;
+    budget.milliseconds = (static_cast<float>(units) + 0.5f) / 1000;
+    budget.flags = DERMIS_BUDGET_METER;
+    budget.calibration = &calibration;
+    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  }
+
+  // A surface in steps, which the pyramid is unsure of.
+  void make_hybrid() {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/hybrid.json");
+    graph = make_graph(options);
+    ASSERT_NE(graph, nullptr);
+    make_images(graph);
+    paint();
+    fill("importance", [](uint32_t, uint32_t) { return 1.0f; });
+  }
+  void paint() {
+    fill("depth", [](uint32_t x, uint32_t y) { return 0.5f + 0.002f * float((x / 3 * 7 + y / 5 * 3) % 4); });
+    fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
+  }
+
+  // The picture of a second frame, which knows how many units are wanted. Each is the second frame of a graph
+  // of its own: samples go on from frame to frame. Right of `matters` pixels errors count a hundredth.
+  std::vector<float> picture(uint32_t units, uint32_t matters = side) {
+    last_frame = 0;
+    make_hybrid();
+    fill("importance", [&](uint32_t x, uint32_t) { return x < matters ? 1.0f : 0.01f; });
+    set_units(units);
+    for (int i = 0; i < 2; ++i) {
+      paint();
+      told = run_frame();
+    }
+    return texels("lighting");
+  }
+  dermis_choice told = DERMIS_CHOICE_INIT;
+};
+
+TEST_F(Hybrid, TheDeviceGivesSamplesAsTheRuleOnTheCpuDoes) {
+  GraphOptions options;
+  options.text = read_text("configs/graphs/hybrid.json");
+  options.overlays = {painted};
+  options.unbound = {"albedo", "scatter_scale", "importance"}; // handed out light keeps the samples alive
+  graph = make_graph(options);
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  paint();
+  const auto lacks = [](uint32_t x, uint32_t y) { // of 1024; a half float holds 1 - lacks / 1024 exactly
+    const uint32_t tile = y / 8 * tiles_across + x / 8;
+    return tile % 5 == 0 ? 0u : tile * 2654435761u % 509;
+  };
+  std::vector<uint32_t> doubts(tiles_across * tiles_across, 0);
+  std::vector<float> values;
+  for (uint32_t y = 0; y < side; ++y)
+    for (uint32_t x = 0; x < side; ++x) {
+      doubts[y / 8 * tiles_across + x / 8] += lacks(x, y);
+      values.insert(values.end(), {1, 1, 1, 1.0f - float(lacks(x, y)) / 1024});
+    }
+  upload("painted", values);
+  const uint32_t wanted = choice::allot(doubts, {}, UINT32_MAX).wanted;
+  std::vector<uint32_t> before;
+  for (const uint32_t units : {wanted, wanted / 2, wanted / 3, 7u, 1u, 0u}) {
+    fill("lighting", [](uint32_t x, uint32_t) { return x % 2 == 0 ? 0.25f : 0.5f; }); // not flat
+    set_units(units);
+    const dermis_choice choice = run_frame();
+    const choice::Allotment expected = choice::allot(doubts, before, units);
+    EXPECT_EQ(choice.wanted_units, wanted);
+    EXPECT_EQ(choice.sample_units, expected.units);
+    const auto light = texels("lighting");
+    std::array<uint32_t, 4> counts{};
+    for (uint32_t tile = 0; tile < doubts.size(); ++tile) {
+      ++counts[expected.steps[tile]];
+      const size_t pixel = size_t{tile / tiles_across * 8} * side + tile % tiles_across * 8;
+      EXPECT_EQ(light[4 * pixel] == 1.0f, expected.steps[tile] > 0)
+          << "tile " << tile << ", " << units << " units";
+    }
+    for (size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(choice.sampled_tiles[k], counts[k + 1]) << units;
+    before = expected.steps;
+  }
+}
+
+TEST_F(Hybrid, WithoutUnitsThePictureIsThePyramidsAndWithAllItIsNot) {
+  const auto none = picture(0);
+  const auto all = picture(100000);
+  EXPECT_NE(none, all);
+  GraphOptions options;
+  options.text = read_text("configs/graphs/sap.json");
+  options.unbound = {"albedo", "scatter_scale", "scattered_light", "thickness", "back_lighting"};
+  graph = make_graph(options);
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  paint();
+  const auto bound = bindings(graph);
+  dermis_frame one = frame(bound);
+  ASSERT_EQ(record(graph, one), DERMIS_OK);
+  EXPECT_EQ(texels("lighting"), none);
+}
+
+// Root of the mean square over columns first .. last - 1.
+double rms(const std::vector<float>& a, const std::vector<float>& b, uint32_t first, uint32_t last) {
+  double sum = 0;
+  for (uint32_t y = 0; y < side; ++y)
+    for (uint32_t x = first; x < last; ++x)
+      for (uint32_t c = 0; c < 3; ++c) {
+        const size_t i = 4 * (size_t{y} * side + x) + c;
+        sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
+      }
+  return std::sqrt(sum / (3.0 * side * (last - first)));
+}
+
+TEST_F(Hybrid, WithHalfTheBudgetTilesThatMatterKeepTheirPictureAndOthersPay) {
+  const auto none = picture(0);
+  const auto all = picture(100000);
+  const dermis_choice choice = told;
+  ASSERT_GT(choice.wanted_units, 0u);
+  constexpr uint32_t matters = 3 * side / 8; // what is left of it wants less than half of all
+  const auto half = picture(choice.wanted_units / 2, matters);
+  // All tiles that matter have the samples that the full budget gives them: their picture is the same,
+  // whatever the truth is. Without the column of tiles whose share falls towards tiles that were given none.
+  EXPECT_EQ(rms(half, all, 0, matters - 8), 0);
+  EXPECT_GT(rms(half, all, matters + 8, side), 0.2 * rms(none, all, matters + 8, side));
+}
+
+// Energy of the rows' differences at frequency k of 64.
+double energy(const std::vector<float>& a, const std::vector<float>& b, uint32_t k) {
+  constexpr double two_pi = 6.283185307179586;
+  double sum = 0;
+  for (uint32_t y = 0; y < side; ++y) {
+    double re = 0, im = 0;
+    for (uint32_t x = 0; x < side; ++x) {
+      const size_t i = 4 * (size_t{y} * side + x) + 1;
+      const double difference = double(a[i]) - b[i];
+      re += difference * std::cos(two_pi * k * x / side);
+      im += difference * std::sin(two_pi * k * x / side);
+    }
+    sum += re * re + im * im;
+  }
+  return sum;
+}
+
+TEST_F(Hybrid, TilesLeaveNoSeams) {
+  const auto none = picture(0);
+  const auto all = picture(100000);
+  const dermis_choice choice = told;
+  const auto half = picture(choice.wanted_units / 3);
+  for (const auto* pure : {&none, &all})
+    for (const uint32_t harmonic : {8u, 16u, 24u}) {
+      std::vector<double> beside;
+      for (int k = -3; k <= 3; ++k)
+        if (k != 0) beside.push_back(energy(half, *pure, harmonic + static_cast<uint32_t>(k)));
+      std::sort(beside.begin(), beside.end());
+      EXPECT_LE(energy(half, *pure, harmonic), 2 * 0.5 * (beside[2] + beside[3])) << harmonic;
+    }
+}
+
+} // namespace
+} // namespace dermis::abi_test
