@@ -224,6 +224,7 @@ struct CompileContext {
   std::vector<uint32_t> first_object; // by plan resource; objects follow frames_back
   std::vector<ObjectState> states, ends;
   std::vector<PassTouch> touches;
+  std::vector<uint32_t> touch_number; // by object: of the last one, counted through all passes
   std::vector<uint32_t> touch_of_use;
   std::vector<uint32_t> lent_memory;        // by plan resource: into `memory`, of what it lends
   std::vector<std::vector<Segment>> memory; // by heap, then two for each history that lends

@@ -24,6 +24,7 @@ bool Synchronizer::number_objects() {
     deepest = std::max(deepest, roles(r));
   }
   c.states.assign(objects, {});
+  c.touch_number.assign(objects, 0);
   return deepest > 1;
 }
 
@@ -95,15 +96,17 @@ void Synchronizer::collect(uint32_t first_use, uint32_t end) {
     const uint32_t part = c.part_index(use);
     const uint32_t object = object_of(resource, use.frames_back, part);
     const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
-    uint32_t same = 0;
-    while (same < c.touches.size() && c.touches[same].object != object)
-      ++same;
-    if (same == c.touches.size())
+    uint32_t& number = c.touch_number[object];
+    if (number < touches_before) { // by an earlier pass
+      number = touches_before + static_cast<uint32_t>(c.touches.size());
       c.touches.push_back({object, resource, use.frames_back, 0, false, part, Layout::undefined});
+    }
+    const uint32_t same = number - touches_before;
     c.touches[same].usages |= usage;
     c.touches[same].certain |= use.when == ReadWhen::always;
     c.touch_of_use.back() = same;
   }
+  touches_before += static_cast<uint32_t>(c.touches.size());
   for (PassTouch& touch : c.touches)
     touch.layout = layout_of(touch);
   if (c.graph->parts) unify_layouts(first_use, end);

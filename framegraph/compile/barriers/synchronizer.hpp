@@ -27,6 +27,7 @@ struct Synchronizer {
   std::vector<std::pair<uint32_t, uint32_t>> waiting_parts =
       {};                         // barriers for parts, and what they stand behind
   uint32_t current = 0;           // position
+  uint32_t touches_before = 1;    // of the passes walked through so far: see CompileContext::touch_number
   bool emit = false;              // barriers; otherwise only how each object ends
   uint32_t last_batch = no_value; // position of the pass behind it
 
