@@ -40,6 +40,8 @@ public:
   // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel. `follows`: it comes
   // after the frame that was scattered last, so histories go on; otherwise they begin anew.
   demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false);
+  // Whether the last scatter had to make its graph: then the driver compiled, and its times say nothing.
+  bool was_made_anew() const { return made_anew_; }
   // Of the last run. Errors: environment (no timestamps).
   demo::Result<TechniqueTimes> times();
   // What the last run's kernels say of their sampling, 3 values a pixel: samples, those behind the history,
@@ -70,6 +72,7 @@ private:
   DeviceGraphRequest made_for_;
   CompiledPlan plan_;
   std::unique_ptr<DeviceGraph> device_;
+  bool made_anew_ = false;
   dermis_frame frame_ = DERMIS_FRAME_INIT;
 };
 
