@@ -51,7 +51,8 @@ sap_texel find_seed(int parent, float spacing) {
     float support = 0.0;
     [[unroll]] for (int b = 0; b < 4; ++b) {
       sap_texel child = children[child_index(parent, central[b])];
-      float off = (child.depth - seed.depth - sap_rise(seed.depth, seed.slope, offset_of(central[b], spacing))) * per_sigma_mm;
+      float depth_step = child.depth - seed.depth;
+      float off = sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset_of(central[b], spacing)), depth_step) * per_sigma_mm;
       support += child.id == seed.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
     }
     if (seed.id != 0u && (best.id == 0u || support > hysteresis * most)) {
@@ -97,10 +98,12 @@ void main() {
       [[unroll]] for (int c = 0; c < 16; ++c) {
         vec2 offset = offset_of(c, spacing);
         float tilt = dot(seed.slope, offset) * per_sigma;
-        float narrowing = exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
-        all_weight += binomial(c) * narrowing;
+        all_weight += binomial(c) * exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
         sap_texel child = children[child_index(k, c)];
-        float off = (child.depth - seed.depth - sap_rise(seed.depth, seed.slope, offset)) * per_sigma_mm;
+        float depth_step = (child.depth - seed.depth) * per_sigma_mm;
+        float off = sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset) * per_sigma_mm, depth_step);
+        float along = sap_nearer(tilt, depth_step);
+        float narrowing = exp2(sap_factor(sap_tilt_width_down) * along * along);
         float flat_weight = binomial(c) * exp2(sap_factor(sap_depth_width) * off * off) * child.mass;
         flat_weight = child.id == seed.id ? flat_weight : 0.0;
         vec4 tap = child_light[child_index(k, c)];
@@ -117,7 +120,7 @@ void main() {
         light = vec4(light.rgb / total, total / mass);
         vec3 rounded = round_to_half(vec3(mean_slope / total_flat, mean_reach / total_flat));
         bits = sap_pack(sap_texel(max(mean_depth / total_flat, nearest_share * seed.depth), rounded.xy, rounded.z,
-                                  round_to_half(mass / all_weight), seed.id));
+                                  round_to_half(min(mass / all_weight, 1.0)), seed.id));
       } else {
         light = vec4(0.0);
       }

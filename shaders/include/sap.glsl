@@ -10,14 +10,18 @@
 const float sap_sigma = 0.8660254; // of [1 3 3 1] in its own spacings: sqrt(3)/2
 // Widths of the weights in sigmas, by measurement (passes/subsurface/sap/sap_levels.hpp).
 const float sap_depth_width = 2.0;      // distance from the tangent plane: stops at depth steps
-const float sap_tilt_width_down = 2.5;  // depth along the tangent plane: narrows the kernel on slopes
+const float sap_tilt_width_down = 1.5;  // depth along the tangent plane: narrows the kernel on slopes
 const float sap_tilt_width_up = 4.0;
 const float sap_tilt_width_tent = 1.5;
+const float sap_confidence_strictness = 9.0;  // of the squared distance from the planes
 const float sap_area_cap = 1.5;         // of 1 / cos to the viewer
 const float sap_negligible = 1e-12;
 
 // exp(-x^2 / (2 width^2)) = exp2(factor * x^2)
 float sap_factor(float width) { return -0.5 * 1.44269504 / (width * width); }
+// Of two distances the one nearer to 0: a texel is off the surface by its distance from the tangent plane or in depth,
+// whichever is less.
+float sap_nearer(float a, float b) { return min(abs(a), abs(b)); }
 
 struct sap_texel {
   float depth;  // mm

@@ -64,7 +64,8 @@ sap_sum sap_tent(int k, int level, sap_texel own) {
         weight *= j == 0 ? narrowing.x : i == 0 ? narrowing.y : i == j ? narrowing.z : narrowing.w;
       sap_texel tap = sap_unpack(ring_surface[ring_index(k, i, j)]);
       vec4 light = ring_light[ring_index(k, i, j)];
-      float off = (tap.depth - own.depth - sap_rise(own.depth, own.slope, offset)) * per_sigma_mm;
+      float depth_step = tap.depth - own.depth;
+      float off = sap_nearer(depth_step - sap_rise(own.depth, own.slope, offset), depth_step) * per_sigma_mm;
       weight *= exp2(sap_factor(sap_depth_width) * off * off) * tap.mass;
       weight = tap.id == own.id ? weight : 0.0;
       mass += weight;
@@ -76,7 +77,7 @@ sap_sum sap_tent(int k, int level, sap_texel own) {
 }
 
 // Bilinear over the four nearest texels of the coarser level, along the surface, of block texel k. `confidence` gets the
-// share that survives with weights four times as strict.
+// share that survives with weights nine times as strict on the tangent planes.
 sap_sum sap_from_coarser(int k, int level, sap_texel own, vec3 fallback, out float confidence) {
   float spacing = float(1 << level);
   float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(own.depth);
@@ -94,16 +95,17 @@ sap_sum sap_from_coarser(int k, int level, sap_texel own, vec3 fallback, out flo
       all_weight += weight;
       int index = (qy - ((odd_first - 1) >> 1)) * coarse_width + qx - ((odd_first - 1) >> 1);
       sap_texel tap = sap_unpack(coarse_surface[index]);
-      float from_own = tap.depth - own.depth - sap_rise(own.depth, own.slope, offset);
-      float from_tap = own.depth - tap.depth + sap_rise(tap.depth, tap.slope, offset);
-      float off = min(abs(from_own), abs(from_tap)) * per_sigma_mm;
+      float depth_step = tap.depth - own.depth;
+      float from_planes = sap_nearer(depth_step - sap_rise(own.depth, own.slope, offset),
+                                     depth_step - sap_rise(tap.depth, tap.slope, offset)) * per_sigma_mm;
+      float off = sap_nearer(from_planes, depth_step * per_sigma_mm);
       float kept = tap.id == own.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
       sap_scattered theirs = sap_unpack_scattered(coarse_scattered[index]);
       vec3 tap_mass = weight * kept * theirs.mass;
       mass += tap_mass;
       sum += tap_mass * theirs.light;
-      float kept_twice = kept * kept;
-      confidence += bilinear * kept_twice * kept_twice * theirs.confidence;
+      float strictly = exp2(sap_confidence_strictness * sap_factor(sap_depth_width) * from_planes * from_planes);
+      confidence += tap.id == own.id ? bilinear * strictly * theirs.confidence : 0.0;
     }
   vec3 found = vec3(greaterThan(mass, vec3(sap_negligible)));
   return sap_sum(mix(fallback, sum / max(mass, vec3(sap_negligible)), found), mass / all_weight);

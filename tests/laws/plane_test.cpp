@@ -67,6 +67,22 @@ TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {
   }
 }
 
+TEST_P(EveryTechnique, FlatLightOfAnyBrightnessStaysFlatOnAnySurface) {
+  for (const float value : {0.0123f, 0.7f, 37.3f}) {
+    Plane plane;
+    plane.width = 75;
+    plane.height = 52;
+    plane.light = [&](double, double) { return value; };
+    plane.profile = [](int x, int y) { return static_cast<uint8_t>((x * 7 + y * 13) % 23 == 0 ? 0 : 1); };
+    plane.depth_m = [](int x, int y) { return 1.0f + 0.002f * static_cast<float>((x / 9 + y / 5) % 4); };
+    const Picture picture = scatter(plane);
+    for (uint32_t y = 0; y < plane.height; ++y)
+      for (uint32_t x = 0; x < plane.width; ++x)
+        ASSERT_NEAR(picture.at(x, y, 1) / double(value), 1, 2e-3)
+            << x << " " << y; // fp16 storage: 5e-4 a step
+  }
+}
+
 TEST_P(EveryTechnique, WithoutScatteringTheInputComesBackBitForBit) {
   Plane plane;
   plane.width = 67; // odd on purpose

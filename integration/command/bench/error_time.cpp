@@ -38,6 +38,8 @@ Spread spread_of(std::vector<double> values) {
 
 struct Measured {
   size_t technique = 0, subject = 0;
+  double spent_ms = 0;  // in timed runs, with all that the host does
+  uint32_t to_warm = 0; // runs left that are not timed
   StillError error;
   TechniqueCounts counts;
   std::vector<double> device_ms, sampling_ms;
@@ -205,8 +207,14 @@ demo::Result<std::optional<std::vector<float>>> self_reference(Bench& bench, con
   return std::optional<std::vector<float>>(light.take());
 }
 
-// First runs are for the error; then all techniques in turn, again and again, so that whatever else the
-// machine does meets all of them alike.
+void add_times(Measured& row, const TechniqueTimes& times, std::chrono::steady_clock::time_point start) {
+  row.spent_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  row.device_ms.push_back(times.device);
+  row.sampling_ms.push_back(times.sampling);
+}
+
+// First runs are for the error, and where the technique has run at this size before also for the time; then
+// all techniques in turn, again and again, so that whatever else the machine does meets all of them alike.
 demo::Result<> measure(Bench& bench, size_t index, Progress& progress, uint64_t& done) {
   const Subject& subject = bench.subjects[index];
   const auto name = fmt::format("{} {} d {:.2f} px", subject.scene, subject.framing, subject.d_px);
@@ -222,20 +230,27 @@ demo::Result<> measure(Bench& bench, size_t index, Progress& progress, uint64_t&
   for (size_t t = 0; t < bench.techniques.size(); ++t) {
     if (interrupted()) return stopped();
     TechniqueRun& technique = *bench.techniques[t];
-    Measured one{t, index, {}, {}, {}, {}, {}};
+    Measured one{t, index, 0, 0, {}, {}, {}, {}, {}};
     if (self_of != technique.request().graph) {
       auto found = self_reference(bench, technique, subject, window);
       if (!found) return found.error();
       self = found.take();
       self_of = technique.request().graph;
     }
-    if (self && !in_window.pixels.empty()) {
+    if (self && !in_window.pixels.empty()) { // of another size, so the graph is made twice more
       const auto part = technique.scatter(window);
       if (!part) return part.error();
       one.psnr_db_self = psnr_between(*part, *self, in_window);
     }
+    const auto start = std::chrono::steady_clock::now();
     const auto light = technique.scatter(subject.frame);
     if (!light) return light.error();
+    const auto times = technique.times();
+    if (!times) return times.error();
+    if (technique.was_made_anew())
+      one.to_warm = bench.file.warm_up - 1;
+    else
+      add_times(one, *times, start);
     one.error = still_error(*light, *reference);
     one.counts = technique.counts(scattering.share, scattering.d_px);
     if (technique.request().heat_map)
@@ -244,23 +259,22 @@ demo::Result<> measure(Bench& bench, size_t index, Progress& progress, uint64_t&
                    *light, *reference, subject.frame.description.width, subject.frame.profile));
     bench.measured.push_back(std::move(one));
   }
-  std::vector<double> spent(
-      bench.techniques.size()); // milliseconds of timed runs, with all that the host does
   for (uint32_t round = 1; round < bench.file.warm_up + bench.file.repetitions; ++round)
     for (size_t t = 0; t < bench.techniques.size(); ++t) {
       if (interrupted()) return stopped();
       progress.update(++done);
       Measured& row = bench.measured[first + t];
+      if (row.device_ms.size() >= bench.file.repetitions) continue;
       if (bench.file.row_milliseconds > 0 && row.device_ms.size() >= bench.file.least_repetitions &&
-          spent[t] >= bench.file.row_milliseconds)
+          row.spent_ms >= bench.file.row_milliseconds)
         continue;
       const auto start = std::chrono::steady_clock::now();
       const auto times = bench.techniques[t]->run_again();
       if (!times) return times.error();
-      if (round < bench.file.warm_up) continue;
-      spent[t] += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-      row.device_ms.push_back(times->device);
-      row.sampling_ms.push_back(times->sampling);
+      if (row.to_warm > 0)
+        --row.to_warm;
+      else
+        add_times(row, *times, start);
     }
   return demo::success();
 }

@@ -2,6 +2,8 @@
 
 #include "integration/command/bench/subject.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -150,6 +152,11 @@ void paint_depth_step(Painter& painter) {
   painter.light([&](Place p) { return (band_of(p.x) % 2 == 0 ? 1.0 : 0.25) * (0.6 + 0.4 * texture(p)); });
 }
 
+// "mixed": the same material under several ids, in cells as wide as a kernel, to see what telling them apart
+// costs.
+constexpr uint32_t mixed_profiles = 4;
+constexpr uint32_t mixed_cell = 64; // pixels
+
 struct Generator {
   std::string_view scene;
   void (*paint)(Painter&);
@@ -170,11 +177,22 @@ bool is_generated(std::string_view scene) {
 
 CapturedFrame generate_scene(const std::string& scene, const std::string& framing, uint32_t width,
                              uint32_t height, double d_px, const subsurface::Profile& skin) {
-  const CaptureProfile profile{1, scene == "texture_plane" ? grey_profile() : skin};
-  CapturedFrame frame = plane_frame(width, height, d_px, {&profile, 1});
+  std::vector<CaptureProfile> profiles{{1, scene == "texture_plane" ? grey_profile() : skin}};
+  if (framing == "mixed")
+    while (profiles.size() < mixed_profiles) {
+      CaptureProfile another = profiles.front();
+      another.id = static_cast<uint32_t>(profiles.size() + 1);
+      another.profile.name += fmt::format(" {}", another.id);
+      profiles.push_back(std::move(another));
+    }
+  CapturedFrame frame = plane_frame(width, height, d_px, profiles);
   Painter painter{frame, double(height), d_px, *frame.description.pixel_pitch_m};
   for (const Generator& one : generators)
     if (one.scene == scene) one.paint(painter);
+  if (framing == "mixed")
+    for (size_t i = 0; i < frame.profile.size(); ++i)
+      frame.profile[i] =
+          static_cast<uint8_t>(1 + (i % width / mixed_cell + i / width / mixed_cell * 2) % mixed_profiles);
   if (framing == "varying") {
     frame.scatter_scale = Image::sized(width, height, 1);
     for (size_t i = 0; i < frame.scatter_scale.values.size(); ++i)

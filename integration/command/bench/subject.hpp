@@ -47,7 +47,8 @@ bool is_generated(std::string_view scene);
 // lengths in picture heights h: edge (a slanted edge of light), disc (discs of light of all sizes on a
 // plane), bumps (hills with slopes to 50 degrees under a key light), sphere (radius .42 h, the same light),
 // depth_step (steps of .5, 2, 5 and 20 d under a texture), texture_plane (edges, discs and contrasts of every
-// scale on a plane; framing "varying": d falls from d_px to an eighth of it across the picture). Thread: any.
+// scale on a plane; framing "varying": d falls from d_px to an eighth of it across the picture; "mixed":
+// cells of four profiles, all alike). Thread: any.
 CapturedFrame generate_scene(const std::string& scene, const std::string& framing, uint32_t width,
                              uint32_t height, double d_px, const subsurface::Profile& skin);
 

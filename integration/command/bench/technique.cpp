@@ -77,9 +77,9 @@ demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoic
   wanted.unbound = slots.unbound;
   for (const auto& [slot, format] : slots.formats)
     wanted.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
-  if (device_ != nullptr && wanted.width == made_for_.width && wanted.height == made_for_.height &&
-      wanted.unbound == made_for_.unbound && wanted.formats == made_for_.formats)
-    return demo::success();
+  made_anew_ = device_ == nullptr || wanted.width != made_for_.width || wanted.height != made_for_.height ||
+               wanted.unbound != made_for_.unbound || wanted.formats != made_for_.formats;
+  if (!made_anew_) return demo::success();
   device_.reset();
   Diagnostics diagnostics;
   const CompileChoices choices = read_choices(loaded_.graph, request_.set, slots.unbound);

@@ -42,6 +42,8 @@ public:
   demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false);
   // The next frame has this number, if it is higher than the one that would follow.
   void skip_to(uint64_t frame_index);
+  // Whether the last scatter had to make its graph: then the driver compiled, and its times say nothing.
+  bool was_made_anew() const { return made_anew_; }
   // Of the last run. Errors: environment (no timestamps).
   demo::Result<TechniqueTimes> times();
   // What the last run's kernels say of their sampling, 3 values a pixel: samples, those behind the history,
@@ -72,6 +74,7 @@ private:
   DeviceGraphRequest made_for_;
   CompiledPlan plan_;
   std::unique_ptr<DeviceGraph> device_;
+  bool made_anew_ = false;
   dermis_frame frame_ = DERMIS_FRAME_INIT;
 };
 

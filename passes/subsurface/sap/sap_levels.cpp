@@ -48,7 +48,8 @@ template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Ch
     for (const size_t b : central) {
       const SapTexel<Real>* child = children.texels[b];
       if (!child || child->id != plane.id) continue;
-      const Real off = child->depth - plane.depth - pyramid.rise(plane, children.x(b), children.y(b));
+      const Real step = child->depth - plane.depth;
+      const Real off = sap_nearer(step - pyramid.rise(plane, children.x(b), children.y(b)), step);
       support += sap_falloff(off * per_metre, sap_depth_width);
     }
     if (best == 16 || support > Real(hysteresis) * most) {
@@ -77,11 +78,13 @@ template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, con
   Real all_weight = 0, total = 0, flat = 0;
   for (size_t k = 0; k < 16; ++k) {
     const Real x = children.x(k), y = children.y(k);
-    const Real narrowing = sap_falloff(plane.slope(x, y) * per_sigma, sap_tilt_width_down);
-    all_weight += binomial<Real>(k) * narrowing;
+    const Real tilt = plane.slope(x, y) * per_sigma;
+    all_weight += binomial<Real>(k) * sap_falloff(tilt, sap_tilt_width_down);
     const SapTexel<Real>* child = children.texels[k];
     if (!child || child->id != plane.id) continue;
-    const Real off = (child->depth - plane.depth - pyramid.rise(plane, x, y)) * per_metre;
+    const Real step = (child->depth - plane.depth) * per_metre;
+    const Real off = sap_nearer(step - pyramid.rise(plane, x, y) * per_metre, step);
+    const Real narrowing = sap_falloff(sap_nearer(tilt, step), sap_tilt_width_down);
     const Real flat_weight = binomial<Real>(k) * sap_falloff(off, sap_depth_width) * child->mass;
     const Real weight = flat_weight * narrowing * child->area;
     sum.mass += flat_weight * narrowing;
@@ -99,7 +102,7 @@ template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, con
                         .slope_x = sum.slope_x / flat,
                         .slope_y = sum.slope_y / flat,
                         .reach = sum.reach / flat,
-                        .mass = sum.mass / all_weight,
+                        .mass = std::min(Real(1), sum.mass / all_weight),
                         .area = total / sum.mass,
                         .light = {},
                         .id = plane.id};

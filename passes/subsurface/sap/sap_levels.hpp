@@ -15,15 +15,24 @@ inline constexpr double sap_sigma = 0.8660254; // of [1 3 3 1] in its own spacin
 // 20 % of each.
 inline constexpr double sap_depth_width = 2; // distance from the tangent plane: stops at depth steps
 inline constexpr double sap_tilt_width_down =
-    2.5; // depth along the tangent plane: narrows the kernel on slopes
+    1.5; // depth along the tangent plane: narrows the kernel on slopes
 inline constexpr double sap_tilt_width_up = 4;
 inline constexpr double sap_tilt_width_tent = 1.5;
+// Of the squared distance from the tangent planes, where confidence is counted: on a scanned head's close and
+// side framings it parts exact pixels from others better than 4 does (ratio .51 and .26 instead of .59, .30).
+inline constexpr double sap_confidence_strictness = 9;
 inline constexpr double sap_area_cap = 1.5;     // of 1 / cos to the viewer
 inline constexpr double sap_reach_power = 0.25; // d shrinks with this power of cos
 inline constexpr double sap_negligible = 1e-12;
 
 template <class Real> Real sap_falloff(Real x, double width) {
   return std::exp(x * x * Real(-0.5 / (width * width)));
+}
+// Of two distances the one nearer to 0. A texel counts as off the surface by its distance from the tangent
+// plane or by its distance in depth, whichever is less: across a fold the plane leaves a surface that is
+// near.
+template <class Real> Real sap_nearer(Real a, Real b) {
+  return std::min(std::abs(a), std::abs(b));
 }
 
 template <class Real> struct SapTexel {

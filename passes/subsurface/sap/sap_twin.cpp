@@ -43,9 +43,9 @@ template <class Real> struct SapClimb {
         all_weight += weight;
         const SapTexel<Real>* tap = level.find(x + i, y + j, own.id);
         if (!tap) continue;
-        weight *=
-            sap_falloff((tap->depth - own.depth - pyramid.rise(own, ox, oy)) * per_metre, sap_depth_width) *
-            tap->mass;
+        const Real step = tap->depth - own.depth;
+        const Real off = sap_nearer(step - pyramid.rise(own, ox, oy), step);
+        weight *= sap_falloff(off * per_metre, sap_depth_width) * tap->mass;
         mass += weight;
         total += weight * tap->area;
         for (size_t c = 0; c < 3; ++c)
@@ -77,17 +77,19 @@ template <class Real> struct SapClimb {
         all_weight += weight;
         const SapTexel<Real>* tap = coarse.find(qx, qy, own.id);
         if (!tap) continue;
-        const Real from_own = tap->depth - own.depth - pyramid.rise(own, ox, oy);
-        const Real from_tap = own.depth - tap->depth + pyramid.rise(*tap, ox, oy);
-        const Real kept =
-            sap_falloff(std::min(std::abs(from_own), std::abs(from_tap)) * per_metre, sap_depth_width);
+        const Real step = tap->depth - own.depth;
+        const Real from_planes =
+            sap_nearer(step - pyramid.rise(own, ox, oy), step - pyramid.rise(*tap, ox, oy));
+        const Real kept = sap_falloff(sap_nearer(from_planes, step) * per_metre, sap_depth_width);
         const Scattered<Real>& theirs = scattered[fine + 1][coarse.index(qx, qy)];
         for (size_t c = 0; c < 3; ++c) {
           const Real mass = weight * kept * theirs.mass[c];
           result.mass[c] += mass;
           sum[c] += mass * theirs.light[c];
         }
-        result.confidence += bilinear * kept * kept * kept * kept * theirs.confidence;
+        const Real strictly =
+            sap_falloff(from_planes * per_metre, sap_depth_width / std::sqrt(sap_confidence_strictness));
+        result.confidence += bilinear * strictly * theirs.confidence;
       }
     for (size_t c = 0; c < 3; ++c) {
       const bool found = result.mass[c] > Real(sap_negligible);
