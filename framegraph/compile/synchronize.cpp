@@ -10,8 +10,6 @@
 #include "framegraph/compile/barriers/synchronizer.hpp"
 
 #include <algorithm>
-#include <array>
-#include <span>
 
 namespace dermis {
 
@@ -80,81 +78,6 @@ void Synchronizer::transfer(const PassTouch& touch, const ObjectState& state, co
   need(position, state.last_pass);
 }
 
-Layout Synchronizer::layout_of(const PassTouch& touch) const {
-  return plan.resources[touch.resource].type == ResourceType::image ? sets[touch.usages].image_layout
-                                                                    : Layout::undefined;
-}
-
-void Synchronizer::collect(uint32_t first_use, uint32_t end) {
-  c.touches.clear();
-  c.touch_of_use.clear();
-  for (uint32_t u = first_use; u < end; ++u) {
-    const Use& use = c.uses[u];
-    c.touch_of_use.push_back(no_value);
-    if (use.trouble != Use::Trouble::none) continue;
-    const uint32_t resource = c.plan_resource[use.resource.value];
-    const uint32_t part = c.part_index(use);
-    const uint32_t object = object_of(resource, use.frames_back, part);
-    const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
-    uint32_t& number = c.touch_number[object];
-    if (number < touches_before) { // by an earlier pass
-      number = touches_before + static_cast<uint32_t>(c.touches.size());
-      c.touches.push_back({object, resource, use.frames_back, 0, false, part, Layout::undefined});
-    }
-    const uint32_t same = number - touches_before;
-    c.touches[same].usages |= usage;
-    c.touches[same].certain |= use.when == ReadWhen::always;
-    c.touch_of_use.back() = same;
-  }
-  touches_before += static_cast<uint32_t>(c.touches.size());
-  for (PassTouch& touch : c.touches)
-    touch.layout = layout_of(touch);
-  if (c.graph->parts) unify_layouts(first_use, end);
-}
-
-void Synchronizer::unify_layouts(uint32_t first_use, uint32_t end) {
-  for (bool again = true; again;) {
-    again = false;
-    uint32_t before = no_value; // touch of the use before
-    for (uint32_t u = first_use; u < end; ++u) {
-      const uint32_t touch = c.touch_of_use[u - first_use];
-      if (touch != no_value && before != no_value && c.uses[u].binding == c.uses[u - 1].binding &&
-          c.touches[touch].layout != c.touches[before].layout) {
-        c.touches[touch].layout = c.touches[before].layout = Layout::general;
-        again = true;
-      }
-      before = touch;
-    }
-  }
-}
-
-void Synchronizer::add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end) {
-  const std::span<const Port> ports = c.kind(pass.declared).ports;
-  pass.first_access = static_cast<uint32_t>(plan.accesses.size());
-  for (uint32_t u = first_use; u < end; ++u) {
-    const uint32_t touched = c.touch_of_use[u - first_use];
-    if (touched == no_value) continue;
-    const PassTouch& touch = c.touches[touched];
-    const Use& use = c.uses[u];
-    const UsageSet& usage = sets[size_t{1} << static_cast<uint32_t>(use.usage)];
-    const SubresourceRange range = range_of(touch.resource, touch.part);
-    if (u > first_use && use.binding == c.uses[u - 1].binding) { // a further part
-      SubresourceRange& seen = plan.accesses.back().range;
-      seen.mips = static_cast<uint16_t>(std::max(seen.first_mip + seen.mips, range.first_mip + range.mips) -
-                                        seen.first_mip);
-      seen.layers = static_cast<uint16_t>(
-          std::max(seen.first_layer + seen.layers, range.first_layer + range.layers) - seen.first_layer);
-      continue;
-    }
-    const Use* history = c.history_of(use);
-    const bool alone = history && history->trouble != Use::Trouble::none; // nothing to stand in for
-    plan.accesses.push_back({use.port, touch.resource, use.frames_back, range, usage.stages, usage.access,
-                             touch.layout, use.frames_back > 0 && ports[use.port].own_texels,
-                             alone ? ReadWhen::always : use.when});
-  }
-  pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
-}
-
 void Synchronizer::batch(uint32_t index, uint32_t after, uint32_t position) {
   if (two_queues()) { // the passes between may be the other queue's
     c.batch_of[index] = position;
@@ -173,35 +96,6 @@ uint32_t Synchronizer::draft() {
   return static_cast<uint32_t>(c.drafts.size() - 1);
 }
 
-void Synchronizer::sort_into_batches() {
-  const auto released = [&](uint32_t draft) {
-    return c.drafts[draft].transfer == PlanBarrier::Transfer::release;
-  };
-  uint32_t count = 0;
-  for (uint32_t i = 0; i < c.drafts.size(); ++i) {
-    if (c.batch_of[i] == no_value) continue;
-    ++count;
-    PlanPass& pass = plan.passes[c.batch_of[i]];
-    ++(released(i) ? pass.release_count : pass.barrier_count);
-  }
-  uint32_t filled = 0;
-  for (PlanPass& pass : plan.passes) {
-    pass.first_barrier = filled;
-    filled += pass.barrier_count + pass.release_count;
-  }
-  plan.barriers.resize(count);
-  c.batch_filled.assign(2 * plan.passes.size(), 0);
-  for (uint32_t i = 0; i < c.drafts.size(); ++i) {
-    if (c.batch_of[i] == no_value) continue;
-    const PlanPass& pass = plan.passes[c.batch_of[i]];
-    uint32_t& before = c.batch_filled[2 * size_t{c.batch_of[i]} + (released(i) ? 1 : 0)];
-    c.batch_of[i] = pass.first_barrier + (released(i) ? pass.barrier_count : 0) + before++;
-    plan.barriers[c.batch_of[i]] = c.drafts[i];
-  }
-  for (size_t r = c.reasons_before; r < c.out->reasons.size(); ++r)
-    c.out->reasons[r].index = c.batch_of[c.out->reasons[r].index];
-}
-
 void Synchronizer::run_pass(uint32_t position) {
   PlanPass& pass = plan.passes[position];
   const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
@@ -212,17 +106,6 @@ void Synchronizer::run_pass(uint32_t position) {
   for (const PassTouch& touch : c.touches)
     run_touch(touch, position);
   batch_parts(position);
-}
-
-void Synchronizer::batch_parts(uint32_t position) {
-  for (const auto& [index, after] : waiting_parts) {
-    uint32_t& latest = c.part_after[c.drafts[index].resource];
-    if (after != no_value) latest = latest == no_value ? after : std::max(latest, after);
-  }
-  for (const auto& [index, after] : waiting_parts)
-    batch(index, c.part_after[c.drafts[index].resource], position);
-  for (const auto& [index, after] : waiting_parts)
-    c.part_after[c.drafts[index].resource] = no_value;
 }
 
 void Synchronizer::place(uint32_t index, uint32_t after, uint32_t position) {
@@ -345,25 +228,6 @@ void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout la
     }
   }
   place(index, after, position);
-}
-
-void Synchronizer::drop_needless() {
-  c.waits_here.resize(c.drafts.size());
-  c.draft_after.resize(c.drafts.size(), no_value);
-  for (uint32_t i = 0; i < c.drafts.size(); ++i) {
-    const PlanBarrier& draft = c.drafts[i];
-    if (draft.transfer != PlanBarrier::Transfer::none || draft.from_host ||
-        draft.old_layout != draft.new_layout)
-      continue;
-    const uint32_t after = c.draft_after[i] == no_value ? 0 : c.draft_after[i] + 1;
-    const uint32_t done = c.round_trip[c.batch_of[i]];
-    const bool arrival = c.arrival_of[draft.resource] == i; // of a buffer: images change their layout
-    if ((done > 0 && after <= done) || (arrival && !c.waits_here[i])) c.batch_of[i] = no_value;
-  }
-  std::vector<Reason>& reasons = c.out->reasons;
-  reasons.erase(std::remove_if(reasons.begin() + static_cast<std::ptrdiff_t>(c.reasons_before), reasons.end(),
-                               [&](const Reason& one) { return c.batch_of[one.index] == no_value; }),
-                reasons.end());
 }
 
 void Synchronizer::hand_back(uint32_t resource) {

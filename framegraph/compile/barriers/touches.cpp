@@ -1,0 +1,85 @@
+// What a pass does to each object, and the accesses that the plan lists for it.
+
+#include "framegraph/compile/barriers/synchronizer.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace dermis {
+
+Layout Synchronizer::layout_of(const PassTouch& touch) const {
+  return plan.resources[touch.resource].type == ResourceType::image ? sets[touch.usages].image_layout
+                                                                    : Layout::undefined;
+}
+
+void Synchronizer::collect(uint32_t first_use, uint32_t end) {
+  c.touches.clear();
+  c.touch_of_use.clear();
+  for (uint32_t u = first_use; u < end; ++u) {
+    const Use& use = c.uses[u];
+    c.touch_of_use.push_back(no_value);
+    if (use.trouble != Use::Trouble::none) continue;
+    const uint32_t resource = c.plan_resource[use.resource.value];
+    const uint32_t part = c.part_index(use);
+    const uint32_t object = object_of(resource, use.frames_back, part);
+    const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
+    uint32_t& number = c.touch_number[object];
+    if (number < touches_before) { // by an earlier pass
+      number = touches_before + static_cast<uint32_t>(c.touches.size());
+      c.touches.push_back({object, resource, use.frames_back, 0, false, part, Layout::undefined});
+    }
+    const uint32_t same = number - touches_before;
+    c.touches[same].usages |= usage;
+    c.touches[same].certain |= use.when == ReadWhen::always;
+    c.touch_of_use.back() = same;
+  }
+  touches_before += static_cast<uint32_t>(c.touches.size());
+  for (PassTouch& touch : c.touches)
+    touch.layout = layout_of(touch);
+  if (c.graph->parts) unify_layouts(first_use, end);
+}
+
+void Synchronizer::unify_layouts(uint32_t first_use, uint32_t end) {
+  for (bool again = true; again;) {
+    again = false;
+    uint32_t before = no_value; // touch of the use before
+    for (uint32_t u = first_use; u < end; ++u) {
+      const uint32_t touch = c.touch_of_use[u - first_use];
+      if (touch != no_value && before != no_value && c.uses[u].binding == c.uses[u - 1].binding &&
+          c.touches[touch].layout != c.touches[before].layout) {
+        c.touches[touch].layout = c.touches[before].layout = Layout::general;
+        again = true;
+      }
+      before = touch;
+    }
+  }
+}
+
+void Synchronizer::add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end) {
+  const std::span<const Port> ports = c.kind(pass.declared).ports;
+  pass.first_access = static_cast<uint32_t>(plan.accesses.size());
+  for (uint32_t u = first_use; u < end; ++u) {
+    const uint32_t touched = c.touch_of_use[u - first_use];
+    if (touched == no_value) continue;
+    const PassTouch& touch = c.touches[touched];
+    const Use& use = c.uses[u];
+    const UsageSet& usage = sets[size_t{1} << static_cast<uint32_t>(use.usage)];
+    const SubresourceRange range = range_of(touch.resource, touch.part);
+    if (u > first_use && use.binding == c.uses[u - 1].binding) { // a further part
+      SubresourceRange& seen = plan.accesses.back().range;
+      seen.mips = static_cast<uint16_t>(std::max(seen.first_mip + seen.mips, range.first_mip + range.mips) -
+                                        seen.first_mip);
+      seen.layers = static_cast<uint16_t>(
+          std::max(seen.first_layer + seen.layers, range.first_layer + range.layers) - seen.first_layer);
+      continue;
+    }
+    const Use* history = c.history_of(use);
+    const bool alone = history && history->trouble != Use::Trouble::none; // nothing to stand in for
+    plan.accesses.push_back({use.port, touch.resource, use.frames_back, range, usage.stages, usage.access,
+                             touch.layout, use.frames_back > 0 && ports[use.port].own_texels,
+                             alone ? ReadWhen::always : use.when});
+  }
+  pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
+}
+
+} // namespace dermis
