@@ -1,7 +1,7 @@
 #version 460
 // Where the pyramid is unsure, its light is multiplied by the running ratio of samples to it. The ratio does not see how
-// bright the light is, so it does not lag behind light that flickers. A pixel samples in one frame of four, by its tile,
-// or in each, twice as many, while it has little history.
+// bright the light is, so it does not lag behind light that flickers. A pixel samples in one frame of four or of sixteen,
+// by how unsure it is and by its tile, or in each, twice as many, while it has little history.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_residual.bindings.glsl"
@@ -45,9 +45,11 @@ vec4 ratio_before(ivec2 pixel, sap_texel own) {
   return taps.weight == vec4(0.0) ? vec4(1.0, 1.0, 1.0, -1.0) : sum;
 }
 
-// Which of four frames it is the tile's turn: each 2x2 tiles take one each.
-bool is_turn(ivec2 tile) {
-  return (uint(tile.x & 1) + 2u * uint(tile.y & 1)) == (frame.frame_index & 3u);
+// Which of four or of sixteen frames it is the tile's turn: each 2x2 or 4x4 tiles take one each.
+bool is_turn(ivec2 tile, float confidence) {
+  if (confidence < settings.often_below)
+    return (uint(tile.x & 1) + 2u * uint(tile.y & 1)) == (frame.frame_index & 3u);
+  return (uint(tile.x & 3) + 4u * uint(tile.y & 3)) == (frame.frame_index & 15u);
 }
 
 void main() {
@@ -70,7 +72,7 @@ void main() {
     float n = float(settings.samples);
     if (light.a >= settings.below) {
       ratio.a *= 1.0 - 0.25 * settings.alpha; // nothing new is learned here
-    } else if (is_turn(pixel >> 3) || ratio.a < float(settings.eager) * n) {
+    } else if (is_turn(pixel >> 3, light.a) || ratio.a < float(settings.eager) * n) {
       count = ratio.a < float(settings.eager) * n ? 2 * settings.samples : settings.samples;
       // Frames in which it is a tile's turn follow each other in the sequence; the others stand far from them.
       uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;

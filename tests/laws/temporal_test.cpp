@@ -89,7 +89,9 @@ TEST_F(Temporal, AfterACutTheErrorIsBackWithinThreeFrames) {
   jumped.velocity = {};
   const SequenceRun silent = run(judge, "sap_residual", {9}, {}, [](uint32_t t) { return t > 0; });
   RecordProperty("silent_3", std::to_string(silent.psnr_db.at(9)));
-  EXPECT_GT(silent.psnr_db.at(9), steady - 1);
+  // Ratios come along that were learned from the other side: no more than a frame behind the cut that was
+  // signalled.
+  EXPECT_GT(silent.psnr_db.at(9), signalled.psnr_db.at(8));
 }
 
 // The picture inside of a larger one, as a host has it that renders fewer pixels for a while.

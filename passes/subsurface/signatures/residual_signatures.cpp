@@ -104,7 +104,9 @@ constexpr KindSetting blend_settings[] = {
 constexpr KindSetting residual_settings[] = {
     samples,
     lod_bias,
-    setting::real("below", 0.95, 0, 2, "", "confidence below which a pixel is sampled"),
+    setting::real("below", 0.99, 0, 2, "", "confidence below which a pixel is sampled"),
+    setting::real("often_below", 0.85, 0, 2, "",
+                  "confidence below which it is in one frame of four, not of sixteen"),
     setting::real("alpha", 0.2, 0.01, 1, "", "weight of what is new in the running ratio, at least"),
     {.name = "eager",
      .type = SettingType::integer,

@@ -1,0 +1,110 @@
+// How many samples guidance takes over frames: as many as the light's own size asks for, whatever units it
+// comes in.
+#include "tests/laws/noise.hpp"
+#include "tests/laws/sequences.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::tools;
+using laws::Judge;
+using laws::SequenceRun;
+
+class GuidedSequence : public laws::SequenceTest {
+protected:
+  static TechniqueRequest guided(const std::string& guidance, std::vector<NamedValue> set = {}) {
+    set.emplace_back("guidance", guidance);
+    return laws::request_of("afis_guided", set);
+  }
+};
+
+TEST_F(GuidedSequence, LightInOtherUnitsUnderAnotherExposureTakesAsManySamples) {
+  // From frame 6 on the host's light has a sixteenth of its size and the exposure is sixteen times as large.
+  constexpr uint32_t frames = 12, changed = 6;
+  const Sequence same = laws::standing_still(frames_of("pan", 40, 1), frames);
+  Sequence other = same;
+  for (uint32_t t = changed; t < frames; ++t) {
+    CapturedFrame& frame = other.frames[t].captured;
+    for (float& value : frame.lighting.values)
+      value /= 16; // exact in half floats
+    frame.description.exposure *= 16;
+  }
+  Judge judge{same}, other_judge{other};
+  for (const char* guidance : {"spvg", "ccv", "ocv", "split_half"}) {
+    const SequenceRun one = run(judge, guided(guidance), {}), two = run(other_judge, guided(guidance), {});
+    ASSERT_EQ(one.samples.size(), frames);
+    ASSERT_EQ(two.samples.size(), frames);
+    for (uint32_t t = 0; t < frames; ++t)
+      // Light below 1e-3 loses bits in half floats.
+      EXPECT_NEAR(two.samples[t], one.samples[t], 1e-3 * one.samples[t]) << guidance << ", frame " << t;
+  }
+}
+
+// Noise on a plane, alike everywhere: no pixel's number of samples reaches its bounds.
+Sequence plane_of_noise(uint32_t frames) {
+  constexpr uint32_t side = 128;
+  CapturedFrame frame;
+  FrameDescription& description = frame.description;
+  description.width = description.height = side;
+  description.render = {0, 0, side, side};
+  description.perspective = false;
+  description.clip_from_view = {
+      2 / (side * 1e-3), 0, 0, 0, 0, -2 / (side * 1e-3), 0, 0, 0, 0, -0.1, 0, 0, 0, 0, 1};
+  description.view_from_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  EXPECT_TRUE(complete_projection(description, frame.rays));
+  subsurface::Profile profile;
+  profile.name = "plane";
+  profile.albedo = {0.33, 0.33, 0.33};
+  profile.dmfp_mm = {14, 14, 14}; // 3.5 d at this albedo; d is 4 pixels
+  profile.d_mm = {4, 4, 4};
+  description.profiles.push_back({1, profile});
+  frame.lighting = Image::sized(side, side, 3);
+  for (size_t i = 0; i < frame.lighting.values.size(); ++i)
+    frame.lighting.values[i] = laws::noise(double(i / 3 % side), double(i / 3 / side));
+  frame.depth = Image::sized(side, side, 1);
+  std::fill(frame.depth.values.begin(), frame.depth.values.end(), 1.0f);
+  frame.profile.assign(size_t{side} * side, 1);
+  Sequence sequence;
+  sequence.frames.push_back({frame, false});
+  return laws::standing_still(std::move(sequence), frames);
+}
+
+TEST_F(GuidedSequence, HalfSequencesTakeAsManyMoreSamplesUnderLightThatFlashesAsItsErrorAsksFor) {
+  // All light times 1 + sin: its square, and with it the variance, is 1.5 times as large in the mean.
+  // Variance of these samples falls as n^-1.48 (Afis.TheErrorFalls…, n^-.74), so that holding it takes 1.5^(1
+  // / 1.48) = 1.31 times as many, where independent samples would take 1.5.
+  constexpr uint32_t frames = 61, counted = 25, period = 12;
+  const Sequence still = plane_of_noise(frames);
+  Sequence flashing = still;
+  for (uint32_t t = 0; t < frames; ++t)
+    for (float& value : flashing.frames[t].captured.lighting.values)
+      value *= static_cast<float>(1 + std::sin(2 * std::acos(-1.0) * t / period));
+  const std::vector<NamedValue> wide = {{"sigma2_target", "6.5e-4"}};
+  Judge judge{still}, flashing_judge{flashing};
+  const SequenceRun one = run(judge, guided("split_half", wide), {60}),
+                    two = run(flashing_judge, guided("split_half", wide), {60});
+  const auto mean = [&](const SequenceRun& run) {
+    double sum = 0;
+    for (uint32_t t = counted; t < counted + 3 * period; ++t)
+      sum += run.samples[t] / (3 * period);
+    return sum;
+  };
+  const auto clamped = [](const SequenceRun& run) { // share of pixels
+    const std::vector<float>& sampling = run.sampling.at(60);
+    double count = 0;
+    for (size_t i = 0; i < sampling.size(); i += 3)
+      count += sampling[i] <= 8 || sampling[i] >= 64;
+    return count / (double(sampling.size()) / 3);
+  };
+  RecordProperty("still", std::to_string(mean(one)));
+  RecordProperty("flashing", std::to_string(mean(two)));
+  RecordProperty("still_clamped", std::to_string(clamped(one)));
+  RecordProperty("flashing_clamped", std::to_string(clamped(two)));
+  EXPECT_GE(mean(one), 16);
+  EXPECT_LE(mean(one), 24);
+  EXPECT_NEAR(mean(two) / mean(one), std::pow(1.5, 1 / 1.48), 0.2);
+}
+
+} // namespace
