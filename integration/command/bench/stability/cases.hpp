@@ -27,9 +27,10 @@ struct StabilityCase {
   uint32_t damage_ends =
       0;               // frames from here on are sound: how many more until the error is within the bound
   bool follows = true; // false: every frame is a cut
-  bool needs_history = false; // only for techniques that keep one
-  bool finite_only = false;   // nothing but finite values is asked
-  uint64_t frame_index = 0;   // of the first frame; 0: as it comes
+  bool needs_history = false;  // only for techniques that keep one
+  bool finite_only = false;    // nothing but finite values is asked
+  bool may_be_refused = false; // a graph may say that it cannot be made for this size
+  uint64_t frame_index = 0;    // of the first frame; 0: as it comes
 };
 
 inline constexpr uint32_t stability_side = 48; // pixels, of frames whose size is not the point

@@ -87,6 +87,8 @@ std::vector<StabilityCase> shape_cases() {
   StabilityCase no_number = without_scattering("scatter_scale_nan", nan);
   StabilityCase endless =
       furnace_of("scatter_scale_infinity", [] { return with_scale(sound_frame(), infinity); });
+  StabilityCase widest = sized("size_16384x64", 16384, 64);
+  widest.may_be_refused = true; // where images have a border, the last columns have no room on the device
   StabilityCase all_sky;
   all_sky.name = "nothing_but_sky";
   all_sky.given = [](uint32_t) {
@@ -108,7 +110,7 @@ std::vector<StabilityCase> shape_cases() {
           sized("size_1x1", 1, 1),
           sized("size_1x7", 1, 7),
           sized("size_131x3", 131, 3),
-          sized("size_16384x64", 16384, 64),
+          widest,
           without_scattering("d_1e-30", 1e-30f),
           without_scattering("d_1e-6", 1e-6f),
           without_scattering("scatter_scale_negative", -1),
