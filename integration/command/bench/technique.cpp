@@ -52,7 +52,7 @@ demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHos
                                                                  std::span<const float> sap_tables) {
   Diagnostics diagnostics;
   std::optional<LoadedGraph> loaded =
-      load_graph(request.graph, {.overlays = request.overlays, .roots = {}}, diagnostics);
+      load_graph(request.graph, {.overlays = request.overlays, .roots = {}, .kinds = {}}, diagnostics);
   if (!loaded) return input_error(request.graph, text_of(diagnostics));
   const CompileChoices choices = read_choices(loaded->graph, request.set);
   if (!choices.problem.empty()) return input_error(request.graph, choices.problem);
