@@ -10,7 +10,7 @@ namespace dermis::subsurface {
 // profile's total is 1 (albedo is multiplied in after scattering), so R below is Burley's equation 5.3 with A
 // = 1.
 
-// Smallest survival that is inverted: 24 random bits never give less, and r stays below 49 d.
+// Smallest survival that is inverted: 24 random bits never give less, and r stays below 49.1 d.
 inline constexpr double burley_min_survival = 1.0 / 16777216.0;
 
 // R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r), per unit of area. Infinite at r = 0: use burley_pdf where r may

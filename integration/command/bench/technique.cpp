@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace dermis::tools {
 namespace {
@@ -100,6 +101,7 @@ demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& fram
   if (auto ready = prepare(frame, slots); !ready) return ready.error();
   for (const SlotData& data : slots.data)
     if (auto given = device_->upload(data.slot, data.texels, data.channels); !given) return given.error();
+  device_->skip_to(std::exchange(next_frame_index_, 0));
   frame_ = c_frame(frame.description);
   if (!follows) frame_.flags |= DERMIS_FRAME_RESET_HISTORY;
   if (auto ran = device_->run(frame_); !ran) return ran.error();
@@ -107,7 +109,7 @@ demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& fram
 }
 
 void TechniqueRun::skip_to(uint64_t frame_index) {
-  if (device_ != nullptr) device_->skip_to(frame_index);
+  next_frame_index_ = frame_index;
 }
 
 demo::Result<std::vector<float>> TechniqueRun::sampling() {

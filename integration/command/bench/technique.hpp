@@ -40,6 +40,8 @@ public:
   // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel. `follows`: it comes
   // after the frame that was scattered last, so histories go on; otherwise they begin anew.
   demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false);
+  // The next frame is the first of a new graph: frame numbers and histories begin again.
+  void start_anew() { device_.reset(); }
   // The next frame has this number, if it is higher than the one that would follow.
   void skip_to(uint64_t frame_index);
   // Whether the last scatter had to make its graph: then the driver compiled, and its times say nothing.
@@ -76,6 +78,7 @@ private:
   std::unique_ptr<DeviceGraph> device_;
   bool made_anew_ = false;
   dermis_frame frame_ = DERMIS_FRAME_INIT;
+  uint64_t next_frame_index_ = 0; // 0: as it comes
 };
 
 } // namespace dermis::tools

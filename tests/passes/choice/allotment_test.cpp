@@ -48,7 +48,7 @@ TEST(Allotment, ATileWithMoreDoubtNeverGetsLessByMoreThanABin) {
   const Allotment given = allot(doubts, {}, 300);
   for (size_t i = 0; i < doubts.size(); ++i)
     for (size_t j = 0; j < doubts.size(); ++j)
-      if (doubts[i] > 1.1 * doubts[j]) { // a bin is an eighth of an octave: 9 %
+      if (doubts[i] > 1.126 * doubts[j]) { // a bin spans an eighth of a power of two: up to 12.5 %
         EXPECT_GE(given.steps[i], given.steps[j]);
       }
 }

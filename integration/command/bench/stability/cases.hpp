@@ -29,6 +29,7 @@ struct StabilityCase {
   bool follows = true; // false: every frame is a cut
   bool needs_history = false;  // only for techniques that keep one
   bool finite_only = false;    // nothing but finite values is asked
+  bool mean_square = false;    // the error of a frame is the root of its mean square, not the largest
   bool may_be_refused = false; // a graph may say that it cannot be made for this size
   uint64_t frame_index = 0;    // of the first frame; 0: as it comes
 };

@@ -14,7 +14,8 @@ namespace dermis::tools {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double furthest_d = 49;     // radius of the smallest survival, 2^-24, in d
+constexpr double furthest_d =
+    49.1; // radius of the smallest survival, 2^-24, in d, by the approximate inverse
 constexpr double half_step = 0x1p-11; // largest relative error of a half float
 
 StabilityRow row(std::string name, double error, double bound, bool finite = true) {

@@ -9,7 +9,9 @@ namespace {
 
 struct Judged {
   uint64_t nonfinite = 0;
-  double error = 0;
+  double error = 0;   // largest
+  double squares = 0; // of all errors
+  uint64_t values = 0;
 };
 
 // What a frame must give, 3 values a pixel.
@@ -32,9 +34,12 @@ Judged judge(const std::vector<float>& found, const std::vector<float>* wanted, 
     judged.nonfinite += finite ? 0 : 1;
     // A frame in which a pixel has no profile, or no place, says nothing of its light.
     if (!finite || wanted == nullptr || frame.profile[i] == 0) continue;
-    for (size_t c = 0; c < 3; ++c)
-      judged.error =
-          std::max(judged.error, std::abs(double(found[3 * i + c]) - double((*wanted)[3 * i + c])) / scale);
+    for (size_t c = 0; c < 3; ++c) {
+      const double error = std::abs(double(found[3 * i + c]) - double((*wanted)[3 * i + c])) / scale;
+      judged.error = std::max(judged.error, error);
+      judged.squares += error * error;
+      ++judged.values;
+    }
   }
   return judged;
 }
@@ -43,6 +48,7 @@ demo::Result<std::vector<std::vector<float>>> run_all(TechniqueRun& run, const S
                                                       const std::function<CapturedFrame(uint32_t)>& frames,
                                                       bool numbered) {
   std::vector<std::vector<float>> all;
+  if (asked.same_as) run.start_anew(); // the same frame numbers draw the same samples
   for (uint32_t t = 0; t < asked.frames; ++t) {
     if (t == 0 && numbered && asked.frame_index > 0) run.skip_to(asked.frame_index);
     auto light = run.scatter(frames(t), t > 0 && asked.follows);
@@ -76,9 +82,12 @@ demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const Stab
     const Judged judged =
         judge((*found)[t], asked.finite_only ? nullptr : &wanted[t], judged_by, asked.scale);
     row.nonfinite_pixels = std::max(row.nonfinite_pixels, judged.nonfinite);
-    if (t >= asked.first_judged) row.max_abs_error = std::max(row.max_abs_error, judged.error);
+    const double error = asked.mean_square && judged.values > 0
+                             ? std::sqrt(judged.squares / static_cast<double>(judged.values))
+                             : judged.error;
+    if (t >= asked.first_judged) row.max_abs_error = std::max(row.max_abs_error, error);
     if (asked.damage_ends > 0 && t >= asked.damage_ends && !row.recovered_after_frames &&
-        judged.error <= asked.bound)
+        error <= asked.bound)
       row.recovered_after_frames = t - asked.damage_ends + 1;
   }
   return std::optional<StabilityRow>(std::move(row));
