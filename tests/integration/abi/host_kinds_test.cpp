@@ -96,6 +96,14 @@ struct HostKinds : DermisTest {
     return make_graph(options);
   }
 
+  dermis_graph bloom_with_images() {
+    const dermis_graph graph = bloom();
+    if (graph == nullptr) return nullptr;
+    make_images(graph);
+    bound = bindings(graph);
+    return graph;
+  }
+
   void expect_refused(const dermis_pass_kind& wrong, const char* why) {
     EXPECT_EQ(dermis_register_pass_kind(context, &wrong), DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), HasSubstr(why));
@@ -104,14 +112,13 @@ struct HostKinds : DermisTest {
   std::vector<dermis_port> threshold_ports, add_ports;
   std::vector<dermis_kind_setting> settings;
   std::vector<Call> calls;
+  std::vector<dermis_image_binding> bound;
 };
 
 TEST_F(HostKinds, AreCalledInTheOrderOfThePlanWithWhatStandsAtTheirPorts) {
   register_both();
-  const dermis_graph graph = bloom();
+  const dermis_graph graph = bloom_with_images();
   ASSERT_NE(graph, nullptr);
-  make_images(graph);
-  const auto bound = bindings(graph);
   dermis_frame one = frame(bound);
   ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
   ASSERT_EQ(calls.size(), 2u);
@@ -141,10 +148,8 @@ TEST_F(HostKinds, AreCalledInTheOrderOfThePlanWithWhatStandsAtTheirPorts) {
 
 TEST_F(HostKinds, SeeASettingChangeAtTheNextRecord) {
   register_both();
-  const dermis_graph graph = bloom();
+  const dermis_graph graph = bloom_with_images();
   ASSERT_NE(graph, nullptr);
-  make_images(graph);
-  const auto bound = bindings(graph);
   ASSERT_EQ(dermis_graph_set_setting(graph, "level", "2.5", nullptr), DERMIS_OK);
   dermis_frame one = frame(bound);
   ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
@@ -153,10 +158,8 @@ TEST_F(HostKinds, SeeASettingChangeAtTheNextRecord) {
 
 TEST_F(HostKinds, AreTimedAsAllPasses) {
   register_both();
-  const dermis_graph graph = bloom();
+  const dermis_graph graph = bloom_with_images();
   ASSERT_NE(graph, nullptr);
-  make_images(graph);
-  const auto bound = bindings(graph);
   dermis_frame one = frame(bound);
   ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
   std::array<dermis_pass_timing, 4> timings;
@@ -169,10 +172,8 @@ TEST_F(HostKinds, AreTimedAsAllPasses) {
 
 TEST_F(HostKinds, OutliveAReload) {
   register_both();
-  const dermis_graph graph = bloom();
+  const dermis_graph graph = bloom_with_images();
   ASSERT_NE(graph, nullptr);
-  make_images(graph);
-  const auto bound = bindings(graph);
   dermis_frame one = frame(bound);
   ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
   const dermis_source source = source_of(graph_text, "bloom.json");

@@ -1,4 +1,5 @@
-/* The layout of every public struct where pointers have 64 bits: a change that is not growth at the end fails to compile here. */
+/* The layout of every public struct where pointers have 64 bits: a change that is not growth at the end does not
+ * compile. */
 #include <dermis/dermis.h>
 
 #define SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), "size of " #type);
