@@ -140,6 +140,10 @@ struct Arrival { // a first use whose bytes nothing in this frame had before
   uint32_t memory = 0, barrier = 0, resource = 0; // into CompileContext::memory
 };
 
+struct FrameCounts { // of positions, from the first one on
+  uint32_t this_frame = 0, frame_before = 0;
+};
+
 struct PartArrival { // the first use of a part of an image whose memory another part has taken over
   uint32_t barrier = 0, resource = 0, object = 0;
 };
@@ -236,11 +240,12 @@ struct CompileContext {
   // By position, where there are two queues: position + 2 of the last pass of the other queue that it comes
   // after, in this frame and in the one before; 0: none.
   std::vector<uint32_t> needs_point, needs_frame_before;
-  std::vector<uint8_t> waits_here;   // by draft: for something on its own queue
-  std::vector<uint32_t> draft_after; // by draft: position of the last pass of this frame that it waits for
-  // By position: how many positions hold passes of the same queue that are done and seen by then, since the
-  // other queue waited for them and this one for that.
-  std::vector<uint32_t> round_trip;
+  std::vector<FrameCounts>
+      draft_after; // by draft: the first positions hold all of its queue that it waits for
+  std::vector<FrameCounts> last_write, last_write_ends; // by object: the first ones hold it
+  // By position: the first ones hold passes of the same queue that are done and seen by then, since the other
+  // queue waited for them and this one for that.
+  std::vector<FrameCounts> round_trip;
   std::vector<Arrival> arrivals;
   std::vector<PartArrival> part_arrivals;
   std::vector<uint32_t> part_after; // by plan resource: scratch

@@ -23,6 +23,7 @@ bool Synchronizer::number_objects() {
   }
   c.states.assign(objects, {});
   c.touch_number.assign(objects, 0);
+  c.last_write.assign(two_queues() ? objects : 0, {});
   return deepest > 1;
 }
 
@@ -34,12 +35,18 @@ void Synchronizer::carry_over() {
       const uint32_t object = c.first_object[r] + back;
       c.states[object] = back == 0 ? ObjectState{} : c.ends[object_of(r, back - 1)];
       c.states[object].carried = back != 0;
+      if (!two_queues()) continue;
+      const FrameCounts before = back == 0 ? FrameCounts{} : c.last_write_ends[object_of(r, back - 1)];
+      // Whoever has seen any of the frame before has seen all that came before that.
+      c.last_write[object] = {0,
+                              before.this_frame != 0 ? before.this_frame : std::min(before.frame_before, 1u)};
     }
   }
 }
 
 void Synchronizer::find_ends() {
   c.ends.assign(c.states.size(), {});
+  c.last_write_ends = c.last_write;
   uint32_t deepest = 1;
   for (uint32_t r = 0; r < plan.resources.size(); ++r)
     deepest = std::max(deepest, roles(r));
@@ -48,6 +55,7 @@ void Synchronizer::find_ends() {
     for (uint32_t position = 0; position < plan.passes.size(); ++position)
       run_pass(position);
     c.ends = c.states;
+    c.last_write_ends = c.last_write;
   }
   carry_over();
 }
@@ -81,8 +89,6 @@ void Synchronizer::transfer(const PassTouch& touch, const ObjectState& state, co
 void Synchronizer::batch(uint32_t index, uint32_t after, uint32_t position) {
   if (two_queues()) { // the passes between may be the other queue's
     c.batch_of[index] = position;
-    c.draft_after.resize(c.drafts.size(), no_value);
-    c.draft_after[index] = after;
     return;
   }
   const bool shared = last_batch != no_value && (after == no_value || after < last_batch);
@@ -135,13 +141,18 @@ void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
       const uint32_t index = draft();
       c.because(Reason::About::barrier, index, Reason::Why::dependency, state.last_pass,
                 state.carried ? 1 : 0, position);
-      if (state.carried) barrier.why = PlanBarrier::Why::history;
       c.drafts[index] = barrier;
+      if (barrier.why == PlanBarrier::Why::read_after_write && !set.writes && layout == state.layout)
+        wait_for_write(index, touch.object);
+      else
+        wait_here(index, state.last_pass, state.carried);
+      if (state.carried) c.drafts[index].why = PlanBarrier::Why::history;
       place(index, state.carried ? no_value : state.last_pass, position);
     }
   }
   const bool transition = !state.touched || elsewhere || layout != state.layout;
   if (set.writes || transition) {
+    if (two_queues()) c.last_write[touch.object] = {position + 1, 0};
     state.source_stages = set.stages;
     state.source_access = set.access & all_write_access;
     state.readers = 0;
@@ -214,6 +225,7 @@ void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout la
     if (in_place && !before.carried) after = before.last_pass;
     if (c.lent_memory[touch.resource] != no_value) after = take_over(touch.resource, index);
     wait_for(barrier, tail(before));
+    if (before.touched) wait_here(index, before.last_pass, !in_place || before.carried);
     barrier.why = PlanBarrier::Why::history;
     because(index, Reason::Why::oldest_instance, touch.resource);
   } else if (parts(touch.resource) > 1 && c.arrival_of[touch.resource] != no_value) {
@@ -269,7 +281,6 @@ void synchronize(CompileContext& c) {
   c.arrivals.clear();
   c.part_arrivals.clear();
   c.needs_point.assign(walk.two_queues() ? plan.passes.size() : 0, 0);
-  c.waits_here.clear();
   c.draft_after.clear();
   c.needs_frame_before.assign(c.needs_point.size(), 0);
   if (c.graph->parts) {

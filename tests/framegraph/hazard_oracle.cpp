@@ -324,6 +324,14 @@ struct Oracle {
     return true;
   }
 
+  // Was it handed back in the frame that ends before operation `at`?
+  bool handed_back(size_t at) const {
+    if (all[at].frame == 0) return true;
+    for (size_t k = at; k-- > 0 && all[k].frame + 1 >= all[at].frame;)
+      if (is_barrier(all[k]) && same_thing(all[k], all[at])) return all[k].barrier->to_host;
+    return false;
+  }
+
   struct Owner {
     Queue queue = Queue::main;
     const PlanBarrier* released = nullptr;
@@ -399,7 +407,7 @@ struct Oracle {
           if (layout(past, at) != plan.history_layouts[history.first_layout + back])
             return "starts a frame in another layout";
         }
-      return host(o.resource) && !with_host(at) ? "is not handed back" : "";
+      return host(o.resource) && !handed_back(at) ? "is not handed back" : "";
     }
     if (o.barrier->from_host) return owned ? "" : "is taken over twice";
     if (o.barrier->to_host && !host(o.resource)) return "is not the host's";

@@ -109,6 +109,28 @@ void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit) {
   }
 }
 
+namespace {
+
+// Whoever waited for its point waits for the one before it; later ones count from there.
+Plan without_signal(const Plan& plan, size_t pass) {
+  Plan mutant = plan;
+  const uint32_t lost = plan.passes[pass].signal;
+  const Queue queue = plan.passes[pass].queue;
+  const auto lower = [&](uint32_t& point) {
+    if (point != no_point && point >= lost) --point;
+  };
+  for (PlanPass& other : mutant.passes)
+    if (other.queue == queue)
+      lower(other.signal);
+    else
+      lower(other.wait);
+  if (queue == Queue::async) lower(mutant.final_wait);
+  mutant.passes[pass].signal = 0;
+  return mutant;
+}
+
+} // namespace
+
 void for_each_lost_point(const Plan& plan, const VisitMutant& visit) {
   for (size_t p = 0; p < plan.passes.size(); ++p) {
     if (plan.passes[p].wait != no_point) {
@@ -120,16 +142,15 @@ void for_each_lost_point(const Plan& plan, const VisitMutant& visit) {
         visit(mutant, fmt::format("pass {} waits for an earlier point", p));
       }
     }
-    if (plan.passes[p].signal != 0) {
-      Plan mutant = plan;
-      mutant.passes[p].signal = 0;
-      visit(mutant, fmt::format("pass {} without its signal", p));
-    }
+    if (plan.passes[p].signal != 0)
+      visit(without_signal(plan, p), fmt::format("pass {} without its signal", p));
   }
   if (plan.final_wait != no_point) {
     Plan mutant = plan;
     mutant.final_wait = no_point;
     visit(mutant, "no wait at the end");
+    mutant.final_wait = plan.final_wait - 1;
+    visit(mutant, "the end waits for an earlier point");
   }
 }
 

@@ -22,6 +22,8 @@ void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit);      // 
 void for_each_swap(const Plan& plan, const VisitMutant& visit); // of two passes that follow each other
 void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit); // to the pass before or after
 
-void for_each_lost_point(const Plan& plan, const VisitMutant& visit); // a wait or a signal of a queue missing
+// A wait missing or for the point before; a signal missing, so that all who waited for it do so for the one
+// before.
+void for_each_lost_point(const Plan& plan, const VisitMutant& visit);
 
 } // namespace dermis::testing

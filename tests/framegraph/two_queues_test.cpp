@@ -120,45 +120,54 @@ TEST(TwoQueues, WhateverOrderThePointsAllowGivesThePixelsThatTheGraphMeans) {
   });
 }
 
-// But for the barriers of buffers that take over memory: a wait for the other queue may imply them, since
-// buffers have no layout. Where sizes differ, more may be implied: see docs/limits.md.
-TEST(TwoQueues, NoBarrierAndNoHalfOfATransferCanBeDropped) {
-  uint64_t dropped = 0, implied = 0;
-  for_random_plans(
-      500, 5000,
-      [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
-        for (uint32_t b = 0; b < plan.barriers.size(); ++b, ++dropped) {
-          const Plan mutant = without_barrier(plan, b);
-          if (!verify(mutant).empty()) continue;
-          const PlanBarrier& barrier = plan.barriers[b];
-          ASSERT_EQ(plan.resources[barrier.resource].type, ResourceType::buffer)
-              << "seed " << seed << ", barrier " << b;
-          ASSERT_TRUE(barrier.why == PlanBarrier::Why::alias || barrier.why == PlanBarrier::Why::first_use)
-              << "seed " << seed << ", barrier " << b;
-          ASSERT_EQ(first_hazard(mutant), "") << "seed " << seed << ", barrier " << b;
-          ++implied;
-        }
-      },
-      Sizes::one_page);
-  EXPECT_GT(dropped, 1000u);
-  EXPECT_LT(implied * 50, dropped);
+void expect_no_needless_barrier(const Plan& plan, uint64_t seed) {
+  for (uint32_t b = 0; b < plan.barriers.size(); ++b)
+    EXPECT_FALSE(verify(without_barrier(plan, b)).empty()) << "seed " << seed << ": without barrier " << b;
 }
 
-TEST(TwoQueues, NoWaitAndNoSignalCanBeLost) {
-  Tally tally;
-  for_random_plans(
-      300, 3000,
-      [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
-        for_each_lost_point(plan, [&](const Plan& mutant, const std::string& what) {
-          if (HasFatalFailure()) return;
-          expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
-          if (what.find("earlier") == std::string::npos) {
+// Another pass reads a buffer in other ways, behind one for which a wait had made it visible. These seeds
+// draw it.
+TEST(TwoQueues, WhatAWaitHasShownNeedsNoBarrierForAnotherUsageEither) {
+  for (const uint64_t seed : {25505u, 34848u, 73763u}) {
+    const auto builder = random_graph(seed, Sizes::one_page);
+    expect_no_needless_barrier(compiled(builder, two_queues(builder)).plan, seed);
+  }
+  for (const uint64_t seed : {21952u, 45182u, 75141u}) {
+    const auto builder = random_graph(seed, Sizes::mixed);
+    expect_no_needless_barrier(compiled(builder, two_queues(builder)).plan, seed);
+  }
+}
+
+// Dropped one by one, each is refused: by the verifier in every plan, by the oracle too in the first ones.
+template <class ForEachMutant>
+void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, uint64_t least,
+                          ForEachMutant for_each_mutant) {
+  uint64_t dropped = 0;
+  for (const Sizes sizes : {Sizes::one_page, Sizes::mixed})
+    for_random_plans(
+        quick, full,
+        [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+          for_each_mutant(plan, [&](const Plan& mutant, const std::string& what) {
+            ++dropped;
             EXPECT_FALSE(verify(mutant).empty()) << "seed " << seed << ": " << what;
-          }
-        });
-      },
-      Sizes::one_page);
-  EXPECT_GT(tally.refused, 200u);
+            if (seed < judged_twice) {
+              EXPECT_NE(first_hazard(mutant), "") << "seed " << seed << ": " << what;
+            }
+          });
+        },
+        sizes);
+  EXPECT_GT(dropped, least);
+}
+
+TEST(TwoQueues, NoBarrierAndNoHalfOfATransferCanBeDropped) {
+  expect_none_needless(100, 1000, 10000, 10000, [](const Plan& plan, const VisitMutant& visit) {
+    for (uint32_t b = 0; b < plan.barriers.size(); ++b)
+      visit(without_barrier(plan, b), fmt::format("without barrier {}", b));
+  });
+}
+
+TEST(TwoQueues, NoWaitAndNoSignalCanBeLostOrComeEarlier) {
+  expect_none_needless(300, 1000, 10000, 2000, for_each_lost_point);
 }
 
 TEST(TwoQueues, AWeakerMaskIsRefusedExactlyWhereItMatters) {

@@ -47,17 +47,16 @@ void Synchronizer::batch_parts(uint32_t position) {
 }
 
 void Synchronizer::drop_needless() {
-  c.waits_here.resize(c.drafts.size());
-  c.draft_after.resize(c.drafts.size(), no_value);
+  find_round_trips(c);
+  c.draft_after.resize(c.drafts.size());
   for (uint32_t i = 0; i < c.drafts.size(); ++i) {
     const PlanBarrier& draft = c.drafts[i];
     if (draft.transfer != PlanBarrier::Transfer::none || draft.from_host ||
         draft.old_layout != draft.new_layout)
       continue;
-    const uint32_t after = c.draft_after[i] == no_value ? 0 : c.draft_after[i] + 1;
-    const uint32_t done = c.round_trip[c.batch_of[i]];
-    const bool arrival = c.arrival_of[draft.resource] == i; // of a buffer: images change their layout
-    if ((done > 0 && after <= done) || (arrival && !c.waits_here[i])) c.batch_of[i] = no_value;
+    const FrameCounts after = c.draft_after[i], done = c.round_trip[c.batch_of[i]];
+    if (after.this_frame <= done.this_frame && after.frame_before <= done.frame_before)
+      c.batch_of[i] = no_value;
   }
   std::vector<Reason>& reasons = c.out->reasons;
   reasons.erase(std::remove_if(reasons.begin() + static_cast<std::ptrdiff_t>(c.reasons_before), reasons.end(),

@@ -71,9 +71,21 @@ void Synchronizer::inherit(const ObjectState& state, uint32_t barrier, bool fram
   if (two_queues() && state.touched && state.queue != queue_at(position))
     return wait_elsewhere(c.drafts[barrier], position, state.last_pass, frame_before);
   wait_for(c.drafts[barrier], tail(state));
-  if (!two_queues() || !state.touched) return;
-  c.waits_here.resize(c.drafts.size());
-  c.waits_here[barrier] = 1;
+  if (state.touched) wait_here(barrier, state.last_pass, frame_before);
+}
+
+void Synchronizer::wait_here(uint32_t barrier, uint32_t earlier, bool frame_before) {
+  if (!two_queues()) return;
+  c.draft_after.resize(c.drafts.size());
+  FrameCounts& after = c.draft_after[barrier];
+  uint32_t& count = frame_before ? after.frame_before : after.this_frame;
+  count = std::max(count, earlier + 1);
+}
+
+void Synchronizer::wait_for_write(uint32_t barrier, uint32_t object) {
+  if (!two_queues()) return;
+  c.draft_after.resize(c.drafts.size());
+  c.draft_after[barrier] = c.last_write[object];
 }
 
 void Synchronizer::wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier,
@@ -133,6 +145,10 @@ void Synchronizer::settle_parts() {
     const PlanBarrier& first = c.drafts[c.arrival_of[arrival.resource]];
     if (&barrier != &first) {
       wait_for(barrier, {first.source_stages, first.source_access});
+      if (two_queues()) {
+        c.draft_after.resize(c.drafts.size());
+        c.draft_after[arrival.barrier] = c.draft_after[c.arrival_of[arrival.resource]];
+      }
       barrier.why = first.why;
     }
     inherit(c.states[arrival.object], arrival.barrier, true);

@@ -43,9 +43,6 @@ void number_points(CompileContext& c) {
   std::array<uint32_t, 2> waited{0, 0};
   uint32_t last_of_main = 0, last_of_async = 0; // what the next frame waits for
   std::vector<uint8_t> awaited(plan.passes.size(), 0);
-  std::vector<uint32_t> seen(plan.passes.size(), 0); // by position: how much of the other queue, likewise
-  std::array<uint32_t, 2> returned{0, 0};
-  c.round_trip.assign(plan.passes.size(), 0);
   uint32_t awaited_by_async = 0; // of the main queue, in the whole frame
   for (uint32_t position = 0; position < plan.passes.size(); ++position)
     if (plan.passes[position].queue == Queue::async)
@@ -66,10 +63,6 @@ void number_points(CompileContext& c) {
     if (need <= before) need = 0;
     before = std::max(before, need);
     if (need >= 2) awaited[need - 2] = 1;
-    if (before < 2) continue;
-    seen[position] = before - 1;
-    returned[index(queue)] = std::max(returned[index(queue)], seen[before - 2]);
-    c.round_trip[position] = returned[index(queue)];
   }
   if (last_of_async <= waited[index(Queue::main)]) last_of_async = 0;
   if (last_of_async >= 2) awaited[last_of_async - 2] = 1;
@@ -89,6 +82,47 @@ void number_points(CompileContext& c) {
     if (awaited[position]) pass.signal = ++points[index(pass.queue)];
   }
   if (last_of_async >= 2) plan.final_wait = plan.passes[last_of_async - 2].signal;
+}
+
+void find_round_trips(CompileContext& c) {
+  const Plan& plan = c.out->plan;
+  const auto index = [](Queue queue) { return static_cast<size_t>(queue); };
+  const size_t count = plan.passes.size();
+  // Of each queue: how many positions, counted through two frames, hold passes of that queue which are done.
+  using Done = std::array<size_t, 2>;
+  struct Point {
+    size_t behind = 0; // positions, up to the pass that reaches it
+    Done done{};       // known to its queue by then
+  };
+  std::array<Done, 2> known{};                 // by queue that knows it
+  std::array<std::vector<Point>, 2> reached{}; // of this frame
+  std::array<Point, 2> last{};                 // of the frame before
+  c.round_trip.assign(count, {});
+  for (size_t begin : {size_t{0}, count}) {
+    const auto wait = [&](Queue queue, uint32_t point) {
+      if (point == no_point) return;
+      const size_t own = index(queue), other = 1 - own;
+      const Point& at = point == 0 ? last[other] : reached[other][point - 1];
+      known[own][other] = std::max(known[own][other], at.behind);
+      known[own][own] = std::max(known[own][own], at.done[own]);
+    };
+    for (size_t position = 0; position < count; ++position) {
+      const PlanPass& pass = plan.passes[position];
+      const size_t own = index(pass.queue);
+      wait(pass.queue, pass.wait);
+      if (begin != 0) { // the second frame is like all that follow
+        const size_t done = known[own][own];
+        c.round_trip[position] = {static_cast<uint32_t>(done > begin ? done - begin : 0),
+                                  static_cast<uint32_t>(std::min(done, begin))};
+      }
+      if (pass.signal != 0) reached[own].push_back({begin + position + 1, known[own]});
+    }
+    wait(Queue::main, plan.final_wait);
+    for (size_t q = 0; q < reached.size(); ++q) {
+      if (!reached[q].empty()) last[q] = reached[q].back();
+      reached[q].clear();
+    }
+  }
 }
 
 } // namespace dermis

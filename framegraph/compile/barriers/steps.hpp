@@ -11,6 +11,9 @@ namespace dermis {
 // CompileContext::needs_point and needs_frame_before allow.
 void number_points(CompileContext& context);
 
+// What each pass knows to be done on its own queue through waits of both: CompileContext::round_trip.
+void find_round_trips(CompileContext& context);
+
 // Drafts that stand in one batch and differ in the parts of an image alone become one, and so do their
 // reasons.
 void merge_part_barriers(CompileContext& context);

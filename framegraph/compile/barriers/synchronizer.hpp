@@ -134,10 +134,14 @@ struct Synchronizer {
 
   void inherit(const ObjectState& state, uint32_t barrier, bool frame_before);
 
-  // Barriers that change no layout, and whose work the waits for points do: those behind which the other
-  // queue has waited, and this one for it; and those of buffers that take over what the other queue had
-  // alone.
+  // Barriers that change no layout, and whose work the waits for points do: all that they wait for ran on the
+  // other queue, or that queue has waited for it and this one for that.
   void drop_needless();
+
+  // Where there are two queues: the barrier waits for a pass of its own one.
+  void wait_here(uint32_t barrier, uint32_t earlier, bool frame_before);
+  // Likewise, for the last write of an object alone: not for those that read it since.
+  void wait_for_write(uint32_t barrier, uint32_t object);
 
   // Behind the wait for a point, which ends where the barrier begins.
   void wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier, bool frame_before);
