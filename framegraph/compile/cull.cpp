@@ -12,11 +12,13 @@ namespace {
 struct Culler {
   CompileContext& c;
 
+  PassId following{}; // whose reads are looked at
+  bool missed = false; // it needs one that stands behind it
+
   void need(PassId pass, Reason::Why why, uint32_t a = 0, uint32_t b = 0) {
-    if (c.live[pass.value]) return;
+    if (c.input->reasons && !c.live[pass.value]) c.because(Reason::About::pass, pass.value, why, a, b);
+    missed |= (c.live[pass.value] == 0) & (following < pass);
     c.live[pass.value] = 1;
-    c.pending.push_back(pass);
-    c.because(Reason::About::pass, pass.value, why, a, b);
   }
 
   void need_value(uint32_t value, Reason::Why why, uint32_t a, uint32_t b = 0) {
@@ -37,6 +39,21 @@ struct Culler {
       // What is written in place may keep texels of the version before.
       if (use.write_value != no_value)
         need_value(c.values[use.write_value].previous, Reason::Why::written_over_by, pass.value, resource);
+    }
+  }
+
+  // Most passes stand behind those that they need: the last one first, once.
+  void follow_all() {
+    std::vector<uint8_t>& followed = c.seen;
+    followed.assign(c.live.size(), 0);
+    for (missed = true; missed;) {
+      missed = false;
+      for (auto pass = static_cast<uint32_t>(c.live.size()); pass-- > 0;) {
+        if (!c.live[pass] || followed[pass]) continue;
+        followed[pass] = 1;
+        following = PassId{pass};
+        follow(following);
+      }
     }
   }
 
@@ -135,7 +152,6 @@ struct Culler {
 void cull(CompileContext& c) {
   const auto passes = static_cast<uint32_t>(c.graph->passes.size());
   c.live.assign(passes, 0);
-  c.pending.clear();
   c.reported.assign(c.graph->resources.size(), 0);
   Culler culler{c};
   for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {
@@ -154,8 +170,7 @@ void cull(CompileContext& c) {
   }
   for (uint32_t i = 0; i < passes; ++i)
     if (c.on[i] && c.kind(PassId{i}).side_effects) culler.need(PassId{i}, Reason::Why::side_effects);
-  for (size_t at = 0; at < c.pending.size(); ++at)
-    culler.follow(c.pending[at]);
+  culler.follow_all();
   if (!c.input->cull) culler.keep_runnable();
   for (uint32_t i = 0; i < passes; ++i)
     if (c.on[i] && !c.live[i]) c.because(Reason::About::pass, i, Reason::Why::not_needed);

@@ -36,12 +36,16 @@ private:
     uint64_t begin = 0, end = 0;
     uint32_t item = 0;
   };
-  struct Placed {
-    uint64_t begin = 0, end = 0;
-    uint32_t first = 0, last = 0;
-  };
   struct Range {
     uint64_t begin = 0, end = 0;
+  };
+  struct Block { // what is placed and alive in some consecutive positions, by begin
+    std::vector<Range> ranges;
+    std::vector<uint32_t> when; // in which of them, as bits; as many as ranges, 0 from `count` on
+    size_t count = 0;
+
+    void clear();
+    void insert(const Range& range, uint32_t positions);
   };
   enum class Fit : uint8_t { first, tightest };
 
@@ -49,7 +53,7 @@ private:
   void place_by_time(Packing& out);
   uint64_t place_in_order(std::span<const uint32_t> order, Fit fit, uint64_t limit);
   uint64_t find_place(const PackItem& item, uint32_t first, uint32_t last, Fit fit);
-  size_t gather(const std::vector<Placed>& block, const PackItem& item, uint32_t from, Range* to);
+  size_t gather(const Block& block, uint32_t positions, bool began, Range* to);
   bool try_order(std::span<const uint32_t> order, Fit fit, Packing& out);
   void sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32_t>& sorted);
   void try_again(Packing& out);
@@ -61,7 +65,7 @@ private:
   std::vector<int64_t> change_; // by position: bytes that come alive less those that die
   std::vector<uint32_t> first_at_, last_at_, by_first_, by_last_;
   std::vector<Span> spans_;
-  std::vector<std::vector<Placed>> blocks_; // by position / block_passes: what is alive there, by begin
+  std::vector<Block> blocks_; // by position / block_passes
   std::vector<Range> gathered_;
   std::vector<uint64_t> sizes_;
   std::vector<double> weights_; // by item

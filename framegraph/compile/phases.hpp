@@ -115,6 +115,19 @@ struct ObjectState {
   bool read_for_sure = false; // in every frame: whoever waits for the readers waits for the last write
 };
 
+// What the walk of synchronize.cpp asks of a plan resource, close together.
+struct SyncFacts {
+  uint32_t first_object =
+      0;                 // objects follow frames_back; parts, of which resources without history have more
+  uint32_t roles = 1;    // frames that a frame touches, this one included: each is an object
+  uint32_t parts = 1;    // that ports tell apart: each is an object
+  uint32_t own_role = 0; // frames_back whose object is this frame's, too, since it is written over
+  uint32_t memory = 0;   // bytes in which it arrives: into CompileContext::memory
+  bool host_owned = false, image = true;
+  SubresourceRange whole;
+  uint64_t begin = 0, end = 0; // in that memory
+};
+
 struct PassTouch { // all accesses of one pass to one object
   uint32_t object = 0, resource = 0, frames_back = 0;
   uint8_t usages = 0;
@@ -196,7 +209,6 @@ struct CompileContext {
   bool overwrites = false;                            // some value is written over another
   // cull
   std::vector<uint8_t> live;
-  std::vector<PassId> pending;
   std::vector<uint8_t> reported; // by resource: one root cause, one diagnostic
   std::vector<Queue> queue;      // by pass, where there are two
   // usage
@@ -225,7 +237,7 @@ struct CompileContext {
   Packer packer;
   Packing packing;
   // synchronize
-  std::vector<uint32_t> first_object; // by plan resource; objects follow frames_back
+  std::vector<SyncFacts> sync_facts; // by plan resource
   std::vector<ObjectState> states, ends;
   std::vector<PassTouch> touches;
   std::vector<uint32_t> touch_number; // by object: of the last one, counted through all passes

@@ -14,29 +14,38 @@
 namespace dermis {
 
 bool Synchronizer::number_objects() {
-  uint32_t objects = 0, deepest = 1;
-  c.first_object.clear();
+  uint32_t objects = 0, deepest = 0;
+  c.sync_facts.resize(plan.resources.size());
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
-    c.first_object.push_back(objects);
-    objects += roles(r) * parts(r);
-    deepest = std::max(deepest, roles(r));
+    const PlanResource& resource = plan.resources[r];
+    const Lifetime& life = c.lifetimes[resource.declared.value];
+    SyncFacts& of = c.sync_facts[r];
+    of.first_object = objects;
+    of.roles = life.deepest_read + 1;
+    of.parts = c.graph->parts ? c.facts[resource.declared.value].parts : 1;
+    of.own_role = life.updates_oldest ? life.deepest_read : 0;
+    of.host_owned = resource.first_instance == no_instance;
+    of.image = resource.type == ResourceType::image;
+    of.whole = resource.whole();
+    objects += of.roles * of.parts;
+    deepest = std::max(deepest, life.deepest_read);
   }
   c.states.assign(objects, {});
   c.touch_number.assign(objects, 0);
   c.last_write.assign(two_queues() ? objects : 0, {});
-  return deepest > 1;
+  return deepest > 0;
 }
 
 void Synchronizer::carry_over() {
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
     for (uint32_t part = 1; part < parts(r); ++part)
-      c.states[object_of(r, 0, part)] = {};
+      c.states[object_of(facts(r), 0, part)] = {};
     for (uint32_t back = roles(r); back-- > 0;) {
-      const uint32_t object = c.first_object[r] + back;
-      c.states[object] = back == 0 ? ObjectState{} : c.ends[object_of(r, back - 1)];
+      const uint32_t object = facts(r).first_object + back;
+      c.states[object] = back == 0 ? ObjectState{} : c.ends[object_of(facts(r), back - 1)];
       c.states[object].carried = back != 0;
       if (!two_queues()) continue;
-      const FrameCounts before = back == 0 ? FrameCounts{} : c.last_write_ends[object_of(r, back - 1)];
+      const FrameCounts before = back == 0 ? FrameCounts{} : c.last_write_ends[object_of(facts(r), back - 1)];
       // Whoever has seen any of the frame before has seen all that came before that.
       c.last_write[object] = {0,
                               before.this_frame != 0 ? before.this_frame : std::min(before.frame_before, 1u)};
@@ -65,7 +74,7 @@ void Synchronizer::transfer(const PassTouch& touch, const ObjectState& state, co
   PlanBarrier release;
   release.resource = touch.resource;
   release.frames_back = touch.frames_back;
-  release.range = range_of(touch.resource, touch.part);
+  release.range = range_of(facts(touch.resource), touch.resource, touch.part);
   release.old_layout = state.layout;
   release.new_layout = touch.layout;
   release.why = set.reads ? PlanBarrier::Why::read_after_write : PlanBarrier::Why::write_after_write;
@@ -132,21 +141,22 @@ void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
   } else if (elsewhere) {
     if (emit) transfer(touch, state, set, position);
   } else {
-    PlanBarrier barrier;
-    waited = dependency(state, touch.usages, set, layout, barrier);
+    const bool must_see = set.reads && (touch.usages & ~sets[state.visible].sees) != 0;
+    waited = layout != state.layout || must_see || set.writes;
     if (waited && emit) {
+      const uint32_t index = draft();
+      PlanBarrier& barrier = c.drafts[index];
       barrier.resource = touch.resource;
       barrier.frames_back = touch.frames_back;
-      barrier.range = range_of(touch.resource, touch.part);
-      const uint32_t index = draft();
+      barrier.range = range_of(facts(touch.resource), touch.resource, touch.part);
+      dependency(state, set, layout, must_see, barrier);
       c.because(Reason::About::barrier, index, Reason::Why::dependency, state.last_pass,
                 state.carried ? 1 : 0, position);
-      c.drafts[index] = barrier;
       if (barrier.why == PlanBarrier::Why::read_after_write && !set.writes && layout == state.layout)
         wait_for_write(index, touch.object);
       else
         wait_here(index, state.last_pass, state.carried);
-      if (state.carried) c.drafts[index].why = PlanBarrier::Why::history;
+      if (state.carried) barrier.why = PlanBarrier::Why::history;
       place(index, state.carried ? no_value : state.last_pass, position);
     }
   }
@@ -174,10 +184,9 @@ void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
   state.last_pass = position;
 }
 
-bool Synchronizer::dependency(const ObjectState& state, uint8_t usages, const UsageSet& set, Layout layout,
+void Synchronizer::dependency(const ObjectState& state, const UsageSet& set, Layout layout, bool must_see,
                               PlanBarrier& barrier) const {
   const bool pending = state.source_access != 0;
-  const bool must_see = set.reads && (usages & ~sets[state.visible].sees) != 0;
   const Scope everything = tail(state);
   barrier.source_stages = everything.stages;
   barrier.source_access = everything.access;
@@ -189,38 +198,34 @@ bool Synchronizer::dependency(const ObjectState& state, uint8_t usages, const Us
     barrier.why = !pending    ? PlanBarrier::Why::layout
                   : set.reads ? PlanBarrier::Why::read_after_write
                               : PlanBarrier::Why::write_after_write;
-    return true;
-  }
-  if (must_see) {
+  } else if (must_see) {
     barrier.why = PlanBarrier::Why::read_after_write;
     barrier.source_stages = set.writes ? everything.stages | state.source_stages : state.source_stages;
-    return true;
+  } else {
+    barrier.why = pending ? PlanBarrier::Why::write_after_write : PlanBarrier::Why::write_after_read;
+    // Readers only have to be done: nothing to make visible.
+    if (!pending && state.read_for_sure) barrier.destination_access = 0;
   }
-  if (!set.writes) return false;
-  barrier.why = pending ? PlanBarrier::Why::write_after_write : PlanBarrier::Why::write_after_read;
-  // Readers only have to be done: nothing to make visible.
-  if (!pending && state.read_for_sure) barrier.destination_access = 0;
-  return true;
 }
 
 void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout layout, uint32_t position) {
   const uint32_t index = draft();
-  const PlanResource& own = plan.resources[touch.resource];
+  const SyncFacts& of = facts(touch.resource);
   PlanBarrier& barrier = c.drafts[index];
   uint32_t after = no_value;
   barrier.resource = touch.resource;
   barrier.frames_back = touch.frames_back;
-  barrier.range = range_of(touch.resource, touch.part);
+  barrier.range = range_of(of, touch.resource, touch.part);
   barrier.destination_stages = set.stages;
   barrier.destination_access = set.access;
   barrier.new_layout = layout;
-  if (host_owned(touch.resource)) {
+  if (of.host_owned) {
     barrier.from_host = true;
     barrier.why = PlanBarrier::Why::host_before;
     because(index, Reason::Why::from_host, touch.resource);
-  } else if (roles(touch.resource) > 1) {
-    const uint32_t oldest = c.first_object[touch.resource] + roles(touch.resource) - 1;
-    const bool in_place = own.instance_count < roles(touch.resource);
+  } else if (of.roles > 1) {
+    const uint32_t oldest = of.first_object + of.roles - 1;
+    const bool in_place = plan.resources[touch.resource].instance_count < of.roles;
     const ObjectState& before = in_place ? c.states[oldest] : c.ends[oldest];
     if (in_place && !before.carried) after = before.last_pass;
     if (c.lent_memory[touch.resource] != no_value) after = take_over(touch.resource, index);
@@ -228,13 +233,13 @@ void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout la
     if (before.touched) wait_here(index, before.last_pass, !in_place || before.carried);
     barrier.why = PlanBarrier::Why::history;
     because(index, Reason::Why::oldest_instance, touch.resource);
-  } else if (parts(touch.resource) > 1 && c.arrival_of[touch.resource] != no_value) {
+  } else if (of.parts > 1 && c.arrival_of[touch.resource] != no_value) {
     after = c.arrived_after[touch.resource];
     c.part_arrivals.push_back({index, touch.resource, touch.object});
     because(index, Reason::Why::first_use, touch.resource);
   } else {
     after = take_over(touch.resource, index);
-    if (parts(touch.resource) > 1) {
+    if (of.parts > 1) {
       c.arrived_after[touch.resource] = after;
       c.part_arrivals.push_back({index, touch.resource, touch.object});
     }
@@ -243,7 +248,7 @@ void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout la
 }
 
 void Synchronizer::hand_back(uint32_t resource) {
-  const ObjectState& end = c.states[c.first_object[resource]];
+  const ObjectState& end = c.states[facts(resource).first_object];
   const Scope scope = tail(end);
   PlanBarrier barrier;
   barrier.resource = resource;
@@ -268,7 +273,7 @@ void Synchronizer::describe_histories() {
     history.declaration = c.graph->resources[plan.resources[r].declared.value].history;
     plan.history_layouts.push_back(Layout::undefined);
     for (uint32_t back = 1; back < roles(r); ++back)
-      plan.history_layouts.push_back(c.ends[object_of(r, back - 1)].layout);
+      plan.history_layouts.push_back(c.ends[object_of(facts(r), back - 1)].layout);
     plan.histories.push_back(history);
   }
 }
@@ -292,6 +297,7 @@ void synchronize(CompileContext& c) {
   for (std::vector<Segment>& segments : c.memory)
     segments.clear();
   walk.lend();
+  walk.find_memory();
   walk.emit = true;
   c.drafts.clear();
   c.batch_of.clear();
@@ -307,7 +313,7 @@ void synchronize(CompileContext& c) {
   walk.sort_into_batches();
   plan.first_final_barrier = static_cast<uint32_t>(plan.barriers.size());
   for (uint32_t r = 0; r < plan.resources.size(); ++r)
-    if (walk.host_owned(r)) walk.hand_back(r);
+    if (walk.facts(r).host_owned) walk.hand_back(r);
   plan.final_barrier_count = static_cast<uint32_t>(plan.barriers.size()) - plan.first_final_barrier;
   if (histories) walk.describe_histories();
 }

@@ -79,8 +79,10 @@ struct VersionScan {
     const auto first = static_cast<uint32_t>(c.uses.size());
     c.first_use.push_back(first);
     uint16_t number = 0;
+    bool sorted = true;
     for (const PortBinding& binding : c.graph->bindings_of(declared)) {
-      Use use;
+      sorted &= c.uses.size() == first || c.uses.back().port <= binding.port;
+      Use& use = c.uses.emplace_back();
       use.pass = pass;
       use.port = static_cast<uint16_t>(binding.port);
       use.usage = kind.ports[binding.port].usage;
@@ -92,18 +94,15 @@ struct VersionScan {
       use.when = binding.when;
       use.part = use.asked.value;
       use.binding = number++;
-      if (c.split(use.asked))
-        add_parts(use, binding.part);
-      else
-        c.uses.push_back(use);
+      if (c.split(use.asked)) {
+        const Use whole = use;
+        c.uses.pop_back();
+        add_parts(whole, binding.part);
+      }
     }
-    constexpr uint32_t many = 64; // parts of images
-    if (c.uses.size() - first > many)
+    if (!sorted)
       std::stable_sort(c.uses.begin() + first, c.uses.end(),
                        [](const Use& a, const Use& b) { return a.port < b.port; });
-    for (uint32_t u = first + 1; u < c.uses.size(); ++u) // few, and nearly always sorted
-      for (uint32_t at = u; at > first && c.uses[at].port < c.uses[at - 1].port; --at)
-        std::swap(c.uses[at], c.uses[at - 1]);
     for (uint32_t u = first; u < c.uses.size(); ++u)
       read(u);
     for (uint32_t u = first; u < c.uses.size(); ++u)

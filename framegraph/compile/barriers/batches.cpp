@@ -7,6 +7,17 @@
 namespace dermis {
 
 void Synchronizer::sort_into_batches() {
+  if (!two_queues() && !c.graph->parts) { // they stand in order
+    for (const uint32_t position : c.batch_of)
+      ++plan.passes[position].barrier_count;
+    uint32_t first = 0;
+    for (PlanPass& pass : plan.passes) {
+      pass.first_barrier = first;
+      first += pass.barrier_count;
+    }
+    plan.barriers.swap(c.drafts);
+    return;
+  }
   const auto released = [&](uint32_t draft) {
     return c.drafts[draft].transfer == PlanBarrier::Transfer::release;
   };

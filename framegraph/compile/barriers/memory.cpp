@@ -10,14 +10,16 @@ namespace dermis {
 uint32_t Synchronizer::last_pass(const Segment& of) const {
   uint32_t last = no_value;
   for (uint32_t part = 0; part < parts(of.resource); ++part) {
-    const ObjectState& state = c.states[c.first_object[of.resource] + of.frames_back + part];
+    const ObjectState& state = c.states[facts(of.resource).first_object + of.frames_back + part];
     if (state.touched) last = last == no_value ? state.last_pass : std::max(last, state.last_pass);
   }
   return last;
 }
 
 uint32_t Synchronizer::take_over(uint32_t resource, uint32_t barrier) {
-  const auto [memory, begin, end] = memory_of(resource);
+  const SyncFacts& own = facts(resource);
+  const uint32_t memory = own.memory;
+  const uint64_t begin = own.begin, end = own.end;
   std::vector<Segment>& segments = c.memory[memory];
   if (roles(resource) == 1) { // histories say what they wait for themselves
     because(barrier, Reason::Why::first_use, resource);
@@ -67,11 +69,12 @@ std::vector<Segment>::iterator Synchronizer::behind(std::vector<Segment>& segmen
 }
 
 void Synchronizer::inherit(const ObjectState& state, uint32_t barrier, bool frame_before) {
+  if (!two_queues() || !state.touched) return wait_for(c.drafts[barrier], tail(state));
   const uint32_t position = c.batch_of[barrier] == no_value ? current : c.batch_of[barrier];
-  if (two_queues() && state.touched && state.queue != queue_at(position))
+  if (state.queue != queue_at(position))
     return wait_elsewhere(c.drafts[barrier], position, state.last_pass, frame_before);
   wait_for(c.drafts[barrier], tail(state));
-  if (state.touched) wait_here(barrier, state.last_pass, frame_before);
+  wait_here(barrier, state.last_pass, frame_before);
 }
 
 void Synchronizer::wait_here(uint32_t barrier, uint32_t earlier, bool frame_before) {
@@ -95,7 +98,7 @@ void Synchronizer::wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint3
 }
 
 void Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before) {
-  const uint32_t first = c.first_object[from.resource] + from.frames_back;
+  const uint32_t first = facts(from.resource).first_object + from.frames_back;
   for (uint32_t part = 0; part < parts(from.resource); ++part)
     inherit(c.states[first + part], barrier, frame_before);
   if (from.resource != resource && roles(resource) == 1) c.drafts[barrier].why = PlanBarrier::Why::alias;
@@ -103,13 +106,23 @@ void Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barr
           from.resource, frame_before ? 1 : 0);
 }
 
-Synchronizer::MemoryRange Synchronizer::memory_of(uint32_t resource) const {
-  const Placement& place = plan.placements[plan.resources[resource].first_instance];
-  const Loan& loan = c.loans[resource];
-  if (loan.from != no_value)
-    return {c.lent_memory[loan.from] + (loan.after ? 1 : 0), loan.offset, loan.offset + place.size};
-  if (c.lent_memory[resource] != no_value) return {c.lent_memory[resource], 0, place.size};
-  return {place.heap, place.offset, place.offset + place.size};
+void Synchronizer::find_memory() {
+  for (uint32_t r = 0; r < plan.resources.size(); ++r) {
+    SyncFacts& of = c.sync_facts[r];
+    if (of.host_owned) continue;
+    const Placement& place = plan.placements[plan.resources[r].first_instance];
+    const Loan& loan = c.loans[r];
+    of.memory = place.heap;
+    of.begin = place.offset;
+    if (loan.from != no_value) {
+      of.memory = c.lent_memory[loan.from] + (loan.after ? 1 : 0);
+      of.begin = loan.offset;
+    } else if (c.lent_memory[r] != no_value) {
+      of.memory = c.lent_memory[r];
+      of.begin = 0;
+    }
+    of.end = of.begin + place.size;
+  }
 }
 
 void Synchronizer::lend() {

@@ -13,11 +13,9 @@ struct Scope {
 };
 
 // Where a dependency on everything done so far starts.
-inline Scope tail(const ObjectState& state) {
-  if (!state.touched) return {};
-  return {state.readers != 0 && state.source_access == 0 ? state.readers
-                                                         : state.source_stages | state.readers,
-          state.source_access};
+inline Scope tail(const ObjectState& state) { // nothing, for one that was not touched
+  const bool readers_alone = (state.readers != 0) & (state.source_access == 0);
+  return {state.readers | (readers_alone ? 0 : state.source_stages), state.source_access};
 }
 
 struct Synchronizer {
@@ -34,24 +32,15 @@ struct Synchronizer {
   void because(uint32_t barrier, Reason::Why why, uint32_t resource, uint32_t b = 0) {
     c.because(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
   }
-  bool host_owned(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
-
-  const Lifetime& life(uint32_t resource) const {
-    return c.lifetimes[plan.resources[resource].declared.value];
-  }
-  // Frames of a resource that a frame touches, this one included: each is an object.
-  uint32_t roles(uint32_t resource) const { return life(resource).deepest_read + 1; }
-  // Parts of a resource that ports tell apart: each is an object. Histories have one.
-  uint32_t parts(uint32_t resource) const {
-    return c.graph->parts ? c.facts[plan.resources[resource].declared.value].parts : 1;
-  }
+  const SyncFacts& facts(uint32_t resource) const { return c.sync_facts[resource]; }
+  uint32_t roles(uint32_t resource) const { return facts(resource).roles; }
+  uint32_t parts(uint32_t resource) const { return facts(resource).parts; }
   // This frame's and the oldest are one object where the one is written over the other.
-  uint32_t object_of(uint32_t resource, uint32_t frames_back, uint32_t part = 0) const {
-    const bool oldest = frames_back == 0 && life(resource).updates_oldest;
-    return c.first_object[resource] + (oldest ? life(resource).deepest_read : frames_back) + part;
+  static uint32_t object_of(const SyncFacts& of, uint32_t frames_back, uint32_t part = 0) {
+    return of.first_object + (frames_back == 0 ? of.own_role : frames_back) + part;
   }
-  SubresourceRange range_of(uint32_t resource, uint32_t part) const {
-    if (parts(resource) == 1) return plan.resources[resource].whole();
+  SubresourceRange range_of(const SyncFacts& of, uint32_t resource, uint32_t part) const {
+    if (of.parts == 1) return of.whole;
     return c.parts[c.part_number(plan.resources[resource].declared, part)];
   }
 
@@ -80,8 +69,6 @@ struct Synchronizer {
   // The object leaves one queue for the other, with its contents.
   void transfer(const PassTouch& touch, const ObjectState& state, const UsageSet& set, uint32_t position);
 
-  Layout layout_of(const PassTouch& touch) const;
-
   // What the pass does to each object; by use: which of them it touches.
   void collect(uint32_t first_use, uint32_t end);
 
@@ -108,8 +95,8 @@ struct Synchronizer {
 
   void run_touch(const PassTouch& touch, uint32_t position);
 
-  // Fills in the barrier that an access needs behind `state`; false if it needs none.
-  bool dependency(const ObjectState& state, uint8_t usages, const UsageSet& set, Layout layout,
+  // Fills in the barrier that an access needs behind `state`.
+  void dependency(const ObjectState& state, const UsageSet& set, Layout layout, bool must_see,
                   PlanBarrier& barrier) const;
 
   void wait_for(PlanBarrier& barrier, const Scope& scope) const {
@@ -148,14 +135,10 @@ struct Synchronizer {
 
   void inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before);
 
-  // The bytes in which a resource arrives. What a history lends is memory of its own, twice: before it is
-  // written, and after the last read of its oldest frame. The instance of the latter is that of the former in
-  // the next frame.
-  struct MemoryRange {
-    uint32_t memory = 0; // into c.memory
-    uint64_t begin = 0, end = 0;
-  };
-  MemoryRange memory_of(uint32_t resource) const;
+  // Where each resource arrives. What a history lends is memory of its own, twice: before it is written, and
+  // after the last read of its oldest frame. The instance of the latter is that of the former in the next
+  // frame.
+  void find_memory();
 
   // The memory that histories lend: the oldest frame has it first.
   void lend();

@@ -7,35 +7,30 @@
 
 namespace dermis {
 
-Layout Synchronizer::layout_of(const PassTouch& touch) const {
-  return plan.resources[touch.resource].type == ResourceType::image ? sets[touch.usages].image_layout
-                                                                    : Layout::undefined;
-}
-
 void Synchronizer::collect(uint32_t first_use, uint32_t end) {
   c.touches.clear();
-  c.touch_of_use.clear();
+  c.touch_of_use.resize(end - first_use);
   for (uint32_t u = first_use; u < end; ++u) {
     const Use& use = c.uses[u];
-    c.touch_of_use.push_back(no_value);
+    uint32_t& touch_of_use = c.touch_of_use[u - first_use];
+    touch_of_use = no_value;
     if (use.trouble != Use::Trouble::none) continue;
     const uint32_t resource = c.plan_resource[use.resource.value];
-    const uint32_t part = c.part_index(use);
-    const uint32_t object = object_of(resource, use.frames_back, part);
-    const auto usage = static_cast<uint8_t>(1u << static_cast<uint32_t>(use.usage));
+    const SyncFacts& of = facts(resource);
+    const uint32_t part = of.parts == 1 ? 0 : c.part_index(use);
+    const uint32_t object = object_of(of, use.frames_back, part);
     uint32_t& number = c.touch_number[object];
     if (number < touches_before) { // by an earlier pass
       number = touches_before + static_cast<uint32_t>(c.touches.size());
       c.touches.push_back({object, resource, use.frames_back, 0, false, part, Layout::undefined});
     }
-    const uint32_t same = number - touches_before;
-    c.touches[same].usages |= usage;
-    c.touches[same].certain |= use.when == ReadWhen::always;
-    c.touch_of_use.back() = same;
+    touch_of_use = number - touches_before;
+    PassTouch& touch = c.touches[touch_of_use];
+    touch.usages = static_cast<uint8_t>(touch.usages | 1u << static_cast<uint32_t>(use.usage));
+    touch.certain |= use.when == ReadWhen::always;
+    if (of.image) touch.layout = sets[touch.usages].image_layout;
   }
   touches_before += static_cast<uint32_t>(c.touches.size());
-  for (PassTouch& touch : c.touches)
-    touch.layout = layout_of(touch);
   if (c.graph->parts) unify_layouts(first_use, end);
 }
 
@@ -64,8 +59,8 @@ void Synchronizer::add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end
     const PassTouch& touch = c.touches[touched];
     const Use& use = c.uses[u];
     const UsageSet& usage = sets[size_t{1} << static_cast<uint32_t>(use.usage)];
-    const SubresourceRange range = range_of(touch.resource, touch.part);
-    if (u > first_use && use.binding == c.uses[u - 1].binding) { // a further part
+    const SubresourceRange range = range_of(facts(touch.resource), touch.resource, touch.part);
+    if (c.graph->parts && u > first_use && use.binding == c.uses[u - 1].binding) { // a further part
       SubresourceRange& seen = plan.accesses.back().range;
       seen.mips = static_cast<uint16_t>(std::max(seen.first_mip + seen.mips, range.first_mip + range.mips) -
                                         seen.first_mip);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <functional>
 #include <numeric>
 
@@ -16,7 +17,8 @@ namespace {
 constexpr uint64_t tight_steps_per_item = 10'000;
 constexpr uint64_t most_tight_steps = 25'000'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
-constexpr uint32_t block_passes = 24; // positions that share one list of what is alive in them
+constexpr uint32_t block_passes = 24; // positions that share one list of what is alive in them: below 32
+constexpr uint32_t began_before = 0x80000000;
 constexpr uint64_t unlimited = UINT64_MAX;
 
 uint64_t align_up(uint64_t value, uint64_t alignment) {
@@ -103,6 +105,8 @@ void Packer::place_by_time(Packing& out) {
   out.offsets = offsets_;
 }
 
+namespace {
+
 // The gap for one item among what is placed and alive with it, handed in by rising begin. Nothing here
 // branches on what it finds: which gap fits is as good as random.
 struct GapFinder {
@@ -111,28 +115,75 @@ struct GapFinder {
   uint64_t size, alignment;
   uint64_t keep; // 0: the first gap that fits; all bits: the tightest one
   uint64_t best = 0, best_slack = no_gap, free_from = 0;
-  bool found = false;
 
   void pass(uint64_t begin, uint64_t end) {
     const uint64_t start = align_up(free_from, alignment);
     const uint64_t slack = begin - start - size;
-    const bool better = slack < best_slack;
-    best = better ? start : best;
-    best_slack = better ? slack & keep : best_slack;
-    found |= better;
+    const uint64_t better =
+        -static_cast<uint64_t>(slack < best_slack); // all bits or none: compilers branch on `?`
+    best ^= (best ^ start) & better;
+    best_slack ^= (best_slack ^ (slack & keep)) & better;
     free_from = std::max(free_from, end);
   }
-  uint64_t place() const { return found ? best : align_up(free_from, alignment); }
+  uint64_t place() const { return best_slack < no_gap ? best : align_up(free_from, alignment); }
 };
 
-// Appends to `to` what is alive with `item` and began at `from` or later; `to` has room for all.
-size_t Packer::gather(const std::vector<Placed>& block, const PackItem& item, uint32_t from, Range* to) {
-  steps_ += block.size();
+constexpr uint32_t chunk = 32; // placed items that are looked at together
+
+// Which of the next `chunk` items are alive in some of the positions `when`, as bits.
+uint32_t alive(const uint32_t* items, uint32_t when) {
+  uint8_t hit[chunk];
+  for (uint32_t i = 0; i < chunk; ++i)
+    hit[i] = (items[i] & when) != 0 ? 1 : 0;
+  uint32_t bits = 0;
+  for (uint32_t part = 0; part < chunk / 8; ++part) {
+    uint64_t bytes = 0;
+    std::memcpy(&bytes, hit + size_t{part} * 8, sizeof bytes);
+    bits |= static_cast<uint32_t>(bytes * 0x0102040810204080 >> 56) << (part * 8); // one bit of each byte
+  }
+  return bits;
+}
+
+// Positions of a block in which an item is alive, as bits; the highest says that it began before the block.
+uint32_t positions_in(uint32_t block, const PackItem& item) {
+  const uint32_t begin = block * block_passes;
+  const uint32_t first = std::max(item.first, begin) - begin;
+  const uint32_t last = std::min(item.last - begin, block_passes - 1);
+  const uint32_t bits = (uint32_t{2} << last) - (uint32_t{1} << first);
+  return bits | (item.first < begin ? began_before : 0);
+}
+
+} // namespace
+
+void Packer::Block::clear() {
+  std::fill_n(when.begin(), count, 0u);
+  count = 0;
+}
+
+void Packer::Block::insert(const Range& range, uint32_t positions) {
+  if (count + 1 > ranges.size()) {
+    ranges.resize(ranges.size() + chunk);
+    when.resize(ranges.size(), 0);
+  }
+  size_t at = count++;
+  for (; at > 0 && ranges[at - 1].begin > range.begin; --at) {
+    ranges[at] = ranges[at - 1];
+    when[at] = when[at - 1];
+  }
+  ranges[at] = range;
+  when[at] = positions;
+}
+
+// Appends to `to` what is alive in `positions` of the block and did not begin before it if `began`; `to` has
+// room for all.
+size_t Packer::gather(const Block& block, uint32_t positions, bool began, Range* to) {
+  steps_ += block.count;
   size_t count = 0;
-  for (const Placed& other : block) {
-    to[count] = {other.begin, other.end};
-    count += static_cast<size_t>(other.first <= item.last) & static_cast<size_t>(item.first <= other.last) &
-             static_cast<size_t>(other.first >= from);
+  for (size_t from = 0; from < block.count; from += chunk) {
+    uint32_t bits = alive(block.when.data() + from, positions & ~began_before);
+    if (began) bits &= ~alive(block.when.data() + from, began_before);
+    for (; bits != 0; bits &= bits - 1)
+      to[count++] = block.ranges[from + static_cast<size_t>(std::countr_zero(bits))];
   }
   return count;
 }
@@ -141,18 +192,24 @@ size_t Packer::gather(const std::vector<Placed>& block, const PackItem& item, ui
 uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last, Fit fit) {
   constexpr Range end_of_list = {unlimited, unlimited};
   GapFinder gaps{item.size, item.alignment, fit == Fit::first ? 0 : ~uint64_t{0}};
-  Range* a = gathered_.data();
-  const size_t count_a = gather(blocks_[first], item, 0, a);
-  a[count_a] = end_of_list;
   if (first == last) {
-    for (size_t i = 0; i < count_a; ++i)
-      gaps.pass(a[i].begin, a[i].end);
+    const Block& block = blocks_[first];
+    const uint32_t positions = positions_in(first, item);
+    steps_ += block.count;
+    for (size_t from = 0; from < block.count; from += chunk)
+      for (uint32_t bits = alive(block.when.data() + from, positions); bits != 0; bits &= bits - 1) {
+        const Range& other = block.ranges[from + static_cast<size_t>(std::countr_zero(bits))];
+        gaps.pass(other.begin, other.end);
+      }
     return gaps.place();
   }
+  Range* a = gathered_.data();
+  const size_t count_a = gather(blocks_[first], positions_in(first, item), false, a);
+  a[count_a] = end_of_list;
   Range* b = a + count_a + 1; // each where it is met first
   size_t count_b = 0;
   for (uint32_t block = first + 1; block <= last; ++block)
-    count_b += gather(blocks_[block], item, block * block_passes, b + count_b);
+    count_b += gather(blocks_[block], positions_in(block, item), true, b + count_b);
   if (last - first > 1)
     std::sort(b, b + count_b, [](const Range& x, const Range& y) { return x.begin < y.begin; });
   b[count_b] = end_of_list;
@@ -180,14 +237,8 @@ uint64_t Packer::place_in_order(std::span<const uint32_t> order, Fit fit, uint64
     size = std::max(size, place + item.size);
     if (size >= limit) return limit;
     offsets_[i] = place;
-    for (uint32_t b = first; b <= last; ++b) {
-      std::vector<Placed>& block = blocks_[b];
-      block.emplace_back();
-      size_t at = block.size() - 1;
-      for (; at > 0 && block[at - 1].begin > place; --at)
-        block[at] = block[at - 1];
-      block[at] = {place, place + item.size, item.first, item.last};
-    }
+    for (uint32_t b = first; b <= last; ++b)
+      blocks_[b].insert({place, place + item.size}, positions_in(b, item));
   }
   return size;
 }
@@ -305,7 +356,9 @@ void Packer::search(uint64_t steps, Packing& out) {
 // Where the first placement left much to gain: what ends last goes first among equals; then by size and
 // time together, where now the one and now the other counts more.
 void Packer::try_again(Packing& out) {
-  constexpr uint64_t much = 16; // a part in this many of the bound: less would not pay for the time
+  // A part in this many of the bound: less would not pay for the time. In large graphs more is left to gain.
+  constexpr size_t many_items = 4096;
+  const uint64_t much = items_.size() < many_items ? 12 : 16;
   const auto worth_it = [&] { return out.size - out.lower_bound > out.lower_bound / much; };
   if (!worth_it()) return;
   const auto count = static_cast<uint32_t>(items_.size());
