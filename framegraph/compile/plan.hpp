@@ -129,6 +129,15 @@ struct PlanPass {
   uint32_t signal = 0;        // the point that this queue has reached behind the releases; 0: none
 };
 
+// An `after` of the graph whose two passes run: the later one is recorded behind the earlier one, and, where
+// they are on different queues, waits for a point behind it.
+struct PlanOrdering { // positions in Plan::passes
+  uint32_t earlier = 0, later = 0;
+
+  // By which they are sorted.
+  friend bool operator<(const PlanOrdering& a, const PlanOrdering& b) { return a.later < b.later; }
+};
+
 // History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned
 // with their contents discarded) into their layout at the start before the first frame that reads them.
 struct PlanHistory {
@@ -150,6 +159,7 @@ struct Plan {
   std::vector<PlanAccess> accesses;
   std::vector<PlanBarrier> barriers;
   std::vector<PlanSetting> settings;
+  std::vector<PlanOrdering> orderings; // by the later one
   std::vector<PlanHistory> histories;
   std::vector<Layout> history_layouts; // of an instance when a frame starts; the newest's is undefined: its
                                        // old contents are discarded
@@ -174,6 +184,7 @@ struct Reason {
     side_effects,     // of its kind
     culling_off,      // asked for by the caller
     beside,           // declared async, and on the async queue
+    behind,           // pass a, which its `after` number b names
     not_beside,       // declared async, but resource a is the host's, a history, or bound in parts
     port_unbound,     // optional port a; nothing provides resource b
     always_otherwise, // port a has no history b to read: its `otherwise` stands in for it in every frame

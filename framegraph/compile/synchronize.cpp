@@ -292,6 +292,7 @@ void synchronize(CompileContext& c) {
   for (std::vector<Segment>& segments : c.memory)
     segments.clear();
   walk.lend();
+  keep_orderings(c);
   walk.emit = true;
   c.drafts.clear();
   c.batch_of.clear();

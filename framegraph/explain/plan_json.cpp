@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace dermis {
 namespace {
 
@@ -176,6 +178,13 @@ struct Exporter {
     out.member("dispatch", name_in(dispatch_shapes, kind.dispatch));
     out.member("queue", queue_name(pass.queue));
     point("wait", pass.wait == no_point, pass.wait);
+    out.key("after").open_array(true);
+    const auto position = static_cast<uint32_t>(&pass - plan.passes.data());
+    const auto [first, last] =
+        std::equal_range(plan.orderings.begin(), plan.orderings.end(), PlanOrdering{0, position});
+    for (auto at = first; at != last; ++at)
+      out.value(at->earlier);
+    out.close();
     barriers("barriers", pass.first_barrier, pass.barrier_count);
     accesses(pass);
     barriers("releases", pass.first_barrier + pass.barrier_count, pass.release_count);

@@ -136,6 +136,11 @@ template <class A> void fields(A& a, Of<A, PlanSetting>& setting) {
   fields(a, setting.value);
 }
 
+template <class A> void fields(A& a, Of<A, PlanOrdering>& ordering) {
+  a.number("earlier pass", ordering.earlier);
+  a.number("later pass", ordering.later);
+}
+
 template <class A> void fields(A& a, Of<A, HistoryDeclaration>& history) {
   a.number("declared frames", history.frames);
   a.word("first", history.first, HistoryDeclaration::First::clear);
@@ -163,6 +168,7 @@ template <class A> void fields(A& a, Of<A, Plan>& plan) {
   a.list("accesses", plan.accesses, many);
   a.list("barriers", plan.barriers, many);
   a.list("settings", plan.settings, many);
+  a.list("orderings", plan.orderings, many);
   a.list("histories", plan.histories, limits::resources);
   a.list("history layouts", plan.history_layouts, many);
   a.number("first final barrier", plan.first_final_barrier);

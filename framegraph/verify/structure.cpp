@@ -155,6 +155,14 @@ struct Checker {
     }
   }
 
+  void orderings() {
+    for (size_t o = 0; o < plan.orderings.size(); ++o)
+      expect(plan.orderings[o].earlier < plan.passes.size() && plan.orderings[o].later < plan.passes.size(),
+             "an order names passes that do not exist", o);
+    expect(std::is_sorted(plan.orderings.begin(), plan.orderings.end()), "orders do not follow their passes",
+           0);
+  }
+
   void histories() {
     std::vector<uint32_t> described(plan.resources.size(), 0);
     for (size_t h = 0; h < plan.histories.size(); ++h) {
@@ -194,6 +202,7 @@ std::vector<std::string> verify_structure(const Plan& plan) {
   checker.resources();
   checker.placements();
   checker.passes();
+  checker.orderings();
   checker.histories();
   return std::move(checker.objections);
 }

@@ -34,6 +34,8 @@ struct Machine {
   int64_t now = 0;                                       // which pass, counted through all frames
   std::array<std::vector<int64_t>, queues> reached = {}; // by queue and point: the pass behind which it was
   std::array<size_t, queues> points_before = {};         // those of earlier frames
+  std::array<int64_t, queues> waited = {};               // by queue: the last pass of the other one it knows
+  int64_t frame_began = 0;                               // behind which pass
   uint64_t pieces = 0;                                   // that barriers made of events
 
   void prepare() {
@@ -203,8 +205,11 @@ struct Machine {
       complain(
           fmt::format("frame {}, {}: waits for point {} of the other queue, which is not reached before it",
                       frame, where, point));
-    else if (wanted > 0) // else the frames before the first, which nobody waits for
+    else if (wanted > 0) { // else the frames before the first, which nobody waits for
       wait_for_pass(reached[other][wanted - 1]);
+      int64_t& known = waited[index_of(queue)];
+      known = std::max(known, reached[other][wanted - 1]);
+    }
   }
 
   void reach(uint32_t point, const std::string& where) {
@@ -406,11 +411,25 @@ struct Machine {
     thing.events.push_back(event);
   }
 
+  // Passes that `after` names stand before this one; those of the other queue are waited for.
+  void check_orderings(uint32_t position, const std::string& where) {
+    const auto [first, last] =
+        std::equal_range(plan.orderings.begin(), plan.orderings.end(), PlanOrdering{0, position});
+    for (auto at = first; at != last; ++at) {
+      const bool known =
+          plan.passes[at->earlier].queue == queue || waited[index_of(queue)] > frame_began + at->earlier;
+      if (at->earlier >= position || !known)
+        complain(
+            fmt::format("frame {}, {}: does not come after pass {}, as it is to", frame, where, at->earlier));
+    }
+  }
+
   void run(const PlanPass& pass, const std::string& where) {
     const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
     queue = pass.queue;
     ++now;
     wait(pass.wait, where);
+    check_orderings(static_cast<uint32_t>(&pass - plan.passes.data()), where);
     run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, false, where);
     for (uint32_t a = 0; a < pass.access_count; ++a) {
       check(accesses[a], where);
@@ -434,6 +453,7 @@ struct Machine {
 
   void run_frame() {
     begin_frame();
+    frame_began = now;
     for (uint32_t p = 0; p < plan.passes.size(); ++p)
       run(plan.passes[p], fmt::format("pass {}", p));
     queue = Queue::main;

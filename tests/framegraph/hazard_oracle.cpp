@@ -44,6 +44,17 @@ struct Oracle {
 
   static size_t number(Queue queue) { return queue == Queue::main ? 0 : 1; }
 
+  // `step_of`: the passes of this frame so far.
+  bool follows(const PlanOrdering& ordering, const std::vector<uint32_t>& step_of) const {
+    if (ordering.earlier >= step_of.size()) return false;
+    const Queue queue = plan.passes[ordering.later].queue;
+    return plan.passes[ordering.earlier].queue == queue ||
+           std::any_of(all.begin(), all.end(), [&](const Operation& o) {
+             return o.what == Operation::What::wait && o.queue == queue &&
+                    o.until >= step_of[ordering.earlier];
+           });
+  }
+
   void unroll(uint32_t frames) {
     uint32_t step = 0;
     std::vector<uint32_t> reached[2]; // steps, by queue and point
@@ -85,8 +96,12 @@ struct Oracle {
       for (uint32_t r = 0; r < plan.resources.size(); ++r)
         add({Operation::What::frame_begins, step++, f, r, instance(r, 0, f), nullptr, nullptr},
             plan.resources[r].whole());
+      std::vector<uint32_t> step_of; // by pass
       for (const PlanPass& pass : plan.passes) {
         wait(pass.wait, pass.queue);
+        for (const PlanOrdering& ordering : plan.orderings)
+          if (&plan.passes[ordering.later] == &pass && !follows(ordering, step_of))
+            misplaced = "a pass does not come after one that it is to follow";
         barriers(pass.first_barrier, pass.barrier_count, pass.queue, false);
         for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
           const PlanAccess& one = plan.accesses[a];
@@ -100,6 +115,7 @@ struct Oracle {
           operation.queue = pass.queue;
           add(operation, one.range);
         }
+        step_of.push_back(step);
         ++step;
         barriers(pass.first_barrier + pass.barrier_count, pass.release_count, pass.queue, true);
         reach(pass.signal, pass.queue);

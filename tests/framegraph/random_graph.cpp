@@ -139,6 +139,13 @@ struct Draft {
 
 } // namespace
 
+void draw_orders(GraphBuilder& builder, uint64_t seed) {
+  Random random{seed};
+  std::vector<PassDeclaration>& passes = builder.graph.passes;
+  for (uint32_t later = 1; later < passes.size(); ++later)
+    if (random.chance(30)) passes[later].after.push_back({PassId{random.below(later)}, "drawn", {}});
+}
+
 GraphBuilder random_graph(uint64_t seed, Sizes sizes) {
   Draft draft{{}, {seed}, {}, {}, {}, sizes, 0};
   const uint32_t imports = 1 + draft.random.below(3);

@@ -35,6 +35,26 @@ void choose_queues(CompileContext& c) {
   }
 }
 
+void keep_orderings(CompileContext& c) {
+  if (!c.ordered) return;
+  Plan& plan = c.out->plan;
+  std::vector<uint32_t> position_of(c.graph->passes.size(), no_value);
+  for (uint32_t position = 0; position < plan.passes.size(); ++position)
+    position_of[plan.passes[position].declared.value] = position;
+  for (uint32_t later = 0; later < plan.passes.size(); ++later) {
+    const uint32_t pass = plan.passes[later].declared.value;
+    const std::vector<Ordering>& after = c.graph->passes[pass].after;
+    for (uint32_t i = 0; i < after.size(); ++i) {
+      const uint32_t earlier = position_of[after[i].after.value];
+      if (earlier == no_value) continue; // does not run
+      plan.orderings.push_back({earlier, later});
+      c.because(Reason::About::pass, pass, Reason::Why::behind, after[i].after.value, i);
+      if (plan.passes[earlier].queue != plan.passes[later].queue)
+        c.needs_point[later] = std::max(c.needs_point[later], earlier + 2);
+    }
+  }
+}
+
 void number_points(CompileContext& c) {
   Plan& plan = c.out->plan;
   const auto index = [](Queue queue) { return static_cast<size_t>(queue); };
