@@ -141,9 +141,10 @@ struct PlanOrdering { // positions in Plan::passes
 // History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned
 // with their contents discarded) into their layout at the start before the first frame that reads them.
 struct PlanHistory {
-  uint32_t resource = 0;     // into Plan::resources
-  uint32_t frames = 1;       // deepest `@-N` this plan reads
-  uint32_t first_layout = 0; // into Plan::history_layouts, one for each frames_back 0 .. frames
+  uint32_t resource = 0;              // into Plan::resources
+  uint32_t frames = 1;                // deepest `@-N` this plan reads
+  uint32_t first_part = 0, parts = 1; // into Plan::history_parts: those that ports tell apart, or the whole
+  uint32_t first_layout = 0;          // into Plan::history_layouts, `parts` for each frames_back 0 .. frames
   HistoryDeclaration declaration;
 };
 
@@ -161,8 +162,9 @@ struct Plan {
   std::vector<PlanSetting> settings;
   std::vector<PlanOrdering> orderings; // by the later one
   std::vector<PlanHistory> histories;
-  std::vector<Layout> history_layouts; // of an instance when a frame starts; the newest's is undefined: its
-                                       // old contents are discarded
+  std::vector<SubresourceRange> history_parts;
+  std::vector<Layout> history_layouts; // of an instance's parts when a frame starts; the newest's is
+                                       // undefined: its old contents are discarded
   uint32_t first_final_barrier = 0,
            final_barrier_count = 0; // batch after the last pass: to the host's `after`
   uint32_t final_wait =

@@ -53,13 +53,23 @@ struct Machine {
       }
     }
     find_overlaps();
-    for (const PlanHistory& history : plan.histories) // as if the executor had just made them
-      for (uint32_t back = 1; back <= history.frames; ++back)
-        for_each_part(history.resource, back, plan.resources[history.resource].whole(), [&](uint32_t index) {
-          things[index].defined = true;
-          things[index].of_frame = -int64_t{back};
-          things[index].layout = plan.history_layouts[history.first_layout + back];
-        });
+    // As if the executor had just made them.
+    for_each_kept([&](const PlanHistory&, uint32_t back, Layout layout, uint32_t index) {
+      things[index].defined = true;
+      things[index].of_frame = -int64_t{back};
+      things[index].layout = layout;
+    });
+  }
+
+  // Calls with each thing that holds an earlier frame when this one starts, and the layout promised then.
+  template <class Visit> void for_each_kept(Visit visit) const {
+    for (const PlanHistory& history : plan.histories)
+      for (uint32_t i = history.parts; i < (history.frames + 1) * history.parts; ++i)
+        for_each_part(history.resource, i / history.parts,
+                      plan.history_parts[history.first_part + i % history.parts], [&](uint32_t index) {
+                        visit(history, i / history.parts, plan.history_layouts[history.first_layout + i],
+                              index);
+                      });
   }
 
   uint32_t instance_of(uint32_t resource, uint32_t frames_back) const {
@@ -150,13 +160,11 @@ struct Machine {
         current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
       });
     }
-    for (const PlanHistory& history : plan.histories)
-      for (uint32_t back = 1; back <= history.frames; ++back)
-        for_each_part(history.resource, back, plan.resources[history.resource].whole(), [&](uint32_t index) {
-          if (things[index].layout != plan.history_layouts[history.first_layout + back])
-            object("is not in the layout the plan promises at the start of a frame", history.resource, back,
-                   "start");
-        });
+    for_each_kept([&](const PlanHistory& history, uint32_t back, Layout layout, uint32_t index) {
+      if (things[index].layout != layout)
+        object("is not in the layout the plan promises at the start of a frame", history.resource, back,
+               "start");
+    });
   }
 
   bool starts_from(const Event& event, Stage source) const {

@@ -327,8 +327,18 @@ struct Oracle {
         return all[k].barrier->new_layout;
     for (const PlanHistory& history : plan.histories)
       for (uint32_t back = 1; history.resource == thing.resource && back <= history.frames; ++back)
-        if (instance(thing.resource, back, 0) == thing.instance)
-          return plan.history_layouts[history.first_layout + back];
+        if (instance(thing.resource, back, 0) == thing.instance) return kept_layout(history, thing, back);
+    return Layout::undefined;
+  }
+
+  // As the plan promises it for this mip and layer when a frame starts.
+  Layout kept_layout(const PlanHistory& history, const Operation& thing, uint32_t back) const {
+    for (uint32_t part = 0; part < history.parts; ++part) {
+      const SubresourceRange& range = plan.history_parts[history.first_part + part];
+      if (thing.mip >= range.first_mip && thing.mip - range.first_mip < range.mips &&
+          thing.layer >= range.first_layer && thing.layer - range.first_layer < range.layers)
+        return plan.history_layouts[history.first_layout + back * history.parts + part];
+    }
     return Layout::undefined;
   }
 
@@ -404,6 +414,8 @@ struct Oracle {
       if (image(o) && layout(o, at) != o.access->layout) return "is in another layout";
       if (read(o) != 0 && !defined(at)) return "is read undefined";
       if (read(o) != 0 && !right_frame(at)) return "reads another frame";
+      if (o.access->when == ReadWhen::history_valid && o.access->frames_back == 0)
+        return "depends on the validity of this frame";
       if (host(o.resource)) return "";
       const Placement& memory = plan.placements[plan.resources[o.resource].first_instance];
       const auto position = static_cast<uint32_t>(
@@ -420,8 +432,7 @@ struct Oracle {
         for (uint32_t back = 1; history.resource == o.resource && back <= history.frames; ++back) {
           Operation past = o;
           past.instance = instance(o.resource, back, o.frame);
-          if (layout(past, at) != plan.history_layouts[history.first_layout + back])
-            return "starts a frame in another layout";
+          if (layout(past, at) != kept_layout(history, o, back)) return "starts a frame in another layout";
         }
       return host(o.resource) && !handed_back(at) ? "is not handed back" : "";
     }

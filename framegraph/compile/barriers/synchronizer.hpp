@@ -41,14 +41,15 @@ struct Synchronizer {
   }
   // Frames of a resource that a frame touches, this one included: each is an object.
   uint32_t roles(uint32_t resource) const { return life(resource).deepest_read + 1; }
-  // Parts of a resource that ports tell apart: each is an object. Histories have one.
+  // Parts of a resource that ports tell apart: each is an object, in each of its frames.
   uint32_t parts(uint32_t resource) const {
     return c.graph->parts ? c.facts[plan.resources[resource].declared.value].parts : 1;
   }
   // This frame's and the oldest are one object where the one is written over the other.
   uint32_t object_of(uint32_t resource, uint32_t frames_back, uint32_t part = 0) const {
     const bool oldest = frames_back == 0 && life(resource).updates_oldest;
-    return c.first_object[resource] + (oldest ? life(resource).deepest_read : frames_back) + part;
+    return c.first_object[resource] + (oldest ? life(resource).deepest_read : frames_back) * parts(resource) +
+           part;
   }
   SubresourceRange range_of(uint32_t resource, uint32_t part) const {
     if (parts(resource) == 1) return plan.resources[resource].whole();
@@ -139,9 +140,7 @@ struct Synchronizer {
   void drop_needless();
 
   // Where there are two queues: the barrier waits for a pass of its own one.
-  void wait_here(uint32_t barrier, uint32_t earlier, bool frame_before);
-  // Likewise, for the last write of an object alone: not for those that read it since.
-  void wait_for_write(uint32_t barrier, uint32_t object);
+  void wait_here(uint32_t barrier, const Moment& behind);
 
   // Behind the wait for a point, which ends where the barrier begins.
   void wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier, bool frame_before);
