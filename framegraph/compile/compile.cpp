@@ -43,6 +43,8 @@ void clear(CompiledPlan& out) {
   plan.settings.clear();
   plan.histories.clear();
   plan.history_layouts.clear();
+  plan.history_parts.clear();
+  plan.orderings.clear();
   plan.first_final_barrier = plan.final_barrier_count = 0;
   plan.final_wait = no_point;
   plan.transient_bytes = plan.history_bytes = 0;

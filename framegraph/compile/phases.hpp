@@ -117,12 +117,11 @@ struct ObjectState {
 
 // What the walk of synchronize.cpp asks of a plan resource, close together.
 struct SyncFacts {
-  uint32_t first_object =
-      0;                 // objects follow frames_back; parts, of which resources without history have more
-  uint32_t roles = 1;    // frames that a frame touches, this one included: each is an object
-  uint32_t parts = 1;    // that ports tell apart: each is an object
-  uint32_t own_role = 0; // frames_back whose object is this frame's, too, since it is written over
-  uint32_t memory = 0;   // bytes in which it arrives: into CompileContext::memory
+  uint32_t first_object = 0; // objects follow frames_back, those of one frame its parts
+  uint32_t roles = 1;        // frames that a frame touches, this one included: each is an object
+  uint32_t parts = 1;        // that ports tell apart: each is an object
+  uint32_t own_role = 0;     // frames_back whose object is this frame's, too, since it is written over
+  uint32_t memory = 0;       // bytes in which it arrives: into CompileContext::memory
   bool host_owned = false, image = true;
   SubresourceRange whole;
   uint64_t begin = 0, end = 0; // in that memory
@@ -153,8 +152,21 @@ struct Arrival { // a first use whose bytes nothing in this frame had before
   uint32_t memory = 0, barrier = 0, resource = 0; // into CompileContext::memory
 };
 
-struct FrameCounts { // of positions, from the first one on
-  uint32_t this_frame = 0, frame_before = 0;
+// By frames back, 0 .. 2: how many positions, from the first one on. Through waits of both queues, whoever
+// knows anything of itself knows all that is older.
+using FrameCounts = std::array<uint32_t, 3>;
+
+struct Moment { // of an object; `end`: behind the pass's position, 0 if there was none
+  uint32_t frames_back = 0, end = 0;
+};
+
+struct Moments {
+  Moment touch, write;
+};
+
+struct DraftWaits { // of a barrier, on its own queue
+  FrameCounts behind{};
+  bool layout_kept = false; // what it discards is in the layout that it asks for
 };
 
 struct PartArrival { // the first use of a part of an image whose memory another part has taken over
@@ -252,9 +264,8 @@ struct CompileContext {
   // By position, where there are two queues: position + 2 of the last pass of the other queue that it comes
   // after, in this frame and in the one before; 0: none.
   std::vector<uint32_t> needs_point, needs_frame_before;
-  std::vector<FrameCounts>
-      draft_after; // by draft: the first positions hold all of its queue that it waits for
-  std::vector<FrameCounts> last_write, last_write_ends; // by object: the first ones hold it
+  std::vector<DraftWaits> draft_waits;
+  std::vector<Moments> moments, moment_ends; // by object: when it was touched last
   // By position: the first ones hold passes of the same queue that are done and seen by then, since the other
   // queue waited for them and this one for that.
   std::vector<FrameCounts> round_trip;

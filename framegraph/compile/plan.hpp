@@ -129,12 +129,22 @@ struct PlanPass {
   uint32_t signal = 0;        // the point that this queue has reached behind the releases; 0: none
 };
 
+// An `after` of the graph whose two passes run: the later one is recorded behind the earlier one, and, where
+// they are on different queues, waits for a point behind it.
+struct PlanOrdering { // positions in Plan::passes
+  uint32_t earlier = 0, later = 0;
+
+  // By which they are sorted.
+  friend bool operator<(const PlanOrdering& a, const PlanOrdering& b) { return a.later < b.later; }
+};
+
 // History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned
 // with their contents discarded) into their layout at the start before the first frame that reads them.
 struct PlanHistory {
-  uint32_t resource = 0;     // into Plan::resources
-  uint32_t frames = 1;       // deepest `@-N` this plan reads
-  uint32_t first_layout = 0; // into Plan::history_layouts, one for each frames_back 0 .. frames
+  uint32_t resource = 0;              // into Plan::resources
+  uint32_t frames = 1;                // deepest `@-N` this plan reads
+  uint32_t first_part = 0, parts = 1; // into Plan::history_parts: those that ports tell apart, or the whole
+  uint32_t first_layout = 0;          // into Plan::history_layouts, `parts` for each frames_back 0 .. frames
   HistoryDeclaration declaration;
 };
 
@@ -150,9 +160,11 @@ struct Plan {
   std::vector<PlanAccess> accesses;
   std::vector<PlanBarrier> barriers;
   std::vector<PlanSetting> settings;
+  std::vector<PlanOrdering> orderings; // by the later one
   std::vector<PlanHistory> histories;
-  std::vector<Layout> history_layouts; // of an instance when a frame starts; the newest's is undefined: its
-                                       // old contents are discarded
+  std::vector<SubresourceRange> history_parts;
+  std::vector<Layout> history_layouts; // of an instance's parts when a frame starts; the newest's is
+                                       // undefined: its old contents are discarded
   uint32_t first_final_barrier = 0,
            final_barrier_count = 0; // batch after the last pass: to the host's `after`
   uint32_t final_wait =
@@ -174,6 +186,7 @@ struct Reason {
     side_effects,     // of its kind
     culling_off,      // asked for by the caller
     beside,           // declared async, and on the async queue
+    behind,           // pass a, which its `after` number b names
     not_beside,       // declared async, but resource a is the host's, a history, or bound in parts
     port_unbound,     // optional port a; nothing provides resource b
     always_otherwise, // port a has no history b to read: its `otherwise` stands in for it in every frame

@@ -32,30 +32,28 @@ bool Synchronizer::number_objects() {
   }
   c.states.assign(objects, {});
   c.touch_number.assign(objects, 0);
-  c.last_write.assign(two_queues() ? objects : 0, {});
+  c.moments.assign(two_queues() ? objects : 0, {});
   return deepest > 0;
 }
 
 void Synchronizer::carry_over() {
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
-    for (uint32_t part = 1; part < parts(r); ++part)
-      c.states[object_of(facts(r), 0, part)] = {};
-    for (uint32_t back = roles(r); back-- > 0;) {
-      const uint32_t object = facts(r).first_object + back;
-      c.states[object] = back == 0 ? ObjectState{} : c.ends[object_of(facts(r), back - 1)];
+    const SyncFacts& of = facts(r);
+    for (uint32_t i = of.roles * of.parts; i-- > 0;) {
+      const uint32_t back = i / of.parts, part = i % of.parts, object = of.first_object + i;
+      c.states[object] = back == 0 ? ObjectState{} : c.ends[object_of(of, back - 1, part)];
       c.states[object].carried = back != 0;
       if (!two_queues()) continue;
-      const FrameCounts before = back == 0 ? FrameCounts{} : c.last_write_ends[object_of(facts(r), back - 1)];
-      // Whoever has seen any of the frame before has seen all that came before that.
-      c.last_write[object] = {0,
-                              before.this_frame != 0 ? before.this_frame : std::min(before.frame_before, 1u)};
+      c.moments[object] = back == 0 ? Moments{} : c.moment_ends[object_of(of, back - 1, part)];
+      ++c.moments[object].touch.frames_back;
+      ++c.moments[object].write.frames_back;
     }
   }
 }
 
 void Synchronizer::find_ends() {
   c.ends.assign(c.states.size(), {});
-  c.last_write_ends = c.last_write;
+  c.moment_ends = c.moments;
   uint32_t deepest = 1;
   for (uint32_t r = 0; r < plan.resources.size(); ++r)
     deepest = std::max(deepest, roles(r));
@@ -64,7 +62,7 @@ void Synchronizer::find_ends() {
     for (uint32_t position = 0; position < plan.passes.size(); ++position)
       run_pass(position);
     c.ends = c.states;
-    c.last_write_ends = c.last_write;
+    c.moment_ends = c.moments;
   }
   carry_over();
 }
@@ -152,17 +150,22 @@ void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
       dependency(state, set, layout, must_see, barrier);
       c.because(Reason::About::barrier, index, Reason::Why::dependency, state.last_pass,
                 state.carried ? 1 : 0, position);
-      if (barrier.why == PlanBarrier::Why::read_after_write && !set.writes && layout == state.layout)
-        wait_for_write(index, touch.object);
-      else
-        wait_here(index, state.last_pass, state.carried);
+      if (two_queues()) { // what only makes a write visible does not wait for those that read it since
+        const bool shows =
+            barrier.why == PlanBarrier::Why::read_after_write && !set.writes && layout == state.layout;
+        wait_here(index, shows ? c.moments[touch.object].write : c.moments[touch.object].touch);
+      }
       if (state.carried) barrier.why = PlanBarrier::Why::history;
       place(index, state.carried ? no_value : state.last_pass, position);
     }
   }
   const bool transition = !state.touched || elsewhere || layout != state.layout;
+  if (two_queues()) {
+    Moments& moments = c.moments[touch.object];
+    moments.touch = {0, position + 1};
+    if (set.writes || transition) moments.write = moments.touch;
+  }
   if (set.writes || transition) {
-    if (two_queues()) c.last_write[touch.object] = {position + 1, 0};
     state.source_stages = set.stages;
     state.source_access = set.access & all_write_access;
     state.readers = 0;
@@ -224,13 +227,18 @@ void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout la
     barrier.why = PlanBarrier::Why::host_before;
     because(index, Reason::Why::from_host, touch.resource);
   } else if (of.roles > 1) {
-    const uint32_t oldest = of.first_object + of.roles - 1;
+    const uint32_t oldest = of.first_object + (of.roles - 1) * of.parts + touch.part;
     const bool in_place = plan.resources[touch.resource].instance_count < of.roles;
     const ObjectState& before = in_place ? c.states[oldest] : c.ends[oldest];
     if (in_place && !before.carried) after = before.last_pass;
     if (c.lent_memory[touch.resource] != no_value) after = take_over(touch.resource, index);
     wait_for(barrier, tail(before));
-    if (before.touched) wait_here(index, before.last_pass, !in_place || before.carried);
+    if (two_queues() && before.touched) {
+      Moment last = (in_place ? c.moments : c.moment_ends)[oldest].touch;
+      if (!in_place) ++last.frames_back;
+      wait_here(index, last);
+      c.draft_waits[index].layout_kept = in_place && before.layout == layout;
+    }
     barrier.why = PlanBarrier::Why::history;
     because(index, Reason::Why::oldest_instance, touch.resource);
   } else if (of.parts > 1 && c.arrival_of[touch.resource] != no_value) {
@@ -271,9 +279,14 @@ void Synchronizer::describe_histories() {
     history.frames = roles(r) - 1;
     history.first_layout = static_cast<uint32_t>(plan.history_layouts.size());
     history.declaration = c.graph->resources[plan.resources[r].declared.value].history;
-    plan.history_layouts.push_back(Layout::undefined);
+    history.first_part = static_cast<uint32_t>(plan.history_parts.size());
+    history.parts = parts(r);
+    for (uint32_t part = 0; part < parts(r); ++part)
+      plan.history_parts.push_back(range_of(facts(r), r, part));
+    plan.history_layouts.insert(plan.history_layouts.end(), parts(r), Layout::undefined);
     for (uint32_t back = 1; back < roles(r); ++back)
-      plan.history_layouts.push_back(c.ends[object_of(facts(r), back - 1)].layout);
+      for (uint32_t part = 0; part < parts(r); ++part)
+        plan.history_layouts.push_back(c.ends[object_of(facts(r), back - 1, part)].layout);
     plan.histories.push_back(history);
   }
 }
@@ -286,7 +299,7 @@ void synchronize(CompileContext& c) {
   c.arrivals.clear();
   c.part_arrivals.clear();
   c.needs_point.assign(walk.two_queues() ? plan.passes.size() : 0, 0);
-  c.draft_after.clear();
+  c.draft_waits.clear();
   c.needs_frame_before.assign(c.needs_point.size(), 0);
   if (c.graph->parts) {
     c.arrived_after.assign(plan.resources.size(), no_value);
@@ -298,6 +311,7 @@ void synchronize(CompileContext& c) {
     segments.clear();
   walk.lend();
   walk.find_memory();
+  keep_orderings(c);
   walk.emit = true;
   c.drafts.clear();
   c.batch_of.clear();

@@ -80,6 +80,10 @@ std::string pass_text(const SavedPlan& saved, size_t p) {
   if (pass.queue == Queue::async) text += " async";
   if (pass.wait != no_point) text += fmt::format(" wait={}", pass.wait);
   if (pass.signal != 0) text += fmt::format(" signal={}", pass.signal);
+  const auto [first, last] = std::equal_range(saved.plan.orderings.begin(), saved.plan.orderings.end(),
+                                              PlanOrdering{0, static_cast<uint32_t>(p)});
+  for (auto at = first; at != last; ++at)
+    text += fmt::format(" after={}", saved.names.passes[at->earlier]);
   for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
     const PlanAccess& access = saved.plan.accesses[a];
     const bool writes = (access.access & all_write_access) != 0;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace dermis {
 namespace {
 
@@ -116,8 +118,9 @@ struct Exporter {
     out.close();
   }
 
-  void subresources(const SubresourceRange& range) {
-    out.key("range").open_object(true).member("first_mip", range.first_mip).member("mips", range.mips);
+  void subresources(const SubresourceRange& range, std::string_view key = "range") {
+    if (!key.empty()) out.key(key);
+    out.open_object(true).member("first_mip", range.first_mip).member("mips", range.mips);
     out.member("first_layer", range.first_layer).member("layers", range.layers).close();
   }
 
@@ -176,6 +179,13 @@ struct Exporter {
     out.member("dispatch", name_in(dispatch_shapes, kind.dispatch));
     out.member("queue", queue_name(pass.queue));
     point("wait", pass.wait == no_point, pass.wait);
+    out.key("after").open_array(true);
+    const auto position = static_cast<uint32_t>(&pass - plan.passes.data());
+    const auto [first, last] =
+        std::equal_range(plan.orderings.begin(), plan.orderings.end(), PlanOrdering{0, position});
+    for (auto at = first; at != last; ++at)
+      out.value(at->earlier);
+    out.close();
     barriers("barriers", pass.first_barrier, pass.barrier_count);
     accesses(pass);
     barriers("releases", pass.first_barrier + pass.barrier_count, pass.release_count);
@@ -202,8 +212,11 @@ struct Exporter {
       out.member("on_cut", name_in(history_on_cut, history.declaration.on_cut));
       out.member("on_resize", name_in(history_on_resize, history.declaration.on_resize));
       out.key("layout_at_start").open_array(true);
-      for (uint32_t back = 0; back <= history.frames; ++back)
-        out.value(layout_name(plan.history_layouts[history.first_layout + back]));
+      for (uint32_t i = 0; i < (history.frames + 1) * history.parts; ++i)
+        out.value(layout_name(plan.history_layouts[history.first_layout + i]));
+      out.close().key("parts").open_array();
+      for (uint32_t part = 0; part < history.parts; ++part)
+        subresources(plan.history_parts[history.first_part + part], {});
       out.close().close();
     }
     out.close();

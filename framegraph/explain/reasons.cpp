@@ -90,6 +90,9 @@ struct Speaker {
                          port(reason.index, reason.a), resource(reason.b));
     case Reason::Why::beside:
       return "runs on the async queue";
+    case Reason::Why::behind:
+      return fmt::format("runs after '{}': {}", pass(reason.a),
+                         graph.passes[reason.index].after[reason.b].reason);
     case Reason::Why::not_beside:
       return fmt::format("stays on the main queue: '{}' is the host's, kept across frames, or bound in parts",
                          resource(reason.a));

@@ -110,7 +110,7 @@ struct PortBinding {
   // history_invalid: this is what the port reads where the history of the binding before this one, at the
   // same port, is not valid.
   ReadWhen when = ReadWhen::always;
-  ImagePart part; // images of one frame that the graph owns
+  ImagePart part; // images that the graph owns
 };
 
 struct SettingBinding {

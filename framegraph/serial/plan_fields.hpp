@@ -136,6 +136,11 @@ template <class A> void fields(A& a, Of<A, PlanSetting>& setting) {
   fields(a, setting.value);
 }
 
+template <class A> void fields(A& a, Of<A, PlanOrdering>& ordering) {
+  a.number("earlier pass", ordering.earlier);
+  a.number("later pass", ordering.later);
+}
+
 template <class A> void fields(A& a, Of<A, HistoryDeclaration>& history) {
   a.number("declared frames", history.frames);
   a.word("first", history.first, HistoryDeclaration::First::clear);
@@ -146,6 +151,8 @@ template <class A> void fields(A& a, Of<A, HistoryDeclaration>& history) {
 template <class A> void fields(A& a, Of<A, PlanHistory>& history) {
   a.number("history's resource", history.resource);
   a.number("history's frames", history.frames);
+  a.number("first part", history.first_part);
+  a.number("parts", history.parts);
   a.number("first layout", history.first_layout);
   fields(a, history.declaration);
 }
@@ -163,7 +170,9 @@ template <class A> void fields(A& a, Of<A, Plan>& plan) {
   a.list("accesses", plan.accesses, many);
   a.list("barriers", plan.barriers, many);
   a.list("settings", plan.settings, many);
+  a.list("orderings", plan.orderings, many);
   a.list("histories", plan.histories, limits::resources);
+  a.list("history parts", plan.history_parts, many);
   a.list("history layouts", plan.history_layouts, many);
   a.number("first final barrier", plan.first_final_barrier);
   a.number("final barriers", plan.final_barrier_count);

@@ -20,6 +20,9 @@ std::vector<ResourceParts> parts_of(const Plan& plan) {
     cut(access.resource, access.range);
   for (const PlanBarrier& barrier : plan.barriers)
     cut(barrier.resource, barrier.range);
+  for (const PlanHistory& history : plan.histories)
+    for (uint32_t part = 0; part < history.parts; ++part)
+      cut(history.resource, plan.history_parts[history.first_part + part]);
   for (ResourceParts& own : parts)
     for (std::vector<uint16_t>* cuts : {&own.mips, &own.layers}) {
       std::sort(cuts->begin(), cuts->end());

@@ -35,10 +35,10 @@ struct Checker {
     return resource < plan.resources.size() && frames_back <= deepest[resource];
   }
 
-  // Does the resource have all of the range? Histories and what the host binds are never divided.
+  // Does the resource have all of the range? What the host binds is never divided.
   bool has(uint32_t number, const SubresourceRange& range) const {
     const PlanResource& resource = plan.resources[number];
-    if (resource.first_instance == no_instance || deepest[number] > 0) return range == resource.whole();
+    if (resource.first_instance == no_instance) return range == resource.whole();
     return range.mips >= 1 && uint32_t{range.first_mip} + range.mips <= resource.mips && range.layers >= 1 &&
            uint32_t{range.first_layer} + range.layers <= resource.layers;
   }
@@ -155,6 +155,14 @@ struct Checker {
     }
   }
 
+  void orderings() {
+    for (size_t o = 0; o < plan.orderings.size(); ++o)
+      expect(plan.orderings[o].earlier < plan.passes.size() && plan.orderings[o].later < plan.passes.size(),
+             "an order names passes that do not exist", o);
+    expect(std::is_sorted(plan.orderings.begin(), plan.orderings.end()), "orders do not follow their passes",
+           0);
+  }
+
   void histories() {
     std::vector<uint32_t> described(plan.resources.size(), 0);
     for (size_t h = 0; h < plan.histories.size(); ++h) {
@@ -164,9 +172,16 @@ struct Checker {
       if (!exists) continue;
       ++described[history.resource];
       const uint32_t instances = plan.resources[history.resource].instance_count;
-      expect(history.frames >= 1 && instances <= history.frames + 1 && instances >= history.frames &&
-                 range_in(history.first_layout, uint64_t{history.frames} + 1, plan.history_layouts.size()),
-             "a history has the wrong number of instances or layouts", h);
+      expect(history.frames >= 1 && history.parts >= 1 && instances <= history.frames + 1 &&
+                 instances >= history.frames &&
+                 range_in(history.first_part, history.parts, plan.history_parts.size()) &&
+                 range_in(history.first_layout, (uint64_t{history.frames} + 1) * history.parts,
+                          plan.history_layouts.size()),
+             "a history has the wrong number of instances, parts or layouts", h);
+      const bool parts = range_in(history.first_part, history.parts, plan.history_parts.size());
+      for (uint32_t part = 0; parts && part < history.parts; ++part)
+        expect(has(history.resource, plan.history_parts[history.first_part + part]),
+               "a history has mips or layers that do not exist", h);
     }
     uint32_t most = 1; // who uses memory of a history goes round with it
     for (const PlanHistory& history : plan.histories)
@@ -194,6 +209,7 @@ std::vector<std::string> verify_structure(const Plan& plan) {
   checker.resources();
   checker.placements();
   checker.passes();
+  checker.orderings();
   checker.histories();
   return std::move(checker.objections);
 }

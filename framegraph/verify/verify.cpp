@@ -34,6 +34,8 @@ struct Machine {
   int64_t now = 0;                                       // which pass, counted through all frames
   std::array<std::vector<int64_t>, queues> reached = {}; // by queue and point: the pass behind which it was
   std::array<size_t, queues> points_before = {};         // those of earlier frames
+  std::array<int64_t, queues> waited = {};               // by queue: the last pass of the other one it knows
+  int64_t frame_began = 0;                               // behind which pass
   uint64_t pieces = 0;                                   // that barriers made of events
 
   void prepare() {
@@ -51,13 +53,23 @@ struct Machine {
       }
     }
     find_overlaps();
-    for (const PlanHistory& history : plan.histories) // as if the executor had just made them
-      for (uint32_t back = 1; back <= history.frames; ++back)
-        for_each_part(history.resource, back, plan.resources[history.resource].whole(), [&](uint32_t index) {
-          things[index].defined = true;
-          things[index].of_frame = -int64_t{back};
-          things[index].layout = plan.history_layouts[history.first_layout + back];
-        });
+    // As if the executor had just made them.
+    for_each_kept([&](const PlanHistory&, uint32_t back, Layout layout, uint32_t index) {
+      things[index].defined = true;
+      things[index].of_frame = -int64_t{back};
+      things[index].layout = layout;
+    });
+  }
+
+  // Calls with each thing that holds an earlier frame when this one starts, and the layout promised then.
+  template <class Visit> void for_each_kept(Visit visit) const {
+    for (const PlanHistory& history : plan.histories)
+      for (uint32_t i = history.parts; i < (history.frames + 1) * history.parts; ++i)
+        for_each_part(history.resource, i / history.parts,
+                      plan.history_parts[history.first_part + i % history.parts], [&](uint32_t index) {
+                        visit(history, i / history.parts, plan.history_layouts[history.first_layout + i],
+                              index);
+                      });
   }
 
   uint32_t instance_of(uint32_t resource, uint32_t frames_back) const {
@@ -148,13 +160,11 @@ struct Machine {
         current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
       });
     }
-    for (const PlanHistory& history : plan.histories)
-      for (uint32_t back = 1; back <= history.frames; ++back)
-        for_each_part(history.resource, back, plan.resources[history.resource].whole(), [&](uint32_t index) {
-          if (things[index].layout != plan.history_layouts[history.first_layout + back])
-            object("is not in the layout the plan promises at the start of a frame", history.resource, back,
-                   "start");
-        });
+    for_each_kept([&](const PlanHistory& history, uint32_t back, Layout layout, uint32_t index) {
+      if (things[index].layout != layout)
+        object("is not in the layout the plan promises at the start of a frame", history.resource, back,
+               "start");
+    });
   }
 
   bool starts_from(const Event& event, Stage source) const {
@@ -203,8 +213,11 @@ struct Machine {
       complain(
           fmt::format("frame {}, {}: waits for point {} of the other queue, which is not reached before it",
                       frame, where, point));
-    else if (wanted > 0) // else the frames before the first, which nobody waits for
+    else if (wanted > 0) { // else the frames before the first, which nobody waits for
       wait_for_pass(reached[other][wanted - 1]);
+      int64_t& known = waited[index_of(queue)];
+      known = std::max(known, reached[other][wanted - 1]);
+    }
   }
 
   void reach(uint32_t point, const std::string& where) {
@@ -406,11 +419,25 @@ struct Machine {
     thing.events.push_back(event);
   }
 
+  // Passes that `after` names stand before this one; those of the other queue are waited for.
+  void check_orderings(uint32_t position, const std::string& where) {
+    const auto [first, last] =
+        std::equal_range(plan.orderings.begin(), plan.orderings.end(), PlanOrdering{0, position});
+    for (auto at = first; at != last; ++at) {
+      const bool known =
+          plan.passes[at->earlier].queue == queue || waited[index_of(queue)] > frame_began + at->earlier;
+      if (at->earlier >= position || !known)
+        complain(
+            fmt::format("frame {}, {}: does not come after pass {}, as it is to", frame, where, at->earlier));
+    }
+  }
+
   void run(const PlanPass& pass, const std::string& where) {
     const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
     queue = pass.queue;
     ++now;
     wait(pass.wait, where);
+    check_orderings(static_cast<uint32_t>(&pass - plan.passes.data()), where);
     run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, false, where);
     for (uint32_t a = 0; a < pass.access_count; ++a) {
       check(accesses[a], where);
@@ -434,6 +461,7 @@ struct Machine {
 
   void run_frame() {
     begin_frame();
+    frame_began = now;
     for (uint32_t p = 0; p < plan.passes.size(); ++p)
       run(plan.passes[p], fmt::format("pass {}", p));
     queue = Queue::main;

@@ -76,6 +76,40 @@ TEST(Parts, AMipIsReadWhileAnotherOneIsWritten) {
   EXPECT_EQ(last[0].range, (SubresourceRange{2, 1, 0, 1}));
 }
 
+// light -> kept#0 -> kept#1, result from both of the frame before
+GraphBuilder kept_mips() {
+  GraphBuilder b;
+  b.import("light");
+  b.history("kept", 1).mips = 2;
+  b.exported("result");
+  b.pass("first", "test.need", {{"a", "light"}}, {{"out", "kept#0"}});
+  b.pass("second", "test.need", {{"a", "kept#0"}}, {{"out", "kept#1"}});
+  b.pass("show", "test.shade", {{"a", "kept#0@-1"}, {"b", "kept#1@-1"}}, {{"out", "result"}});
+  return b;
+}
+
+TEST(Parts, EachMipOfAHistoryStartsAFrameInALayoutOfItsOwn) {
+  const Plan plan = compiled(kept_mips()).plan;
+  ASSERT_EQ(plan.histories.size(), 1u);
+  EXPECT_EQ(plan.histories[0].parts, 2u);
+  EXPECT_THAT(plan.history_parts,
+              ::testing::ElementsAre(SubresourceRange{0, 1, 0, 1}, SubresourceRange{1, 1, 0, 1}));
+  // Mip 0 was read as an image in the frame that wrote it; mip 1 rests as it was written.
+  EXPECT_THAT(plan.history_layouts, ::testing::ElementsAre(Layout::undefined, Layout::undefined,
+                                                           Layout::shader_read_only, Layout::general));
+}
+
+TEST(Parts, AnEarlierFrameOfAMipThatNobodyWritesIsRefused) {
+  auto b = kept_mips();
+  b.graph.resources[1].mips = 3;
+  b.exported("late");
+  b.pass("needs", "test.need", {{"a", "kept#2@-1"}}, {{"out", "late"}});
+  const auto errors = refused(b);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].id, DiagnosticId::history_unwritten);
+  EXPECT_THAT(errors[0].text, HasSubstr("'kept@-1'"));
+}
+
 TEST(Parts, WhatNobodyReadsOfAnImageIsNotMade) {
   auto b = pyramid();
   b.read(3, 0).part = *parse_part("#0..1");

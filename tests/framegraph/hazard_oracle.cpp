@@ -44,6 +44,17 @@ struct Oracle {
 
   static size_t number(Queue queue) { return queue == Queue::main ? 0 : 1; }
 
+  // `step_of`: the passes of this frame so far.
+  bool follows(const PlanOrdering& ordering, const std::vector<uint32_t>& step_of) const {
+    if (ordering.earlier >= step_of.size()) return false;
+    const Queue queue = plan.passes[ordering.later].queue;
+    return plan.passes[ordering.earlier].queue == queue ||
+           std::any_of(all.begin(), all.end(), [&](const Operation& o) {
+             return o.what == Operation::What::wait && o.queue == queue &&
+                    o.until >= step_of[ordering.earlier];
+           });
+  }
+
   void unroll(uint32_t frames) {
     uint32_t step = 0;
     std::vector<uint32_t> reached[2]; // steps, by queue and point
@@ -85,8 +96,12 @@ struct Oracle {
       for (uint32_t r = 0; r < plan.resources.size(); ++r)
         add({Operation::What::frame_begins, step++, f, r, instance(r, 0, f), nullptr, nullptr},
             plan.resources[r].whole());
+      std::vector<uint32_t> step_of; // by pass
       for (const PlanPass& pass : plan.passes) {
         wait(pass.wait, pass.queue);
+        for (const PlanOrdering& ordering : plan.orderings)
+          if (&plan.passes[ordering.later] == &pass && !follows(ordering, step_of))
+            misplaced = "a pass does not come after one that it is to follow";
         barriers(pass.first_barrier, pass.barrier_count, pass.queue, false);
         for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
           const PlanAccess& one = plan.accesses[a];
@@ -100,6 +115,7 @@ struct Oracle {
           operation.queue = pass.queue;
           add(operation, one.range);
         }
+        step_of.push_back(step);
         ++step;
         barriers(pass.first_barrier + pass.barrier_count, pass.release_count, pass.queue, true);
         reach(pass.signal, pass.queue);
@@ -311,8 +327,18 @@ struct Oracle {
         return all[k].barrier->new_layout;
     for (const PlanHistory& history : plan.histories)
       for (uint32_t back = 1; history.resource == thing.resource && back <= history.frames; ++back)
-        if (instance(thing.resource, back, 0) == thing.instance)
-          return plan.history_layouts[history.first_layout + back];
+        if (instance(thing.resource, back, 0) == thing.instance) return kept_layout(history, thing, back);
+    return Layout::undefined;
+  }
+
+  // As the plan promises it for this mip and layer when a frame starts.
+  Layout kept_layout(const PlanHistory& history, const Operation& thing, uint32_t back) const {
+    for (uint32_t part = 0; part < history.parts; ++part) {
+      const SubresourceRange& range = plan.history_parts[history.first_part + part];
+      if (thing.mip >= range.first_mip && thing.mip - range.first_mip < range.mips &&
+          thing.layer >= range.first_layer && thing.layer - range.first_layer < range.layers)
+        return plan.history_layouts[history.first_layout + back * history.parts + part];
+    }
     return Layout::undefined;
   }
 
@@ -388,6 +414,8 @@ struct Oracle {
       if (image(o) && layout(o, at) != o.access->layout) return "is in another layout";
       if (read(o) != 0 && !defined(at)) return "is read undefined";
       if (read(o) != 0 && !right_frame(at)) return "reads another frame";
+      if (o.access->when == ReadWhen::history_valid && o.access->frames_back == 0)
+        return "depends on the validity of this frame";
       if (host(o.resource)) return "";
       const Placement& memory = plan.placements[plan.resources[o.resource].first_instance];
       const auto position = static_cast<uint32_t>(
@@ -404,8 +432,7 @@ struct Oracle {
         for (uint32_t back = 1; history.resource == o.resource && back <= history.frames; ++back) {
           Operation past = o;
           past.instance = instance(o.resource, back, o.frame);
-          if (layout(past, at) != plan.history_layouts[history.first_layout + back])
-            return "starts a frame in another layout";
+          if (layout(past, at) != kept_layout(history, o, back)) return "starts a frame in another layout";
         }
       return host(o.resource) && !handed_back(at) ? "is not handed back" : "";
     }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 namespace dermis::testing {
 namespace {
 
@@ -21,9 +23,32 @@ struct Draft {
       histories; // may be read at @-1 .. @-frames from the start, are all written in the end
   Sizes sizes = Sizes::mixed;
   uint32_t count = 0;
+  Random division{0};                           // of histories: draws of its own
+  std::map<std::string, uint32_t> divided = {}; // histories: mips that ports tell apart
 
   std::string fresh(const char* stem) { return fmt::format("{}{}", stem, count++); }
   const std::string& any(const std::vector<std::string>& from) { return from[random.below(from.size())]; }
+
+  // All of a history, or a mip, or a mip of the first layer.
+  std::string some_of(const std::string& history) {
+    const auto mips = divided.find(history);
+    if (mips == divided.end() || division.chance(40)) return {};
+    const uint32_t mip = division.below(mips->second);
+    return fmt::format("#{}{}", mip, division.chance(30) ? "[0]" : "");
+  }
+
+  // One pass for each mip, from the mip before among others.
+  void keep_mips(const std::string& history, uint32_t mips) {
+    const auto frames = b.graph.resources[b.resource(history).value].history.frames;
+    for (uint32_t m = 0; m < mips; ++m) {
+      Bindings inputs{{"a", any(readable)}};
+      if (m > 0 && division.chance(50)) inputs = {{"a", fmt::format("{}#{}", history, m - 1)}};
+      const bool blend = division.chance(40);
+      if (blend) inputs.emplace_back("own", fmt::format("{}#{}@-{}", history, m, frames));
+      b.pass(fresh("keep"), blend ? "test.blend" : "test.shade", inputs,
+             {{"out", fmt::format("{}#{}", history, m)}});
+    }
+  }
 
   Bindings reads(uint32_t most) {
     constexpr const char* ports[] = {"a", "b", "c"};
@@ -32,7 +57,7 @@ struct Draft {
       if (!histories.empty() && random.chance(25)) {
         const auto& history = any(histories);
         const auto frames = b.graph.resources[b.resource(history).value].history.frames;
-        auto source = fmt::format("{}@-{}", history, 1 + random.below(frames));
+        auto source = fmt::format("{}{}@-{}", history, some_of(history), 1 + random.below(frames));
         if (random.chance(40)) source += random.chance(50) ? "?" : "?" + any(readable);
         result.emplace_back(ports[i], source);
       } else if (random.chance(80)) {
@@ -139,8 +164,16 @@ struct Draft {
 
 } // namespace
 
+void draw_orders(GraphBuilder& builder, uint64_t seed) {
+  Random random{seed};
+  std::vector<PassDeclaration>& passes = builder.graph.passes;
+  for (uint32_t later = 1; later < passes.size(); ++later)
+    if (random.chance(30)) passes[later].after.push_back({PassId{random.below(later)}, "drawn", {}});
+}
+
 GraphBuilder random_graph(uint64_t seed, Sizes sizes) {
-  Draft draft{{}, {seed}, {}, {}, {}, sizes, 0};
+  Draft draft{{}, {seed}, {}, {}, {}, sizes};
+  draft.division = {~seed};
   const uint32_t imports = 1 + draft.random.below(3);
   for (uint32_t i = 0; i < imports; ++i) {
     draft.readable.push_back(draft.fresh("import"));
@@ -149,14 +182,20 @@ GraphBuilder random_graph(uint64_t seed, Sizes sizes) {
   const uint32_t histories = draft.random.below(3);
   for (uint32_t i = 0; i < histories; ++i) {
     draft.histories.push_back(draft.fresh("history"));
-    auto& history = draft.b.history(draft.histories.back(), 1 + draft.random.below(3)).history;
-    if (draft.random.chance(30)) history.on_cut = HistoryDeclaration::OnCut::keep;
+    auto& declared = draft.b.history(draft.histories.back(), 1 + draft.random.below(3));
+    if (draft.random.chance(30)) declared.history.on_cut = HistoryDeclaration::OnCut::keep;
+    if (!draft.division.chance(30)) continue;
+    declared.mips = draft.divided[draft.histories.back()] = 2 + draft.division.below(2);
+    declared.layers = 1 + draft.division.below(2);
   }
   const uint32_t passes = 2 + draft.random.below(20);
   for (uint32_t i = 0; i < passes; ++i)
     draft.one_pass();
   for (const auto& history : draft.histories)
-    draft.keep(history);
+    if (const auto mips = draft.divided.find(history); mips != draft.divided.end())
+      draft.keep_mips(history, mips->second);
+    else
+      draft.keep(history);
   draft.b.exported("result");
   draft.b.pass("finish", "test.shade", draft.reads(3), {{"out", "result"}});
   for (PassDeclaration& pass : draft.b.graph.passes) // counts where there are two queues

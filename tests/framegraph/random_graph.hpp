@@ -15,4 +15,7 @@ enum class Sizes : uint8_t {
 
 GraphBuilder random_graph(uint64_t seed, Sizes sizes = Sizes::mixed);
 
+// Lets some passes run after others that stand before them, for no reason of data.
+void draw_orders(GraphBuilder& builder, uint64_t seed);
+
 } // namespace dermis::testing

@@ -8,6 +8,7 @@
 #include "tests/framegraph/second_opinion.hpp"
 #include "tests/framegraph/test_tier.hpp"
 
+#include "framegraph/interpret/commands.hpp"
 #include "framegraph/serial/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
 
@@ -15,6 +16,9 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+
+#include <map>
+#include <utility>
 
 namespace dermis::testing {
 namespace {
@@ -39,7 +43,8 @@ uint32_t async_passes(const Plan& plan) {
 template <class Visit>
 void for_random_plans(uint64_t quick, uint64_t full, Visit visit, Sizes sizes = Sizes::mixed) {
   for (uint64_t seed = 0; seed < seeds_of_tier(quick, full) && !::testing::Test::HasFailure(); ++seed) {
-    const auto builder = random_graph(seed, sizes);
+    auto builder = random_graph(seed, sizes);
+    if (seed % 4 == 1) draw_orders(builder, seed);
     const Plan plan = compiled(builder, two_queues(builder)).plan;
     if (async_passes(plan) > 0) visit(builder, plan, seed);
   }
@@ -90,6 +95,59 @@ TEST(TwoQueues, WhatTheHostBindsStaysOnTheMainQueue) {
   const auto whole = compiled(b, two_queues(b));
   EXPECT_EQ(whole.plan.passes[0].queue, Queue::main);
   EXPECT_THAT(reasons(b, whole, Reason::About::pass, 0), HasSubstr("stays on the main queue: 'light'"));
+}
+
+TEST(TwoQueues, AfterIsAPointBetweenPassesOfTwoQueues) {
+  auto b = fork();
+  b.graph.passes[2].after.push_back({PassId{1}, "the probe is to see it finished", {}});
+  CompileInput input = two_queues(b);
+  input.alias = false;
+  const auto whole = compiled(b, input);
+  ASSERT_EQ(pass_names(b, whole.plan), "first aside beside join");
+  EXPECT_EQ(whole.plan.passes[2].wait, 1u);
+  EXPECT_EQ(whole.plan.passes[3].wait, no_point); // it waited already
+  EXPECT_THAT(reasons(b, whole, Reason::About::pass, 2),
+              HasSubstr("runs after 'aside': the probe is to see it finished"));
+  Plan mutant = whole.plan;
+  mutant.passes[3].wait =
+      std::exchange(mutant.passes[2].wait, no_point); // nothing of `aside` is needed before
+  EXPECT_THAT(verify(mutant).front(), HasSubstr("pass 2: does not come after pass 1, as it is to"));
+  EXPECT_NE(first_hazard(mutant), "");
+}
+
+TEST(TwoQueues, AfterIsNoPointBetweenPassesOfOneQueue) {
+  auto b = fork();
+  b.graph.passes[2].after.push_back({PassId{1}, "the probe is to see it finished", {}});
+  const Plan plan = compiled(b).plan;
+  EXPECT_EQ(plan.passes[2].wait, no_point);
+  ASSERT_EQ(plan.orderings.size(), 1u);
+  Plan mutant = plan;
+  std::swap(mutant.orderings[0].earlier, mutant.orderings[0].later);
+  EXPECT_THAT(verify(mutant).front(), HasSubstr("does not come after"));
+  EXPECT_NE(first_hazard(mutant), "");
+}
+
+TEST(TwoQueues, WhateverOrderThePointsAllowKeepsWhatAfterOrders) {
+  uint64_t kept = 0;
+  for (uint64_t seed = 0; seed < seeds_of_tier(400, 4000); ++seed) {
+    auto builder = random_graph(seed);
+    draw_orders(builder, seed);
+    const Plan plan = compiled(builder, two_queues(builder)).plan;
+    const std::vector<Command> commands = record(plan, 0, 3);
+    for (uint64_t order = 1; order <= 3; ++order) {
+      std::map<std::pair<uint32_t, uint32_t>, size_t> place; // frame and position in the plan -> in the order
+      for (const uint32_t c : legal_order(plan, memory_of(plan), commands, order))
+        if (commands[c].is_pass && commands[c].wait_until == no_wait)
+          place.emplace(std::pair(commands[c].frame, commands[c].index), place.size());
+      for (const PlanOrdering& one : plan.orderings)
+        for (uint32_t frame = 0; frame < 3; ++frame) {
+          if (plan.passes[one.earlier].queue == plan.passes[one.later].queue) continue;
+          ASSERT_LT(place.at({frame, one.earlier}), place.at({frame, one.later})) << "seed " << seed;
+          ++kept;
+        }
+    }
+  }
+  EXPECT_GT(kept, 300u);
 }
 
 TEST(TwoQueues, TheOracleAcceptsWhatTheCompilerMakes) {

@@ -59,15 +59,18 @@ void Synchronizer::batch_parts(uint32_t position) {
 
 void Synchronizer::drop_needless() {
   find_round_trips(c);
-  c.draft_after.resize(c.drafts.size());
+  c.draft_waits.resize(c.drafts.size());
   for (uint32_t i = 0; i < c.drafts.size(); ++i) {
     const PlanBarrier& draft = c.drafts[i];
+    const DraftWaits& waits = c.draft_waits[i];
     if (draft.transfer != PlanBarrier::Transfer::none || draft.from_host ||
-        draft.old_layout != draft.new_layout)
+        (draft.old_layout != draft.new_layout && !waits.layout_kept))
       continue;
-    const FrameCounts after = c.draft_after[i], done = c.round_trip[c.batch_of[i]];
-    if (after.this_frame <= done.this_frame && after.frame_before <= done.frame_before)
-      c.batch_of[i] = no_value;
+    const FrameCounts& done = c.round_trip[c.batch_of[i]];
+    bool known = true;
+    for (size_t back = 0; back < done.size(); ++back)
+      known &= waits.behind[back] <= done[back];
+    if (known) c.batch_of[i] = no_value;
   }
   std::vector<Reason>& reasons = c.out->reasons;
   reasons.erase(std::remove_if(reasons.begin() + static_cast<std::ptrdiff_t>(c.reasons_before), reasons.end(),

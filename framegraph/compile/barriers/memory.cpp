@@ -9,8 +9,9 @@ namespace dermis {
 
 uint32_t Synchronizer::last_pass(const Segment& of) const {
   uint32_t last = no_value;
-  for (uint32_t part = 0; part < parts(of.resource); ++part) {
-    const ObjectState& state = c.states[facts(of.resource).first_object + of.frames_back + part];
+  const SyncFacts& own = facts(of.resource);
+  for (uint32_t part = 0; part < own.parts; ++part) {
+    const ObjectState& state = c.states[own.first_object + of.frames_back * own.parts + part];
     if (state.touched) last = last == no_value ? state.last_pass : std::max(last, state.last_pass);
   }
   return last;
@@ -74,21 +75,18 @@ void Synchronizer::inherit(const ObjectState& state, uint32_t barrier, bool fram
   if (state.queue != queue_at(position))
     return wait_elsewhere(c.drafts[barrier], position, state.last_pass, frame_before);
   wait_for(c.drafts[barrier], tail(state));
-  wait_here(barrier, state.last_pass, frame_before);
+  wait_here(barrier, {frame_before ? 1u : 0u, state.last_pass + 1});
 }
 
-void Synchronizer::wait_here(uint32_t barrier, uint32_t earlier, bool frame_before) {
+void Synchronizer::wait_here(uint32_t barrier, const Moment& behind) {
   if (!two_queues()) return;
-  c.draft_after.resize(c.drafts.size());
-  FrameCounts& after = c.draft_after[barrier];
-  uint32_t& count = frame_before ? after.frame_before : after.this_frame;
-  count = std::max(count, earlier + 1);
-}
-
-void Synchronizer::wait_for_write(uint32_t barrier, uint32_t object) {
-  if (!two_queues()) return;
-  c.draft_after.resize(c.drafts.size());
-  c.draft_after[barrier] = c.last_write[object];
+  c.draft_waits.resize(c.drafts.size());
+  FrameCounts& counts = c.draft_waits[barrier].behind;
+  const size_t oldest = counts.size() - 1; // who knows anything of it knows all before
+  if (behind.frames_back > oldest)
+    counts[oldest] = std::max(counts[oldest], 1u);
+  else
+    counts[behind.frames_back] = std::max(counts[behind.frames_back], behind.end);
 }
 
 void Synchronizer::wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier,
@@ -98,7 +96,7 @@ void Synchronizer::wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint3
 }
 
 void Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before) {
-  const uint32_t first = facts(from.resource).first_object + from.frames_back;
+  const uint32_t first = facts(from.resource).first_object + from.frames_back * parts(from.resource);
   for (uint32_t part = 0; part < parts(from.resource); ++part)
     inherit(c.states[first + part], barrier, frame_before);
   if (from.resource != resource && roles(resource) == 1) c.drafts[barrier].why = PlanBarrier::Why::alias;
@@ -159,8 +157,8 @@ void Synchronizer::settle_parts() {
     if (&barrier != &first) {
       wait_for(barrier, {first.source_stages, first.source_access});
       if (two_queues()) {
-        c.draft_after.resize(c.drafts.size());
-        c.draft_after[arrival.barrier] = c.draft_after[c.arrival_of[arrival.resource]];
+        c.draft_waits.resize(c.drafts.size());
+        c.draft_waits[arrival.barrier] = c.draft_waits[c.arrival_of[arrival.resource]];
       }
       barrier.why = first.why;
     }

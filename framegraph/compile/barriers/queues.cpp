@@ -35,6 +35,26 @@ void choose_queues(CompileContext& c) {
   }
 }
 
+void keep_orderings(CompileContext& c) {
+  if (!c.ordered) return;
+  Plan& plan = c.out->plan;
+  std::vector<uint32_t> position_of(c.graph->passes.size(), no_value);
+  for (uint32_t position = 0; position < plan.passes.size(); ++position)
+    position_of[plan.passes[position].declared.value] = position;
+  for (uint32_t later = 0; later < plan.passes.size(); ++later) {
+    const uint32_t pass = plan.passes[later].declared.value;
+    const std::vector<Ordering>& after = c.graph->passes[pass].after;
+    for (uint32_t i = 0; i < after.size(); ++i) {
+      const uint32_t earlier = position_of[after[i].after.value];
+      if (earlier == no_value) continue; // does not run
+      plan.orderings.push_back({earlier, later});
+      c.because(Reason::About::pass, pass, Reason::Why::behind, after[i].after.value, i);
+      if (plan.passes[earlier].queue != plan.passes[later].queue)
+        c.needs_point[later] = std::max(c.needs_point[later], earlier + 2);
+    }
+  }
+}
+
 void number_points(CompileContext& c) {
   Plan& plan = c.out->plan;
   const auto index = [](Queue queue) { return static_cast<size_t>(queue); };
@@ -88,7 +108,8 @@ void find_round_trips(CompileContext& c) {
   const Plan& plan = c.out->plan;
   const auto index = [](Queue queue) { return static_cast<size_t>(queue); };
   const size_t count = plan.passes.size();
-  // Of each queue: how many positions, counted through two frames, hold passes of that queue which are done.
+  // Of each queue: how many positions, counted through three frames, hold passes of that queue which are
+  // done.
   using Done = std::array<size_t, 2>;
   struct Point {
     size_t behind = 0; // positions, up to the pass that reaches it
@@ -98,7 +119,7 @@ void find_round_trips(CompileContext& c) {
   std::array<std::vector<Point>, 2> reached{}; // of this frame
   std::array<Point, 2> last{};                 // of the frame before
   c.round_trip.assign(count, {});
-  for (size_t begin : {size_t{0}, count}) {
+  for (const size_t begin : {size_t{0}, count, 2 * count}) {
     const auto wait = [&](Queue queue, uint32_t point) {
       if (point == no_point) return;
       const size_t own = index(queue), other = 1 - own;
@@ -110,10 +131,9 @@ void find_round_trips(CompileContext& c) {
       const PlanPass& pass = plan.passes[position];
       const size_t own = index(pass.queue);
       wait(pass.queue, pass.wait);
-      if (begin != 0) { // the second frame is like all that follow
-        const size_t done = known[own][own];
-        c.round_trip[position] = {static_cast<uint32_t>(done > begin ? done - begin : 0),
-                                  static_cast<uint32_t>(std::min(done, begin))};
+      for (size_t back = 0; back < c.round_trip[position].size(); ++back) { // the third frame's stay
+        const size_t first = begin - std::min(begin, back * count), done = known[own][own];
+        c.round_trip[position][back] = static_cast<uint32_t>(std::min(done - std::min(done, first), count));
       }
       if (pass.signal != 0) reached[own].push_back({begin + position + 1, known[own]});
     }

@@ -7,6 +7,9 @@
 
 namespace dermis {
 
+// Says in the plan which passes `after` orders; needs points where they are on two queues.
+void keep_orderings(CompileContext& context);
+
 // Gives every pass the point that it waits for and the one that it reaches, as few as
 // CompileContext::needs_point and needs_frame_before allow.
 void number_points(CompileContext& context);

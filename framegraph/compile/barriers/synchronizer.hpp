@@ -37,7 +37,7 @@ struct Synchronizer {
   uint32_t parts(uint32_t resource) const { return facts(resource).parts; }
   // This frame's and the oldest are one object where the one is written over the other.
   static uint32_t object_of(const SyncFacts& of, uint32_t frames_back, uint32_t part = 0) {
-    return of.first_object + (frames_back == 0 ? of.own_role : frames_back) + part;
+    return of.first_object + (frames_back == 0 ? of.own_role : frames_back) * of.parts + part;
   }
   SubresourceRange range_of(const SyncFacts& of, uint32_t resource, uint32_t part) const {
     if (of.parts == 1) return of.whole;
@@ -126,9 +126,7 @@ struct Synchronizer {
   void drop_needless();
 
   // Where there are two queues: the barrier waits for a pass of its own one.
-  void wait_here(uint32_t barrier, uint32_t earlier, bool frame_before);
-  // Likewise, for the last write of an object alone: not for those that read it since.
-  void wait_for_write(uint32_t barrier, uint32_t object);
+  void wait_here(uint32_t barrier, const Moment& behind);
 
   // Behind the wait for a point, which ends where the barrier begins.
   void wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier, bool frame_before);

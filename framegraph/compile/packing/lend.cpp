@@ -39,7 +39,8 @@ struct Lender {
 
   bool lends(uint32_t resource) const {
     const Lifetime& history = c.lifetimes[plan.resources[resource].declared.value];
-    return history.deepest_read > 0 && plan.resources[resource].declared != c.input->keep_alive &&
+    return history.deepest_read > 0 && c.facts[plan.resources[resource].declared.value].parts == 1 &&
+           plan.resources[resource].declared != c.input->keep_alive &&
            plan.resources[resource].instance_count == history.deepest_read + 1 &&
            history.renewal.first_touch != no_value;
   }

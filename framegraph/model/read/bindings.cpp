@@ -188,7 +188,7 @@ private:
     return -1;
   }
 
-  // "name", "name@-N", or "name#mips[layers]".
+  // "name", "name#mips[layers]", either of them of an earlier frame: "name@-N", "name#mips[layers]@-N".
   bool parse_reference(std::string_view text, const std::string& what, PortSide side,
                        const SourceLocation& where, Found& out) {
     const size_t at = text.find('@');
@@ -250,8 +250,6 @@ private:
       problem = fmt::format("'{}' is a buffer", resource.name);
     else if (resource.origin == Origin::imported || resource.exported)
       problem = fmt::format("'{}' is bound by the host, as a whole", resource.name);
-    else if (resource.history.frames > 0)
-      problem = fmt::format("'{}' keeps a history, as a whole", resource.name);
     else if (resource.mips != 0 && last_mip >= resource.mips)
       problem = fmt::format("'{}' has {} mips", resource.name, resource.mips);
     else if (last_layer >= resource.layers)
@@ -267,7 +265,7 @@ private:
   bool choose_mip(const std::string& what, Found& found) {
     const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
     if (found.binding.port == unknown_port || resource.type == ResourceType::buffer || resource.mips == 1 ||
-        resource.origin == Origin::imported || resource.exported || resource.history.frames > 0)
+        resource.origin == Origin::imported || resource.exported)
       return true;
     const Usage usage = kind_->ports[found.binding.port].usage;
     if (usage != Usage::storage_image_write && usage != Usage::storage_image_update) return true;

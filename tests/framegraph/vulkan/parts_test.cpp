@@ -59,5 +59,39 @@ TEST_F(PartsTest, ClearingAPartLeavesTheOthers) {
   EXPECT_EQ(read(result)[0], 10.0f);
 }
 
+// Mip 0 counts frames; mip 1 sums mip 0 of all frames.
+SmallGraph two_histories_in_one() {
+  SmallGraph g;
+  g.exported("result");
+  g.history("kept", 1).mips = 2;
+  g.set(g.pass("count", "test.add", {{"a", "kept#0@-1"}}, {{"target", "kept#0"}}), "bias", 1);
+  g.pass("sum", "test.add", {{"a", "kept#1@-1"}, {"b", "kept#0"}}, {{"target", "kept#1"}});
+  return g;
+}
+
+TEST_F(PartsTest, EachMipOfAHistoryIsThatOfTheFrameMeant) {
+  SmallGraph g = two_histories_in_one();
+  g.pass("show", "test.add", {{"a", "kept#1"}, {"b", "kept#0@-1"}}, {{"target", "result"}});
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  for (const float expected : {1.0f + 0, 3.0f + 1, 6.0f + 2, 10.0f + 3, 15.0f + 4}) {
+    ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
+    EXPECT_EQ(read(result)[0], expected);
+  }
+}
+
+// Nothing reads mip 1 of this frame: it ends in the layout that it was written in, mip 0 in that it was read
+// in.
+TEST_F(PartsTest, EachMipOfAHistoryHasALayoutOfItsOwnBetweenFrames) {
+  SmallGraph g = two_histories_in_one();
+  g.pass("show", "test.add", {{"a", "kept#1@-1"}}, {{"target", "result"}});
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  for (const float expected : {0.0f, 1.0f, 3.0f, 6.0f, 10.0f}) {
+    ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
+    EXPECT_EQ(read(result)[0], expected);
+  }
+}
+
 } // namespace
 } // namespace dermis::testing

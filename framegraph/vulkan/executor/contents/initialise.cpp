@@ -15,6 +15,7 @@ struct Target {
   VkImage image = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; // to be in afterwards
+  VkImageSubresourceRange range = whole_image;
   bool clear = true; // false: created without transfer usage, contents stay undefined
 };
 
@@ -33,7 +34,7 @@ void record_barrier(const Device& device, VkCommandBuffer commands, const Target
   image.newLayout = before_clear && target.clear ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : target.layout;
   image.srcQueueFamilyIndex = image.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   image.image = target.image;
-  image.subresourceRange = whole_image;
+  image.subresourceRange = target.range;
   VkBufferMemoryBarrier2 buffer{};
   buffer.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
   buffer.srcStageMask = image.srcStageMask;
@@ -57,7 +58,7 @@ void initialise(const Device& device, VkCommandBuffer commands, const Target& ta
   if (!target.clear) return;
   if (target.image != VK_NULL_HANDLE)
     device.vk.vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &zero, 1,
-                                   &whole_image);
+                                   &target.range);
   if (target.buffer != VK_NULL_HANDLE)
     device.vk.vkCmdFillBuffer(commands, target.buffer, 0, VK_WHOLE_SIZE, 0);
   record_barrier(device, commands, target, false);
@@ -69,7 +70,7 @@ void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
   const Device& device = *state.device;
   if (!state.stand_ins_ready)
     for (const StandIn& stand_in : state.stand_ins)
-      initialise(device, commands, {stand_in.image, stand_in.buffer, VK_IMAGE_LAYOUT_GENERAL, true});
+      initialise(device, commands, {stand_in.image, stand_in.buffer, VK_IMAGE_LAYOUT_GENERAL});
   state.stand_ins_ready = true;
   for (const PlanHistory& history : state.plan.histories) {
     const PlanResource& resource = state.plan.resources[history.resource];
@@ -79,10 +80,16 @@ void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
       if (instance.ready) continue;
       const bool clear =
           (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0; // the same bit for buffers
-      initialise(device, commands,
-                 {instance.image, instance.buffer,
-                  static_cast<VkImageLayout>(state.plan.history_layouts[history.first_layout + back]),
-                  clear});
+      for (uint32_t part = 0; part < history.parts; ++part) {
+        const SubresourceRange& range = state.plan.history_parts[history.first_part + part];
+        const Layout layout = state.plan.history_layouts[history.first_layout + back * history.parts + part];
+        initialise(device, commands,
+                   {instance.image,
+                    instance.buffer,
+                    static_cast<VkImageLayout>(layout),
+                    {VK_IMAGE_ASPECT_COLOR_BIT, range.first_mip, range.mips, range.first_layer, range.layers},
+                    clear});
+      }
       instance.ready = true;
     }
   }
