@@ -13,7 +13,7 @@ const float least_share = 0.002; // below it the tent is not worth its time
 
 vec4 gather(int k, sap_texel own) {
   vec3 light = sap_own_light(k);
-  vec3 d_px = sap_d_px(own);
+  vec3 d_px = sap_d_px(own) * inversesqrt(sap_own_area(k)); // a tilted pixel keeps more of its own light
   vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
   sap_sum near = sap_sum(light, vec3(own.mass));
   if (max(tent.r, max(tent.g, tent.b)) >= least_share)

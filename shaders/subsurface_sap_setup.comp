@@ -60,8 +60,8 @@ void main() {
         surface_patch patch_here = build_patch(pixel, depth, around);
         vec2 sides = pixel_footprint(depth);
         float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
-        float reach = min(sqrt(sqrt(1.0 / patch_here.area)) * scale, largest_half);
-        light.a = min(patch_here.area, sap_area_cap);
+        light.a = sqrt(sqrt(patch_here.area));
+        float reach = min(inversesqrt(light.a) * scale, largest_half);
         bits = sap_pack(sap_texel(depth, round_to_half(vec3(patch_here.slope * sides / sap_footprint(depth), 0.0)).xy,
                                   round_to_half(reach), 1.0, id));
       }

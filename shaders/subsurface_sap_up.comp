@@ -17,7 +17,7 @@ void main() {
   if (!listed_block(level, block))
     return;
   ivec2 first = block.first - 1;
-  bool smooth_level = settings.variant == VARIANT_SMOOTH, last = !has_coarse_scattered();
+  bool smooth_level = settings.variant == VARIANT_SMOOTH || level == 1, last = !has_coarse_scattered();
   read_ring(block, first, level, smooth_level);
   if (!last)
     read_coarser(first, level);

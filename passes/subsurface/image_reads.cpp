@@ -108,9 +108,10 @@ ImageReads sap_down(const PassKind&, const ReadsQuestion&) {
 // sap_up.glsl: surface and light of a block's texels, with a ring around them where a tent is wanted; surface
 // and scattered light of the texels of the coarser level on which they lie.
 ImageReads sap_up(const PassKind& kind, const ReadsQuestion& question) {
-  const bool smooth = setting(kind, question, "variant") == int64_t(SapVariant::smooth);
+  const auto variant = static_cast<SapVariant>(setting(kind, question, "variant"));
+  const bool tent = setting(kind, question, "level") <= int64_t{sap_last_tent(variant)};
   const bool last = one_if(kind, question, "coarse_scattered", PortSide::read) == 0;
-  return {2 * block_reads(smooth ? 4 * 4 : 2 * 2, 2, 2) + (last ? 0 : 2 * block_reads(2 * 2, 2, 2))};
+  return {2 * block_reads(tent ? 4 * 4 : 2 * 2, 2, 2) + (last ? 0 : 2 * block_reads(2 * 2, 2, 2))};
 }
 
 // Surface and light alone where no pixel scatters further than itself.

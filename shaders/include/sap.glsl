@@ -10,11 +10,9 @@
 const float sap_sigma = 0.8660254; // of [1 3 3 1] in its own spacings: sqrt(3)/2
 // Widths of the weights in sigmas, by measurement (passes/subsurface/sap/sap_levels.hpp).
 const float sap_depth_width = 2.0;      // distance from the tangent plane: stops at depth steps
-const float sap_tilt_width_down = 1.5;  // depth along the tangent plane: narrows the kernel on slopes
-const float sap_tilt_width_up = 4.0;
-const float sap_tilt_width_tent = 1.5;
-const float sap_confidence_strictness = 9.0;  // of the squared distance from the planes
-const float sap_area_cap = 1.5;         // of 1 / cos to the viewer
+const float sap_tilt_width_down = 1.0;  // depth along the tangent plane: narrows the kernel on slopes
+const float sap_tilt_width_tent = 1.25;
+const float sap_confidence_strictness = 20.0;  // of the squared distance from the planes
 const float sap_negligible = 1e-12;
 
 // exp(-x^2 / (2 width^2)) = exp2(factor * x^2)
@@ -26,7 +24,7 @@ float sap_nearer(float a, float b) { return min(abs(a), abs(b)); }
 struct sap_texel {
   float depth;  // mm
   vec2 slope;   // change of depth from pixel to pixel, in footprints
-  float reach;  // factor on d: cos^(1/4) to the viewer times the scatter scale
+  float reach;  // factor on d: cos^(1/8) to the viewer times the scatter scale
   float mass;   // share of the texel's own kernel that met the surface
   uint id;      // profile, 0: nothing here
 };

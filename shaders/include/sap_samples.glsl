@@ -45,7 +45,7 @@ float sap_area(sap_texel t, vec2 pixel) {
 }
 
 // Factor on d of the pixel's scatter_scale, out of its reach.
-float sap_scale(sap_texel t, float area) { return t.reach * sqrt(sqrt(area)); }
+float sap_scale(sap_texel t, float area) { return t.reach * sqrt(sqrt(sqrt(area))); }
 
 // Light around the sample's pixel at a level of detail.
 vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {

@@ -23,6 +23,7 @@ uvec4 coarse_scattered[coarse_width * coarse_height];
 int ring_index(int k, int i, int j) { return (k / block_width + 1 + j) * ring_width + k % block_width + 1 + i; }
 sap_texel sap_own(int k) { return sap_unpack(ring_surface[ring_index(k, 0, 0)]); }
 vec3 sap_own_light(int k) { return ring_light[ring_index(k, 0, 0)].rgb; }
+float sap_own_area(int k) { return ring_light[ring_index(k, 0, 0)].a; } // its fourth root
 
 // Reads the block at `first` (a texel of the level) and, if asked, the ring around it.
 void read_ring(texel_block block, ivec2 first, int level, bool with_ring) {
@@ -77,12 +78,11 @@ sap_sum sap_tent(int k, int level, sap_texel own) {
 }
 
 // Bilinear over the four nearest texels of the coarser level, along the surface, of block texel k. `confidence` gets the
-// share that survives with weights nine times as strict on the tangent planes.
+// share that survives with weights twenty times as strict on the tangent planes.
 sap_sum sap_from_coarser(int k, int level, sap_texel own, vec3 fallback, out float confidence) {
   float spacing = float(1 << level);
-  float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(own.depth);
+  float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(own.depth));
   vec3 sum = vec3(0.0), mass = vec3(0.0);
-  float all_weight = 0.0;
   confidence = 0.0;
   int x = k % block_width + odd_first, y = k / block_width + odd_first; // as from an even texel
   [[unroll]] for (int j = 0; j < 2; ++j)
@@ -90,9 +90,6 @@ sap_sum sap_from_coarser(int k, int level, sap_texel own, vec3 fallback, out flo
       int qx = ((x - 1) >> 1) + i, qy = ((y - 1) >> 1) + j;
       vec2 steps = vec2(float(2 * qx - x) + 0.5, float(2 * qy - y) + 0.5), offset = steps * spacing;
       float bilinear = (abs(steps.x) < 1.0 ? 0.75 : 0.25) * (abs(steps.y) < 1.0 ? 0.75 : 0.25);
-      float tilt = dot(own.slope, offset) * per_sigma;
-      float weight = bilinear * exp2(sap_factor(sap_tilt_width_up) * tilt * tilt);
-      all_weight += weight;
       int index = (qy - ((odd_first - 1) >> 1)) * coarse_width + qx - ((odd_first - 1) >> 1);
       sap_texel tap = sap_unpack(coarse_surface[index]);
       float depth_step = tap.depth - own.depth;
@@ -101,14 +98,14 @@ sap_sum sap_from_coarser(int k, int level, sap_texel own, vec3 fallback, out flo
       float off = sap_nearer(from_planes, depth_step * per_sigma_mm);
       float kept = tap.id == own.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
       sap_scattered theirs = sap_unpack_scattered(coarse_scattered[index]);
-      vec3 tap_mass = weight * kept * theirs.mass;
+      vec3 tap_mass = bilinear * kept * theirs.mass;
       mass += tap_mass;
       sum += tap_mass * theirs.light;
       float strictly = exp2(sap_confidence_strictness * sap_factor(sap_depth_width) * from_planes * from_planes);
       confidence += tap.id == own.id ? bilinear * strictly * theirs.confidence : 0.0;
     }
   vec3 found = vec3(greaterThan(mass, vec3(sap_negligible)));
-  return sap_sum(mix(fallback, sum / max(mass, vec3(sap_negligible)), found), mass / all_weight);
+  return sap_sum(mix(fallback, sum / max(mass, vec3(sap_negligible)), found), mass);
 }
 
 // d per channel in pixels along the surface.

@@ -1,160 +1,169 @@
 // Laws of the surface-aware pyramid on heads: the sculpted bust always, a scanned head where DERMIS_HEAD
-// names its folder or one lies in ../shared/data/head. Figures are in units of the exposed scene's light.
-#include "tests/laws/plane.hpp"
-
-#include "integration/command/bench/reference.hpp"
-#include "integration/command/bench/still_error.hpp"
-#include "integration/command/bench/subject.hpp"
-#include "integration/command/bench/technique.hpp"
-#include "integration/files/capture_truth.hpp"
-#include "passes/subsurface/sap/sap_twin.hpp"
+// names its folder or one lies in ../shared/data/head. 640x360 pixels; with DERMIS_TESTS_FULL 1280x720 as
+// well.
+#include "tests/framegraph/test_tier.hpp"
+#include "tests/laws/head_frames.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 namespace {
 
 using namespace dermis;
 using namespace dermis::tools;
+using subsurface::SapVariant;
 
-const std::string root = DERMIS_SOURCE_DIR;
-
-struct Framing {
-  const char* name;
-  bool head; // the scan, else the bust
-  demo::CameraPlace camera;
-  double d_px;
+struct Size {
+  uint32_t width, height;
 };
-
-void PrintTo(const Framing& framing, std::ostream* out) {
-  *out << framing.name;
+std::vector<Size> sizes() {
+  if (dermis::testing::seeds_of_tier(0, 1) == 0) return {{640, 360}};
+  return {{640, 360}, {1280, 720}};
 }
 
-class OnAHead : public laws::DeviceTest, public testing::WithParamInterface<Framing> {
+// What may not be exceeded. Errors in thousandths; those of `stated` are the project's acceptance numbers for
+// the scan.
+struct Bounds {
+  double smooth[2], base[2];        // RMSE at 640x360 and 1280x720
+  double edge, edge_p99, inner;     // smooth, 640x360
+  double to_plain, to_separable;    // ratios of smooth to the plain pyramid and to 25 taps
+  double sure;                      // share of the whole picture's error that sure pixels have
+  double unsure_least, unsure_most; // share of pixels that are not sure
+};
+// Stated for the scan: close, profile, whole.
+constexpr Bounds stated[] = {{{8.1, 9.6}, {8.5, 10.3}, 17, 95, 7.0, 0.58, 0.92, 0.60, 0.55, 0.75},
+                             {{8.3, 7.9}, {8.3, 8.0}, 23, 100, 3.5, 0.55, 0.85, 0.25, 0.25, 0.35},
+                             {{7.9, 6.6}, {7.3, 5.6}, 10, 40, 6.5, 0.85, 0.95, 0.85, 0.05, 0.18}};
+// Measured on the bust, which has no stated numbers, and 15 % more (99 % of edges: 20 %). From the side it
+// shows a knot of folds, close it errs by curvature, which no lost kernel tells (docs/limits.md).
+constexpr Bounds of_the_bust[] = {{{2.95, 3.1}, {3.3, 3.5}, 5.9, 22, 2.85, 0.51, 0.54, 0.80, 0.3, 0.5},
+                                  {{7.2, 7.3}, {7.5, 7.6}, 20.4, 75, 4.6, 0.36, 1.07, 0.17, 0.15, 0.3},
+                                  {{1.85, 1.6}, {1.85, 1.65}, 3.1, 14, 1.1, 0.21, 0.93, 0.5, 0.1, 0.25}};
+
+constexpr double to_seed = 1.05; // stated: to 32 samples of afis as published
+
+class OnAHead : public laws::HeadTest, public ::testing::WithParamInterface<size_t> {
 protected:
-  void SetUp() override {
-    DeviceTest::SetUp();
-    if (IsSkipped()) return;
-    SubjectOptions options{320, 180, {}};
-    if (GetParam().head) {
-      const char* named = std::getenv("DERMIS_HEAD");
-      const std::string folder = named != nullptr ? named : root + "/../shared/data/head";
-      if (named == nullptr && !std::filesystem::exists(folder))
-        GTEST_SKIP() << "no scanned head: DERMIS_HEAD names no folder, and " << folder << " is not there";
-      options.model = {folder + "/LeePerrySmith.glb", "", "", "", 0.426};
-    }
-    const std::string scene =
-        root + (GetParam().head ? "/configs/scenes/head_study.json" : "/configs/scenes/bust.json");
-    auto subject = render_subject(
-        {"head", "close", scene, GetParam().camera, {GetParam().d_px}, GetParam().head, false}, options);
-    ASSERT_TRUE(subject) << subject.error().text;
-    frame_ = subject.take().frame;
-    Session quiet;
-    quiet.quiet = true;
-    reference_ = *make_reference(quiet, frame_, "truth", 2048, "");
+  // `compared`: 0 for as many pixels as the framing's figures are steady with, within 5 %. Whole heads have
+  // few pixels of large error, and a kernel that takes no time: all.
+  void show(const Size& size, uint32_t compared = 0) {
+    const bool whole = GetParam() % 3 == 2;
+    if (compared == 0) compared = whole ? size.width * size.height : 3072;
+    HeadTest::show(laws::head_framings()[GetParam()], size.width, size.height, compared);
   }
-
-  static const std::vector<float>& table() {
-    static const std::vector<float> made =
-        subsurface::make_sap_table(subsurface::fit_sap_weights(subsurface::SapVariant::smooth));
-    return made;
-  }
-  subsurface::SapResult<float> twin(const CapturedFrame& frame) const {
-    const TruthFrame truth = make_truth_frame(frame);
-    return subsurface::sap_scatter<float>(truth.input(), table(), {});
-  }
-  double luminance_at(const std::vector<float>& light, size_t pixel) const {
-    double sum = 0;
-    for (size_t c = 0; c < 3; ++c)
-      sum += rec709[c] * double(light[3 * pixel + c]);
-    return sum * reference_.exposure;
-  }
-
-  CapturedFrame frame_;
-  Reference reference_;
+  bool is_scan() const { return laws::head_framings()[GetParam()].scan; }
+  const Bounds& bounds() const { return is_scan() ? stated[GetParam()] : of_the_bust[GetParam() - 3]; }
 };
 
-INSTANTIATE_TEST_SUITE_P(
-    Framings, OnAHead,
-    testing::Values(Framing{"bust", false, {{-0.12, 0.03, 0.50}, {0.0, 0.005, 0.07}, 10}, 4},
-                    Framing{"scan", true, {{0.15, 0.09, 0.60}, {0.015, 0.07, 0.09}, 13}, 4}),
-    [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(Framings, OnAHead, ::testing::Range(size_t{0}, laws::head_framings().size()),
+                         [](const auto& one) { return std::string(laws::head_framings()[one.param].name); });
 
-TEST_P(OnAHead, KernelsAndTheirCpuTwinAgree) {
-  auto host = demo::create_vulkan_host({.validation = true, .device = ""});
-  ASSERT_TRUE(host) << host.error().text;
-  const TechniqueRequest request{
-      "sap", "smooth", root + "/configs/graphs/sap.json", {{"variant", "smooth"}}, false};
-  auto run = TechniqueRun::create(**host, request, frame_.description.profiles, {});
-  ASSERT_TRUE(run) << run.error().text;
-  auto device = (*run)->scatter(frame_);
-  ASSERT_TRUE(device) << device.error().text;
-  const std::vector<float> cpu = twin(frame_).light;
-  double squares = 0;
-  for (const uint32_t pixel : reference_.pixels)
-    squares += std::pow(luminance_at(*device, pixel) - luminance_at(cpu, pixel), 2);
-  const double rms = std::sqrt(squares / double(reference_.pixels.size()));
-  RecordProperty("rms", std::to_string(rms));
-  EXPECT_LE(rms, 3e-3); // fp16 storage and ties between seeds
+TEST_P(OnAHead, ErrsLittleAndLessThanOthersAndAsItsCpuTwin) {
+  for (size_t i = 0; i < sizes().size(); ++i) {
+    show(sizes()[i]);
+    if (IsSkipped() || HasFatalFailure()) return;
+    const std::vector<float> device = scatter("sap");
+    const laws::HeadErrors smooth = errors_of(device),
+                           base = errors_of(scatter("sap", {{"variant", "base"}}));
+    EXPECT_LE(smooth.rmse * 1e3, bounds().smooth[i]);
+    EXPECT_LE(base.rmse * 1e3, bounds().base[i]);
+    RecordProperty("smooth_" + std::to_string(sizes()[i].width), std::to_string(smooth.rmse * 1e3));
+    double squares = 0;
+    const std::vector<float> cpu = twin(frame_, SapVariant::smooth).light;
+    for (const uint32_t pixel : reference_.pixels)
+      squares += std::pow(luminance_at(device, pixel) - luminance_at(cpu, pixel), 2);
+    EXPECT_LE(std::sqrt(squares / double(reference_.pixels.size())),
+              3e-3); // fp16 storage and ties between seeds
+    if (i > 0) continue;
+    RecordProperty("edge", std::to_string(smooth.edge * 1e3));
+    RecordProperty("edge_p99", std::to_string(smooth.edge_p99 * 1e3));
+    RecordProperty("inner", std::to_string(smooth.inner * 1e3));
+    EXPECT_LE(smooth.edge * 1e3, bounds().edge);
+    EXPECT_LE(smooth.edge_p99 * 1e3, bounds().edge_p99);
+    EXPECT_LE(smooth.inner * 1e3, bounds().inner);
+    const double plain = smooth.rmse / errors_of(scatter("pyramid")).rmse;
+    const double separable = smooth.rmse / errors_of(scatter("separable", {{"taps", "25"}})).rmse;
+    const double seed = smooth.rmse / errors_of(scatter("afis_seed", {{"samples", "32"}})).rmse;
+    RecordProperty("to_plain", std::to_string(plain));
+    RecordProperty("to_separable", std::to_string(separable));
+    EXPECT_LE(plain, bounds().to_plain);
+    EXPECT_LE(separable, bounds().to_separable);
+    EXPECT_LE(seed, to_seed);
+  }
+}
+
+TEST_P(OnAHead, FlatLightComesOutBitForBitAndAllLightStaysWithinWhatTheSkinHas) {
+  show(sizes().front(), 1); // no truth is asked for
+  if (IsSkipped() || HasFatalFailure()) return;
+  float least = 1e9f, most = 0;
+  for (size_t i = 0; i < frame_.profile.size(); ++i)
+    for (size_t c = 0; c < 3 && frame_.profile[i] != 0; ++c) {
+      least = std::min(least, frame_.lighting.values[3 * i + c]);
+      most = std::max(most, frame_.lighting.values[3 * i + c]);
+    }
+  const std::vector<float> light = scatter("sap");
+  std::fill(frame_.lighting.values.begin(), frame_.lighting.values.end(), 1.0f);
+  const std::vector<float> flat = scatter("sap");
+  for (size_t i = 0; i < frame_.profile.size(); ++i)
+    for (size_t c = 0; c < 3 && frame_.profile[i] != 0; ++c) {
+      // Light is stored in halves, rounded: 2^-11 of its value beyond the brightest.
+      ASSERT_TRUE(light[3 * i + c] >= least * 0.999f && light[3 * i + c] <= most * 1.0005f) << i;
+      // A mean of ones is one within the rounding of fp32, and the half next to that is one.
+      ASSERT_EQ(flat[3 * i + c], 1.0f) << i;
+    }
 }
 
 TEST_P(OnAHead, ConfidenceSaysWhereThePyramidIsExact) {
-  if (!GetParam().head) GTEST_SKIP() << "on the bust it does not: docs/limits.md";
-  const subsurface::SapResult<float> result = twin(frame_);
-  double sure = 0, all = 0, sure_count = 0;
-  for (size_t i = 0; i < reference_.pixels.size(); ++i) {
-    const uint32_t pixel = reference_.pixels[i];
-    double truth = 0;
-    for (size_t c = 0; c < 3; ++c)
-      truth += rec709[c] * reference_.light[3 * i + c] * reference_.exposure;
-    const double error = std::pow(luminance_at(result.light, pixel) - truth, 2);
-    all += error;
-    if (result.confidence[pixel] < 0.9f) continue;
-    sure += error;
-    ++sure_count;
+  for (const Size& size : sizes()) {
+    show(size);
+    if (IsSkipped() || HasFatalFailure()) return;
+    const subsurface::SapResult<float> result = twin(frame_, SapVariant::smooth);
+    const laws::HeadErrors errors = errors_of(result.light, &result.confidence);
+    RecordProperty("sure_to_all", std::to_string(errors.sure / errors.rmse));
+    RecordProperty("unsure_pixels", std::to_string(errors.unsure_pixels));
+    EXPECT_LE(errors.sure, bounds().sure * errors.rmse);
+    EXPECT_GE(errors.unsure_pixels, bounds().unsure_least);
+    EXPECT_LE(errors.unsure_pixels, bounds().unsure_most);
   }
-  const auto count = double(reference_.pixels.size());
-  ASSERT_GT(sure_count, 0.05 * count);
-  const double ratio = std::sqrt(sure / sure_count) / std::sqrt(all / count);
-  RecordProperty("ratio", std::to_string(ratio));
-  RecordProperty("share_of_unsure_pixels", std::to_string(1 - sure_count / count));
-  EXPECT_LE(ratio, 0.6);
 }
 
 TEST_P(OnAHead, MovingByWholePixelsHardlyChangesThePicture) {
+  show(sizes().front(), 1); // no truth is asked for
+  if (IsSkipped() || HasFatalFailure()) return;
   // The pyramid's grid moves against the surface: the same picture without its first rows and columns.
   constexpr uint32_t shifts[][2] = {{0, 0}, {1, 0}, {2, 1}, {3, 5}, {4, 2}, {5, 7}, {6, 3}, {7, 6}};
-  constexpr uint32_t most = 8;
-  std::vector<double> sum(frame_.profile.size()), squares(frame_.profile.size());
-  for (const auto& [x0, y0] : shifts) {
-    CapturedFrame part = frame_;
-    part.description.render = {x0, y0, frame_.description.width - most, frame_.description.height - most};
-    // Rays of the rectangle's corner.
-    part.rays.offset_x += part.rays.scale_x * x0;
-    part.rays.offset_y += part.rays.scale_y * y0;
-    const std::vector<float> light = twin(part).light;
-    const uint32_t width = part.description.render.width, height = part.description.render.height;
-    for (uint32_t y = 0; y < height; ++y)
-      for (uint32_t x = 0; x < width; ++x) {
-        const double value = luminance_at(light, size_t{y} * width + x);
-        const size_t i = size_t{y + y0} * frame_.description.width + x + x0;
-        sum[i] += value;
-        squares[i] += value * value;
-      }
-  }
-  double variance = 0, count = 0;
-  for (uint32_t y = 48; y + 48 < frame_.description.height; ++y) // away from the border, which moves as well
-    for (uint32_t x = 48; x + 48 < frame_.description.width; ++x) {
-      const size_t i = size_t{y} * frame_.description.width + x;
-      if (frame_.profile[i] == 0) continue;
-      const double mean = sum[i] / 8;
-      variance += std::max(0.0, squares[i] / 8 - mean * mean);
-      ++count;
+  constexpr uint32_t most = 8, margin = 48; // pixels; what lies at the border moves as well
+  for (const auto& [variant, bound] : {std::pair{SapVariant::smooth, 2.4e-3}, {SapVariant::base, 4.5e-3}}) {
+    std::vector<double> sum(frame_.profile.size()), squares(frame_.profile.size());
+    for (const auto& [x0, y0] : shifts) {
+      CapturedFrame part = frame_;
+      part.description.render = {x0, y0, frame_.description.width - most, frame_.description.height - most};
+      // Rays of the rectangle's corner.
+      part.rays.offset_x += part.rays.scale_x * x0;
+      part.rays.offset_y += part.rays.scale_y * y0;
+      const std::vector<float> light = twin(part, variant).light;
+      const uint32_t width = part.description.render.width, height = part.description.render.height;
+      for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x) {
+          const double value = luminance_at(light, size_t{y} * width + x);
+          const size_t i = size_t{y + y0} * frame_.description.width + x + x0;
+          sum[i] += value;
+          squares[i] += value * value;
+        }
     }
-  RecordProperty("rms", std::to_string(std::sqrt(variance / count)));
-  EXPECT_LE(std::sqrt(variance / count), 2.4e-3);
+    double variance = 0, count = 0;
+    for (uint32_t y = margin; y + margin < frame_.description.height; ++y)
+      for (uint32_t x = margin; x + margin < frame_.description.width; ++x) {
+        const size_t i = size_t{y} * frame_.description.width + x;
+        if (frame_.profile[i] == 0) continue;
+        const double mean = sum[i] / 8;
+        variance += std::max(0.0, squares[i] / 8 - mean * mean);
+        ++count;
+      }
+    RecordProperty(variant == SapVariant::smooth ? "smooth" : "base",
+                   std::to_string(std::sqrt(variance / count)));
+    EXPECT_LE(std::sqrt(variance / count), bound);
+  }
 }
 
 } // namespace

@@ -124,7 +124,7 @@ template <class Real> SapTexel<Real> first_texel(const TruthInput& input, const 
           .slope_y = Real(patch.normal[1] * turn * input.rays.scale_y / mean),
           .reach = Real(std::pow(cosine, sap_reach_power) * scale),
           .mass = 1,
-          .area = Real(std::min(sap_area_cap, 1 / cosine)),
+          .area = Real(std::pow(cosine, -sap_area_power)),
           .light = {Real(input.light[3 * i]), Real(input.light[3 * i + 1]), Real(input.light[3 * i + 2])},
           .id = input.profile[i]};
 }

@@ -11,18 +11,20 @@
 namespace dermis::subsurface {
 
 inline constexpr double sap_sigma = 0.8660254; // of [1 3 3 1] in its own spacings: sqrt(3)/2
-// Widths of the weights in sigmas. Found by measurement on a head at three framings: the error is flat within
-// 20 % of each.
+// Widths of the weights in sigmas, measured on a scanned head, a bust and generated scenes
+// (docs/techniques.md).
 inline constexpr double sap_depth_width = 2; // distance from the tangent plane: stops at depth steps
-inline constexpr double sap_tilt_width_down =
-    1.5; // depth along the tangent plane: narrows the kernel on slopes
-inline constexpr double sap_tilt_width_up = 4;
-inline constexpr double sap_tilt_width_tent = 1.5;
-// Of the squared distance from the tangent planes, where confidence is counted: on a scanned head's close and
-// side framings it parts exact pixels from others better than 4 does (ratio .51 and .26 instead of .59, .30).
-inline constexpr double sap_confidence_strictness = 9;
-inline constexpr double sap_area_cap = 1.5;     // of 1 / cos to the viewer
-inline constexpr double sap_reach_power = 0.25; // d shrinks with this power of cos
+// Depth along the tangent plane: narrows the kernel on slopes. 1 makes the way down a Gaussian of distance in
+// space; on the way up nothing is narrowed.
+inline constexpr double sap_tilt_width_down = 1;
+inline constexpr double sap_tilt_width_tent = 1.25;
+// Of the squared distance from the tangent planes, where confidence is counted: what parts exact pixels from
+// others on the scanned head's three framings.
+inline constexpr double sap_confidence_strictness = 20;
+// Powers of the cosine to the viewer. A texel counts with its area's fourth root: a surface that turns away
+// has more area and is as much further off, which tangent planes see in part. d shrinks with the eighth root,
+// and with the fourth where level 0's own shares are concerned, since a tilted pixel keeps more of its light.
+inline constexpr double sap_area_power = 0.25, sap_reach_power = 0.125;
 inline constexpr double sap_negligible = 1e-12;
 
 template <class Real> Real sap_falloff(Real x, double width) {
@@ -38,9 +40,9 @@ template <class Real> Real sap_nearer(Real a, Real b) {
 template <class Real> struct SapTexel {
   Real depth = 0;                // metres
   Real slope_x = 0, slope_y = 0; // change of depth from pixel to pixel, in footprints
-  Real reach = 0;                // factor on d: cos^(1/4) to the viewer times the scatter scale
+  Real reach = 0;                // factor on d: cos^(1/8) to the viewer times the scatter scale
   Real mass = 0;                 // share of the texel's own kernel that met the surface
-  Real area = 0;                 // of the surface over its cross-section, capped
+  Real area = 0;                 // fourth root of the surface's area over its cross-section
   std::array<Real, 3> light{};
   uint8_t id = 0; // profile, 0: nothing here
 

@@ -62,19 +62,15 @@ template <class Real> struct SapClimb {
                                const Color<Real>& fallback) const {
     const SapLevel<Real>& coarse = pyramid.levels[fine + 1];
     const Real spacing = pyramid.levels[fine].spacing;
-    const Real per_sigma = 1 / (Real(sap_sigma) * spacing),
-               per_metre = per_sigma / pyramid.footprint(own.depth);
+    const Real per_metre = 1 / (Real(sap_sigma) * spacing * pyramid.footprint(own.depth));
     Scattered<Real> result;
     Color<Real> sum{};
-    Real all_weight = 0;
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
         const int qx = ((x - 1) >> 1) + i, qy = ((y - 1) >> 1) + j;
         const Real ox = (Real(2 * qx - x) + Real(.5)) * spacing, oy = (Real(2 * qy - y) + Real(.5)) * spacing;
         const Real bilinear =
             Real(std::abs(ox) < spacing ? .75 : .25) * Real(std::abs(oy) < spacing ? .75 : .25);
-        const Real weight = bilinear * sap_falloff(own.slope(ox, oy) * per_sigma, sap_tilt_width_up);
-        all_weight += weight;
         const SapTexel<Real>* tap = coarse.find(qx, qy, own.id);
         if (!tap) continue;
         const Real step = tap->depth - own.depth;
@@ -83,7 +79,7 @@ template <class Real> struct SapClimb {
         const Real kept = sap_falloff(sap_nearer(from_planes, step) * per_metre, sap_depth_width);
         const Scattered<Real>& theirs = scattered[fine + 1][coarse.index(qx, qy)];
         for (size_t c = 0; c < 3; ++c) {
-          const Real mass = weight * kept * theirs.mass[c];
+          const Real mass = bilinear * kept * theirs.mass[c];
           result.mass[c] += mass;
           sum[c] += mass * theirs.light[c];
         }
@@ -94,7 +90,6 @@ template <class Real> struct SapClimb {
     for (size_t c = 0; c < 3; ++c) {
       const bool found = result.mass[c] > Real(sap_negligible);
       result.light[c] = found ? sum[c] / result.mass[c] : fallback[c];
-      result.mass[c] /= all_weight;
     }
     return result;
   }
@@ -105,13 +100,14 @@ template <class Real> struct SapClimb {
     const bool last = l + 1 == sap_level_count;
     Color<Real> centre{}, share{};
     for (size_t c = 0; c < 3; ++c) {
-      const Real d_px = Real(d[c]) * own.reach / pyramid.footprint(own.depth);
+      Real d_px = Real(d[c]) * own.reach / pyramid.footprint(own.depth);
+      if (l == 0) d_px /= std::sqrt(own.area);
       if (l == 0) centre[c] = sap_lookup<Real>(table, 0, d_px);
       share[c] = last ? Real(1) : sap_lookup<Real>(table, static_cast<uint32_t>(l + 1), d_px);
     }
     Scattered<Real> here{own.light, {own.mass, own.mass, own.mass}, 0};
     const Real least = Real(l == 0 ? least_share_fine : least_share_coarse);
-    if ((l == 0 || variant == SapVariant::smooth) && *std::max_element(share.begin(), share.end()) >= least)
+    if (l <= sap_last_tent(variant) && *std::max_element(share.begin(), share.end()) >= least)
       here = tent(pyramid.levels[l], x, y, own);
     const Scattered<Real> rest =
         last ? Scattered<Real>{here.light, {}, 0} : from_coarser(l, x, y, own, here.light);

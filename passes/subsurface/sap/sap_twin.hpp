@@ -16,7 +16,7 @@ template <class Real> struct SapResult {
   std::vector<Real> light; // 3 per pixel; pixels without profile return their light
   std::vector<Real>
       confidence; // in [0, 1]: the share of the widest channel's kernel that met the pixel's
-                  // own tangent plane under weights nine times as strict; 1 where nothing scatters
+                  // own tangent plane under weights twenty times as strict; 1 where nothing scatters
 };
 
 // Scatters the whole input. `table` comes from make_sap_table for the same variant. Each pixel's result is a

@@ -73,8 +73,10 @@ SapWeights basis_at(const Frequency& f, SapVariant variant) {
     const double spacing = std::ldexp(1.0, static_cast<int>(level));
     chain *= both_axes(f, spacing / 2, plain ? 3 : 6);
     double filter = 1;
-    if (plain) filter = spline_axis(f.x, spacing) * spline_axis(f.y, spacing);
-    if (variant == SapVariant::smooth) filter = both_axes(f, spacing, 2);
+    if (plain)
+      filter = spline_axis(f.x, spacing) * spline_axis(f.y, spacing);
+    else if (level <= sap_last_tent(variant))
+      filter = both_axes(f, spacing, 2);
     basis[level + 1] = chain * filter;
   }
   return basis;

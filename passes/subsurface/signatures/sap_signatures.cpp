@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::string_view variant_options[] = {"base", "smooth"};
 
-constexpr std::string_view light_doc = "rgb light, a = area of the surface over its cross-section, capped";
+constexpr std::string_view light_doc =
+    "rgb light, a = fourth root of the surface's area over its cross-section";
 constexpr std::string_view surface_doc =
     "depth in mm (bits of a float); slope x, y (halves); factor on d, share of the texel's kernel that met "
     "its own surface (halves); profile id, 0 = nothing here";
@@ -34,7 +35,7 @@ constexpr KindSetting level_setting(double first, std::string_view doc) {
 
 constexpr KindSetting variant =
     setting::choice("variant", variant_options,
-                    "base: tent at level 0 alone; smooth: at every level, which hides the grid", 1);
+                    "base: tent at levels 0 and 1; smooth: at every level, which hides the grid", 1);
 
 constexpr Port level_tiles{
     "level_tiles", Usage::storage_buffer_read, false, "uvec2", "as subsurface.sap_tiles writes them", {}};
