@@ -1,7 +1,10 @@
 #version 460
-// One group a tile: has it subsurface, and does any pixel of it scatter further than itself? Counts tiles: sums of
-// integers, which no order changes. Tells between which values the light lies that can scatter, too.
+// One group for 4x4 tiles, an invocation for two rows of a tile: has a tile subsurface, and does any pixel of it
+// scatter further than itself? Each pixel's material is read once; nothing else is where there is none. Counts tiles:
+// sums of integers, which no order changes. Tells between which values the light of scattering tiles lies, too, of each
+// tile and of the group's all together.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_classify.bindings.glsl"
 #include "environment.glsl"
@@ -13,12 +16,19 @@
 #include "sanitise.glsl"
 #include "tile_packing.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+const uint block_tiles = flat_cell_side * flat_cell_side;
+const int run = 16; // pixels of an invocation: two rows of a tile
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
-shared uint found;
-shared uint widest_bits; // of the largest d in pixels: floats from 0 on are ordered as their bits are
-shared vec3 held[64];    // light by pixel; x < 0: none
-shared vec3 row_low[8], row_high[8];
+// By tile: 0 nothing, 1 subsurface below a pixel, else the bits of the largest d in pixels; then the least and the greatest
+// light as bits. Floats from 0 on are ordered as their bits are.
+const uint below_a_pixel = 1u;
+shared uint widest_of[block_tiles];
+shared uvec3 low_of[block_tiles], high_of[block_tiles];
+
+uint class_of(uint widest) {
+  return widest > below_a_pixel ? class_scatter : widest == below_a_pixel ? class_copy : class_none;
+}
 
 vec3 light_of(ivec2 texel) {
   vec3 light = clean_light(texelFetch(lighting_image, texel, 0).rgb);
@@ -29,67 +39,114 @@ vec3 light_of(ivec2 texel) {
   return round_to_half(light);
 }
 
-// Of eight pixels that lie one after the other.
-void reduce_row(uint row) {
-  vec3 low = vec3(largest_half), high = vec3(0.0);
-  for (uint i = 8u * row; i < 8u * row + 8u; ++i)
-    if (held[i].x >= 0.0) {
-      low = min(low, held[i]);
-      high = max(high, held[i]);
-    }
-  row_low[row] = low;
-  row_high[row] = high;
+ivec2 run_pixel(ivec2 first, int i) { return first + ivec2(i & 7, i >> 3); }
+
+// A bit for each pixel of the run that lies where subsurface may be.
+uint run_inside(ivec2 first) {
+  ivec2 from = clamp(frame.bounds.xy - first, ivec2(0), ivec2(8, 2));
+  ivec2 to = clamp(min(frame.bounds.xy + frame.bounds.zw, frame.rect.zw) - first, ivec2(0), ivec2(8, 2));
+  uint row = ((1u << uint(to.x)) - 1u) & ~((1u << uint(from.x)) - 1u);
+  return (from.y == 0 && to.y > 0 ? row : 0u) | (from.y < 2 && to.y == 2 ? row << 8 : 0u);
 }
 
-uvec4 range_of_tile(float d_px) {
-  vec3 low = row_low[0], high = row_high[0];
-  for (uint row = 1u; row < 8u; ++row) {
-    low = min(low, row_low[row]);
-    high = max(high, row_high[row]);
+// A bit for each pixel of the run that has subsurface.
+uint find_subsurface(ivec2 first, out uint ids[run]) {
+  uint mask = run_inside(first);
+  ivec2 last = texel_of(frame.rect.zw - 1);
+  [[unroll]] for (int i = 0; i < run; ++i) {
+    ids[i] = texelFetch(material_image, min(texel_of(run_pixel(first, i)), last), 0).r;
+    mask &= ids[i] != 0u ? ~0u : ~(1u << uint(i));
   }
-  return pack_range(low, high, d_px);
+  return mask;
+}
+
+uint look_at(ivec2 pixel, uint id) {
+  ivec2 texel = texel_of(pixel);
+  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  float d_px = depth > 0.0 ? projected_d(profiles[min(id, 255u)].d_mm.w * scale, depth) : 0.0;
+  return d_px >= copy_below_d_px ? floatBitsToUint(d_px) : below_a_pixel;
+}
+
+// The widest d of the run's pixels, as widest_of.
+uint find_widest(ivec2 first, uint mask, uint ids[run]) {
+  uint widest = 0u;
+  if (mask != 0u)
+    do {
+      int i = findLSB(mask);
+      mask &= mask - 1u;
+      widest = max(widest, look_at(run_pixel(first, i), ids[i]));
+    } while (mask != 0u);
+  return widest;
+}
+
+void gather_light(ivec2 first, uint mask, uint tile) {
+  vec3 low = vec3(largest_half), high = vec3(0.0);
+  if (mask != 0u) {
+    uint left = mask;
+    do {
+      vec3 light = light_of(texel_of(run_pixel(first, findLSB(left))));
+      left &= left - 1u;
+      low = min(low, light);
+      high = max(high, light);
+    } while (left != 0u);
+    [[unroll]] for (int c = 0; c < 3; ++c) {
+      atomicMin(low_of[tile][c], floatBitsToUint(low[c]));
+      atomicMax(high_of[tile][c], floatBitsToUint(high[c]));
+    }
+  }
 }
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
-  if (lane == 0u) {
-    found = 0u;
-    widest_bits = 0u;
+  ivec2 block = ivec2(gl_WorkGroupID.xy) * int(flat_cell_side);
+  uint row_pair = lane / flat_cell_side, column = lane % flat_cell_side; // runs beside each other: invocations, too
+  ivec2 first = 8 * block + ivec2(8u * column, 2u * row_pair);
+  uint tile_of_run = row_pair / flat_cell_side * flat_cell_side + column;
+  bool ranged = has_light_range() && has_light_cells() && has_lighting();
+
+  if (lane < block_tiles) {
+    widest_of[lane] = 0u;
+    low_of[lane] = uvec3(floatBitsToUint(largest_half));
+    high_of[lane] = uvec3(0u);
   }
+  uint ids[run];
+  uint mask = find_subsurface(first, ids);
+  uint widest = find_widest(first, mask, ids);
   barrier();
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  bool ranged = has_light_range() && has_lighting();
-  vec3 light = vec3(-1.0);
-  if (inside_rect(pixel) && inside_bounds(pixel)) {
-    ivec2 texel = texel_of(pixel);
-    uint id = texelFetch(material_image, texel, 0).r;
-    if (id != 0u) {
-      float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-      float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
-      float d_px = depth > 0.0 ? projected_d(profiles[min(id, 255u)].d_mm.w * scale, depth) : 0.0;
-      atomicOr(found, d_px >= copy_below_d_px ? class_scatter : class_copy);
-      if (d_px >= copy_below_d_px)
-        atomicMax(widest_bits, floatBitsToUint(d_px));
-      if (ranged)
-        light = light_of(texel);
-    }
-  }
-  if (ranged)
-    held[lane] = light;
+  if (widest != 0u)
+    atomicMax(widest_of[tile_of_run], widest);
   barrier();
   if (ranged) {
-    if (lane < 8u)
-      reduce_row(lane);
+    gather_light(first, class_of(widest_of[tile_of_run]) == class_scatter ? mask : 0u, tile_of_run);
     barrier();
   }
-  if (lane == 0u) {
-    uint tile = gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x;
-    classes_data[tile] = (found & class_scatter) != 0u ? class_scatter : found;
-    if (ranged)
-      light_range_data[tile] = range_of_tile(uintBitsToFloat(widest_bits));
-    if ((found & class_scatter) != 0u)
-      count_scattering_tile(uintBitsToFloat(widest_bits));
-    else if (found != class_none)
-      atomicAdd(counters.copied_tiles, 1u);
+
+  ivec2 tile = block + ivec2(lane % flat_cell_side, lane / flat_cell_side);
+  if (lane < block_tiles && all(lessThan(tile, frame.tiles))) {
+    int index = tile.y * frame.tiles.x + tile.x;
+    uint own = widest_of[lane];
+    classes_data[index] = class_of(own);
+    if (ranged) // light below a pixel stays where it is, and is not looked at: beside it nothing counts as flat
+      light_range_data[index] =
+          own == below_a_pixel ? any_light()
+                               : pack_range(uintBitsToFloat(low_of[lane]), uintBitsToFloat(high_of[lane]),
+                                            own == 0u ? 0.0 : uintBitsToFloat(own));
   }
+  if (lane != 0u)
+    return;
+  uint scattering = 0u, copied = 0u, steps = 0u;
+  uvec3 low = low_of[0], high = high_of[0];
+  [[dont_unroll]] for (uint t = 0u; t < block_tiles; ++t) {
+    uint own = widest_of[t];
+    scattering += own > below_a_pixel ? 1u : 0u;
+    copied += own == below_a_pixel ? 1u : 0u;
+    steps += own > below_a_pixel ? counter_steps(uintBitsToFloat(own)) : 0u;
+    low = min(low, low_of[t]);
+    high = max(high, high_of[t]);
+  }
+  if (ranged)
+    light_cells_data[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] =
+        copied > 0u ? any_light() : pack_range(uintBitsToFloat(low), uintBitsToFloat(high), 0.0);
+  count_tiles(scattering, copied, steps);
 }

@@ -1,7 +1,7 @@
 #version 460
 // A tile whose light is the same as far as light reaches keeps its own light: what scatters out of a pixel comes back
-// from others. One invocation a tile, which looks at the tiles around it until one differs; its class alone changes, which
-// no other invocation reads.
+// from others. One invocation a tile. It looks at the cells of 4x4 tiles around it; where one of them differs it may lie
+// further away than light reaches in part, and the tiles decide. Its class alone changes, which no other invocation reads.
 #extension GL_GOOGLE_include_directive : require
 #include "subsurface_flat.bindings.glsl"
 #include "environment.glsl"
@@ -12,12 +12,26 @@
 
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
-// Is the light of all tiles from `first` to `last` that of one between `low` and `high`?
-bool all_alike(ivec2 first, ivec2 last, vec3 low, vec3 high) {
-  for (int y = first.y; y <= last.y; ++y)
-    for (int x = first.x; x <= last.x; ++x)
-      if (!is_alike(light_range_data[y * frame.tiles.x + x], low, high))
-        return false;
+bool cells_alike(ivec2 first, ivec2 last, vec3 low, vec3 high) {
+  int across = (frame.tiles.x + int(flat_cell_side) - 1) / int(flat_cell_side);
+  ivec2 begin = first / int(flat_cell_side), end = last / int(flat_cell_side), cell = begin;
+  while (cell.y <= end.y) {
+    if (!is_alike(light_cells_data[cell.y * across + cell.x], low, high))
+      return false;
+    bool row_ends = cell.x == end.x;
+    cell = row_ends ? ivec2(begin.x, cell.y + 1) : cell + ivec2(1, 0);
+  }
+  return true;
+}
+
+bool tiles_alike(ivec2 first, ivec2 last, vec3 low, vec3 high) {
+  ivec2 tile = first;
+  while (tile.y <= last.y) {
+    if (!is_alike(light_range_data[tile.y * frame.tiles.x + tile.x], low, high))
+      return false;
+    bool row_ends = tile.x == last.x;
+    tile = row_ends ? ivec2(first.x, tile.y + 1) : tile + ivec2(1, 0);
+  }
   return true;
 }
 
@@ -33,7 +47,8 @@ void main() {
   if (reach > flat_most_reach || !is_alike(own, low, high))
     return;
   ivec2 tile = ivec2(index % frame.tiles.x, index / frame.tiles.x);
-  if (!all_alike(max(tile - reach, ivec2(0)), min(tile + reach, frame.tiles - 1), low, high))
+  ivec2 first = max(tile - reach, ivec2(0)), last = min(tile + reach, frame.tiles - 1);
+  if (!cells_alike(first, last, low, high) && !tiles_alike(first, last, low, high))
     return;
   classes_data[index] = class_flat;
   recount_as_flat(d_px);

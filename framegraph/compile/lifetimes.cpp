@@ -9,9 +9,11 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t threads_per_side = 8;    // kernels run 8x8 groups, one per tile
-constexpr uint32_t tiles_per_group = 64;    // DispatchShape::over_tile_grid
-constexpr uint32_t push_constant_bytes = 4; // the port mask, and each setting
+constexpr uint32_t threads_per_side = 8;        // kernels run 8x8 groups, one per tile
+constexpr uint32_t tiles_per_group = 64;        // DispatchShape::over_tile_grid
+constexpr uint32_t block_side = 4;              // tiles; DispatchShape::over_tile_blocks
+constexpr uint32_t transfer_source_usage = 0x1; // VK_IMAGE_USAGE_TRANSFER_SRC_BIT, the same bit for buffers
+constexpr uint32_t push_constant_bytes = 4;     // the port mask, and each setting
 
 void add_settings(CompileContext& c, PassId pass, PlanPass& planned) {
   const PassDeclaration& declared = c.graph->passes[pass.value];
@@ -45,6 +47,8 @@ bool check_limits(CompileContext& c, PassId pass) {
   const auto tiles = [](uint32_t side) { return (uint64_t{side} + threads_per_side - 1) / threads_per_side; };
   const uint64_t across = tiles(c.input->view_width), down = tiles(c.input->view_height);
   uint64_t groups = 1;
+  if (kind.dispatch == DispatchShape::over_tile_blocks)
+    groups = (std::max(across, down) + block_side - 1) / block_side;
   if (kind.dispatch == DispatchShape::over_view) groups = std::max(across, down);
   if (kind.dispatch == DispatchShape::over_tile_grid)
     groups = (across * down + tiles_per_group - 1) / tiles_per_group;
@@ -126,7 +130,8 @@ void gather_usage(CompileContext& c) {
     if (!c.facts[i].history) continue;
     Lifetime& life = c.lifetimes[i];
     if (life.deepest_read > 0)
-      life.vk_usage |= usage_info(Usage::clear).vk_usage; // instances start from zero
+      // Instances start from zero, or from what another plan of the graph kept.
+      life.vk_usage |= usage_info(Usage::clear).vk_usage | transfer_source_usage;
     explain_history(c, i, life);
   }
   if (!c.input->poison) return;

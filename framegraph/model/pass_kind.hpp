@@ -44,13 +44,14 @@ struct KindSetting {
 };
 
 enum class DispatchShape : uint8_t {
-  over_view,      // one 8x8 group per tile of the render rectangle
-  over_tiles,     // indirect: one group per listed tile, from the port with usage indirect_arguments
-  over_tile_grid, // one 64-invocation group per 64 tiles of the render rectangle
-  over_written,   // one 8x8 group per 8x8 texels of the first image that the kind writes
-  single_group,   // one group
-  none,           // not a dispatch (clear)
-  host            // the host records it
+  over_view,        // one 8x8 group per tile of the render rectangle
+  over_tiles,       // indirect: one group per listed tile, from the port with usage indirect_arguments
+  over_tile_grid,   // one 64-invocation group per 64 tiles of the render rectangle
+  over_tile_blocks, // one 64-invocation group per 4x4 tiles of the render rectangle
+  over_written,     // one 8x8 group per 8x8 texels of the first image that the kind writes
+  single_group,     // one group
+  none,             // not a dispatch (clear)
+  host              // the host records it
 };
 
 struct PassKind {

@@ -118,6 +118,8 @@ struct HostImage {
   HostState before, after;
 };
 
+class Executor;
+
 struct FrameInput {
   VkCommandBuffer command_buffer =
       VK_NULL_HANDLE;                         // recording, outside a render pass, of Device::queue_family
@@ -126,8 +128,11 @@ struct FrameInput {
   std::span<const SettingValue> settings;     // one per Graph::settings; empty: those of the plan
   Rectangle rectangle;                        // width 0: the allocated view size
   uint64_t frame_index = 1;                   // grows; the frame `frame_index - frames_in_flight` is finished
-  bool taken_over = false;    // frames ran elsewhere since the last record: the pool's memory was used by
-                              // others, and histories start anew
+  bool taken_over = false; // frames ran elsewhere since the last record: the pool's memory was used by
+                           // others, and histories start anew but for what `before` kept
+  const Executor* before =
+      nullptr; // with taken_over: recorded the frame before, another plan of the same graph. What
+               // both keep is copied from it; it must live until the device has finished
   bool reset_history = false; // camera cut: histories with on_cut invalidate become invalid
   // By plan pass, not 0: the pass does not run, only its barriers are recorded. Histories start anew in the
   // frame after such a one. Shorter: the rest runs. What runs must not read what a pass that is left out
@@ -172,7 +177,8 @@ public:
 
   // State of history `index` (Plan::histories) as the next recorded frame sees it; give `reset_history` as
   // that frame will. One thread at a time per executor.
-  HistoryState history_state(uint32_t index, bool reset_history = false) const noexcept;
+  HistoryState history_state(uint32_t index, bool reset_history = false,
+                             const Executor* before = nullptr) const noexcept;
   uint32_t history_count() const noexcept;
   // Rectangle of the frame recorded last; that is what histories cover. Width 0: none yet.
   Rectangle previous_rectangle() const noexcept;

@@ -29,10 +29,12 @@ choice::Calibration default_calibration() {
   return read ? std::move(*read) : choice::Calibration{};
 }
 
-choice::FrameLoad load_of(const subsurface::FrameCounters& counters, uint64_t view_tiles) {
+choice::FrameLoad load_of(const subsurface::FrameCounters& counters, uint64_t view_tiles,
+                          uint64_t view_blocks) {
   const uint64_t listed = std::min<uint64_t>(view_tiles, uint64_t{counters.scattering_tiles} +
                                                              counters.copied_tiles + counters.flat_tiles);
-  return {view_tiles, listed, counters.scattering_tiles == 0 ? listed : 0, counters.sample_units};
+  return {view_tiles, listed, counters.scattering_tiles == 0 ? listed : 0, counters.sample_units,
+          view_blocks};
 }
 
 uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
@@ -46,7 +48,7 @@ uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
 
 void count_groups(const choice::Outcome& outcome, std::span<const uint8_t> serve_scattering,
                   FrameChoice& frame) {
-  const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles);
+  const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles, frame.view_blocks);
   for (size_t p = 0; p < outcome.passes.size(); ++p) {
     if (!outcome.passes[p].launches || (frame.left_out && serve_scattering[p] != 0)) continue;
     ++frame.dispatches;
@@ -59,7 +61,7 @@ FrameChoice& place_of(Chooser& chooser, uint64_t frame_index) {
 }
 
 void learn(Chooser& chooser, const choice::Outcome& outcome, FrameChoice& frame) {
-  const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles);
+  const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles, frame.view_blocks);
   frame.measured_ms = 0;
   for (size_t p = 0; p < outcome.passes.size(); ++p) {
     const double ms = static_cast<double>(chooser.times[p].nanoseconds) / ns_per_ms;
@@ -81,7 +83,8 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
       executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
   count_groups(outcome, program.variants[outcome.plan].serve_scattering, frame);
   if (!frame.left_out)
-    frame.metered_ms = metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles)).ms;
+    frame.metered_ms =
+        metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles, frame.view_blocks)).ms;
   if (counted && frame.timed) learn(chooser, outcome, frame);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
@@ -123,12 +126,13 @@ void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index)
       observe_frame(chooser, program, frame);
 }
 
-FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles,
+FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles, uint64_t view_blocks,
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept {
-  choice::FrameLoad load{view_tiles, view_tiles, 0, 0}; // nothing counted yet: all of the view may scatter
+  choice::FrameLoad load{view_tiles, view_tiles, 0, 0,
+                         view_blocks}; // nothing counted yet: all of the view may scatter
   double d_px = assumed_d_px;
   if (chooser.counted) {
-    load = load_of(chooser.counters, view_tiles);
+    load = load_of(chooser.counters, view_tiles, view_blocks);
     if (chooser.counters.scattering_tiles > 0) d_px = subsurface::mean_d_px(chooser.counters);
   }
   for (size_t i = 0; i < program.outcomes.size(); ++i) {
@@ -145,6 +149,7 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view
   FrameChoice frame;
   frame.program = program.serial;
   frame.view_tiles = view_tiles;
+  frame.view_blocks = view_blocks;
   frame.expected_tiles = load.listed_tiles;
   frame.budget_ms = chooser.budget_ms;
   if (chooser.budget_ms > 0)

@@ -26,7 +26,7 @@ struct FrameChoice {
   uint32_t switches = 0; // since the graph began
   double budget_ms = 0;  // 0: none
   choice::Forecast forecast;
-  uint64_t view_tiles = 0;
+  uint64_t view_tiles = 0, view_blocks = 0;
   bool first_of_plan =
       false;             // drivers finish kernels when they first run: nothing is learned from such a frame
   bool left_out = false; // its bounds were empty: passes that serve scattering did not run
@@ -73,10 +73,10 @@ void describe_program(Chooser& chooser, const KindRegistry& kinds, Program& prog
 // Learns from frames of `program` that the device has finished. Allocates nothing.
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;
 
-// The outcome for a frame whose render rectangle has `view_tiles` tiles, with what is expected of it;
-// remembered by remember() once the frame is recorded. Allocates nothing. Changes `chooser` only through
-// remember().
-FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles,
+// The outcome for a frame whose render rectangle has `view_tiles` tiles and `view_blocks` of 4x4, with what
+// is expected of it; remembered by remember() once the frame is recorded. Allocates nothing. Changes
+// `chooser` only through remember().
+FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles, uint64_t view_blocks,
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
 

@@ -259,16 +259,16 @@ dermis_result check_frame(const dermis_graph_t& graph, Program& program, const d
 }
 
 dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, uint32_t outcome,
-                         bool taken_over, uint32_t sample_units, const dermis_frame& frame,
+                         const vulkan::Executor* before, uint32_t sample_units, const dermis_frame& frame,
                          CheckedFrame& checked) {
   const Log& log = graph.context->log;
   const vulkan::Executor& executor = *program.variants[program.outcomes[outcome].plan].executor;
   const bool reset = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
-  bool history_invalid = taken_over;
+  bool history_invalid = false;
   for (uint32_t i = 0; i < executor.history_count(); ++i)
-    history_invalid = history_invalid || !executor.history_state(i, reset).valid;
-  if (!fill_constants(frame, program, executor, checked.input.rectangle, checked.bounds, history_invalid,
-                      checked.constants))
+    history_invalid = history_invalid || !executor.history_state(i, reset, before).valid;
+  if (!fill_constants(frame, program, before != nullptr ? *before : executor, checked.input.rectangle,
+                      checked.bounds, history_invalid, checked.constants))
     return bad_argument(
         log,
         "{}: clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic "
@@ -281,7 +281,8 @@ dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, ui
   checked.input.settings = program.outcomes[outcome].settings;
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
-  checked.input.taken_over = taken_over;
+  checked.input.taken_over = before != nullptr;
+  checked.input.before = before;
   checked.history_invalid = history_invalid;
   if (checked.bounds[2] == 0 || checked.bounds[3] == 0)
     checked.input.left_out = program.variants[program.outcomes[outcome].plan].serve_scattering;

@@ -20,7 +20,7 @@ dermis_result check_frame(const dermis_graph_t& graph, Program& program, const d
 // The rest of `checked`, for one outcome of the program. `taken_over`: its variant did not record the last
 // frame. `sample_units`: as FrameConstants.
 dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, uint32_t outcome,
-                         bool taken_over, uint32_t sample_units, const dermis_frame& frame,
+                         const vulkan::Executor* before, uint32_t sample_units, const dermis_frame& frame,
                          CheckedFrame& checked);
 
 } // namespace dermis::abi

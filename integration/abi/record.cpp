@@ -20,8 +20,10 @@ void take_over(dermis_graph_t& graph) {
   graph.running = std::move(graph.next);
 }
 
-uint64_t tiles_of(const vulkan::Rectangle& rectangle) {
-  constexpr uint64_t side = 8;
+constexpr uint64_t tile_side = 8, block_side = 32; // pixels
+
+// Squares of `side` pixels.
+uint64_t squares_of(const vulkan::Rectangle& rectangle, uint64_t side) {
   return (rectangle.width + side - 1) / side * ((rectangle.height + side - 1) / side);
 }
 
@@ -41,14 +43,18 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   if (graph.running) observe(chooser, *graph.running, frame.completed_frame_index);
   choice::DecisionState state =
       program.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
-  FrameChoice chosen = choose(chooser, program, tiles_of(checked.input.rectangle), chooser.forecasts, state);
+  const vulkan::Rectangle& seen = checked.input.rectangle;
+  FrameChoice chosen = choose(chooser, program, squares_of(seen, tile_side), squares_of(seen, block_side),
+                              chooser.forecasts, state);
   if (!chooser.counted) state = {}; // decided for a view full of subsurface: no reason to stay
   chosen.frame_index = frame.frame_index;
   const uint32_t variant = program.outcomes[chosen.outcome].plan;
   chosen.first_of_plan = !program.variants[variant].recorded;
-  const bool taken_over = program.last_frame > 0 && variant != program.outcomes[program.outcome].plan;
+  const uint32_t last = program.outcomes[program.outcome].plan;
+  const vulkan::Executor* before =
+      program.last_frame > 0 && variant != last ? program.variants[last].executor.get() : nullptr;
   if (const dermis_result result =
-          fill_frame(graph, program, chosen.outcome, taken_over, chosen.sample_units, frame, checked);
+          fill_frame(graph, program, chosen.outcome, before, chosen.sample_units, frame, checked);
       result != DERMIS_OK)
     return result;
   chosen.left_out = !checked.input.left_out.empty();

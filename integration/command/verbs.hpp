@@ -126,12 +126,17 @@ struct RenderOptions {
   bool metered = false;    // judge times by the calibration alone
   std::string calibration; // file of dermis calibrate; "": the library's own
   bool taa = false;        // temporal anti-aliasing in the engine
-  bool debug = false;      // also pictures of what the graph sampled
+  enum class Debug : uint8_t {
+    none,
+    samples,
+    skips
+  } debug = Debug::none; // also pictures of what the graph did
 };
 ExitCode render(const Session& session, const RenderOptions& options);
 
 struct CalibrateOptions {
   std::string graph = "configs/graphs/skin.json", scene = "configs/scenes/bust.json", out = "-";
+  std::string calibration; // file that it begins from; "": the library's own
   GraphParts parts;
   Size size{640, 360};
   uint32_t frames = 16; // of each combination of choices at each distance

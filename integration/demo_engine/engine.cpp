@@ -176,6 +176,10 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
     done = read(host, renderer[Target::sampling], 4, out.sampling);
     if (!done) return done.error();
   }
+  if (session.dermis && hands_out_skips(*session.dermis)) {
+    done = read(host, renderer[Target::skips], 2, out.skips);
+    if (!done) return done.error();
+  }
   done = read(host, session.taa ? taa_result(*session.taa) : renderer[Target::color], 3, out.color);
   if (!done) return done.error();
   out.display = tonemap(out.color);
@@ -229,7 +233,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
     auto made =
         create_dermis_host(**host, {options.graph, info.profiles, options.settings, options.width,
                                     options.height, options.overlays, options.include, options.budget_ms,
-                                    options.metered, options.calibration, options.sampling});
+                                    options.metered, options.calibration, options.sampling, options.skips});
     if (!made) return made.error();
     dermis = made.take();
     desc.more_usage = usage_for_graph(*dermis);

@@ -44,6 +44,7 @@ struct RenderOptions {
   bool jitter = false;         // sub-pixel camera jitter (Halton 2, 3; period 8)
   bool taa = false;            // temporal anti-aliasing of `color`, with jitter
   bool sampling = false;       // hand out what the graph says of its samples
+  bool skips = false;          // and of what it left out
   bool validation = false;     // run under the Khronos validation layer
   std::string device;          // part of the device's name; "" = choose
   std::optional<CameraPlace> camera;
@@ -119,7 +120,9 @@ struct FrameOutputs {
                         // "scattered_light"
   FloatImage sampling;  // 4: samples, those behind history, confidence or spread, 1 where a surface was new;
                         // anything where there is no subsurface. Empty unless asked for and exported
-  FloatImage color;     // 3: linear radiance times exposure
+  FloatImage skips; // 2: class of the tile (0 nothing, 1 scatters, 2 below a pixel, 3 flat light), profile
+                    // id. Empty unless asked for and exported
+  FloatImage color;                   // 3: linear radiance times exposure
   std::vector<uint8_t> display;       // RGB, tonemapped and sRGB encoded
   std::vector<PassTime> host_times;   // shadows, gbuffer, lighting, composite
   std::optional<FrameChoice> choice;  // none without Dermis

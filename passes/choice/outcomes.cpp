@@ -71,6 +71,9 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
   case DispatchShape::over_tile_grid:
     load.groups = PassLoad::Groups::tile_grid;
     break;
+  case DispatchShape::over_tile_blocks:
+    load.groups = PassLoad::Groups::tile_blocks;
+    break;
   case DispatchShape::over_written:
     if (const PlanResource* image = first_written_image(plan, pass, kind))
       load.count = tiles_along(image->width) * tiles_along(image->height);
@@ -248,6 +251,8 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
   switch (pass.groups) {
   case PassLoad::Groups::view_tiles:
     return load.view_tiles;
+  case PassLoad::Groups::tile_blocks:
+    return load.view_blocks;
   case PassLoad::Groups::tile_grid:
     return (load.view_tiles + tiles_per_group - 1) / tiles_per_group;
   case PassLoad::Groups::listed_tiles:

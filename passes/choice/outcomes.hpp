@@ -23,6 +23,7 @@ struct PassLoad {
     fixed,
     view_tiles,
     tile_grid,
+    tile_blocks,
     listed_tiles,
     copied_tiles,
     sample_units
@@ -71,6 +72,7 @@ struct FrameLoad {
   uint64_t listed_tiles = 0; // of them with subsurface
   uint64_t copied_tiles = 0; // where none scatters: all of them; else 0
   uint64_t sample_units = 0; // that subsurface.allot spends
+  uint64_t view_blocks = 0;  // 4x4 tiles of the render rectangle
 };
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
 // By the calibration alone, as on any other machine; no spread.

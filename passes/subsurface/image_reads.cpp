@@ -45,13 +45,14 @@ double largest_share(const ReadsQuestion& question, int64_t variant, uint32_t ro
   return largest;
 }
 
-// Material, depth; where light is looked at, that and what scales it.
+// Material; where there is some, depth; where it scatters and light is looked at, that and what scales it.
 ImageReads classify(const PassKind& kind, const ReadsQuestion& question) {
   const double ranged = one_if(kind, question, "lighting", PortSide::read) *
                         one_if(kind, question, "light_range", PortSide::write);
   const bool textured = setting(kind, question, "texturing") != 0;
-  return {2 + scale_read(kind, question) +
-          ranged * (1 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0))};
+  const double light = 1 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0);
+  return {1 + question.subsurface_share * (1 + scale_read(kind, question)) +
+          question.scattering_share * ranged * light};
 }
 
 ImageReads none(const PassKind&, const ReadsQuestion&) {
@@ -218,6 +219,11 @@ ImageReads mend(const PassKind&, const ReadsQuestion& question) {
   return {3 + 3 * samples * question.sampled_share, samples};
 }
 
+// Material.
+ImageReads skips(const PassKind&, const ReadsQuestion&) {
+  return {1};
+}
+
 struct Entry {
   std::string_view kind;
   ImageReads (*reads)(const PassKind&, const ReadsQuestion&);
@@ -227,6 +233,7 @@ constexpr Entry entries[] = {
     {"subsurface.tile_list", none},
     {"subsurface.flat", none},
     {"subsurface.copy", copy},
+    {"subsurface.skips", skips},
     {"subsurface.setup", setup},
     {"subsurface.burley", burley},
     {"subsurface.separable", separable},

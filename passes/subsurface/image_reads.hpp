@@ -21,6 +21,8 @@ struct ReadsQuestion {
       sap_tables; // make_sap_tables({true, true}, {}); only kinds of the pyramid look at them
   double sampled_share =
       1; // of the pixels, those that take samples in this frame, where a kind does not in all
+  double subsurface_share = 1; // of the pixels of the view, those with subsurface,
+  double scattering_share = 1; // and those in tiles that scatter further than a pixel
 };
 
 struct ImageReads {

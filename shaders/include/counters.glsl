@@ -18,9 +18,14 @@ uint counter_steps(float d_px) {
   return uint(clamp(steps, 0.0, 32.0 * counter_log2_steps - 1.0));
 }
 
-void count_scattering_tile(float d_px) {
-  atomicAdd(counters.scattering_tiles, 1u);
-  atomicAdd(counters.log2_d_sum, counter_steps(d_px));
+// `steps`: the sum of counter_steps over the scattering tiles.
+void count_tiles(uint scattering, uint copied, uint steps) {
+  if (scattering != 0u) {
+    atomicAdd(counters.scattering_tiles, scattering);
+    atomicAdd(counters.log2_d_sum, steps);
+  }
+  if (copied != 0u)
+    atomicAdd(counters.copied_tiles, copied);
 }
 // What counted as scattering turned out to be flat in light.
 void recount_as_flat(float d_px) {

@@ -55,6 +55,21 @@ TEST_F(Render, TheValidationLayerHasNothingToSay) {
   EXPECT_TRUE(is_json(outcome.out)) << outcome.out; // a message of the layer would stand beside it
 }
 
+TEST_F(Render, DebugPicturesShowWhatWasSkippedOnTopOfAnyGraph) {
+  for (const char* graph : {burley, "configs/graphs/skin.json"}) {
+    const Outcome outcome = render(bust, graph, {"--frames", "1", "--subset", "0", "--debug", "skips"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(files("out"), Contains("debug_0000.png")) << graph;
+  }
+}
+
+TEST_F(Render, ADebugPictureThatIsNotKnownIsAUsageError) {
+  const Outcome outcome = render(bust, burley, {"--debug", "colours"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--debug"), HasSubstr("skips")));
+  EXPECT_THAT(files("out"), IsEmpty());
+}
+
 TEST_F(Render, WhatTheGraphSawCanBeAppliedAgain) {
   const Outcome captured =
       render(bust, burley, {"--frames", "2", "--subset", "0", "--capture", path("capture")});

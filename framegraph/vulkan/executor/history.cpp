@@ -45,9 +45,15 @@ uint32_t Executor::history_count() const noexcept {
   return static_cast<uint32_t>(state_->histories.size());
 }
 
-HistoryState Executor::history_state(uint32_t index, bool reset_history) const noexcept {
+HistoryState Executor::history_state(uint32_t index, bool reset_history,
+                                     const Executor* before) const noexcept {
   if (index >= state_->histories.size()) return {};
   const HistoryRecord& record = state_->histories[index];
+  if (before != nullptr) {
+    const CarriedHistory carried = carried_history(*state_, index, *before->state_, reset_history);
+    return {record.name, carried.age > 0, carried.age,
+            carried.age > 0 ? HistoryReason::valid : HistoryReason::switched};
+  }
   const HistoryDeclaration& declaration = state_->plan.histories[index].declaration;
   if (reset_history && declaration.on_cut == HistoryDeclaration::OnCut::invalidate)
     return {record.name, false, 0, HistoryReason::cut};

@@ -9,6 +9,7 @@ namespace {
 
 constexpr uint32_t tile_side = 8;        // pixels; kernels over the view run 8x8 groups
 constexpr uint64_t tiles_per_group = 64; // DispatchShape::over_tile_grid
+constexpr uint32_t block_side = 4;       // tiles; DispatchShape::over_tile_blocks
 
 constexpr uint32_t tiles_along(uint32_t pixels) {
   return (pixels + tile_side - 1) / tile_side;
@@ -123,6 +124,10 @@ void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, co
     vk.vkCmdDispatch(commands, static_cast<uint32_t>((tiles + tiles_per_group - 1) / tiles_per_group), 1, 1);
     break;
   }
+  case DispatchShape::over_tile_blocks:
+    vk.vkCmdDispatch(commands, (across + block_side - 1) / block_side, (down + block_side - 1) / block_side,
+                     1);
+    break;
   case DispatchShape::over_written: {
     const VkExtent2D size = first_written_size(state, pass);
     if (size.width > 0) vk.vkCmdDispatch(commands, tiles_along(size.width), tiles_along(size.height), 1);
@@ -233,13 +238,16 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);
   if (frame.reset_history) invalidate_for_cut(state);
 
+  if (frame.taken_over) {
+    forget_histories(state, HistoryReason::switched);
+    if (frame.before != nullptr) carry_ages(state, *frame.before->state_, frame.reset_history);
+  }
   write_frame_constants(state, frame_slot, frame.frame_constants);
   clear_counters(state, frame_slot);
   write_descriptors(state, frame_slot, frame.images);
-  if (frame.taken_over) {
-    forget_histories(state, HistoryReason::switched);
-    record_memory_takeover(state, frame);
-  }
+  if (frame.taken_over) record_memory_takeover(state, frame);
+  if (frame.taken_over && frame.before != nullptr)
+    record_carried(state, *frame.before->state_, commands, frame.reset_history);
   begin_timestamps(state, commands, frame_slot);
   record_acquires(state, frame);
   record_initialisation(state, commands);

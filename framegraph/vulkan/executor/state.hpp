@@ -216,6 +216,18 @@ void record_releases(State& state, const FrameInput& frame) noexcept; // and fro
 // Every history starts anew at the next record.
 void forget_histories(State& state, HistoryReason reason) noexcept;
 
+// ---- carry.cpp
+struct CarriedHistory {
+  uint32_t history = no_index; // into the other's State::histories
+  uint32_t age = 0;            // 0: nothing can be used
+};
+// What `from`, which recorded the frame before, keeps of history `index` of `to`: the same resource of the
+// same size and format. `reset`: the camera cut.
+CarriedHistory carried_history(const State& to, uint32_t index, const State& from, bool reset) noexcept;
+void carry_ages(State& to, const State& from,
+                bool reset) noexcept; // before anything is written for the frame
+void record_carried(State& to, const State& from, VkCommandBuffer commands, bool reset) noexcept;
+
 // ---- host_pass.cpp
 Error check_host_passes(State& state, const ExecutorInput& input); // and makes room for their calls
 SettingValue value_of(const State& state, const FrameInput& frame, const PlanPass& planned,

@@ -105,6 +105,7 @@ struct Checker {
       break;
     case DispatchShape::over_tiles:
     case DispatchShape::over_tile_grid:
+    case DispatchShape::over_tile_blocks:
       if (invocations != tile_invocations) refuse("64 invocations");
       break;
     case DispatchShape::single_group:

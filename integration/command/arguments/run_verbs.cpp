@@ -2,6 +2,7 @@
 #include "integration/command/arguments/add_verb.hpp"
 
 #include <cstdio>
+#include <map>
 
 namespace dermis::tools {
 namespace {
@@ -61,9 +62,14 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_flag(
             "--taa", options.taa,
             "Temporal anti-aliasing in the engine, after the graph: sub-pixel jitter (Halton 2, 3)");
-        verb.add_flag("--debug", options.debug,
-                      "Also pictures debug_NNNN.png: green where the graph sampled, red where a surface had "
-                      "no past, black where nothing scatters");
+        static const std::map<std::string, RenderOptions::Debug> views{
+            {"samples", RenderOptions::Debug::samples}, {"skips", RenderOptions::Debug::skips}};
+        verb.add_option(
+                "--debug", options.debug,
+                "Also pictures debug_NNNN.png. samples: green where the graph sampled, red where a "
+                "surface had no past. skips: green tiles scatter, blue ones are below a pixel, yellow "
+                "ones flat in light, grey ones have no subsurface")
+            ->transform(CLI::CheckedTransformer(views).description("VIEW"));
         verb.add_option("--subset", options.subset,
                         "Pixels of the last frame compared with the truth; 0: none [4096]")
             ->check(CLI::Range(0u, max_subset));
@@ -107,6 +113,10 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("graph", options.graph, "Graph file [configs/graphs/skin.json]")->type_name("FILE");
         verb.add_option("--scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
         verb.add_option("--out,-o", options.out, "File, or - for standard output [-]")->type_name("FILE");
+        verb.add_option("--calibration", options.calibration,
+                        "File of an earlier run to begin from: what this graph does not run stays as it is "
+                        "there [the library's own]")
+            ->type_name("FILE");
         verb.add_option("--frames,-n", options.frames,
                         "Frames of each combination of choices, near and far [16]")
             ->check(CLI::Range(2u, max_frames));

@@ -5,6 +5,7 @@
 #include "integration/command/output.hpp"
 #include "integration/command/run/choice_sets.hpp"
 #include "integration/demo_engine/engine.hpp"
+#include "integration/demo_engine/files.hpp"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,11 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   const auto steps = static_cast<uint32_t>(all.size() * std::size(places));
   Progress progress(progress_style(session.quiet, session.json), "calibrate", "run", steps);
   std::string calibration, device;
+  if (!options.calibration.empty()) {
+    auto text = demo::read_text_file(options.calibration);
+    if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
+    calibration = text.take();
+  }
   uint32_t done = 0;
   for (const demo::CameraPlace& place : places)
     for (const auto& values : all) {

@@ -18,6 +18,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace dermis::tools {
@@ -84,6 +85,23 @@ std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
   return rgb;
 }
 
+// By the class of a pixel's tile, in the picture's own light: grey has no subsurface in it, green scatters,
+// blue is below a pixel, yellow flat in light.
+std::vector<uint8_t> skips_picture(const demo::FrameOutputs& frame) {
+  constexpr std::array<std::array<float, 3>, 4> tints{
+      {{0.25f, 0.25f, 0.25f}, {0.3f, 1, 0.3f}, {0.3f, 0.3f, 1}, {1, 1, 0.3f}}};
+  constexpr float least = 64; // of 255, so that dark tiles can be told apart, too
+  std::vector<uint8_t> rgb(frame.display.size());
+  for (size_t i = 0; i < rgb.size() / 3; ++i) {
+    const auto tile = std::min(static_cast<size_t>(frame.skips.texels[2 * i]), tints.size() - 1);
+    const float floor = tile == 0 ? 0 : least;
+    for (size_t c = 0; c < 3; ++c)
+      rgb[3 * i + c] = static_cast<uint8_t>(tints[tile][c] *
+                                            (floor + (255 - floor) / 255 * float(frame.display[3 * i + c])));
+  }
+  return rgb;
+}
+
 demo::Result<> write_pictures(Run& run, const demo::FrameOutputs& frame) {
   std::string problem;
   const auto name = [&](const char* what, const char* extension) {
@@ -97,6 +115,9 @@ demo::Result<> write_pictures(Run& run, const demo::FrameOutputs& frame) {
     return cannot_write(problem);
   if (!frame.sampling.texels.empty() && !write_png(name("debug", "png"), frame.color.width,
                                                    frame.color.height, sampling_picture(frame), problem))
+    return cannot_write(problem);
+  if (!frame.skips.texels.empty() &&
+      !write_png(name("debug", "png"), frame.color.width, frame.color.height, skips_picture(frame), problem))
     return cannot_write(problem);
   return demo::success();
 }
@@ -209,7 +230,10 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.budget_ms = options.budget_ms;
   engine.metered = options.metered;
   engine.taa = options.taa;
-  engine.sampling = options.debug;
+  engine.sampling = options.debug == RenderOptions::Debug::samples;
+  engine.skips = options.debug == RenderOptions::Debug::skips;
+  GraphParts parts = options.parts;
+  if (engine.skips) parts.overlays.emplace_back("configs/overlays/skips.json");
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
@@ -220,7 +244,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   bool textured = false, transmission = false;
   if (options.graph != no_graph) {
     Diagnostics diagnostics;
-    const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+    const std::optional<LoadedGraph> loaded = load_graph(options.graph, parts, diagnostics);
     if (!loaded) return fail_graph(session, options.graph, diagnostics);
     const CompileChoices choices = read_choices(loaded->graph, options.settings);
     if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);

@@ -210,7 +210,8 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   std::vector<std::string> unbound;
   for (const dermis_slot& slot : host->slots) {
     const auto target = target_of(slot.name);
-    if (target && (target != Target::sampling || desc.sampling)) continue;
+    if (target && (target != Target::sampling || desc.sampling) && (target != Target::skips || desc.skips))
+      continue;
     if (slot.required)
       return Error{
           ErrorKind::input,
@@ -259,6 +260,10 @@ bool hands_out_light(const DermisHost& host) {
 
 bool hands_out_sampling(const DermisHost& host) {
   return writes(host, Target::sampling);
+}
+
+bool hands_out_skips(const DermisHost& host) {
+  return writes(host, Target::skips);
 }
 
 Scattering scattering_of(const DermisHost& host) {

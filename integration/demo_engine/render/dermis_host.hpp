@@ -22,6 +22,7 @@ struct DermisDesc {
   bool metered = false;
   std::string calibration = {};
   bool sampling = false; // bind `sampling`, which costs the graph a write
+  bool skips = false;    // the same of `skips`
 };
 
 struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h
@@ -40,6 +41,7 @@ std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& ho
 Scattering scattering_of(const DermisHost& host);
 bool hands_out_light(const DermisHost& host);
 bool hands_out_sampling(const DermisHost& host);
+bool hands_out_skips(const DermisHost& host);
 const std::vector<std::string>& warnings_of(const DermisHost& host);
 
 // Records the graph between lighting and composite. All targets rest before and after. frame_index from 1.

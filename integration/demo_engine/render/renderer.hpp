@@ -29,8 +29,9 @@ enum class Target : uint8_t {
   thickness,     // metres, of the light that brings most through from behind
   back_lighting, // its irradiance on the far side
   sampling,      // what the graph says of its samples, if it is asked to
+  skips,         // the same of what it left out
 };
-inline constexpr size_t target_count = 14;
+inline constexpr size_t target_count = 15;
 
 struct TargetInfo {
   std::string_view slot;

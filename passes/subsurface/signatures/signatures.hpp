@@ -6,7 +6,7 @@
 
 namespace dermis::subsurface {
 
-extern const PassKind classify_kind, flat_kind, tile_list_kind; // tile_signatures.cpp
+extern const PassKind classify_kind, flat_kind, tile_list_kind, skips_kind; // tile_signatures.cpp
 extern const PassKind setup_kind, combine_kind, light_kind, copy_kind,
     transmission_kind;                                                            // light_signatures.cpp
 extern const PassKind burley_kind, fixed_kind, separable_kind;                    // scatter_signatures.cpp

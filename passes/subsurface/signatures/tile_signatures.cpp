@@ -9,6 +9,8 @@ namespace {
 constexpr std::string_view light_range_doc =
     "per tile: the least and the greatest light that can scatter, and the widest d (light_range.glsl)";
 
+constexpr std::string_view light_cells_doc = "the same of each 4x4 tiles, row by row";
+
 constexpr Port classify_ports[] = {
     port::material,
     port::depth,
@@ -17,7 +19,7 @@ constexpr Port classify_ports[] = {
      Usage::sampled_image,
      true,
      "texture2D",
-     "diffuse irradiance before albedo, linear; for light_range",
+     "diffuse irradiance before albedo, linear; for light_range and light_cells",
      {}},
     port::albedo,
     {"classes",
@@ -28,11 +30,13 @@ constexpr Port classify_ports[] = {
      "(copy), 3 = flat in light (copy)",
      {}},
     {"light_range", Usage::storage_buffer_write, true, "uvec4", light_range_doc, {}},
+    {"light_cells", Usage::storage_buffer_write, true, "uvec4", light_cells_doc, {}},
 };
 constexpr KindSetting classify_settings[] = {setting::texturing};
 
 constexpr Port flat_ports[] = {
     {"light_range", Usage::storage_buffer_read, false, "uvec4", light_range_doc, {}},
+    {"light_cells", Usage::storage_buffer_read, false, "uvec4", light_cells_doc, {}},
     {"classes", Usage::storage_buffer_update, false, "uint", "as subsurface.classify writes them", {}},
 };
 
@@ -40,6 +44,18 @@ constexpr Port tile_list_ports[] = {
     {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
     {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
     {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
+};
+
+constexpr Port skips_ports[] = {
+    {"classes",
+     Usage::storage_buffer_read,
+     false,
+     "uint",
+     "as subsurface.classify and subsurface.flat write them",
+     {}},
+    port::material,
+    {"skips", Usage::storage_image_write, true, "image2D",
+     "for tools: class of the pixel's tile, its profile id, 0, 1", port::sampling_formats},
 };
 
 } // namespace
@@ -50,7 +66,7 @@ const PassKind classify_kind{
     .doc = "Classifies 8x8 tiles by material and projected scattering radius.",
     .ports = classify_ports,
     .settings = classify_settings,
-    .dispatch = DispatchShape::over_view,
+    .dispatch = DispatchShape::over_tile_blocks,
     .side_effects = false,
 };
 
@@ -61,6 +77,16 @@ const PassKind flat_kind{
     .ports = flat_ports,
     .settings = {},
     .dispatch = DispatchShape::over_tile_grid,
+    .side_effects = false,
+};
+
+const PassKind skips_kind{
+    .name = "subsurface.skips",
+    .shader = "subsurface_skips",
+    .doc = "Shows tools what each tile was left out as.",
+    .ports = skips_ports,
+    .settings = {},
+    .dispatch = DispatchShape::over_view,
     .side_effects = false,
 };
 

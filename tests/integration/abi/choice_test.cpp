@@ -2,6 +2,7 @@
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dermis::abi_test {
@@ -125,6 +126,85 @@ TEST_F(Choice, FlippingEveryFrameKeepsMemoryInOrder) {
     run_frame();
   }
   EXPECT_EQ(texels("lighting"), sap);
+}
+
+struct KeptHistory : Choice {
+  // Light over frames on top of both techniques: its history is the same resource in both plans.
+  void make_accumulating() {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/skin.json");
+    options.overlays = {read_text("configs/overlays/accumulate.json")};
+    options.unbound.emplace_back("velocity");
+    graph = make_graph(options);
+    ASSERT_NE(graph, nullptr);
+    ASSERT_EQ(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr), DERMIS_OK);
+    make_images(graph);
+  }
+  // One frame lit from one side, `light` in the middle: what is flat would be copied. Scattering leaves the
+  // middle of a straight slope as it is.
+  dermis_choice lit_frame(float light, uint32_t flags = 0) {
+    fill("lighting", [&](uint32_t x, uint32_t) { return light * (0.75f + 0.5f * (float(x) + 0.5f) / 64); });
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound);
+    one.flags |= flags;
+    for (size_t i = 0; i < 16; ++i) // the camera rests
+      one.view_from_world[i] = one.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
+    std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view),
+              std::begin(one.previous_clip_from_view));
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    dermis_choice choice = DERMIS_CHOICE_INIT;
+    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    return choice;
+  }
+  float middle() {
+    const auto light = texels("lighting");
+    return (light[4 * (64 * 32 + 31)] + light[4 * (64 * 32 + 32)]) / 2;
+  }
+};
+
+TEST_F(KeptHistory, APlanThatTakesOverReadsWhatTheOtherKept) {
+  make_accumulating();
+  set_budget(0);
+  for (int i = 0; i < 4; ++i)
+    lit_frame(0.25f);
+  EXPECT_NEAR(middle(), 0.25f, 2e-3);
+  set_budget(0.5f); // too little for the pyramid
+  const dermis_choice switched = lit_frame(1);
+  EXPECT_THAT(switched.outcome, HasSubstr("technique=off"));
+  EXPECT_EQ(switched.skips & DERMIS_SKIP_HISTORY, 0u);
+  // The mean of four dark frames and a bright one, and halves' rounding.
+  EXPECT_NEAR(middle(), (4 * 0.25 + 1) / 5, 2e-3);
+  set_budget(0);
+  const dermis_choice back = lit_frame(1);
+  EXPECT_THAT(back.outcome, HasSubstr("technique=sap"));
+  EXPECT_EQ(back.skips & DERMIS_SKIP_HISTORY, 0u);
+  EXPECT_NEAR(middle(), (4 * 0.25 + 2) / 6, 2e-3); // and not what this plan kept four frames ago
+}
+
+TEST_F(KeptHistory, ACutInTheFrameOfTheSwitchForgetsIt) {
+  make_accumulating();
+  set_budget(0);
+  for (int i = 0; i < 4; ++i)
+    lit_frame(0.25f);
+  set_budget(0.5f);
+  const dermis_choice switched = lit_frame(1, DERMIS_FRAME_RESET_HISTORY);
+  EXPECT_NE(switched.skips & DERMIS_SKIP_HISTORY, 0u);
+  EXPECT_NEAR(middle(), 1, 2e-3);
+}
+
+TEST_F(KeptHistory, SwitchingEveryFrameIsAsNotSwitching) {
+  make_accumulating();
+  const auto run = [&](bool switching) {
+    set_budget(0);
+    lit_frame(0.5f, DERMIS_FRAME_RESET_HISTORY);
+    for (int i = 0; i < 8; ++i) {
+      if (switching) set_budget(i % 2 == 0 ? 0.5f : 0.0f);
+      lit_frame(float(i + 1) / 8);
+    }
+    return middle();
+  };
+  // Each of nine frames adds half a step of the halves that light and history are kept in.
+  EXPECT_NEAR(run(false), run(true), 9 * 0.5 / 1024);
 }
 
 TEST_F(Choice, CountsTilesAndTellsHowFarLightGoes) {

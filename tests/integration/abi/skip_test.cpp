@@ -10,7 +10,8 @@ namespace {
 
 // What looks for flat light taken out.
 constexpr const char* without_flat = R"({ "dermis_overlay": 1, "edits": [
-  { "remove": "/passes/flat" }, { "remove": "/passes/classify/write/light_range" } ] })";
+  { "remove": "/passes/flat" }, { "remove": "/passes/classify/write/light_range" },
+  { "remove": "/passes/classify/write/light_cells" } ] })";
 
 struct Skip : DermisTest {
   dermis_graph graph = nullptr;
@@ -137,7 +138,7 @@ TEST_F(Skip, WithNothingOnScreenOnlyTilesAreLookedAt) {
   const auto before = texels("lighting");
   const dermis_choice choice = run_frame();
   EXPECT_EQ(choice.skips, DERMIS_SKIP_NOTHING_SEEN);
-  EXPECT_EQ(choice.groups, 64u + 1 + 1); // classes, flat light by 64 tiles, the list
+  EXPECT_EQ(choice.groups, 4u + 1 + 1); // classes by 4x4 tiles, flat light by 64, the list
   EXPECT_EQ(texels("lighting"), before);
 }
 
@@ -170,6 +171,66 @@ TEST_F(Skip, LightThatOneFarTileBreaksIsNotFlatAsFarAsItReaches) {
   EXPECT_EQ(choice.flat_tiles + choice.scattering_tiles, 64u);
   const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
   EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1));
+}
+
+TEST_F(Skip, FarLightThatDiffersInTheSameCellIsSeenExactlyAsFarAsItReaches) {
+  // Cells of 4x4 tiles are looked at first: what differs in one lies beyond the reach of some of its
+  // neighbours.
+  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
+  for (const uint32_t column : {0u, 1u, 2u, 3u}) {
+    make();
+    fill("lighting", [&](uint32_t x, uint32_t) { return x / 8 == column ? 1.0f : 0.5f; });
+    const dermis_choice choice = run_frame();
+    const uint32_t scattering = std::min(column + reach, 7u) - (column > reach ? column - reach : 0u) + 1;
+    EXPECT_EQ(choice.scattering_tiles, 8 * scattering) << column;
+    EXPECT_EQ(choice.flat_tiles, 64 - 8 * scattering) << column;
+  }
+}
+
+TEST_F(Skip, LightBesideScatteringBelowAPixelDoesNotCountAsFlat) {
+  GraphOptions options;
+  options.text = read_text("configs/graphs/skin.json");
+  options.unbound = {"albedo", "scattered_light"};
+  graph = make_graph(options);
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
+  fill("scatter_scale", [](uint32_t x, uint32_t y) { return x < 8 && y < 8 ? 0.0f : 1.0f; });
+  const dermis_choice choice = run_frame();
+  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
+  EXPECT_EQ(choice.copied_tiles, 1u);
+  EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1) - 1); // its light is not looked at
+}
+
+TEST_F(Skip, BoundsCutTilesWhereverTheyEnd) {
+  // Pixels outside of the bounds count as without subsurface, in the middle of a tile, too.
+  for (const std::array<uint32_t, 4> bounds :
+       {std::array<uint32_t, 4>{3, 5, 1, 1}, {7, 7, 2, 2}, {0, 0, 64, 1}, {33, 0, 30, 64}, {8, 8, 8, 8}}) {
+    make();
+    const dermis_choice choice = run_frame(DERMIS_FRAME_BOUNDS, bounds);
+    const auto tiles = [](uint32_t first, uint32_t count) { return (first + count - 1) / 8 - first / 8 + 1; };
+    EXPECT_EQ(choice.scattering_tiles + choice.flat_tiles,
+              tiles(bounds[0], bounds[2]) * tiles(bounds[1], bounds[3]));
+  }
+}
+
+TEST_F(Skip, ToolsAreShownTheClassOfEachTile) {
+  GraphOptions options;
+  options.text = read_text("configs/graphs/skin.json");
+  options.overlays = {read_text("configs/overlays/skips.json")};
+  graph = make_graph(options);
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  fill("material", [](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.0f; });
+  fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
+  const dermis_choice choice = run_frame();
+  EXPECT_EQ(choice.flat_tiles, 32u);
+  const auto shown = texels("skips");
+  for (uint32_t y = 0; y < 64; ++y)
+    for (uint32_t x = 0; x < 64; ++x) {
+      ASSERT_EQ(shown[4 * (64 * y + x)], x < 32 ? 3.0f : 0.0f) << x << ", " << y; // flat in light
+      ASSERT_EQ(shown[4 * (64 * y + x) + 1], x < 32 ? 1.0f : 0.0f);
+    }
 }
 
 TEST_F(Skip, ScatteringBelowAPixelIsCopiedExactly) {
