@@ -63,57 +63,106 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
 
 float exposed(vec3 light) { return min(dot(light, rec709) * frame.exposure, 1e4); }
 
-void main() {
+// By pixel of the tile: half the difference of its two halves, squared, times its samples; and its profile, 0 where
+// nothing was sampled.
+shared vec2 spreads[64];
+
+// The variance of one sample, which neighbours of a profile share: one pixel's difference alone says little of it.
+float pooled_spread(float id) {
+  vec2 sum = vec2(0.0);
+  for (uint i = 0u; i < 64u; ++i)
+    sum += spreads[i].y == id ? vec2(spreads[i].x, 1.0) : vec2(0.0);
+  return sum.x / sum.y;
+}
+
+struct guided_pixel {
   ivec2 pixel;
+  vec3 light;
+  float depth;
+  uint id; // 0: nothing to sample
+  scatter_profile profile;
+  float alpha;
+};
+
+// Draws two halves of the samples and keeps the square of half their difference, times their number.
+float sample_halves(inout guided_pixel at, int count, uint first) {
+  scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
+  vec3 a = scatter(point, at.profile, at.alpha, at.light, sample_set(0u, count / 2, count, first));
+  vec3 b = scatter(point, at.profile, at.alpha, at.light, sample_set(1u, count / 2, count, first));
+  at.light = 0.5 * (a + b);
+  float half_way = 0.5 * (exposed(a) - exposed(b));
+  return half_way * half_way * float(count);
+}
+
+// Draws samples and follows the moments of what is watched (Algorithms 1 to 3).
+void sample_and_watch(inout guided_pixel at, inout guide_state state, int count, uint first) {
+  scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
+  float g = exposed(at.light);
+  at.light = scatter(point, at.profile, at.alpha, at.light, sample_set(0u, count, count, first));
+  float f = exposed(at.light);
+  if (state.lost)
+    state.moments = moving_covariance(f, g, 0.0, 0.0);
+  float weight = settings.guidance == GUIDANCE_SPVG ? 0.0 : has_moments() ? control_weight(state.moments) : 1.0;
+  float watched = f - weight * g;
+  moving_variance moments = moving_variance(state.lost ? watched : state.mean, state.sd * state.sd);
+  if (!state.lost)
+    moments = add_value(moments, watched, settings.eta);
+  state.mean = moments.mean;
+  state.sd = sqrt(moments.variance);
+  if (has_moments() && !state.lost)
+    state.moments = add_values(state.moments, f, g, settings.eta_cv);
+}
+
+void main() {
+  guided_pixel at;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
-    return;
-  ivec2 texel = texel_of(pixel);
-  uint id = texelFetch(material_image, texel, 0).r;
-  vec4 light = texelFetch(light_image, texel, 0);
-  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  bool listed = listed_pixel(at.pixel, copy_only);
+  ivec2 texel = ivec2(0);
+  at.id = 0u;
+  at.depth = 0.0;
+  at.light = vec3(0.0);
   guide_state state = guide_state(0.0, 0.0, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), false);
   int count = 0;
-  if (id != 0u && !copy_only && depth > 0.0) {
-    float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
-    scatter_profile profile = find_profile(id, scale);
-    if (projected_d(profile.d.w, depth) >= copy_below_d_px) {
-      vec2 footprint = pixel_footprint(depth);
-      state = state_before(pixel, depth, id, length(texelFetch(slope_image, texel, 0).rg * footprint));
-      count = clamped_samples(wanted_samples(state.sd * state.sd, state.mean_count));
-      scatter_point point = scatter_point(pixel, id, depth, view_position(vec2(pixel), depth));
-      vec3 own = light.rgb;
-      uint first = frame.frame_index * frame_stride;
-      float variance = state.sd * state.sd;
-      if (splits()) {
-        count += count & 1;
-        vec3 a = scatter(point, profile, light.a, own, sample_set(0u, count / 2, count, first));
-        vec3 b = scatter(point, profile, light.a, own, sample_set(1u, count / 2, count, first));
-        light.rgb = 0.5 * (a + b);
-        float half_way = 0.5 * (exposed(a) - exposed(b));
-        if (!state.lost)
-          variance = mix(variance, half_way * half_way, settings.eta);
-      } else {
-        light.rgb = scatter(point, profile, light.a, own, sample_set(0u, count, count, first));
-        float f = exposed(light.rgb), g = exposed(own);
-        if (state.lost)
-          state.moments = moving_covariance(f, g, 0.0, 0.0);
-        float weight = settings.guidance == GUIDANCE_SPVG ? 0.0 : has_moments() ? control_weight(state.moments) : 1.0;
-        float watched = f - weight * g;
-        moving_variance moments = moving_variance(state.lost ? watched : state.mean, variance);
-        if (!state.lost)
-          moments = add_value(moments, watched, settings.eta);
-        state.mean = moments.mean;
-        variance = moments.variance;
-        if (has_moments() && !state.lost)
-          state.moments = add_values(state.moments, f, g, settings.eta_cv);
-      }
-      state.sd = sqrt(variance);
-      state.mean_count = state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
+  uint id = 0u;
+  if (listed) {
+    texel = texel_of(at.pixel);
+    id = texelFetch(material_image, texel, 0).r;
+    vec4 light = texelFetch(light_image, texel, 0);
+    at.light = light.rgb;
+    at.alpha = light.a;
+    at.depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    if (id != 0u && !copy_only && at.depth > 0.0) {
+      float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+      at.profile = find_profile(id, scale);
+      if (projected_d(at.profile.d.w, at.depth) >= copy_below_d_px)
+        at.id = id;
     }
   }
-  imageStore(scattered_image, texel, vec4(round_to_half(light.rgb), 1.0));
-  vec2 place = vec2(depth / mm_per_metre, float(id));
+  float spread = 0.0;
+  if (at.id != 0u) {
+    vec2 footprint = pixel_footprint(at.depth);
+    state = state_before(at.pixel, at.depth, at.id, length(texelFetch(slope_image, texel, 0).rg * footprint));
+    count = clamped_samples(wanted_samples(state.sd * state.sd, state.mean_count));
+    uint first = frame.frame_index * frame_stride;
+    if (splits()) {
+      count += count & 1;
+      spread = sample_halves(at, count, first);
+    } else {
+      sample_and_watch(at, state, count, first);
+    }
+  }
+  if (splits()) {
+    spreads[gl_LocalInvocationIndex] = vec2(spread, float(at.id));
+    barrier();
+    if (at.id != 0u && !state.lost)
+      state.sd = sqrt(mix(state.sd * state.sd, pooled_spread(float(at.id)) / float(count), settings.eta));
+  }
+  if (!listed)
+    return;
+  if (at.id != 0u)
+    state.mean_count = state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
+  imageStore(scattered_image, texel, vec4(round_to_half(at.light), 1.0));
+  vec2 place = vec2(at.depth / mm_per_metre, float(id));
   imageStore(guide_out_image, texel,
              round_to_half(splits() ? vec4(state.sd, state.mean_count, place) : vec4(state.sd, state.mean_count, state.mean, 0.0)));
   if (has_place_out())
