@@ -130,10 +130,10 @@ struct FrameInput {
   uint64_t frame_index = 1;                   // grows; the frame `frame_index - frames_in_flight` is finished
   bool taken_over = false; // frames ran elsewhere since the last record: the pool's memory was used by
                            // others, and histories start anew but for what `before` kept
-  const Executor* before =
-      nullptr; // with taken_over: recorded the frame before, another plan of the same graph. What
-               // both keep is copied from it; it must live until the device has finished
-  bool reset_history = false; // camera cut: histories with on_cut invalidate become invalid
+  const Executor* before = nullptr; // recorded the frame before, another plan of the graph, or of what the
+                                    // graph was before it was reloaded or resized. What both keep is copied
+                                    // from it; it must live until the device has finished this frame
+  bool reset_history = false;       // camera cut: histories with on_cut invalidate become invalid
   // By plan pass, not 0: the pass does not run, only its barriers are recorded. Histories start anew in the
   // frame after such a one. Shorter: the rest runs. What runs must not read what a pass that is left out
   // would write.
@@ -180,8 +180,9 @@ public:
   HistoryState history_state(uint32_t index, bool reset_history = false,
                              const Executor* before = nullptr) const noexcept;
   uint32_t history_count() const noexcept;
-  // Rectangle of the frame recorded last; that is what histories cover. Width 0: none yet.
-  Rectangle previous_rectangle() const noexcept;
+  // Rectangle of the frame recorded last, or of that of `before` in pixels of this plan's view; that is what
+  // histories cover. Width 0: none yet.
+  Rectangle previous_rectangle(const Executor* before = nullptr) const noexcept;
   // A recorded frame was not submitted: every history starts anew. One thread at a time per executor.
   void discard_frames() noexcept;
 

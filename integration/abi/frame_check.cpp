@@ -208,7 +208,7 @@ void remove_jitter(subsurface::Matrix4& clip_from_view, int row, double pixels, 
     clip_from_view[row * 4 + c] -= 2.0 * pixels / extent * clip_from_view[12 + c];
 }
 
-bool fill_constants(const dermis_frame& frame, const Program& program, const vulkan::Executor& executor,
+bool fill_constants(const dermis_frame& frame, const Program& program, const vulkan::Rectangle& previous,
                     const vulkan::Rectangle& rectangle, const std::array<int32_t, 4>& bounds,
                     bool history_invalid, subsurface::FrameConstants& constants) {
   subsurface::FrameInput input;
@@ -227,7 +227,6 @@ bool fill_constants(const dermis_frame& frame, const Program& program, const vul
                                                                  : subsurface::DepthKind::device;
   input.frame_index = frame.frame_index;
   input.history_invalid = history_invalid;
-  const vulkan::Rectangle previous = executor.previous_rectangle();
   input.previous_x = previous.x;
   input.previous_y = previous.y;
   input.previous_width = previous.width;
@@ -267,7 +266,7 @@ dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, ui
   bool history_invalid = false;
   for (uint32_t i = 0; i < executor.history_count(); ++i)
     history_invalid = history_invalid || !executor.history_state(i, reset, before).valid;
-  if (!fill_constants(frame, program, before != nullptr ? *before : executor, checked.input.rectangle,
+  if (!fill_constants(frame, program, executor.previous_rectangle(before), checked.input.rectangle,
                       checked.bounds, history_invalid, checked.constants))
     return bad_argument(
         log,
@@ -281,7 +280,7 @@ dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, ui
   checked.input.settings = program.outcomes[outcome].settings;
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
-  checked.input.taken_over = before != nullptr;
+  checked.input.taken_over = before != nullptr && program.last_frame > 0; // of its pool of memory
   checked.input.before = before;
   checked.history_invalid = history_invalid;
   if (checked.bounds[2] == 0 || checked.bounds[3] == 0)

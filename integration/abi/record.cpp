@@ -20,6 +20,18 @@ void take_over(dermis_graph_t& graph) {
   graph.running = std::move(graph.next);
 }
 
+// Who recorded the frame before, where that was another plan: of this program, or of the one that it
+// replaces.
+const vulkan::Executor* recorded_before(const dermis_graph_t& graph, const Program& program,
+                                        uint32_t variant) {
+  const bool first = program.last_frame == 0;
+  if (first && (!graph.next || !graph.running)) return nullptr;
+  const Program& other = first ? *graph.running : program;
+  const uint32_t last = other.outcomes[other.outcome].plan;
+  if (other.last_frame == 0 || (!first && last == variant)) return nullptr;
+  return other.variants[last].executor.get();
+}
+
 constexpr uint64_t tile_side = 8, block_side = 32; // pixels
 
 // Squares of `side` pixels.
@@ -50,9 +62,9 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   chosen.frame_index = frame.frame_index;
   const uint32_t variant = program.outcomes[chosen.outcome].plan;
   chosen.first_of_plan = !program.variants[variant].recorded;
-  const uint32_t last = program.outcomes[program.outcome].plan;
-  const vulkan::Executor* before =
-      program.last_frame > 0 && variant != last ? program.variants[last].executor.get() : nullptr;
+  const vulkan::Executor* before = recorded_before(graph, program, variant);
+  const bool replaces = program.last_frame == 0 && before != nullptr;
+  if (replaces) program.last_jitter_px = graph.running->last_jitter_px;
   if (const dermis_result result =
           fill_frame(graph, program, chosen.outcome, before, chosen.sample_units, frame, checked);
       result != DERMIS_OK)
@@ -68,6 +80,7 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
                 error.text, has_slot ? " (slot '" : "",
                 has_slot ? program.slots[static_cast<size_t>(error.slot)].name : "", has_slot ? "')" : "");
   }
+  if (replaces) graph.running->last_frame = frame.frame_index; // whose histories it copies
   program.last_frame = frame.frame_index;
   program.last_jitter_px = {frame.jitter_x, frame.jitter_y};
   program.outcome = chosen.outcome;

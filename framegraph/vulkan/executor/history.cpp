@@ -51,8 +51,9 @@ HistoryState Executor::history_state(uint32_t index, bool reset_history,
   const HistoryRecord& record = state_->histories[index];
   if (before != nullptr) {
     const CarriedHistory carried = carried_history(*state_, index, *before->state_, reset_history);
-    return {record.name, carried.age > 0, carried.age,
-            carried.age > 0 ? HistoryReason::valid : HistoryReason::switched};
+    const bool replaced = record.reason == HistoryReason::reloaded || record.reason == HistoryReason::resized;
+    const HistoryReason lost = replaced && record.age == 0 ? record.reason : HistoryReason::switched;
+    return {record.name, carried.age > 0, carried.age, carried.age > 0 ? HistoryReason::valid : lost};
   }
   const HistoryDeclaration& declaration = state_->plan.histories[index].declaration;
   if (reset_history && declaration.on_cut == HistoryDeclaration::OnCut::invalidate)
@@ -60,8 +61,8 @@ HistoryState Executor::history_state(uint32_t index, bool reset_history,
   return {record.name, record.age > 0, record.age, record.reason};
 }
 
-Rectangle Executor::previous_rectangle() const noexcept {
-  return state_->previous_rectangle;
+Rectangle Executor::previous_rectangle(const Executor* before) const noexcept {
+  return before == nullptr ? state_->previous_rectangle : carried_rectangle(*state_, *before->state_);
 }
 
 void Executor::discard_frames() noexcept {

@@ -238,16 +238,13 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);
   if (frame.reset_history) invalidate_for_cut(state);
 
-  if (frame.taken_over) {
-    forget_histories(state, HistoryReason::switched);
-    if (frame.before != nullptr) carry_ages(state, *frame.before->state_, frame.reset_history);
-  }
+  if (frame.taken_over) forget_histories(state, HistoryReason::switched);
+  if (frame.before != nullptr) carry_ages(state, *frame.before->state_, frame.reset_history);
   write_frame_constants(state, frame_slot, frame.frame_constants);
   clear_counters(state, frame_slot);
   write_descriptors(state, frame_slot, frame.images);
   if (frame.taken_over) record_memory_takeover(state, frame);
-  if (frame.taken_over && frame.before != nullptr)
-    record_carried(state, *frame.before->state_, commands, frame.reset_history);
+  if (frame.before != nullptr) record_carried(state, *frame.before->state_, commands, frame.reset_history);
   begin_timestamps(state, commands, frame_slot);
   record_acquires(state, frame);
   record_initialisation(state, commands);

@@ -107,6 +107,7 @@ struct Pass {
 struct HistoryRecord {
   std::string name;
   bool written = false; // the plan writes the current instance
+  bool scales = false;  // the device can resample it
   uint32_t age = 0;
   HistoryReason reason = HistoryReason::first_frame;
 };
@@ -221,9 +222,13 @@ struct CarriedHistory {
   uint32_t history = no_index; // into the other's State::histories
   uint32_t age = 0;            // 0: nothing can be used
 };
-// What `from`, which recorded the frame before, keeps of history `index` of `to`: the same resource of the
-// same size and format. `reset`: the camera cut.
+// What `from`, which recorded the frame before, keeps of history `index` of `to`: that of the same name and
+// format, written by the same kind of pass; of another size where it is to be rescaled. `reset`: the camera
+// cut.
 CarriedHistory carried_history(const State& to, uint32_t index, const State& from, bool reset) noexcept;
+bool can_scale(const Device& device, const PlanResource& resource) noexcept;
+// What the frame before covered, in pixels of `to`.
+Rectangle carried_rectangle(const State& to, const State& from) noexcept;
 void carry_ages(State& to, const State& from,
                 bool reset) noexcept; // before anything is written for the frame
 void record_carried(State& to, const State& from, VkCommandBuffer commands, bool reset) noexcept;

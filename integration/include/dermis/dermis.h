@@ -259,7 +259,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
  * Thread: one per graph. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_source* source,
                                                          dermis_report* report);
-/* A new allocated size; histories become invalid. Thread: one per graph. Errors: as dermis_graph_create. */
+/* A new allocated size. Histories become invalid, but for images declared "on_resize": "rescale". Thread: one per graph. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width, uint32_t height,
                                                          dermis_report* report);
 /* The device must have finished every frame recorded with it. NULL is ignored. Thread: one per graph. */

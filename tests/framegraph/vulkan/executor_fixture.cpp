@@ -20,6 +20,7 @@ void ExecutorTest::SetUp() {
 void ExecutorTest::TearDown() {
   if (device != VK_NULL_HANDLE) wait();
   executor.reset();
+  replaced.reset();
   VulkanTest::TearDown();
 }
 
@@ -90,6 +91,7 @@ vulkan::RecordResult ExecutorTest::frame(float time, vulkan::Rectangle rectangle
   input.rectangle = rectangle;
   input.frame_index = ++frame_index;
   input.reset_history = reset_history;
+  input.before = replaced.get();
   // The contract: frame_index - frames_in_flight is finished. Waiting for all of an older pair keeps two in
   // flight.
   if (frame_index % test_frames_in_flight == 1) wait();

@@ -31,6 +31,7 @@ protected:
   vulkan::Device dermis_device;
   DeviceProfile profile;
   std::unique_ptr<vulkan::Executor> executor;
+  std::unique_ptr<vulkan::Executor> replaced; // FrameInput::before, or none
   std::vector<vulkan::HostImage> images; // by slot
   std::vector<SettingValue> settings;
   uint64_t frame_index = 0;

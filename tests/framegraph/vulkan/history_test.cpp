@@ -135,6 +135,101 @@ TEST_F(HistoryTest, AHistoryThatKeepsSurvivesACut) {
   EXPECT_EQ(executor->history_state(0).age, 4u);
 }
 
+// The graph as it was, or of another size, takes over from what ran.
+class ReplacedHistory : public HistoryTest {
+protected:
+  void take_over(const SmallGraph& graph, uint32_t width, uint32_t height) {
+    replaced = std::move(executor);
+    make_executor(graph, width, height);
+  }
+};
+
+TEST_F(ReplacedHistory, TheSameGraphMadeAnewGoesOnCounting) {
+  const SmallGraph g = counter(2);
+  make_executor(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  for (int i = 1; i <= 5; ++i)
+    ASSERT_FALSE(frame());
+  take_over(g, side, side);
+  const vulkan::HistoryState state = executor->history_state(0, false, replaced.get());
+  EXPECT_TRUE(state.valid);
+  EXPECT_EQ(state.age, 5u);
+  for (const float expected : {3, 4, 4}) {
+    ASSERT_FALSE(frame());
+    EXPECT_THAT(read(result), Each(FloatEq(expected)));
+    wait();
+    replaced.reset(); // copied from once
+  }
+}
+
+TEST_F(ReplacedHistory, OfAnotherSizeItGoesOnOnlyWhereItIsToBeRescaled) {
+  for (const bool rescale : {false, true}) {
+    SmallGraph g = counter();
+    for (ResourceDeclaration& resource : g.graph.resources)
+      if (rescale) resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
+    make_executor(g, side, side);
+    bind(g, "result", {});
+    for (int i = 1; i <= 3; ++i)
+      ASSERT_FALSE(frame());
+    take_over(g, 2 * side + 5, side / 2);
+    EXPECT_EQ(executor->previous_rectangle(replaced.get()).width, 2 * side + 5);
+    EXPECT_EQ(executor->history_state(0, false, replaced.get()).valid, rescale);
+    const TestImage result = bind(g, "result", {});
+    ASSERT_FALSE(frame());
+    EXPECT_THAT(read(result), Each(FloatEq(rescale ? 4.0f : 1.0f)));
+    wait();
+    replaced.reset();
+  }
+}
+
+TEST_F(ReplacedHistory, TexelsOfAnotherSizeAreTheNearestOnes) {
+  // shown = kept@-1; kept = source, a ramp.
+  SmallGraph g;
+  g.import("source", Format::r32f);
+  g.exported("result");
+  g.history("kept");
+  g.pass("show", "test.add", {{"a", "kept@-1"}}, {{"target", "result"}});
+  g.pass("keep", "test.add", {{"a", "source"}}, {{"target", "kept"}});
+  for (ResourceDeclaration& resource : g.graph.resources)
+    if (resource.history.frames > 0) resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
+  make_executor(g, side, side);
+  std::vector<float> ramp(size_t{side} * side);
+  for (size_t i = 0; i < ramp.size(); ++i)
+    ramp[i] = static_cast<float>(i);
+  bind(g, "source", ramp);
+  bind(g, "result", {});
+  ASSERT_FALSE(frame());
+  take_over(g, side / 2, 2 * side);
+  bind(g, "source", std::vector<float>(size_t{side} * side, 0.0f));
+  const TestImage result = bind(g, "result", {});
+  ASSERT_FALSE(frame());
+  const std::vector<float> shown = read(result);
+  for (uint32_t y = 0; y < 2 * side; ++y)
+    for (uint32_t x = 0; x < side / 2;
+         ++x) // the middle of a texel twice as wide lies between two: either is near
+      EXPECT_THAT(shown[y * (side / 2) + x], ::testing::AnyOf(FloatEq(ramp[y / 2 * side + 2 * x]),
+                                                              FloatEq(ramp[y / 2 * side + 2 * x + 1])))
+          << x << ", " << y;
+}
+
+TEST_F(ReplacedHistory, WhatAnotherKindOfPassWroteIsForgotten) {
+  SmallGraph filled;
+  filled.exported("result");
+  filled.history("count");
+  filled.set(filled.pass("step", "test.fill", {}, {{"target", "count"}}), "value", 7);
+  filled.pass("show", "test.add", {{"a", "count@-1"}}, {{"target", "result"}});
+  make_executor(filled, side, side);
+  bind(filled, "result", {});
+  for (int i = 1; i <= 3; ++i)
+    ASSERT_FALSE(frame());
+  const SmallGraph g = counter();
+  take_over(g, side, side);
+  const TestImage result = bind(g, "result", {});
+  EXPECT_FALSE(executor->history_state(0, false, replaced.get()).valid);
+  ASSERT_FALSE(frame());
+  EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
+}
+
 TEST_F(HistoryTest, AFrameThatWasNeverSubmittedIsForgotten) {
   const SmallGraph g = counter();
   make_executor(g, side, side);

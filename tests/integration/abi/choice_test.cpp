@@ -192,6 +192,25 @@ TEST_F(KeptHistory, ACutInTheFrameOfTheSwitchForgetsIt) {
   EXPECT_NEAR(middle(), 1, 2e-3);
 }
 
+TEST_F(KeptHistory, AReloadedGraphReadsWhatItKeptBefore) {
+  const std::string text = read_text("configs/graphs/skin.json");
+  make_accumulating();
+  set_budget(0);
+  const auto run = [&](bool reload) {
+    lit_frame(0.5f, DERMIS_FRAME_RESET_HISTORY);
+    for (int i = 0; i < 6; ++i) {
+      if (reload && i % 2 == 0) {
+        const dermis_source source = source_of(text, "skin.json");
+        EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+      }
+      EXPECT_EQ(lit_frame(float(i + 1) / 8).skips & DERMIS_SKIP_HISTORY, 0u) << "frame " << i;
+    }
+    return texels("lighting");
+  };
+  const auto steady = run(false);
+  EXPECT_EQ(run(true), steady) << "bit by bit";
+}
+
 TEST_F(KeptHistory, SwitchingEveryFrameIsAsNotSwitching) {
   make_accumulating();
   const auto run = [&](bool switching) {

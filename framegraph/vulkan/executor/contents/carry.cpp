@@ -1,4 +1,4 @@
-// What another plan of the same graph kept of earlier frames, copied to where this plan expects it.
+// What another plan kept of earlier frames, copied to where this plan expects it.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 
@@ -11,13 +11,17 @@ constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_
 constexpr VkPipelineStageFlags2 transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
 constexpr VkAccessFlags2 all_memory = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
-bool same_contents(const PlanResource& a, const PlanResource& b) {
-  return a.declared == b.declared && a.type == b.type && a.format == b.format && a.width == b.width &&
-         a.height == b.height && a.mips == b.mips && a.layers == b.layers && a.bytes == b.bytes &&
+// Which frames are kept may differ, but not what a texel is.
+bool same_texels(const PlanResource& a, const PlanResource& b) {
+  return a.type == b.type && a.format == b.format && a.mips == b.mips && a.layers == b.layers &&
          a.first_instance != no_instance && b.first_instance != no_instance;
 }
 
-VkImageMemoryBarrier2 layout_change(VkImage image, VkImageAspectFlags aspects, VkImageLayout from,
+bool same_size(const PlanResource& a, const PlanResource& b) {
+  return a.width == b.width && a.height == b.height && a.bytes == b.bytes;
+}
+
+VkImageMemoryBarrier2 layout_change(VkImage image, const VkImageSubresourceRange& range, VkImageLayout from,
                                     VkImageLayout to) {
   VkImageMemoryBarrier2 out{};
   out.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
@@ -25,7 +29,7 @@ VkImageMemoryBarrier2 layout_change(VkImage image, VkImageAspectFlags aspects, V
   out.newLayout = to;
   out.srcQueueFamilyIndex = out.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   out.image = image;
-  out.subresourceRange = {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  out.subresourceRange = range;
   return out;
 }
 
@@ -61,44 +65,114 @@ void copy_buffer(const Device& device, VkCommandBuffer commands, const PlanResou
   submit(device, commands, nullptr, 0, false);
 }
 
-struct Place {
-  VkImage image;
-  VkImageLayout layout; // that it is in, or shall be in afterwards
+struct Kept { // one frame of a history
+  const State& state;
+  const PlanHistory& history;
+  uint32_t frames_back = 0;
+
+  const PlanResource& resource() const { return state.plan.resources[history.resource]; }
+  const Instance& instance() const { return state.instances[instance_of(state, resource(), frames_back)]; }
 };
 
-void copy_image(const Device& device, VkCommandBuffer commands, const PlanResource& resource, Place from,
-                Place to) {
-  constexpr VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                          target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-  const VkImageAspectFlags aspects = barrier_aspects(resource.format);
-  VkImageMemoryBarrier2 before[] = {layout_change(from.image, aspects, from.layout, source),
-                                    layout_change(to.image, aspects, VK_IMAGE_LAYOUT_UNDEFINED, target)};
-  submit(device, commands, before, 2, true);
-  for (uint32_t mip = 0; mip < resource.mips; ++mip) {
-    const VkImageSubresourceLayers layers{aspects, mip, 0, resource.layers};
-    const VkImageCopy all{layers,
-                          {0, 0, 0},
-                          layers,
-                          {0, 0, 0},
-                          {std::max(resource.width >> mip, 1u), std::max(resource.height >> mip, 1u), 1}};
-    device.vk.vkCmdCopyImage(commands, from.image, source, to.image, target, 1, &all);
+// Each part that ports tell apart is in a layout of its own.
+void change_layouts(const Device& device, VkCommandBuffer commands, const Kept& frame, VkImageLayout other,
+                    bool before) {
+  for (uint32_t part = 0; part < frame.history.parts; ++part) {
+    const Plan& plan = frame.state.plan;
+    const SubresourceRange& range = plan.history_parts[frame.history.first_part + part];
+    const auto own = static_cast<VkImageLayout>(
+        plan.history_layouts[frame.history.first_layout + frame.frames_back * frame.history.parts + part]);
+    VkImageMemoryBarrier2 change = layout_change(frame.instance().image,
+                                                 {barrier_aspects(frame.resource().format), range.first_mip,
+                                                  range.mips, range.first_layer, range.layers},
+                                                 before ? own : other, before ? other : own);
+    submit(device, commands, &change, 1, before);
   }
-  VkImageMemoryBarrier2 after[] = {layout_change(to.image, aspects, target, to.layout)};
-  submit(device, commands, after, 1, false);
 }
 
-VkImageLayout layout_of(const State& state, const PlanHistory& history, uint32_t back) {
-  return static_cast<VkImageLayout>(state.plan.history_layouts[history.first_layout + back]);
+VkOffset3D corner(const PlanResource& resource, uint32_t mip) {
+  return {static_cast<int32_t>(std::max(resource.width >> mip, 1u)),
+          static_cast<int32_t>(std::max(resource.height >> mip, 1u)), 1};
+}
+
+// Texels of another size are the nearest ones: what histories hold (depths, profiles) need not mix.
+void copy_image(const Device& device, VkCommandBuffer commands, const Kept& from, const Kept& to) {
+  constexpr VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                          target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  const PlanResource &old_size = from.resource(), &new_size = to.resource();
+  const VkImageAspectFlags aspects = barrier_aspects(new_size.format);
+  const VkImage image = to.instance().image;
+  change_layouts(device, commands, from, source, true);
+  VkImageMemoryBarrier2 discard =
+      layout_change(image, {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
+                    VK_IMAGE_LAYOUT_UNDEFINED, target);
+  submit(device, commands, &discard, 1, true);
+  for (uint32_t mip = 0; mip < new_size.mips; ++mip) {
+    const VkImageSubresourceLayers layers{aspects, mip, 0, new_size.layers};
+    const VkOffset3D old_end = corner(old_size, mip), new_end = corner(new_size, mip);
+    if (same_size(old_size, new_size)) {
+      const VkExtent3D extent{static_cast<uint32_t>(new_end.x), static_cast<uint32_t>(new_end.y), 1};
+      const VkImageCopy all{layers, {0, 0, 0}, layers, {0, 0, 0}, extent};
+      device.vk.vkCmdCopyImage(commands, from.instance().image, source, image, target, 1, &all);
+    } else {
+      const VkImageBlit all{layers, {{0, 0, 0}, old_end}, layers, {{0, 0, 0}, new_end}};
+      device.vk.vkCmdBlitImage(commands, from.instance().image, source, image, target, 1, &all,
+                               VK_FILTER_NEAREST);
+    }
+  }
+  change_layouts(device, commands, to, target, false);
+}
+
+// The kind of the pass that writes the newest frame: another kind means something else by it.
+KindId writer_of(const State& state, const PlanHistory& history) {
+  for (const PlanPass& pass : state.plan.passes)
+    for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+      const PlanAccess& access = state.plan.accesses[a];
+      if (access.resource == history.resource && access.frames_back == 0 &&
+          (access.access & all_write_access) != 0)
+        return pass.kind;
+    }
+  return {};
+}
+
+bool usable(const State& to, uint32_t to_history, const State& from, uint32_t from_history) {
+  const PlanHistory &wanted = to.plan.histories[to_history], &kept = from.plan.histories[from_history];
+  const PlanResource &a = to.plan.resources[wanted.resource], &b = from.plan.resources[kept.resource];
+  const bool scales = to.histories[to_history].scales &&
+                      wanted.declaration.on_resize == HistoryDeclaration::OnResize::rescale;
+  return to.histories[to_history].name == from.histories[from_history].name && same_texels(a, b) &&
+         (same_size(a, b) || scales) && writer_of(to, wanted) == writer_of(from, kept);
 }
 
 } // namespace
+
+bool can_scale(const Device& device, const PlanResource& resource) noexcept {
+  if (resource.type != ResourceType::image) return false;
+  VkFormatProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_2;
+  device.vk.vkGetPhysicalDeviceFormatProperties2(device.physical, vk_format(resource.format), &properties);
+  constexpr VkFormatFeatureFlags both = VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+  return (properties.formatProperties.optimalTilingFeatures & both) == both;
+}
+
+Rectangle carried_rectangle(const State& to, const State& from) noexcept {
+  const auto scaled = [](auto value, uint32_t now, uint32_t before) {
+    return static_cast<decltype(value)>(static_cast<int64_t>(value) * now / std::max(before, 1u));
+  };
+  Rectangle out = from.previous_rectangle;
+  out.x = scaled(out.x, to.plan.view_width, from.plan.view_width);
+  out.y = scaled(out.y, to.plan.view_height, from.plan.view_height);
+  out.width = scaled(out.width, to.plan.view_width, from.plan.view_width);
+  out.height = scaled(out.height, to.plan.view_height, from.plan.view_height);
+  return out;
+}
 
 CarriedHistory carried_history(const State& to, uint32_t index, const State& from, bool reset) noexcept {
   const PlanHistory& wanted = to.plan.histories[index];
   if (reset && wanted.declaration.on_cut == HistoryDeclaration::OnCut::invalidate) return {};
   for (uint32_t h = 0; h < from.plan.histories.size(); ++h) {
     const PlanHistory& kept = from.plan.histories[h];
-    if (!same_contents(to.plan.resources[wanted.resource], from.plan.resources[kept.resource])) continue;
+    if (!usable(to, index, from, h)) continue;
     const uint32_t age = from.histories[h].age;
     return {h, kept.frames < wanted.frames ? std::min(age, kept.frames) : age};
   }
@@ -112,7 +186,7 @@ void carry_ages(State& to, const State& from, bool reset) noexcept {
     to.histories[h].age = carried.age;
     to.histories[h].reason = HistoryReason::valid;
   }
-  to.previous_rectangle = from.previous_rectangle;
+  to.previous_rectangle = carried_rectangle(to, from);
 }
 
 void record_carried(State& to, const State& from, VkCommandBuffer commands, bool reset) noexcept {
@@ -123,12 +197,11 @@ void record_carried(State& to, const State& from, VkCommandBuffer commands, bool
     const PlanResource& resource = to.plan.resources[wanted.resource];
     for (uint32_t back = 1; back <= std::min({wanted.frames, kept.frames, carried.age}); ++back) {
       Instance& target = to.instances[instance_of(to, resource, back)];
-      const Instance& source = from.instances[instance_of(from, from.plan.resources[kept.resource], back)];
+      const Kept source{from, kept, back};
       if (resource.type == ResourceType::buffer)
-        copy_buffer(*to.device, commands, resource, source.buffer, target.buffer);
+        copy_buffer(*to.device, commands, resource, source.instance().buffer, target.buffer);
       else
-        copy_image(*to.device, commands, resource, {source.image, layout_of(from, kept, back)},
-                   {target.image, layout_of(to, wanted, back)});
+        copy_image(*to.device, commands, source, {to, wanted, back});
       target.ready = true;
     }
   }
