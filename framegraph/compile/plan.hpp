@@ -175,7 +175,7 @@ struct Plan {
 // Why something was decided, outside the canonical bytes: what the compiler knew, as indices. explain/ makes
 // sentences of it. Placements need none: the plan itself tells what lives beside them.
 struct Reason {
-  enum class About : uint8_t { pass, resource, barrier, choice };
+  enum class About : uint8_t { pass, resource, barrier, choice, order };
   enum class Why : uint8_t {
     // of a pass; a, b: what needs it, as named here
     off,              // its `when` is false
@@ -213,12 +213,17 @@ struct Reason {
     to_host,         // resource a is handed back; b: 1 if no pass touched it
     // of a setting
     asked_for, // by the caller
-    by_default
+    by_default,
+    // of the order; a, b: KiB of transients alive at once in it, and in the other one that was tried
+    order_of_file,
+    depth_first,
+    program_order, // asked for by the caller
+    random_order   // likewise
   };
   About about = About::pass;
   Why why = Why::off;
   uint32_t index = 0; // pass: PassId in the graph; resource: ResourceId; choice: SettingId; barrier: index in
-                      // the plan
+                      // the plan; order: 0
   uint32_t a = 0, b = 0, c = 0; // as said at each Why; resources and passes are ids in the graph
 };
 

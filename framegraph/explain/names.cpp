@@ -165,6 +165,13 @@ std::string range_text(const PlanResource& resource, const SubresourceRange& ran
   return part_text(part);
 }
 
+std::string shape_text(const PlanResource& resource) {
+  std::string text = fmt::format("{}x{}", resource.width, resource.height);
+  if (resource.mips > 1) text += fmt::format(", {} mips", resource.mips);
+  if (resource.layers > 1) text += fmt::format(", {} layers", resource.layers);
+  return text;
+}
+
 std::string bytes_text(uint64_t bytes) {
   constexpr std::string_view units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   if (bytes < 1024) return fmt::format("{} B", bytes);

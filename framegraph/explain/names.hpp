@@ -26,6 +26,9 @@ std::string access_text(Access accesses);
 // As a graph file names it, behind the name of the resource: "#1..3[0]"; "" for all that it has.
 std::string range_text(const PlanResource& resource, const SubresourceRange& range);
 
+// "640x360, 3 mips, 2 layers"; what there is one of is left out. Images.
+std::string shape_text(const PlanResource& resource);
+
 // 1536 -> "1.5 KiB", to one decimal, exact below 1 KiB.
 std::string bytes_text(uint64_t bytes);
 

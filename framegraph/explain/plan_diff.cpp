@@ -31,7 +31,15 @@ std::string object_text(const SavedPlan& saved, uint32_t resource, uint32_t fram
   return frames_back == 0 ? name : fmt::format("{}@-{}", name, frames_back);
 }
 
-Lines compiled_from(const SavedPlan& saved) {
+// A resource of the graph by name where one of two plans of one graph has it, else by number.
+std::string declared_text(uint32_t declared, const SavedPlan& saved, const SavedPlan& other) {
+  for (const SavedPlan* plan : {&saved, &other})
+    for (size_t r = 0; plan->key.graph == saved.key.graph && r < plan->plan.resources.size(); ++r)
+      if (plan->plan.resources[r].declared.value == declared) return plan->names.resources[r];
+  return fmt::format("resource {}", declared);
+}
+
+Lines compiled_from(const SavedPlan& saved, const SavedPlan& other) {
   const PlanKey& key = saved.key;
   constexpr std::string_view orders[] = {"memory", "program", "random"};
   constexpr std::string_view levels[] = {"fast", "tight", "optimize"};
@@ -49,13 +57,15 @@ Lines compiled_from(const SavedPlan& saved) {
                   key.max_workgroup_count, key.max_push_constants_bytes));
   std::string unbound, formats;
   for (size_t r = 0; r < key.bound.size(); ++r)
-    if (key.bound[r] == 0) unbound += fmt::format("{}{}", unbound.empty() ? "" : ", ", r);
+    if (key.bound[r] == 0)
+      unbound += (unbound.empty() ? "" : ", ") + declared_text(static_cast<uint32_t>(r), saved, other);
   for (size_t r = 0; r < key.host_formats.size(); ++r)
     if (key.host_formats[r] != Format::undefined)
-      formats +=
-          fmt::format("{}{}: {}", formats.empty() ? "" : ", ", r, format_info(key.host_formats[r]).name);
-  lines.add("unbound slots", unbound.empty() ? "none" : "resources " + unbound);
-  lines.add("host formats", formats.empty() ? "as declared" : "resources " + formats);
+      formats += fmt::format("{}{}: {}", formats.empty() ? "" : ", ",
+                             declared_text(static_cast<uint32_t>(r), saved, other),
+                             format_info(key.host_formats[r]).name);
+  lines.add("unbound slots", unbound.empty() ? "none" : unbound);
+  lines.add("host formats", formats.empty() ? "as declared" : formats);
   lines.add("order", fmt::format("{}{}", orders[static_cast<size_t>(key.order)],
                                  key.order == PassOrder::random ? fmt::format(" {}", key.order_seed) : ""));
   lines.add("packing", std::string(levels[static_cast<size_t>(key.packing)]));
@@ -63,7 +73,8 @@ Lines compiled_from(const SavedPlan& saved) {
   lines.add("culling", yes_no(key.cull));
   lines.add("poison", yes_no(key.poison));
   lines.add("single queue", yes_no(key.single_queue));
-  lines.add("kept alive", key.keep_alive.valid() ? fmt::format("resource {}", key.keep_alive.value) : "none");
+  lines.add("kept alive",
+            key.keep_alive.valid() ? declared_text(key.keep_alive.value, saved, other) : "none");
   return lines;
 }
 
@@ -110,12 +121,12 @@ Lines resources(const SavedPlan& saved) {
   for (size_t r = 0; r < saved.plan.resources.size(); ++r) {
     const PlanResource& resource = saved.plan.resources[r];
     std::string text = resource.type == ResourceType::image
-                           ? fmt::format("{} {}x{}, {} mips, {} layers", format_info(resource.format).name,
-                                         resource.width, resource.height, resource.mips, resource.layers)
+                           ? fmt::format("{} {}", format_info(resource.format).name, shape_text(resource))
                            : bytes_text(resource.bytes);
     text += fmt::format(", usage {:#x}", resource.vk_usage);
     text += resource.first_instance == no_instance ? ", the host's"
-                                                   : fmt::format(", {} instances", resource.instance_count);
+                                                   : fmt::format(", {} instance{}", resource.instance_count,
+                                                                 resource.instance_count == 1 ? "" : "s");
     lines.add(saved.names.resources[r], std::move(text));
   }
   return lines;
@@ -236,7 +247,7 @@ PlanDiff diff_plans(const SavedPlan& a, const SavedPlan& b) {
   const auto compare = [&](std::string_view name, Lines (*lines)(const SavedPlan&)) {
     diff.sections.push_back({name, differences(lines(a), lines(b))});
   };
-  compare("compiled_from", compiled_from);
+  diff.sections.push_back({"compiled_from", differences(compiled_from(a, b), compiled_from(b, a))});
   compare("settings", settings);
   compare("passes", passes);
   diff.sections.push_back({"order", moved(a, b)});

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view setting_types[] = {"bool", "int", "real", "enum", "choice"};
 constexpr std::string_view dispatch_shapes[] = {
     "over_view", "over_tiles", "over_tile_grid", "over_tile_blocks", "over_written", "single_group", "none"};
-constexpr std::string_view subjects[] = {"pass", "resource", "barrier", "setting"};
+constexpr std::string_view subjects[] = {"pass", "resource", "barrier", "setting", "order"};
 constexpr std::string_view history_first[] = {"discard", "clear"};
 constexpr std::string_view history_on_cut[] = {"invalidate", "keep"};
 constexpr std::string_view history_on_resize[] = {"invalidate", "rescale"};

@@ -38,7 +38,34 @@ struct TextExporter {
       line("  " + reason(Reason::About::choice, i));
   }
 
-  void barrier(uint32_t index) {
+  // The first pass from `position` on that accesses what the barrier is for.
+  uint32_t user(const PlanBarrier& barrier, uint32_t position) const {
+    for (; position < plan.passes.size(); ++position) {
+      const PlanPass& pass = plan.passes[position];
+      for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a)
+        if (plan.accesses[a].resource == barrier.resource &&
+            plan.accesses[a].frames_back == barrier.frames_back)
+          return position;
+    }
+    return position;
+  }
+
+  const std::string& pass_name(uint32_t position) const {
+    return graph.passes[plan.passes[position].declared.value].name;
+  }
+
+  // Behind which pass a queue reaches a point; 0: the last one of its frame.
+  std::string behind(Queue queue, uint32_t point) const {
+    uint32_t found = static_cast<uint32_t>(plan.passes.size());
+    for (uint32_t p = 0; p < plan.passes.size(); ++p)
+      if (plan.passes[p].queue == queue && plan.passes[p].signal != 0 &&
+          (point == 0 || plan.passes[p].signal == point))
+        found = p;
+    return found == plan.passes.size() ? std::string() : fmt::format(", behind '{}'", pass_name(found));
+  }
+
+  // `position`: of the pass that it stands before.
+  void barrier(uint32_t index, uint32_t position) {
     const PlanBarrier& one = plan.barriers[index];
     const std::string from =
         one.from_host ? "host" : stage_text(one.source_stages) + "/" + access_text(one.source_access);
@@ -48,7 +75,12 @@ struct TextExporter {
     if (plan.resources[one.resource].type == ResourceType::image)
       layouts = fmt::format(", {} -> {}", one.from_host ? "host" : layout_name(one.old_layout),
                             one.to_host ? "host" : layout_name(one.new_layout));
-    line(fmt::format("     | {}", reason(Reason::About::barrier, index)));
+    const uint32_t by = user(one, position);
+    const bool early = by != position && by < plan.passes.size() && !one.to_host &&
+                       one.transfer != PlanBarrier::Transfer::release;
+    line(fmt::format("     | {}{}", reason(Reason::About::barrier, index),
+                     early ? fmt::format(" (for '{}': in the batch that stands here already)", pass_name(by))
+                           : ""));
     const std::string part = range_text(plan.resources[one.resource], one.range);
     const std::string half =
         one.transfer == PlanBarrier::Transfer::none ? "" : fmt::format("{}, ", transfer_name(one.transfer));
@@ -56,19 +88,23 @@ struct TextExporter {
                      part.empty() ? "" : " of " + part, from, to, layouts));
   }
 
+  void waits(Queue for_queue, uint32_t point) {
+    line(fmt::format("     | waits for point {} of the {} queue{}{}", point, queue_name(for_queue),
+                     behind(for_queue, point), point == 0 ? " of the frame before, the last one there" : ""));
+  }
+
   void passes() {
     line("\npasses, each behind its barriers");
+    if (const std::string why = reason(Reason::About::order, 0); !why.empty()) line("  " + why);
     for (uint32_t position = 0; position < plan.passes.size(); ++position) {
       const PlanPass& pass = plan.passes[position];
       const PassKind& kind = kinds[pass.kind];
-      if (pass.wait != no_point)
-        line(fmt::format("     | waits for point {} of the {} queue{}", pass.wait,
-                         queue_name(pass.queue == Queue::main ? Queue::async : Queue::main),
-                         pass.wait == 0 ? ", the last one of the frame before" : ""));
+      if (pass.wait != no_point) waits(pass.queue == Queue::main ? Queue::async : Queue::main, pass.wait);
       for (uint32_t b = 0; b < pass.barrier_count; ++b)
-        barrier(pass.first_barrier + b);
+        barrier(pass.first_barrier + b, position);
       line(fmt::format("{:4} {} ({}){}", position, graph.passes[pass.declared.value].name, kind.name,
                        pass.queue == Queue::main ? "" : " on the async queue"));
+      line("       " + reason(Reason::About::pass, pass.declared.value));
       for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[a];
         const UsageInfo& usage = usage_info(kind.ports[access.port].usage);
@@ -79,15 +115,14 @@ struct TextExporter {
                          read_when_text(access.when)));
       }
       for (uint32_t b = 0; b < pass.release_count; ++b)
-        barrier(pass.first_barrier + pass.barrier_count + b);
+        barrier(pass.first_barrier + pass.barrier_count + b, position);
       if (pass.signal != 0)
         line(fmt::format("     | the {} queue reaches point {}", queue_name(pass.queue), pass.signal));
     }
     if (plan.final_barrier_count > 0) line("   at the end");
-    if (plan.final_wait != no_point)
-      line(fmt::format("     | waits for point {} of the async queue", plan.final_wait));
+    if (plan.final_wait != no_point) waits(Queue::async, plan.final_wait);
     for (uint32_t b = 0; b < plan.final_barrier_count; ++b)
-      barrier(plan.first_final_barrier + b);
+      barrier(plan.first_final_barrier + b, static_cast<uint32_t>(plan.passes.size()));
   }
 
   void idle_passes() {
@@ -103,10 +138,8 @@ struct TextExporter {
   void resources() {
     line("\nresources");
     for (const PlanResource& resource : plan.resources) {
-      const std::string size = resource.type == ResourceType::image
-                                   ? fmt::format("{}x{}, {} mips, {} layers", resource.width, resource.height,
-                                                 resource.mips, resource.layers)
-                                   : fmt::format("{} bytes", resource.bytes);
+      const std::string size = resource.type == ResourceType::image ? shape_text(resource)
+                                                                    : fmt::format("{} bytes", resource.bytes);
       const std::string why = reason(Reason::About::resource, resource.declared.value);
       line(fmt::format("  {}: {}{}{}", graph.resources[resource.declared.value].name, size,
                        why.empty() ? "" : "; ", why));

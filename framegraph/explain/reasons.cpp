@@ -37,7 +37,36 @@ struct Speaker {
     return names.empty() ? "culled: it writes nothing" : "culled: nothing that is bound needs " + names;
   }
 
+  // With the values that its `when` asks for.
+  std::string off() const {
+    std::vector<uint32_t> asked;
+    std::vector<ExpressionId> left{graph.passes[reason.index].when};
+    while (!left.empty()) {
+      const ExpressionId id = left.back();
+      left.pop_back();
+      if (!id.valid()) continue;
+      const Expression& one = graph.expressions[id.value];
+      if (one.op == Expression::Op::setting) asked.push_back(one.setting.value);
+      left.insert(left.end(), {one.left, one.right});
+    }
+    std::sort(asked.begin(), asked.end());
+    asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+    std::string values;
+    for (const uint32_t s : asked)
+      values += fmt::format("{}{} = {}", values.empty() ? " with " : ", ", graph.settings[s].name,
+                            setting_text(graph.settings[s], plan.setting_values[s]));
+    return "off: its 'when' is false" + values;
+  }
+
+  std::string order(const char* chosen, const char* other) const {
+    constexpr uint64_t kib = 1024;
+    return fmt::format("{}, which keeps {} of transients alive at once; {} {}", chosen,
+                       bytes_text(reason.a * kib), other, bytes_text(reason.b * kib));
+  }
+
   std::string chosen_format() const {
+    if (graph.resources[reason.index].formats.size() == 1 && reason.b != 2)
+      return fmt::format("format {}: the only one declared", format());
     constexpr std::string_view how[] = {"first in the list", "first usable one in the list",
                                         "the host binds it"};
     return fmt::format("format {}: {}", format(), how[reason.b]);
@@ -72,7 +101,7 @@ struct Speaker {
   std::string text() const {
     switch (reason.why) {
     case Reason::Why::off:
-      return "off: its 'when' is false with these settings";
+      return off();
     case Reason::Why::read_by:
       return needed("reads");
     case Reason::Why::read_later_by:
@@ -147,6 +176,14 @@ struct Speaker {
       return setting("asked for by the caller");
     case Reason::Why::by_default:
       return setting("its default");
+    case Reason::Why::order_of_file:
+      return order("in the order of the file", "depth first it would be");
+    case Reason::Why::depth_first:
+      return order("depth first", "in the order of the file it would be");
+    case Reason::Why::program_order:
+      return "in the order of the file: asked for by the caller";
+    case Reason::Why::random_order:
+      return "in an order drawn at random: asked for by the caller";
     }
     return {};
   }
@@ -186,9 +223,20 @@ std::string ReasonIndex::about(Reason::About about, uint32_t index) const {
   const auto wanted = std::tuple(about, index);
   auto at = std::lower_bound(sorted_.begin(), sorted_.end(), wanted,
                              [](const Reason* one, const auto& key) { return subject(*one) < key; });
+  const auto first = at;
   std::string all;
-  for (; at != sorted_.end() && subject(**at) == wanted; ++at)
-    all += (all.empty() ? "" : "; ") + reason_text(graph_, kinds_, compiled_.plan, **at);
+  for (; at != sorted_.end() && subject(**at) == wanted; ++at) {
+    const Reason& one = **at;
+    const auto alike = [&](const Reason* other) {
+      return one.why == Reason::Why::takes_memory && other->why == one.why && other->b == one.b;
+    };
+    if (std::any_of(first, at, alike)) continue; // named there
+    all += (all.empty() ? "" : "; ") + reason_text(graph_, kinds_, compiled_.plan, one);
+    std::string others;
+    for (auto later = at + 1; later != sorted_.end() && subject(**later) == wanted; ++later)
+      if (alike(*later)) others += fmt::format(", '{}'", graph_.resources[(*later)->a].name);
+    if (!others.empty()) all.insert(all.rfind('\'') + 1, others); // behind the name of the first
+  }
   return all;
 }
 

@@ -58,7 +58,9 @@ struct GraphOptions {
   GraphParts parts;
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
-  std::string out = "-"; // DOT, or JSON with --json
+  std::vector<std::string> unbound; // optional imports and exports that the host leaves out
+  bool two_queues = false;          // passes declared async get a queue of their own where they can
+  std::string out = "-";            // DOT, or JSON with --json
 };
 ExitCode graph(const Session& session, const GraphOptions& options);
 

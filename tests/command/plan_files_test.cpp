@@ -130,7 +130,7 @@ TEST_F(PlanFiles, OneGraphIsComparedUnderTwoSetsOfOptions) {
   EXPECT_THAT(overlay.out, HasSubstr("rgba32f"));
   const Outcome slot = run({"plan", "diff", burley, "--b-unbound", "scatter_scale", "--exit-code"});
   EXPECT_EQ(slot.exit_code, 1) << slot.err;
-  EXPECT_THAT(slot.out, HasSubstr("unbound slots: none -> resources"));
+  EXPECT_THAT(slot.out, HasSubstr("unbound slots: none -> scatter_scale"));
 }
 
 TEST_F(PlanFiles, WhatCannotBeComparedIsAUsageError) {

@@ -71,6 +71,44 @@ TEST(PlanText, ShowsEveryPassBarrierAndPlacement) {
   EXPECT_THAT(text, HasSubstr("hands 'result' back to the host"));
 }
 
+TEST(PlanText, SaysWhyAPassRunsAndWhyInThisOrder) {
+  const auto b = sample();
+  const auto text = plan_text(b.graph, b.kinds, compiled(b));
+  EXPECT_THAT(text, HasSubstr("runs: 'show' reads its 'sum'"));
+  EXPECT_THAT(text, HasSubstr("in the order of the file, which keeps 0 B of transients alive at once"));
+  CompileInput input = b.input();
+  input.order = PassOrder::program;
+  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b, input)), HasSubstr("asked for by the caller"));
+}
+
+TEST(PlanText, NamesTheSettingsThatSwitchAPassOff) {
+  auto b = sample();
+  b.boolean("debug", false);
+  b.image("picture");
+  b.pass("draw", "test.need", {{"a", "light"}}, {{"out", "picture"}}).when = b.when("debug");
+  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b)),
+              HasSubstr("draw: off: its 'when' is false with debug = false"));
+}
+
+TEST(PlanText, SaysForWhomABarrierStandsEarlierThanNeeded) {
+  GraphBuilder b;
+  b.import("light");
+  b.import("shade");
+  b.image("first");
+  b.image("second");
+  b.exported("result");
+  b.pass("begin", "test.need", {{"a", "light"}}, {{"out", "first"}});
+  b.pass("middle", "test.need", {{"a", "first"}}, {{"out", "second"}});
+  b.pass("end", "test.shade", {{"a", "shade"}, {"b", "second"}}, {{"out", "result"}});
+  const auto text = plan_text(b.graph, b.kinds, compiled(b));
+  EXPECT_THAT(text, HasSubstr("takes 'shade' over from the host (for 'end': in the batch"));
+  CompileInput input = b.input();
+  input.single_queue = false;
+  b.graph.passes[1].async = true;
+  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b, input)),
+              HasSubstr("waits for point 1 of the async queue, behind 'middle'"));
+}
+
 TEST(PlanDot, DrawsPassesAndResourcesAndEscapesNames) {
   auto b = sample();
   b.graph.passes[0].name = "say \"hi\"";

@@ -188,11 +188,19 @@ struct Orderer {
     }
   }
 
+  void because(Reason::Why why, uint64_t bytes = 0, uint64_t other_bytes = 0) {
+    constexpr uint64_t kib = 1024, most = no_value;
+    c.because(Reason::About::order, 0, why, static_cast<uint32_t>(std::min(bytes / kib, most)),
+              static_cast<uint32_t>(std::min(other_bytes / kib, most)));
+  }
+
   void save_memory() {
     estimate();
     depth_first();
     find_intervals(c.candidate, c.other_intervals);
-    if (most_alive(c.other_intervals) >= most_alive(c.intervals)) return;
+    const uint64_t file = most_alive(c.intervals), depth = most_alive(c.other_intervals);
+    if (depth >= file) return because(Reason::Why::order_of_file, file, depth);
+    because(Reason::Why::depth_first, depth, file);
     c.intervals.swap(c.other_intervals);
     c.order.clear();
     for (const uint32_t pass : c.candidate)
@@ -235,7 +243,11 @@ void order(CompileContext& c) {
     sort_backward_graph(c);
     if (c.diagnostics->count(Severity::error) != errors) return;
   }
-  if (c.input->order == PassOrder::random) orderer.shuffle();
+  if (c.input->order == PassOrder::program) orderer.because(Reason::Why::program_order);
+  if (c.input->order == PassOrder::random) {
+    orderer.because(Reason::Why::random_order);
+    orderer.shuffle();
+  }
   orderer.find_intervals(c.order, c.intervals);
   if (c.input->order == PassOrder::memory) orderer.save_memory();
 }

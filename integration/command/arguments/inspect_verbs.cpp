@@ -51,9 +51,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
         add_size(verb, options.size);
         add_settings(verb, options.settings);
-        verb.add_option("--unbound", options.unbound, "Optional slots that the host leaves out")
-            ->type_name("NAME")
-            ->delimiter(',');
+        add_unbound(verb, options.unbound);
         add_two_queues(verb, options.two_queues);
         add_parts(verb, options.parts);
         add_kinds(verb, options.parts);
@@ -80,6 +78,8 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->excludes("--json");
         add_size(verb, options.size);
         add_settings(verb, options.settings);
+        add_unbound(verb, options.unbound);
+        add_two_queues(verb, options.two_queues);
         add_parts(verb, options.parts);
         add_kinds(verb, options.parts);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")

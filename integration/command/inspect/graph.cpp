@@ -11,7 +11,8 @@ ExitCode graph(const Session& session, const GraphOptions& options) {
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
-  const CompileChoices choices = read_choices(loaded->graph, options.settings);
+  CompileChoices choices = read_choices(loaded->graph, options.settings, options.unbound);
+  choices.two_queues = options.two_queues;
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
