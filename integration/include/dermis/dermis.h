@@ -390,7 +390,7 @@ typedef struct dermis_choice {
   uint32_t reserved_three;       /* 0 */
   const char* miss;              /* static string: why times were not as predicted; "" where they were, or not known */
   uint32_t probed_tiles;         /* by subsurface.probe (configs/overlays/probe.json); 0: the error is not known */
-  float probed_rmse;             /* as predicted_rmse, of this very frame, over the pixels that scatter */
+  float probed_rmse;             /* of this very frame, linear luminance times dermis_frame.exposure */
   float probed_rmse_low;         /* to probed_rmse_high: where it lies in 95 of 100 frames */
   float probed_rmse_high;        /* infinity where one tile was probed */
 } dermis_choice;
