@@ -14,7 +14,8 @@ namespace {
 // By the value of the enumeration.
 constexpr std::string_view setting_types[] = {"bool", "int", "real", "enum", "choice"};
 constexpr std::string_view dispatch_shapes[] = {
-    "over_view", "over_tiles", "over_tile_grid", "over_tile_blocks", "over_written", "single_group", "none"};
+    "over_view",    "over_tiles",   "over_tile_grid", "over_tile_blocks",
+    "over_written", "single_group", "none",           "host"};
 constexpr std::string_view subjects[] = {"pass", "resource", "barrier", "setting", "order"};
 constexpr std::string_view history_first[] = {"discard", "clear"};
 constexpr std::string_view history_on_cut[] = {"invalidate", "keep"};

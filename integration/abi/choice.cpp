@@ -4,6 +4,7 @@
 #include "integration/abi/graph.hpp"
 #include "integration/abi/graph_desc.hpp"
 #include "integration/abi/report.hpp"
+#include "passes/subsurface/probe.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -132,6 +133,11 @@ dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   out.sample_units = frame.counters.sample_units;
   out.wanted_units = frame.counters.wanted_units;
   out.miss = miss_of(frame);
+  const subsurface::ProbedError probed = subsurface::probed_error(frame.counters);
+  out.probed_tiles = probed.tiles;
+  out.probed_rmse = static_cast<float>(probed.rmse);
+  out.probed_rmse_low = static_cast<float>(probed.low);
+  out.probed_rmse_high = static_cast<float>(probed.high);
   return out;
 }
 

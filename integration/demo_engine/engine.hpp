@@ -106,6 +106,8 @@ struct FrameChoice {
   uint64_t groups = 0;
   std::array<uint32_t, 3> sampled_tiles{};     // of the scattering ones, with 8, 16 and 32 samples a pixel
   uint32_t sample_units = 0, wanted_units = 0; // taken; that would be without a budget
+  uint32_t probed_tiles = 0;                   // 0: the frame's error is not known
+  double probed_rmse = 0, probed_rmse_low = 0, probed_rmse_high = 0;
   std::string miss;                            // why it took longer than the budget; "": it did not
 };
 

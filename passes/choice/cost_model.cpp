@@ -62,6 +62,7 @@ CostId CostModel::add(std::string_view work) {
     line.prior[0] = at.base_ms;
     line.prior[1] = at.unit_ms;
     line.has_prior = line.stand_in = true;
+    line.guess = words_alike(like->work, work) == 0;
   }
   lines_.push_back(std::move(line));
   return {static_cast<uint32_t>(lines_.size() - 1)};
@@ -130,7 +131,7 @@ void CostModel::observe(CostId id, uint64_t groups, double ms) {
     line.spread = spread_memory * line.spread + (1 - spread_memory) * std::min(off, 1.0);
   }
   const double calibrated = line.prior[0] + line.prior[1] * x;
-  if (line.has_prior && calibrated > tiny_ms && ms > tiny_ms) {
+  if (line.has_prior && !line.guess && calibrated > tiny_ms && ms > tiny_ms) {
     scale_sum_ = scale_memory * scale_sum_ + calibrated * std::log(ms / calibrated);
     scale_weight_ = scale_memory * scale_weight_ + calibrated; // long passes say more
   }

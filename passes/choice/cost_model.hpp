@@ -52,7 +52,8 @@ private:
   struct Line {
     std::string work;
     double prior[2] = {0, 0};                 // ms: base, and for unit_groups groups; of the calibration
-    bool has_prior = false, stand_in = false; // stand_in: the prior is that of other work
+    bool has_prior = false, stand_in = false; // stand_in: the prior is that of other work,
+    bool guess = false;                       // of another kind even: it says nothing of the device
     uint64_t observations = 0;
     double moments[3] = {0, 0, 0}; // weighted sums of 1, x and x^2; x = groups / unit_groups
     double targets[2] = {0, 0};    // weighted sums of ms and ms * x

@@ -85,6 +85,7 @@ std::string shared_constants() {
       "const float flat_tolerance = {};\n"
       "const int flat_most_reach = {};\n"
       "const uint flat_cell_side = {}u;\n"
+      "const int probe_most_reach = {}; // kinds.hpp\n"
       "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // allotment.hpp\n"
       "const float allot_stay = {};\n"
       "const int allot_first_bin = {};\n"
@@ -113,7 +114,8 @@ std::string shared_constants() {
       "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
       "const float counter_log2_steps = {:.1f};\n\n#endif\n",
       subsurface::copy_below_d_px, subsurface::flat_reach_d, subsurface::flat_tolerance,
-      subsurface::flat_most_reach, subsurface::flat_cell_side, choice::allot_gain[0], choice::allot_gain[1],
+      subsurface::flat_most_reach, subsurface::flat_cell_side,
+      subsurface::probe_most_reach, choice::allot_gain[0], choice::allot_gain[1],
       choice::allot_gain[2], choice::allot_stay, choice::allot_first_bin, subsurface::min_patch_cosine,
       subsurface::separable_nodes, subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
       subsurface::separable_rows_per_profile, subsurface::sap_level_count, subsurface::sap_variant_count,

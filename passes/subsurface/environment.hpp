@@ -27,6 +27,8 @@ enum class EnvironmentSlot : uint32_t {
   count = 7
 };
 
+inline constexpr size_t most_probes = 32; // tiles of a frame
+
 // What subsurface.classify counts in a frame, as words of the counters binding.
 struct FrameCounters {
   uint32_t scattering_tiles = 0; // 8x8 tiles with a pixel that scatters further than itself
@@ -40,6 +42,10 @@ struct FrameCounters {
   // all tiles would.
   std::array<uint32_t, 3> sampled_tiles{};
   uint32_t sample_units = 0, wanted_units = 0;
+  // Of subsurface.probe: tiles that it looked at; of each, as bits of floats, the sum of squared errors and
+  // the pixels that it was made of, both times the tiles that it stands for.
+  uint32_t probe_count = 0, unused = 0;
+  std::array<std::array<uint32_t, 2>, most_probes> probes{};
 };
 inline constexpr float counter_log2_shift = 8;  // d from 1/256 pixel
 inline constexpr float counter_log2_steps = 16; // an octave; the sum of 4 M tiles fits 32 bits

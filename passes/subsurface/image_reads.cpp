@@ -224,6 +224,14 @@ ImageReads skips(const PassKind&, const ReadsQuestion&) {
   return {1};
 }
 
+// In four pixels of the tiles that are drawn: what is scattered, and of each pixel within 20 d its light and
+// patch. A group of 64 tiles draws one at most, whose share `sampled_share` is.
+ImageReads probe(const PassKind& kind, const ReadsQuestion& question) {
+  const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
+  const double side = 2 * std::ceil(20 * widest) + 1, pixels = 4.0 / 64;
+  return {question.sampled_share * pixels * (light_reads(kind, question) + 3 + side * side * 11)};
+}
+
 struct Entry {
   std::string_view kind;
   ImageReads (*reads)(const PassKind&, const ReadsQuestion&);
@@ -234,6 +242,7 @@ constexpr Entry entries[] = {
     {"subsurface.flat", none},
     {"subsurface.copy", copy},
     {"subsurface.skips", skips},
+    {"subsurface.probe", probe},
     {"subsurface.setup", setup},
     {"subsurface.burley", burley},
     {"subsurface.separable", separable},

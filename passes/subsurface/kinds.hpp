@@ -18,4 +18,7 @@ bool serves_scattering(std::string_view kind);
 // sec. 7.
 inline constexpr double copy_below_d_px = 0.0546;
 
+// Pixels whose light reaches further than this are not probed: a reference reads the square of it.
+inline constexpr int32_t probe_most_reach = 320;
+
 } // namespace dermis::subsurface

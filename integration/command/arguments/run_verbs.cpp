@@ -114,8 +114,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
         verb.add_option("--out,-o", options.out, "File, or - for standard output [-]")->type_name("FILE");
         verb.add_option("--calibration", options.calibration,
-                        "File of an earlier run to begin from: what this graph does not run stays as it is "
-                        "there [the library's own]")
+                        "File of an earlier run to begin from: what this graph does not run is scaled as the "
+                        "rest was [the library's own]")
             ->type_name("FILE");
         verb.add_option("--frames,-n", options.frames,
                         "Frames of each combination of choices, near and far [16]")

@@ -25,6 +25,10 @@ std::string describe_choice(const demo::FrameChoice& choice) {
   text += choice.measured_ms < 0 ? ", not timed" : fmt::format(", {:.2f} measured", choice.measured_ms);
   if (choice.budget_ms > 0) text += fmt::format(", budget {:.2f}", choice.budget_ms);
   text += fmt::format("; error {:.1e} expected ({})", choice.predicted_rmse, choice.why);
+  if (choice.probed_tiles > 0)
+    text += choice.probed_tiles > 1 ? fmt::format(", {:.1e} probed ({:.1e} to {:.1e})", choice.probed_rmse,
+                                                  choice.probed_rmse_low, choice.probed_rmse_high)
+                                    : fmt::format(", {:.1e} probed in one tile", choice.probed_rmse);
   if (!choice.next_better.empty())
     text += fmt::format("; next better {} would need {:.2f} ms more", choice.next_better,
                         choice.next_better_missing_ms);
@@ -75,7 +79,13 @@ void ChoiceReport::write(JsonWriter& writer) const {
     writer.member("wanted_units", choice.wanted_units).key("sampled_tiles").open_array();
     for (const uint32_t tiles : choice.sampled_tiles)
       writer.value(tiles);
-    writer.close().member("miss", std::string_view(choice.miss));
+    writer.close();
+    if (choice.probed_tiles > 0) writer.member("probed_tiles", choice.probed_tiles);
+    if (choice.probed_tiles > 0) writer.member("probed_rmse", choice.probed_rmse);
+    if (choice.probed_tiles > 1)
+      writer.member("probed_rmse_low", choice.probed_rmse_low)
+          .member("probed_rmse_high", choice.probed_rmse_high);
+    writer.member("miss", std::string_view(choice.miss));
     writer.member("next_better", std::string_view(choice.next_better));
     writer.member("next_better_missing_ms", choice.next_better_missing_ms).close();
   }

@@ -364,6 +364,10 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   std::copy(std::begin(choice.sampled_tiles), std::end(choice.sampled_tiles), out.sampled_tiles.begin());
   out.sample_units = choice.sample_units;
   out.wanted_units = choice.wanted_units;
+  out.probed_tiles = choice.probed_tiles;
+  out.probed_rmse = static_cast<double>(choice.probed_rmse);
+  out.probed_rmse_low = static_cast<double>(choice.probed_rmse_low);
+  out.probed_rmse_high = static_cast<double>(choice.probed_rmse_high);
   out.miss = choice.miss;
   return out;
 }

@@ -389,9 +389,13 @@ typedef struct dermis_choice {
   uint32_t wanted_units;         /* that would have been taken without a budget */
   uint32_t reserved_three;       /* 0 */
   const char* miss;              /* static string: why times were not as predicted; "" where they were, or not known */
+  uint32_t probed_tiles;         /* by subsurface.probe (configs/overlays/probe.json); 0: the error is not known */
+  float probed_rmse;             /* of this very frame, linear luminance times dermis_frame.exposure */
+  float probed_rmse_low;         /* to probed_rmse_high: where it lies in 95 of 100 frames */
+  float probed_rmse_high;        /* infinity where one tile was probed */
 } dermis_choice;
 #define DERMIS_CHOICE_INIT \
-  {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL}
+  {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL, 0, 0, 0, 0}
 
 /* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame.
  * Thread: one per graph. Errors: ARGUMENT, NOT_READY. */

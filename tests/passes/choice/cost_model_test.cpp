@@ -58,6 +58,14 @@ TEST(CostModel, WorkThatNeverRanIsScaledAsTheRestOfTheCalibrationWas) {
   EXPECT_NEAR(model.estimate(b, 1000).ms, 3 * 2.02, 0.01);
 }
 
+TEST(CostModel, WorkOfAnotherKindThatStoodInDoesNotScaleTheRest) {
+  CostModel model({{"known a", 100, 1, 0.1}});
+  const CostId known = model.add("known a"), strange = model.add("strange");
+  for (int i = 0; i < 40; ++i)
+    model.observe(strange, 1000, 0.001); // its stand-in takes 1.1 ms
+  EXPECT_NEAR(model.estimate(known, 1000).ms, 1.1, 1e-3);
+}
+
 TEST(CostModel, UnknownWorkCostsWhatItsLikesDoAndNeverNothing) {
   CostModel model({{"fixed inverse=exact samples=16", 10, 1, 0.1},
                    {"fixed inverse=approximate samples=8", 10, 4, 0.1},

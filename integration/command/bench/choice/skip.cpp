@@ -25,7 +25,8 @@ constexpr double pixels_per_tile = 64;
 
 // Takes what looks for flat light out of a graph that has it.
 constexpr const char* without_flat = R"({ "dermis_overlay": 1, "edits": [
-  { "remove": "/passes/flat" }, { "remove": "/passes/classify/write/light_range" } ] })";
+  { "remove": "/passes/flat" }, { "remove": "/passes/classify/write/light_range" },
+  { "remove": "/passes/classify/write/light_cells" } ] })";
 
 struct Case {
   SkipCase from;
@@ -136,8 +137,15 @@ double reads_of(const Bench& bench, const Case& one, std::span<const float> sap_
         settings, std::vector<bool>(kind.ports.size(), false), {d_px, d_px, d_px}, sap_tables};
     for (uint32_t i = 0; i < pass.access_count; ++i)
       question.bound[one.plan.plan.accesses[pass.first_access + i].port] = true;
+    if (one.choice.view_tiles > 0) {
+      question.subsurface_share = listed / one.choice.view_tiles;
+      question.scattering_share =
+          (double(one.choice.scattering_tiles) + one.choice.flat_tiles) / one.choice.view_tiles;
+    }
     const auto reads = subsurface::image_reads(kind, question);
-    const double tiles = kind.dispatch == DispatchShape::over_view ? double(one.choice.view_tiles) : listed;
+    const bool over_all =
+        kind.dispatch == DispatchShape::over_view || kind.dispatch == DispatchShape::over_tile_blocks;
+    const double tiles = over_all ? double(one.choice.view_tiles) : listed;
     if (reads) sum += reads->per_invocation * pixels_per_tile * tiles / finer;
   }
   return sum;

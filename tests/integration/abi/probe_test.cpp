@@ -1,0 +1,137 @@
+// The error probe finds the error that the exact reference finds.
+
+#include "framegraph/text/document.hpp"
+#include "passes/subsurface/profile.hpp"
+#include "passes/subsurface/truth/truth.hpp"
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <cmath>
+
+namespace dermis::abi_test {
+namespace {
+
+constexpr uint32_t side = 64; // one run of tiles: each frame probes one
+
+struct Probe : DermisTest {
+  dermis_graph graph = nullptr;
+  using Light = float (*)(uint32_t x, uint32_t y);
+
+  void make(const char* technique, bool probing = true) {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/skin.json");
+    if (probing) options.overlays = {read_text("configs/overlays/probe.json")};
+    graph = make_graph(options);
+    ASSERT_NE(graph, nullptr);
+    ASSERT_EQ(dermis_graph_set_setting(graph, "technique", technique, nullptr), DERMIS_OK);
+    make_images(graph);
+  }
+
+  dermis_choice run_frame(Light light) {
+    fill("lighting", light);
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    dermis_choice choice = DERMIS_CHOICE_INIT;
+    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    return choice;
+  }
+
+  // Mean squared error, of luminance, of light that was not scattered: the one picture that needs no device.
+  static double unscattered_error(Light light) {
+    Diagnostics diagnostics;
+    const auto document = parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
+    const auto skin = subsurface::read_profile(*document, diagnostics);
+    std::vector<float> lit;
+    for (uint32_t y = 0; y < side; ++y)
+      for (uint32_t x = 0; x < side; ++x)
+        lit.insert(lit.end(), 3, light(x, y));
+    const std::vector<float> depth(size_t{side} * side, 0.5f);
+    const std::vector<uint8_t> ids(size_t{side} * side, 1);
+    const std::vector<subsurface::PerChannel> d_m = {
+        {}, {skin->d_mm[0] * 1e-3, skin->d_mm[1] * 1e-3, skin->d_mm[2] * 1e-3}};
+    subsurface::TruthInput input;
+    input.width = input.height = side;
+    input.rays.perspective = false;
+    input.rays.scale_x = input.rays.scale_y = pitch_m;
+    input.light = lit;
+    input.depth = depth;
+    input.profile = ids;
+    input.d_m = d_m;
+    const std::vector<double> truth = subsurface::truth_everywhere(input);
+    constexpr std::array luminance = {0.2126, 0.7152, 0.0722}; // Rec. 709
+    double squares = 0;
+    for (size_t i = 0; i < lit.size() / 3; ++i) {
+      double off = 0;
+      for (size_t c = 0; c < 3; ++c)
+        off += luminance[c] * (double(lit[3 * i + c]) - truth[3 * i + c]);
+      squares += off * off;
+    }
+    return squares / (double(side) * side);
+  }
+};
+
+float checks(uint32_t x, uint32_t y) {
+  return (x + y) % 2 == 0 ? 0.25f : 0.75f;
+}
+float spread(uint32_t x, uint32_t y) {
+  return float((x * 37 + y * 61) % 97) / 64.0f;
+}
+
+TEST_F(Probe, WithoutItTheErrorIsNotKnown) {
+  make("\"sap\"", false);
+  const dermis_choice choice = run_frame(spread);
+  EXPECT_EQ(choice.probed_tiles, 0u);
+  EXPECT_EQ(choice.probed_rmse, 0);
+}
+
+TEST_F(Probe, FindsTheErrorThatTheExactReferenceFinds) {
+  // Each pixel of a chequered light is as far off as any other, but for checks that the picture's border cuts
+  // off: 1 % from tile to tile, half a per cent of a mean over frames. The pole of the centre pixel alone is
+  // worth 2 %.
+  make("\"off\"");
+  constexpr int frames = 16;
+  double mean = 0;
+  for (int i = 0; i < frames; ++i) {
+    const dermis_choice choice = run_frame(checks);
+    EXPECT_EQ(choice.probed_tiles, 1u);
+    mean += std::pow(double(choice.probed_rmse), 2) / frames;
+    EXPECT_EQ(choice.probed_rmse_low, 0); // one tile says nothing of the others
+    EXPECT_TRUE(std::isinf(choice.probed_rmse_high));
+  }
+  const double exact = std::sqrt(unscattered_error(checks));
+  EXPECT_NEAR(std::sqrt(mean), exact, 5e-3 * exact);
+}
+
+TEST_F(Probe, OverFramesItsMeanIsThePicturesError) {
+  make("\"off\"");
+  const double exact = unscattered_error(spread);
+  constexpr int frames = 48;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < frames; ++i) {
+    const double found = std::pow(double(run_frame(spread).probed_rmse), 2);
+    sum += found;
+    squares += found * found;
+  }
+  const double mean = sum / frames, deviation = std::sqrt((squares / frames - mean * mean) / (frames - 1));
+  EXPECT_NEAR(mean, exact, 4 * deviation);
+  EXPECT_LT(deviation, 0.2 * exact); // so that this says something
+}
+
+TEST_F(Probe, ThePyramidIsNearerToTheReferenceThanLightThatIsNotScattered) {
+  make("\"sap\"");
+  const auto with = run_frame(spread);
+  EXPECT_EQ(with.probed_tiles, 1u);
+  EXPECT_LT(with.probed_rmse, 0.05 * std::sqrt(unscattered_error(spread)));
+}
+
+TEST_F(Probe, ThePictureStaysAsItIs) {
+  make("\"sap\"");
+  run_frame(spread);
+  const auto probed = texels("lighting");
+  make("\"sap\"", false);
+  run_frame(spread);
+  EXPECT_EQ(texels("lighting"), probed);
+}
+
+} // namespace
+} // namespace dermis::abi_test
