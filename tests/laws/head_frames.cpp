@@ -70,6 +70,7 @@ std::vector<HeadFraming> head_framings() {
 }
 
 void HeadTest::show(const HeadFraming& framing, uint32_t width, uint32_t height, uint32_t most) {
+  close_host(); // rendering makes one of its own, and Vulkan's functions are loaded for one at a time
   SubjectOptions options{width, height, {}};
   if (framing.scan) {
     const char* named = std::getenv("DERMIS_HEAD");
@@ -93,10 +94,17 @@ void HeadTest::show(const HeadFraming& framing, uint32_t width, uint32_t height,
 }
 
 void HeadTest::TearDown() {
+  close_host();
+}
+
+void HeadTest::close_host() {
   if (host_ == nullptr) return;
-  const std::lock_guard lock(host_->log.mutex);
-  for (const std::string& message : host_->log.messages)
-    ADD_FAILURE() << message;
+  {
+    const std::lock_guard lock(host_->log.mutex);
+    for (const std::string& message : host_->log.messages)
+      ADD_FAILURE() << message;
+  }
+  host_.reset();
 }
 
 double HeadTest::luminance_at(const std::vector<float>& light, size_t pixel) const {

@@ -52,6 +52,8 @@ protected:
   std::vector<bool> edge_; // by pixel
 
 private:
+  void close_host();
+
   std::unique_ptr<demo::VulkanHost> host_;
 };
 
