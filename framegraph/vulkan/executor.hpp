@@ -44,7 +44,6 @@ enum class HistoryReason : uint8_t {
   cut,         // FrameInput::reset_history
   resized,     // the executor was made for a new size
   reloaded,    // the executor was made for a new graph
-  discarded,   // discard_frames()
   switched,    // frames ran with another plan
   left_out     // a frame ran without passes: FrameInput::left_out
 };
@@ -183,8 +182,9 @@ public:
   // Rectangle of the frame recorded last, or of that of `before` in pixels of this plan's view; that is what
   // histories cover. Width 0: none yet.
   Rectangle previous_rectangle(const Executor* before = nullptr) const noexcept;
-  // A recorded frame was not submitted: every history starts anew. One thread at a time per executor.
-  void discard_frames() noexcept;
+  // The frame recorded last was not submitted and never will be: everything is as it was before. False: it is
+  // not `frame_index`, or was taken back already. One thread at a time per executor.
+  bool discard_frame(uint64_t frame_index) noexcept;
 
   // Device time of each pass, in plan order, of the newest recorded frame <= completed_frame_index; it is
   // written to `frame_index` and `timings` (one per plan pass). False: none ready, or no timings asked for.

@@ -171,4 +171,9 @@ void remember(Chooser& chooser, const FrameChoice& frame, const choice::Decision
   chooser.decided_for = frame.program;
 }
 
+void forget(Chooser& chooser, uint64_t frame_index) noexcept {
+  FrameChoice& frame = place_of(chooser, frame_index);
+  if (frame.frame_index == frame_index) frame = {};
+}
+
 } // namespace dermis::abi

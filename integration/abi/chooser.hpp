@@ -79,5 +79,7 @@ void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index)
 FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles, uint64_t view_blocks,
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
+// The frame was never submitted: nothing will be learned from it.
+void forget(Chooser& chooser, uint64_t frame_index) noexcept;
 
 } // namespace dermis::abi

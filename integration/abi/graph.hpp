@@ -21,6 +21,19 @@ struct dermis_graph_t {
   // different frame, and at most frames_in_flight frames are not complete.
   std::array<std::unique_ptr<dermis::abi::Program>, dermis::vulkan::max_frames_in_flight + 1> retired;
   uint64_t last_frame = 0;
+  // What the last record changed, until it is taken back or the next one comes.
+  struct Recorded {
+    bool known = false;
+    uint64_t last_frame = 0; // of the graph
+    bool took_over = false;  // a new program: it was `next`
+    size_t retired = 0;      // where the program before went, if took_over; the number of places: nowhere
+    uint64_t replaced_last_frame = 0;
+    uint64_t program_last_frame = 0;
+    std::array<double, 2> last_jitter_px{};
+    uint32_t outcome = 0, variant = 0;
+    dermis::choice::DecisionState decision;
+    uint64_t decided_for = 0; // as in Chooser
+  } recorded;
   dermis::abi::Chooser chooser;
 };
 

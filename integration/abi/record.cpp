@@ -10,14 +10,50 @@ void collect(dermis_graph_t& graph, uint64_t completed) {
 }
 
 void take_over(dermis_graph_t& graph) {
+  graph.recorded.took_over = graph.next != nullptr;
+  graph.recorded.retired = graph.retired.size();
   if (!graph.next) return;
   if (graph.running && graph.running->last_frame > 0)
-    for (auto& place : graph.retired)
-      if (!place) {
-        place = std::move(graph.running);
-        break;
+    for (size_t i = 0; i < graph.retired.size() && graph.running; ++i)
+      if (!graph.retired[i]) {
+        graph.retired[i] = std::move(graph.running);
+        graph.recorded.retired = i;
       }
   graph.running = std::move(graph.next);
+}
+
+// As if the frame had not been recorded. Host memory stays as it is.
+dermis_result discard(dermis_graph_t& graph, uint64_t frame_index) {
+  const Log& log = graph.context->log;
+  dermis_graph_t::Recorded& recorded = graph.recorded;
+  if (!recorded.known || frame_index != graph.last_frame)
+    return bad_argument(
+        log, "dermis_frame_discard: frame_index is {}, expected that of the frame recorded last, {}{}",
+        frame_index, graph.last_frame,
+        recorded.known || graph.last_frame == 0 ? "" : ", which can be taken back once and alone");
+  if (recorded.took_over && graph.next)
+    return bad_argument(
+        log,
+        "dermis_frame_discard: the graph was reloaded or resized since frame {}, which was the "
+        "first of the graph before that: it cannot be taken back any more",
+        frame_index);
+  Program& program = *graph.running;
+  if (!program.variants[recorded.variant].executor->discard_frame(frame_index))
+    return bad_argument(log, "dermis_frame_discard: frame {} was not recorded", frame_index);
+  program.last_frame = recorded.program_last_frame;
+  program.last_jitter_px = recorded.last_jitter_px;
+  program.outcome = recorded.outcome;
+  forget(graph.chooser, frame_index);
+  graph.chooser.state = recorded.decision;
+  graph.chooser.decided_for = recorded.decided_for;
+  if (recorded.took_over) {
+    graph.next = std::move(graph.running);
+    if (recorded.retired < graph.retired.size()) graph.running = std::move(graph.retired[recorded.retired]);
+    if (graph.running) graph.running->last_frame = recorded.replaced_last_frame;
+  }
+  graph.last_frame = recorded.last_frame;
+  recorded = {};
+  return DERMIS_OK;
 }
 
 // Who recorded the frame before, where that was another plan: of this program, or of the one that it
@@ -63,6 +99,7 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   const uint32_t variant = program.outcomes[chosen.outcome].plan;
   chosen.first_of_plan = !program.variants[variant].recorded;
   const vulkan::Executor* before = recorded_before(graph, program, variant);
+  const std::array<double, 2> jitter_before = program.last_jitter_px;
   const bool replaces = program.last_frame == 0 && before != nullptr;
   if (replaces) program.last_jitter_px = graph.running->last_jitter_px;
   if (const dermis_result result =
@@ -80,6 +117,16 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
                 error.text, has_slot ? " (slot '" : "",
                 has_slot ? program.slots[static_cast<size_t>(error.slot)].name : "", has_slot ? "')" : "");
   }
+  graph.recorded = {};
+  graph.recorded.known = true;
+  graph.recorded.last_frame = graph.last_frame;
+  graph.recorded.replaced_last_frame = graph.running ? graph.running->last_frame : 0;
+  graph.recorded.program_last_frame = program.last_frame;
+  graph.recorded.last_jitter_px = jitter_before;
+  graph.recorded.outcome = program.outcome;
+  graph.recorded.variant = variant;
+  graph.recorded.decision = chooser.state;
+  graph.recorded.decided_for = chooser.decided_for;
   if (replaces) graph.running->last_frame = frame.frame_index; // whose histories it copies
   program.last_frame = frame.frame_index;
   program.last_jitter_px = {frame.jitter_x, frame.jitter_y};
@@ -103,4 +150,9 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, con
     if (frame == nullptr) return bad_argument(log, "dermis_graph_record: frame is NULL");
     return record(*graph, frame);
   });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index) {
+  if (graph == nullptr) return bad_argument({}, "dermis_frame_discard: graph is NULL");
+  return guarded(graph->context->log, "dermis_frame_discard", [&] { return discard(*graph, frame_index); });
 }

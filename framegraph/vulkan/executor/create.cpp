@@ -152,6 +152,8 @@ void reserve_for_recording(State& state) {
   state.image_barriers.resize(largest);
   state.buffer_barriers.resize(largest);
   state.push_constants.resize(most_settings);
+  state.before_frame.histories.resize(state.histories.size());
+  state.before_frame.ready.resize(state.instances.size());
 }
 
 } // namespace

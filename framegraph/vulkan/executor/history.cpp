@@ -15,8 +15,6 @@ const char* history_reason_text(HistoryReason reason) {
     return "the view was resized";
   case HistoryReason::reloaded:
     return "the graph was reloaded";
-  case HistoryReason::discarded:
-    return "a recorded frame was discarded";
   case HistoryReason::switched:
     return "frames ran with another plan";
   case HistoryReason::left_out:
@@ -65,14 +63,38 @@ Rectangle Executor::previous_rectangle(const Executor* before) const noexcept {
   return before == nullptr ? state_->previous_rectangle : carried_rectangle(*state_, *before->state_);
 }
 
-void Executor::discard_frames() noexcept {
-  forget_histories(*state_, HistoryReason::discarded);
-  for (Instance& instance : state_->instances)
-    instance.ready = false;
-  for (uint64_t& frame : state_->timestamps.frame_of_slot)
-    frame = 0;
-  state_->stand_ins_ready = false;
-  state_->previous_rectangle = {};
+void remember_before_frame(State& state, uint32_t frame_slot) noexcept {
+  BeforeFrame& before = state.before_frame;
+  for (size_t h = 0; h < state.histories.size(); ++h)
+    before.histories[h] = {state.histories[h].age, state.histories[h].reason};
+  for (size_t i = 0; i < state.instances.size(); ++i)
+    before.ready[i] = state.instances[i].ready;
+  before.stand_ins_ready = state.stand_ins_ready;
+  before.previous_rectangle = state.previous_rectangle;
+  before.last_frame_index = state.last_frame_index;
+  before.frame_of_slot = state.frame_of_slot[frame_slot];
+  before.known = true;
+}
+
+bool Executor::discard_frame(uint64_t frame_index) noexcept {
+  State& state = *state_;
+  BeforeFrame& before = state.before_frame;
+  if (!before.known || state.last_frame_index != frame_index) return false;
+  const auto frame_slot = static_cast<uint32_t>(frame_index % state.frames_in_flight);
+  for (size_t h = 0; h < state.histories.size(); ++h) {
+    state.histories[h].age = before.histories[h].age;
+    state.histories[h].reason = before.histories[h].reason;
+  }
+  for (size_t i = 0; i < state.instances.size(); ++i)
+    state.instances[i].ready = before.ready[i] != 0;
+  state.stand_ins_ready = before.stand_ins_ready;
+  state.previous_rectangle = before.previous_rectangle;
+  state.last_frame_index = before.last_frame_index;
+  state.frame_of_slot[frame_slot] = before.frame_of_slot;
+  if (state.timestamps.pool != VK_NULL_HANDLE) state.timestamps.frame_of_slot[frame_slot] = 0;
+  --state.frame_counter;
+  before.known = false;
+  return true;
 }
 
 } // namespace dermis::vulkan

@@ -236,6 +236,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   const Device& device = *state.device;
   const VkCommandBuffer commands = frame.command_buffer;
   const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);
+  remember_before_frame(state, frame_slot);
   if (frame.reset_history) invalidate_for_cut(state);
 
   if (frame.taken_over) forget_histories(state, HistoryReason::switched);

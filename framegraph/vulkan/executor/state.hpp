@@ -119,6 +119,19 @@ struct Timestamps {
   std::vector<uint64_t> ticks;         // room for reading one frame
 };
 
+struct BeforeFrame { // what recording the last frame changed: see Executor::discard_frame
+  struct History {
+    uint32_t age = 0;
+    HistoryReason reason = HistoryReason::first_frame;
+  };
+  bool known = false;
+  bool stand_ins_ready = false;
+  std::vector<History> histories; // by history
+  std::vector<uint8_t> ready;     // by instance
+  Rectangle previous_rectangle;
+  uint64_t last_frame_index = 0, frame_of_slot = 0;
+};
+
 struct Executor::State {
   const Device* device = nullptr;
   Plan plan;
@@ -151,6 +164,7 @@ struct Executor::State {
   uint64_t last_frame_index = 0;
   std::vector<uint64_t> frame_of_slot; // frame_index recorded there last; 0: none
   Rectangle previous_rectangle;
+  BeforeFrame before_frame;
 
   State() = default;
   State(const State&) = delete;
@@ -190,6 +204,7 @@ Error create_kernels(State& state, const ExecutorInput& input);
 void destroy_kernels(State& state);
 
 // ---- history.cpp
+void remember_before_frame(State& state, uint32_t frame_slot) noexcept;
 // What stands at the port in the frame that is being recorded: into Plan::accesses, or no_index.
 uint32_t access_now(const State& state, const PortAccess& port) noexcept;
 

@@ -573,6 +573,10 @@ typedef struct dermis_frame {
 /* Records the plan. Never submits, waits, prints or allocates host memory. On an error nothing was recorded.
  * Thread: one per graph. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, const dermis_frame* frame);
+/* The frame recorded last will never be submitted: the graph is as it was before that record, histories included, and
+ * frame_index may be used again. At most one frame, and before the next dermis_graph_record, dermis_graph_reload or
+ * dermis_graph_resize. Its command buffer must not run. Thread: one per graph. Errors: ARGUMENT. */
+DERMIS_API dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index);
 
 #ifdef __cplusplus
 }

@@ -230,20 +230,46 @@ TEST_F(ReplacedHistory, WhatAnotherKindOfPassWroteIsForgotten) {
   EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
 }
 
-TEST_F(HistoryTest, AFrameThatWasNeverSubmittedIsForgotten) {
-  const SmallGraph g = counter();
+class DiscardedFrame : public HistoryTest {
+protected:
+  void record_in_vain(bool reset_history = false) {
+    vulkan::FrameInput lost;
+    lost.command_buffer = begin_commands(); // never submitted
+    lost.images = images;
+    lost.frame_index = frame_index + 1;
+    lost.reset_history = reset_history;
+    ASSERT_FALSE(executor->record(lost));
+  }
+};
+
+TEST_F(DiscardedFrame, NeverHappened) {
+  const SmallGraph g = counter(2);
   make_executor(g, side, side);
   const TestImage result = bind(g, "result", {});
-  vulkan::FrameInput lost;
-  lost.command_buffer = begin_commands(); // never submitted
-  lost.images = images;
-  lost.frame_index = ++frame_index;
-  ASSERT_FALSE(executor->record(lost));
-  executor->discard_frames();
-  EXPECT_EQ(executor->history_state(0).reason, vulkan::HistoryReason::discarded);
-  for (int i = 1; i <= 3; ++i)
+  const float expected[] = {1, 1, 2, 2, 3, 3};
+  for (size_t i = 0; i < std::size(expected); ++i) {
+    record_in_vain(i % 2 == 1); // also one that forgets all
+    ASSERT_TRUE(executor->discard_frame(frame_index + 1));
+    EXPECT_EQ(executor->history_state(0).age, i);
     ASSERT_FALSE(frame());
-  EXPECT_THAT(read(result), Each(FloatEq(3.0f)));
+    EXPECT_THAT(read(result), Each(FloatEq(expected[i]))) << "frame " << i;
+  }
+}
+
+TEST_F(DiscardedFrame, IsTheLastOneAndTakenBackOnce) {
+  const SmallGraph g = counter();
+  make_executor(g, side, side);
+  bind(g, "result", {});
+  EXPECT_FALSE(executor->discard_frame(0));
+  EXPECT_FALSE(executor->discard_frame(1));
+  ASSERT_FALSE(frame());
+  ASSERT_FALSE(frame());
+  wait();
+  EXPECT_FALSE(executor->discard_frame(1));
+  record_in_vain();
+  EXPECT_TRUE(executor->discard_frame(3));
+  EXPECT_FALSE(executor->discard_frame(3));
+  EXPECT_FALSE(executor->discard_frame(2)) << "only one is remembered";
 }
 
 } // namespace

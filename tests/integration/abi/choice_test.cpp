@@ -156,6 +156,20 @@ struct KeptHistory : Choice {
     EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
     return choice;
   }
+  // Recorded, not submitted, and taken back; in the light of the frame before.
+  void lost_frame(uint32_t flags = 0) {
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound);
+    one.flags |= flags;
+    const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+      one.command_buffer = commands;
+      EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+      return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
+    });
+    EXPECT_FALSE(ran);
+    EXPECT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_ERROR_ARGUMENT) << "once";
+  }
   float middle() {
     const auto light = texels("lighting");
     return (light[4 * (64 * 32 + 31)] + light[4 * (64 * 32 + 32)]) / 2;
@@ -204,6 +218,28 @@ TEST_F(KeptHistory, AReloadedGraphReadsWhatItKeptBefore) {
         EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
       }
       EXPECT_EQ(lit_frame(float(i + 1) / 8).skips & DERMIS_SKIP_HISTORY, 0u) << "frame " << i;
+    }
+    return texels("lighting");
+  };
+  const auto steady = run(false);
+  EXPECT_EQ(run(true), steady) << "bit by bit";
+}
+
+TEST_F(KeptHistory, AFrameThatWasTakenBackNeverHappened) {
+  const std::string text = read_text("configs/graphs/skin.json");
+  make_accumulating();
+  const auto run = [&](bool lose) {
+    set_budget(0);
+    lit_frame(0.5f, DERMIS_FRAME_RESET_HISTORY);
+    for (int i = 0; i < 8; ++i) {
+      if (i == 2) set_budget(0.5f); // the first of another plan
+      if (i == 4) set_budget(0);
+      if (i == 6) { // the first of a graph made anew
+        const dermis_source source = source_of(text, "skin.json");
+        EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+      }
+      if (lose) lost_frame(i % 3 == 0 ? DERMIS_FRAME_RESET_HISTORY : 0);
+      lit_frame(float(i + 1) / 8);
     }
     return texels("lighting");
   };

@@ -72,6 +72,7 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   expect_argument_error(dermis_graph_memory(nullptr, &memory), "graph");
   expect_argument_error(dermis_graph_timings(nullptr, 0, &count, nullptr), "graph");
   expect_argument_error(dermis_graph_record(nullptr, &frame), "graph");
+  expect_argument_error(dermis_frame_discard(nullptr, 1), "graph");
 }
 
 TEST(NullArguments, AreHarmlessToReportsAndDestruction) {
