@@ -12,12 +12,12 @@ namespace {
 struct Culler {
   CompileContext& c;
 
-  PassId following{}; // whose reads are looked at
+  PassId following{};  // whose reads are looked at
   bool missed = false; // it needs one that stands behind it
 
   void need(PassId pass, Reason::Why why, uint32_t a = 0, uint32_t b = 0) {
     if (c.input->reasons && !c.live[pass.value]) c.because(Reason::About::pass, pass.value, why, a, b);
-    missed |= (c.live[pass.value] == 0) & (following < pass);
+    missed |= (int{c.live[pass.value] == 0} & int{following < pass}) != 0;
     c.live[pass.value] = 1;
   }
 

@@ -14,7 +14,7 @@ struct Scope {
 
 // Where a dependency on everything done so far starts.
 inline Scope tail(const ObjectState& state) { // nothing, for one that was not touched
-  const bool readers_alone = (state.readers != 0) & (state.source_access == 0);
+  const bool readers_alone = (int{state.readers != 0} & int{state.source_access == 0}) != 0;
   return {state.readers | (readers_alone ? 0 : state.source_stages), state.source_access};
 }
 
