@@ -50,9 +50,9 @@ struct RenderOptions {
   std::optional<CameraPlace> camera;
   double zoom = 1.0; // how many times larger the camera shows things: its field of view shrinks; > 0
   std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text
-  double budget_ms = 0;    // of device time for the graph's choices, a frame; 0: their defaults
-  bool metered = false;    // judge times by the calibration alone: the same choices on every machine
-  std::string calibration; // JSON of an earlier run's RenderSummary::calibration; "": the library's own
+  double budget_ms = 0;  // of device time for the graph's choices, a frame; 0: their defaults
+  bool metered = false;  // judge times by the calibration alone: the same choices on every machine
+  NamedText calibration; // JSON of an earlier run's RenderSummary::calibration; "": the library's own
 };
 
 // Row by row from the top left; channels floats a pixel.
@@ -108,7 +108,7 @@ struct FrameChoice {
   uint32_t sample_units = 0, wanted_units = 0; // taken; that would be without a budget
   uint32_t probed_tiles = 0;                   // 0: the frame's error is not known
   double probed_rmse = 0, probed_rmse_low = 0, probed_rmse_high = 0;
-  std::string miss;                            // why it took longer than the budget; "": it did not
+  std::string miss; // why it took longer than the budget; "": it did not
 };
 
 struct FrameOutputs {
@@ -124,7 +124,7 @@ struct FrameOutputs {
                         // anything where there is no subsurface. Empty unless asked for and exported
   FloatImage skips; // 2: class of the tile (0 nothing, 1 scatters, 2 below a pixel, 3 flat light), profile
                     // id. Empty unless asked for and exported
-  FloatImage color;                   // 3: linear radiance times exposure
+  FloatImage color; // 3: linear radiance times exposure
   std::vector<uint8_t> display;       // RGB, tonemapped and sRGB encoded
   std::vector<PassTime> host_times;   // shadows, gbuffer, lighting, composite
   std::optional<FrameChoice> choice;  // none without Dermis

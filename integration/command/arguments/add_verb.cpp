@@ -75,8 +75,8 @@ void add_common(CLI::App& verb, Session& session, bool json_is_file) {
   if (!json_is_file)
     verb.add_flag("--json", session.json, "One JSON document on standard output, for programs")->group(group);
   verb.add_flag("--quiet,-q", session.quiet, "Errors only")->group(group);
-  verb.add_option("--color", session.color, "Colour: auto, always or never [auto]")
-      ->transform(CLI::CheckedTransformer(modes).description("MODE"))
+  add_choice(verb, "--color", session.color, modes, "Colour: auto, always or never [auto]")
+      ->type_name("MODE")
       ->group(group);
 }
 

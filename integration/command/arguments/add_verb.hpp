@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,16 @@ void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what)
 void add_parts(CLI::App& verb, GraphParts& parts);
 void add_kinds(CLI::App& verb, GraphParts& parts);
 void add_common(CLI::App& verb, Session& session, bool json_is_file);
+
+// One of some names, each of which stands for a value.
+template <class Value>
+CLI::Option* add_choice(CLI::App& verb, const char* option, Value& value,
+                        const std::map<std::string, Value>& names, const char* what) {
+  return verb
+      .add_option_function<std::string>(
+          option, [&value, names](const std::string& name) { value = names.at(name); }, what)
+      ->check(CLI::IsMember(names));
+}
 
 // The verb's options live as long as the function that runs it.
 template <class Options, class Declare>

@@ -64,12 +64,11 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             "Temporal anti-aliasing in the engine, after the graph: sub-pixel jitter (Halton 2, 3)");
         static const std::map<std::string, RenderOptions::Debug> views{
             {"samples", RenderOptions::Debug::samples}, {"skips", RenderOptions::Debug::skips}};
-        verb.add_option(
-                "--debug", options.debug,
-                "Also pictures debug_NNNN.png. samples: green where the graph sampled, red where a "
-                "surface had no past. skips: green tiles scatter, blue ones are below a pixel, yellow "
-                "ones flat in light, grey ones have no subsurface")
-            ->transform(CLI::CheckedTransformer(views).description("VIEW"));
+        add_choice(verb, "--debug", options.debug, views,
+                   "Also pictures debug_NNNN.png. samples: green where the graph sampled, red where a "
+                   "surface had no past. skips: green tiles scatter, blue ones are below a pixel, yellow "
+                   "ones flat in light, grey ones have no subsurface")
+            ->type_name("VIEW");
         verb.add_option("--subset", options.subset,
                         "Pixels of the last frame compared with the truth; 0: none [4096]")
             ->check(CLI::Range(0u, max_subset));

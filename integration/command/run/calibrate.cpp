@@ -45,7 +45,8 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
       engine.frames = options.frames;
       engine.camera = place;
       engine.settings = values;
-      engine.calibration = calibration;
+      engine.calibration = {done == 0 && !options.calibration.empty() ? options.calibration : "calibration",
+                            calibration};
       for (const auto& [name, text] : loaded->overlays)
         engine.overlays.push_back({name, text});
       engine.include = [open = open_beside(options.graph, options.parts.roots)](

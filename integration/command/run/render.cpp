@@ -237,7 +237,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
-    engine.calibration = text.take();
+    engine.calibration = {options.calibration, text.take()};
   }
 
   // The graph is read here first: its messages then come with excerpts and as JSON, and --set is checked.

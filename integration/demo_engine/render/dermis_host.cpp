@@ -168,13 +168,12 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
 }
 
 Result<> set_budget(DermisHost& host, const DermisDesc& desc) {
-  if (desc.budget_ms == 0 && !desc.metered && desc.calibration.empty()) return success();
-  const std::string name = "calibration"; // lives as long as what points to it
-  const dermis_source calibration = source_of(name, desc.calibration);
+  if (desc.budget_ms == 0 && !desc.metered && desc.calibration.text.empty()) return success();
+  const dermis_source calibration = source_of(desc.calibration.name, desc.calibration.text);
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.milliseconds = static_cast<float>(desc.budget_ms);
   budget.flags = desc.metered ? DERMIS_BUDGET_METER : 0;
-  budget.calibration = desc.calibration.empty() ? nullptr : &calibration;
+  budget.calibration = desc.calibration.text.empty() ? nullptr : &calibration;
   Report report;
   const dermis_result result = dermis_graph_set_budget(host.graph, &budget, &report.handle);
   if (result != DERMIS_OK) return dermis_error("dermis_graph_set_budget", result, report.handle);

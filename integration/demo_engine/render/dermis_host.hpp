@@ -20,7 +20,7 @@ struct DermisDesc {
   std::function<std::optional<NamedText>(const std::string& name)> include = {};
   double budget_ms = 0;
   bool metered = false;
-  std::string calibration = {};
+  NamedText calibration = {};
   bool sampling = false; // bind `sampling`, which costs the graph a write
   bool skips = false;    // the same of `skips`
 };

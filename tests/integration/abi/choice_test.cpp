@@ -48,14 +48,7 @@ struct Choice : DermisTest {
     dermis_report_destroy(report);
   }
 
-  dermis_choice run_frame() {
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    dermis_choice choice = DERMIS_CHOICE_INIT;
-    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
-    return choice;
-  }
+  dermis_choice run_frame() { return DermisTest::run_frame(graph); }
 };
 
 TEST_F(Choice, WithoutABudgetTheDefaultsRun) {

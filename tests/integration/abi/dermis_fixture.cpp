@@ -232,6 +232,15 @@ dermis_result DermisTest::record(dermis_graph graph, dermis_frame& frame) {
   return result;
 }
 
+dermis_choice DermisTest::run_frame(dermis_graph graph) {
+  const auto bound = bindings(graph);
+  dermis_frame one = frame(bound);
+  EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+  return choice;
+}
+
 std::vector<float> DermisTest::texels(const std::string& slot) {
   auto read = demo::read_image(*host, images.at(slot), sampled);
   EXPECT_TRUE(read) << read.error().text;

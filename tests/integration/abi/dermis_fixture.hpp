@@ -60,6 +60,7 @@ struct DermisTest : testing::Test {
   dermis_frame frame(const std::vector<dermis_image_binding>& bound, uint32_t width = 64,
                      uint32_t height = 64);
   dermis_result record(dermis_graph graph, dermis_frame& frame); // records, submits and waits
+  dermis_choice run_frame(dermis_graph graph); // one frame of what is bound, and what was chosen for it
   // Gives an image new contents: `value(x, y)` in every channel.
   void upload(const std::string& slot, const std::vector<float>& values); // channel by channel
   void fill(const std::string& slot, const std::function<float(uint32_t, uint32_t)>& value);

@@ -38,14 +38,7 @@ constexpr const char* painted = R"({ "dermis_overlay": 1, "edits": [
 struct Hybrid : DermisTest {
   dermis_graph graph = nullptr;
 
-  dermis_choice run_frame() {
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    dermis_choice choice = DERMIS_CHOICE_INIT;
-    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
-    return choice;
-  }
+  dermis_choice run_frame() { return DermisTest::run_frame(graph); }
 
   void set_units(uint32_t units) {
     const std::string text = unit_times;

@@ -28,12 +28,7 @@ struct Probe : DermisTest {
 
   dermis_choice run_frame(Light light) {
     fill("lighting", light);
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    dermis_choice choice = DERMIS_CHOICE_INIT;
-    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
-    return choice;
+    return DermisTest::run_frame(graph);
   }
 
   // Mean squared error, of luminance, of light that was not scattered: the one picture that needs no device.

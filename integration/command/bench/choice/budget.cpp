@@ -205,7 +205,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options)
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
-    request.calibration = text.take();
+    request.calibration = {options.calibration, text.take()};
   }
   Progress progress(progress_style(session.quiet, false), "budget", "run",
                     options.scenes.size() * (sets.size() + 2 * std::size(shares)));

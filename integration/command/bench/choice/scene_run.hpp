@@ -21,7 +21,7 @@ struct SceneRunRequest {
   double budget_ms = 0;     // 0: the defaults, with `set`
   bool metered = false;
   std::vector<NamedValue> set; // JSON texts
-  std::string calibration;     // text; "": the library's own
+  demo::NamedText calibration; // "": the library's own
   std::string cache;           // folder for references
 };
 
