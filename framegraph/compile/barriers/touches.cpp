@@ -9,7 +9,7 @@ namespace dermis {
 
 void Synchronizer::collect(uint32_t first_use, uint32_t end) {
   c.touches.clear();
-  c.touch_of_use.resize(end - first_use);
+  if (c.touch_of_use.size() < end - first_use) c.touch_of_use.resize(end - first_use);
   for (uint32_t u = first_use; u < end; ++u) {
     const Use& use = c.uses[u];
     uint32_t& touch_of_use = c.touch_of_use[u - first_use];
