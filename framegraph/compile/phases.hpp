@@ -255,7 +255,7 @@ struct CompileContext {
   // synchronize
   std::vector<SyncFacts> sync_facts; // by plan resource
   std::vector<ObjectState> states, ends;
-  std::vector<PassTouch> touches;
+  std::vector<PassTouch> touches;     // of one pass, and what is left of others
   std::vector<uint32_t> touch_number; // by object: of the last one, counted through all passes
   std::vector<uint32_t> touch_of_use;
   std::vector<uint32_t> lent_memory;        // by plan resource: into `memory`, of what it lends
@@ -305,8 +305,9 @@ struct CompileContext {
   bool host_owned(ResourceId id) const { return facts[id.value].host_owned; }
   void because(Reason::About about, uint32_t index, Reason::Why why, uint32_t a = 0, uint32_t b = 0,
                uint32_t c = 0) {
-    if (input->reasons) out->reasons.push_back({about, why, index, a, b, c});
+    if (input->reasons) add_reason({about, why, index, a, b, c});
   }
+  void add_reason(const Reason& reason); // apart, so that those who ask for none pay little
 };
 
 // The phases, in the order they run. Each adds diagnostics; compile() stops behind a phase that found errors.

@@ -100,8 +100,8 @@ void Synchronizer::run_pass(uint32_t position) {
   current = position;
   if (emit) add_accesses(pass, first_use, end);
   waiting_parts.clear();
-  for (const PassTouch& touch : c.touches)
-    run_touch(touch, position);
+  for (uint32_t i = 0; i < touch_count; ++i)
+    run_touch(c.touches[i], position);
   batch_parts(position);
 }
 

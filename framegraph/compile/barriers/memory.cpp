@@ -86,14 +86,21 @@ void Synchronizer::wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint3
 uint32_t Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before) {
   const SyncFacts& of = facts(from.resource);
   const ObjectState* state = c.states.data() + of.first_object + from.frames_back * of.parts;
+  PlanBarrier& draft = c.drafts[barrier];
   uint32_t last = 0;
-  for (uint32_t part = 0; part < of.parts; ++part, ++state) {
-    inherit(*state, barrier, frame_before);
-    if (state->touched) last = std::max(last, state->last_pass + 1);
+  if (of.parts == 1 && !two_queues()) {
+    wait_for(draft, tail(*state));
+    last = state->touched ? state->last_pass + 1 : 0;
+  } else {
+    for (uint32_t part = 0; part < of.parts; ++part, ++state) {
+      inherit(*state, barrier, frame_before);
+      if (state->touched) last = std::max(last, state->last_pass + 1);
+    }
   }
-  if (from.resource != resource && roles(resource) == 1) c.drafts[barrier].why = PlanBarrier::Why::alias;
-  because(barrier, from.resource == resource ? Reason::Why::behind_last_use : Reason::Why::takes_memory,
-          from.resource, frame_before ? 1 : 0);
+  const bool own = from.resource == resource;
+  if (!own && roles(resource) == 1) draft.why = PlanBarrier::Why::alias;
+  because(barrier, own ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from.resource,
+          frame_before ? 1 : 0);
   return last;
 }
 

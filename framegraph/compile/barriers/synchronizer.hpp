@@ -22,10 +22,12 @@ struct Synchronizer {
   CompileContext& c;
   Plan& plan;
   const std::array<UsageSet, usage_sets>& sets;
+  const bool beside = !c.queue.empty(); // there is an async queue
   std::vector<std::pair<uint32_t, uint32_t>> waiting_parts =
       {};                         // barriers for parts, and what they stand behind
   uint32_t current = 0;           // position
   uint32_t touches_before = 1;    // of the passes walked through so far: see CompileContext::touch_number
+  uint32_t touch_count = 0;       // of the pass in hand, first in CompileContext::touches
   bool emit = false;              // barriers; otherwise only how each object ends
   uint32_t last_batch = no_value; // position of the pass behind it
 
@@ -54,7 +56,7 @@ struct Synchronizer {
   // The oldest instance of a history was one role younger when the frame before ended, and so on.
   void find_ends();
 
-  bool two_queues() const { return !c.queue.empty(); }
+  bool two_queues() const { return beside; }
   Queue queue_at(uint32_t position) const { return plan.passes[position].queue; }
 
   // The pass at `position` comes after the one at `earlier`, of the other queue.
@@ -90,9 +92,10 @@ struct Synchronizer {
   }
 
   uint32_t draft() {
+    const auto index = static_cast<uint32_t>(c.batch_of.size());
     c.drafts.emplace_back();
     c.batch_of.push_back(no_value);
-    return static_cast<uint32_t>(c.drafts.size() - 1);
+    return index;
   }
 
   // Brings the drafts into the order of their batches, those of one batch as they were found.
