@@ -105,7 +105,7 @@ TEST_F(Accumulate, LightThatFlashesIsFollowedAndMeantAllTheSame) {
   RecordProperty("now", std::to_string(now.mean_psnr_db));
   RecordProperty("believing", std::to_string(believing.mean_psnr_db));
   RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
-  // Measured 60.9 dB without history, then 62.0 either way: no worse than each frame's own light.
+  // Measured 62.5 dB without history, 63.5 and 63.6 with it.
   EXPECT_GT(believing.mean_psnr_db, now.mean_psnr_db);
   EXPECT_GT(clipped.mean_psnr_db, now.mean_psnr_db);
   // Noise of few samples is meant over frames as where light rests, though it is as often dark as bright.
