@@ -1,5 +1,8 @@
 #include "integration/abi/frame_check.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace dermis::abi {
 namespace {
 
@@ -68,6 +71,14 @@ const vulkan::Executor* recorded_before(const dermis_graph_t& graph, const Progr
   return other.variants[last].executor.get();
 }
 
+// The jitter of the frame before, in pixels of the size that the view has now.
+std::array<double, 2> rescaled_jitter(const dermis_graph_t& graph, const vulkan::Executor& executor,
+                                      const vulkan::Executor& before) {
+  const vulkan::Rectangle was = before.previous_rectangle(), is = executor.previous_rectangle(&before);
+  const auto& jitter = graph.running->last_jitter_px;
+  return {jitter[0] * is.width / std::max(was.width, 1u), jitter[1] * is.height / std::max(was.height, 1u)};
+}
+
 constexpr uint64_t tile_side = 8, block_side = 32; // pixels
 
 // Squares of `side` pixels.
@@ -101,7 +112,7 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   const vulkan::Executor* before = recorded_before(graph, program, variant);
   const std::array<double, 2> jitter_before = program.last_jitter_px;
   const bool replaces = program.last_frame == 0 && before != nullptr;
-  if (replaces) program.last_jitter_px = graph.running->last_jitter_px;
+  if (replaces) program.last_jitter_px = rescaled_jitter(graph, *program.variants[variant].executor, *before);
   if (const dermis_result result =
           fill_frame(graph, program, chosen.outcome, before, chosen.sample_units, frame, checked);
       result != DERMIS_OK)

@@ -123,16 +123,17 @@ void copy_image(const Device& device, VkCommandBuffer commands, const Kept& from
   change_layouts(device, commands, to, target, false);
 }
 
-// The kind of the pass that writes the newest frame: another kind means something else by it.
+// The kind of the pass that writes the newest frame last: another kind means something else by it.
 KindId writer_of(const State& state, const PlanHistory& history) {
+  KindId writer;
   for (const PlanPass& pass : state.plan.passes)
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
       const PlanAccess& access = state.plan.accesses[a];
       if (access.resource == history.resource && access.frames_back == 0 &&
           (access.access & all_write_access) != 0)
-        return pass.kind;
+        writer = pass.kind;
     }
-  return {};
+  return writer;
 }
 
 bool usable(const State& to, uint32_t to_history, const State& from, uint32_t from_history) {
