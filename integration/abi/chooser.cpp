@@ -107,16 +107,18 @@ Chooser make_chooser() {
 void describe_program(Chooser& chooser, const KindRegistry& kinds, Program& program) {
   std::vector<const Plan*> plans;
   for (const Variant& variant : program.variants)
-    plans.push_back(&variant.compiled.plan);
+    plans.push_back(&variant.compiled->plan);
   describe_outcomes(kinds, plans, chooser.errors, chooser.costs, program.outcomes);
 }
 
-void make_room(Chooser& chooser, const Program& program) {
+void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program) {
+  describe_program(chooser, kinds, program);
   size_t passes = chooser.times.size();
   for (const Variant& variant : program.variants)
-    passes = std::max(passes, variant.compiled.plan.passes.size());
+    passes = std::max(passes, variant.compiled->plan.passes.size());
   chooser.times.resize(passes);
   chooser.forecasts.resize(std::max(chooser.forecasts.size(), program.outcomes.size()));
+  program.serial = ++chooser.programs;
 }
 
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept {

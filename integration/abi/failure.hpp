@@ -64,6 +64,11 @@ inline dermis_result refused_size(const Log& log, SizedRead why, std::string_vie
                       least, largest_struct_size);
 }
 
+inline dermis_result refused_size(const Log& log, SizedRead why, const char* function, const char* argument,
+                                  size_t stated, size_t least) {
+  return refused_size(log, why, fmt::format("{}: {}", function, argument), stated, least);
+}
+
 // Runs the body of an exported function: whatever is thrown inside (by the standard library, by fmt) becomes
 // a result.
 template <class Body> dermis_result guarded(const Log& log, const char* function, Body&& body) noexcept {

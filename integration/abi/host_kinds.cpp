@@ -136,6 +136,7 @@ void record_host_pass(void* host_passes, const vulkan::HostPass& call) {
   out.rect_width = call.rectangle.width;
   out.rect_height = call.rectangle.height;
   out.frame_index = call.frame_index;
+  out.view_user = call.view_user;
   found->record(found->user, &out);
 }
 

@@ -86,6 +86,7 @@ void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectan
   call.settings = {state.host_settings.data(), pass.host_settings};
   call.rectangle = rectangle;
   call.frame_index = frame.frame_index;
+  call.view_user = frame.view_user;
   state.host_pass(state.host_pass_user, call);
 }
 

@@ -146,7 +146,7 @@ void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size
                 const Rectangle& rectangle) {
   const FunctionTable& vk = state.device->vk;
   const Pass& pass = state.passes[p];
-  const Kernel& kernel = state.kernels[pass.kernel];
+  const Kernel& kernel = *state.kernels[pass.kernel];
   if (kernel.counts) record_counters_in_order(state, frame);
   vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   const bool environment = state.environment.set_layout != VK_NULL_HANDLE;
@@ -173,10 +173,12 @@ void run_clear(State& state, const FrameInput& frame, size_t p) {
       vk.vkCmdFillBuffer(frame.command_buffer, instance.buffer, 0, VK_WHOLE_SIZE, 0);
       continue;
     }
-    const VkImage image =
-        host_owned ? frame.images[static_cast<size_t>(resource.slot)].image : instance.image;
+    const HostImage* host = host_owned ? &frame.images[static_cast<size_t>(resource.slot)] : nullptr;
+    const VkImage image = host_owned ? host->image : instance.image;
     VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
                                   VK_REMAINING_ARRAY_LAYERS};
+    if (host_owned) range.baseArrayLayer = host->first_layer;
+    if (host_owned && host->layers > 0) range.layerCount = host->layers;
     if (access.range != resource.whole())
       range = {VK_IMAGE_ASPECT_COLOR_BIT, access.range.first_mip, access.range.mips, access.range.first_layer,
                access.range.layers};

@@ -14,6 +14,7 @@
  *   3. dermis_graph_slots          the images that the graph wants, by name and number
  *   4. each frame: fill a dermis_frame (bindings, camera, frame numbers), dermis_graph_record, submit yourself
  *   5. dermis_graph_destroy, dermis_context_destroy, after the device has finished the recorded frames
+ *   More cameras (an eye each, a split screen): dermis_view_create once each, dermis_view_record each frame.
  *
  * BARRIER CONTRACT
  *   Before dermis_graph_record each bound image is in `before.layout` and was last touched by `before.stages` and
@@ -34,8 +35,11 @@
  *   DERMIS_ERROR_DEVICE_LOST only destroy.
  *
  * THREADS
- *   Stated at each function. "Any" means: from any thread, at any time. "One per graph" means: no two calls with
- *   the same graph at the same time; different graphs are independent.
+ *   Stated at each function. "Any" means: from any thread, at any time. "One per view" means: no two calls with the
+ *   same view at the same time; different views are independent, and so are graphs. A graph has a view of its own,
+ *   which dermis_graph_record and dermis_frame_discard mean. "Beside" means: any, also while other threads record
+ *   views of the graph: these go on with what they have, and changes of a graph wait for each other. Create and
+ *   destroy come first and last: nobody else uses the object then.
  */
 #ifndef DERMIS_DERMIS_H
 #define DERMIS_DERMIS_H
@@ -94,6 +98,7 @@ typedef enum dermis_severity {
 
 typedef struct dermis_context_t* dermis_context;
 typedef struct dermis_graph_t* dermis_graph;
+typedef struct dermis_view_t* dermis_view;
 typedef struct dermis_report_t* dermis_report;
 
 /* One message. Strings belong to the report (or, in a log call, to the library until the call returns). */
@@ -254,15 +259,17 @@ DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source
  * DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context, const dermis_graph_desc* desc,
                                                          dermis_graph* graph, dermis_report* report);
-/* Builds a new graph beside the running one and swaps it in at the next record. On failure nothing changes. Histories
+/* Builds a new graph beside the running one and swaps it in at the next record of each view. On failure nothing changes. Histories
  * and settings are carried over by name where they agree; what is not is listed in the report.
- * Thread: one per graph. Errors: as dermis_graph_create. */
+ * Thread: beside. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_source* source,
                                                          dermis_report* report);
-/* A new allocated size. Histories become invalid, but for images declared "on_resize": "rescale". Thread: one per graph. Errors: as dermis_graph_create. */
+/* A new allocated size of all views. Histories become invalid, but for images declared "on_resize": "rescale".
+ * Thread: beside. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width, uint32_t height,
                                                          dermis_report* report);
-/* The device must have finished every frame recorded with it. NULL is ignored. Thread: one per graph. */
+/* Its views are destroyed with it. The device must have finished every frame recorded with them. NULL is ignored.
+ * Thread: any, alone with this graph. */
 DERMIS_API void DERMIS_CALL dermis_graph_destroy(dermis_graph graph);
 
 typedef struct dermis_slot {
@@ -280,7 +287,7 @@ typedef struct dermis_slot {
 } dermis_slot;
 #define DERMIS_SLOT_INIT {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0}
 
-/* The slots that the next record expects; ask again after a reload. Two-call array. Thread: one per graph.
+/* The slots that the next record expects; ask again after a reload. The same for all views. Two-call array. Thread: beside.
  * Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint32_t* count, dermis_slot* slots);
 
@@ -291,7 +298,7 @@ typedef enum dermis_describe_format {
   DERMIS_DESCRIBE_FORMAT_FORCE_32BIT = 0x7fffffff
 } dermis_describe_format;
 
-/* *size in: room in `text`; out: bytes needed with the final 0. text may be NULL. Thread: one per graph.
+/* *size in: room in `text`; out: bytes needed with the final 0. text may be NULL. Thread: beside.
  * Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, dermis_describe_format format,
                                                            size_t* size, char* text);
@@ -305,7 +312,7 @@ typedef struct dermis_memory {
 } dermis_memory;
 #define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}
 
-/* Thread: one per graph. Errors: ARGUMENT. */
+/* Of all views together. Thread: beside. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory);
 
 typedef struct dermis_pass_timing {
@@ -317,12 +324,14 @@ typedef struct dermis_pass_timing {
 #define DERMIS_PASS_TIMING_INIT {sizeof(dermis_pass_timing), NULL, 0, 0}
 
 /* Device times of the newest completed frame, in plan order; needs DERMIS_CONTEXT_TIMINGS. `completed_frame_index`
- * as in dermis_frame. Two-call array. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE, NOT_READY. */
+ * as in dermis_frame. Of the graph's own view. Two-call array. Thread: one per view. Errors: ARGUMENT, INCOMPLETE,
+ * NOT_READY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, uint64_t completed_frame_index,
                                                           uint32_t* count, dermis_pass_timing* timings);
 
 /* Sets a declared setting from JSON text ("16", "true", "\"post\""), effective at the next record. A value that
- * changes which passes run recompiles here. Thread: one per graph. Errors: ARGUMENT, CONFIG, and those of creation. */
+ * changes which passes run recompiles here. For all views. Thread: beside. Errors: ARGUMENT, CONFIG, and those of
+ * creation. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name, const char* json,
                                                               dermis_report* report);
 
@@ -331,7 +340,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph
 #define DERMIS_BUDGET_METER 0x1u /* times come from the calibration alone, never from timestamps: the same frames
                                     give the same choices on every machine */
 
-/* Device time that the graph may take. Settings declared with "by": "budget" are then chosen in each record: the least
+/* Device time that a frame of one view may take. Settings declared with "by": "budget" are then chosen in each record: the least
  * expected error whose expected time fits. All plans that this can lead to exist from creation on; changing between
  * them allocates nothing. Times are learned with DERMIS_CONTEXT_TIMINGS; else they are those of the calibration. */
 typedef struct dermis_budget {
@@ -343,7 +352,7 @@ typedef struct dermis_budget {
 } dermis_budget;
 #define DERMIS_BUDGET_INIT {sizeof(dermis_budget), 0, 0, NULL, NULL}
 
-/* Effective at the next record; kept over reload and resize. Thread: one per graph. Errors: ARGUMENT, VERSION, CONFIG,
+/* For all views; effective at the next record; kept over reload and resize. Thread: beside. Errors: ARGUMENT, VERSION, CONFIG,
  * MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph, const dermis_budget* budget,
                                                              dermis_report* report);
@@ -397,12 +406,13 @@ typedef struct dermis_choice {
 #define DERMIS_CHOICE_INIT \
   {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL, 0, 0, 0, 0}
 
-/* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame.
- * Thread: one per graph. Errors: ARGUMENT, NOT_READY. */
+/* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame. Of the
+ * graph's own view. Thread: one per view. Errors: ARGUMENT, NOT_READY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph, uint64_t completed_frame_index,
                                                          dermis_choice* choice);
 /* What is known of this device's times, as JSON for dermis_budget.calibration at the next start. *size in: room in
- * `text`; out: bytes needed with the final 0. text may be NULL. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE. */
+ * `text`; out: bytes needed with the final 0. text may be NULL. As the graph's own view
+ * learned it. Thread: beside. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size, char* text);
 
 /* ---- passes of the host ---------------------------------------------------------------------------------- */
@@ -463,7 +473,7 @@ typedef struct dermis_pass_port {
   {sizeof(dermis_pass_port), VK_NULL_HANDLE, VK_NULL_HANDLE, VK_FORMAT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, \
    VK_NULL_HANDLE, 0}
 
-/* All of it is valid until the function returns. The images and views of a graph are the same from frame to frame until
+/* All of it is valid until the function returns. The images and image views of a view are the same from frame to frame until
  * it is reloaded, resized or given a setting that changes its passes, but for those with history, which take turns. */
 typedef struct dermis_pass_call {
   size_t struct_size;
@@ -474,9 +484,10 @@ typedef struct dermis_pass_call {
   uint32_t port_count, setting_count;
   uint32_t rect_x, rect_y, rect_width, rect_height; /* rendered part of the view in pixels */
   uint64_t frame_index;
+  void* view_user;               /* dermis_view_desc.user; NULL: the graph's own view */
 } dermis_pass_call;
 #define DERMIS_PASS_CALL_INIT \
-  {sizeof(dermis_pass_call), NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0}
+  {sizeof(dermis_pass_call), NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, NULL}
 
 /* Records the pass into the command buffer; called inside dermis_graph_record, by its thread. The library has put the
  * barriers before it and will put those after it, by what the ports declare: touch nothing but the ports that way, put
@@ -522,13 +533,15 @@ typedef struct dermis_image_binding {
   uint32_t slot;          /* dermis_slot.id */
   VkFormat format;
   VkImage image;          /* 2-D, one sample, created with dermis_slot.usage */
-  VkImageView view;       /* of mip 0, layer 0; for depth formats of the depth aspect alone */
+  VkImageView view;       /* of mip 0 and one layer; for depth formats of the depth aspect alone */
   uint32_t width, height; /* extent of mip 0 */
   dermis_image_state before, after;
+  uint32_t layer;         /* first layer that is bound, 0 where layer_count is 0 */
+  uint32_t layer_count;   /* layers in the states told here; others are not touched: an eye each. 0: all layers */
 } dermis_image_binding;
 #define DERMIS_IMAGE_BINDING_INIT \
   {sizeof(dermis_image_binding), 0, VK_FORMAT_UNDEFINED, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, \
-   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}}
+   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, 0, 0}
 
 typedef enum dermis_depth_kind {
   DERMIS_DEPTH_DEVICE = 0,      /* what the depth test wrote, for clip_from_view; reversed and infinite are fine */
@@ -570,13 +583,43 @@ typedef struct dermis_frame {
 #define DERMIS_FRAME_INIT \
   {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, DERMIS_DEPTH_DEVICE, 0, 0, 0, 0}
 
-/* Records the plan. Never submits, waits, prints or allocates host memory. On an error nothing was recorded.
- * Thread: one per graph. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
+/* Records the plan for the graph's own view. Never submits, waits for the device, prints or allocates host memory. On an
+ * error nothing was recorded. Thread: one per view. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, const dermis_frame* frame);
 /* The frame recorded last will never be submitted: the graph is as it was before that record, histories included, and
  * frame_index may be used again. At most one frame, and before the next dermis_graph_record, dermis_graph_reload or
- * dermis_graph_resize. Its command buffer must not run. Thread: one per graph. Errors: ARGUMENT. */
+ * dermis_graph_resize. Its command buffer must not run. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index);
+
+/* ---- more views ------------------------------------------------------------------------------------------ */
+
+/* A camera of a graph, beside the graph's own: an eye, a player of a split screen, a mirror. Views share the plan, the
+ * pipelines, settings and budget; histories, transient memory, frame numbers and what is learned of times are each one's
+ * own. All have the graph's allocated size and slots; each frame renders its own rectangle into its own images. */
+typedef struct dermis_view_desc {
+  size_t struct_size;
+  void* user; /* dermis_pass_call.view_user */
+} dermis_view_desc;
+#define DERMIS_VIEW_DESC_INIT {sizeof(dermis_view_desc), NULL}
+
+/* Compiles nothing; allocates what a view needs. desc may be NULL. *view is NULL on failure. *report (may be NULL) gets
+ * the messages. Thread: beside. Errors: ARGUMENT, VERSION, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph, const dermis_view_desc* desc,
+                                                        dermis_view* view, dermis_report* report);
+/* The device must have finished every frame recorded with it. NULL is ignored. Not after dermis_graph_destroy, which
+ * destroys it. Thread: beside, alone with this view. Errors: none. */
+DERMIS_API void DERMIS_CALL dermis_view_destroy(dermis_view view);
+/* As dermis_graph_record, for this view: frame_index grows from frame to frame of the view, and completed_frame_index is
+ * the newest of them that the device has finished. Thread: one per view. Errors: as dermis_graph_record. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_record(dermis_view view, const dermis_frame* frame);
+/* As dermis_frame_discard, for this view. Thread: one per view. Errors: ARGUMENT. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
+/* As dermis_graph_choice, for this view. Thread: one per view. Errors: ARGUMENT, NOT_READY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_choice(dermis_view view, uint64_t completed_frame_index,
+                                                        dermis_choice* choice);
+/* As dermis_graph_timings, for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint64_t completed_frame_index,
+                                                         uint32_t* count, dermis_pass_timing* timings);
 
 #ifdef __cplusplus
 }
