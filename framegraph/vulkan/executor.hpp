@@ -145,6 +145,12 @@ struct FrameInput {
   // would write.
   std::span<const uint8_t> left_out;
   void* view_user = nullptr; // handed to passes of the host
+  // For whoever wants the commands and no command buffer: its vkCmd... functions are called with
+  // `command_buffer` instead of the device's, and passes of the host go to this function. Null: the device's,
+  // the executor's.
+  const FunctionTable* commands = nullptr;
+  HostPassFunction host_pass = nullptr;
+  void* host_pass_user = nullptr;
 };
 
 // Like Error, without memory of its own.
@@ -204,6 +210,8 @@ public:
   // of the environment's counters. False: that frame was not recorded here, or another took its place since.
   // One thread at a time per executor.
   bool read_counters(uint64_t frame_index, std::span<uint32_t> counters) const noexcept;
+  // Reading times told that the device is lost. One thread at a time per executor.
+  bool saw_lost_device() const noexcept;
   const Plan& plan() const noexcept;
   // Device memory that it took for heap `index` (Plan::heaps); bytes 0: it lies in the pool. Throws nothing.
   MemoryRequest heap_request(uint32_t index) const noexcept;

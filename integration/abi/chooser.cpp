@@ -104,15 +104,18 @@ Chooser make_chooser() {
   return chooser;
 }
 
-void describe_program(Chooser& chooser, const KindRegistry& kinds, Program& program) {
+std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
+                                       const choice::ErrorModel& errors, choice::CostModel& costs,
+                                       std::vector<choice::Outcome> outcomes) {
   std::vector<const Plan*> plans;
   for (const Variant& variant : program.variants)
     plans.push_back(&variant.compiled->plan);
-  describe_outcomes(kinds, plans, chooser.errors, chooser.costs, program.outcomes);
+  describe_outcomes(kinds, plans, errors, costs, outcomes);
+  return outcomes;
 }
 
 void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program) {
-  describe_program(chooser, kinds, program);
+  program.outcomes = described(kinds, program, chooser.errors, chooser.costs, std::move(program.outcomes));
   size_t passes = chooser.times.size();
   for (const Variant& variant : program.variants)
     passes = std::max(passes, variant.compiled->plan.passes.size());

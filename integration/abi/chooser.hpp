@@ -67,9 +67,11 @@ Chooser make_chooser();
 // record.
 void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program);
 
-// Tells the outcomes of `program` what their passes cost and which technique they are: after its making,
-// after a setting or a table changed.
-void describe_program(Chooser& chooser, const KindRegistry& kinds, Program& program);
+// The outcomes of `program` with what their passes cost and which technique they are, by these tables;
+// `costs` gets entries for what is new. After a setting or a table changed.
+std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
+                                       const choice::ErrorModel& errors, choice::CostModel& costs,
+                                       std::vector<choice::Outcome> outcomes);
 
 // Learns from frames of `program` that the device has finished. Allocates nothing.
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;

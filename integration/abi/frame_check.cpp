@@ -120,7 +120,7 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
                             const dermis_image_binding& binding) {
   const Log& log = view.context->log;
   const char* const function = record_function(view);
-  if (binding.image == VK_NULL_HANDLE || binding.view == VK_NULL_HANDLE)
+  if (binding.image == VK_NULL_HANDLE || (binding.view == VK_NULL_HANDLE && binding.content_id == 0))
     return bad_argument(log, "{}: bindings[{}].{} ('{}') is null", function, index,
                         binding.image == VK_NULL_HANDLE ? "image" : "view", slot.name);
   if (static_cast<uint32_t>(binding.format) != format_info(slot.format).vulkan)
@@ -155,6 +155,35 @@ vulkan::HostState host_state(const dermis_image_state& state) {
   return {state.layout, state.queue_family, state.stages, state.access};
 }
 
+// The image view of a binding that brings none.
+dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, const dermis_frame& frame,
+                        dermis_image_binding& binding) {
+  if (binding.view != VK_NULL_HANDLE) return DERMIS_OK;
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
+  const ImageViewKey key{binding.slot,
+                         binding.image,
+                         binding.content_id,
+                         binding.format,
+                         format_info(slot.format).depth ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                                                        : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT},
+                         binding.layer};
+  const VkResult result =
+      find_image_view(view.image_views, key, frame.frame_index, frame.completed_frame_index, binding.view);
+  if (result == VK_SUCCESS) return DERMIS_OK;
+  if (result == VK_ERROR_TOO_MANY_OBJECTS)
+    return bad_argument(
+        log,
+        "{}: bindings[{}] ('{}') takes turns with more than {} images within the frames in flight; "
+        "give views for them",
+        function, index, slot.name, image_views_a_slot);
+  const vulkan::ErrorKind kind = vulkan::kind_of(result);
+  if (kind == vulkan::ErrorKind::device_lost) view.context->lost = true;
+  return fail(log, result_of(kind), diagnostic_of(kind),
+              "{}: bindings[{}] ('{}'): vkCreateImageView failed ({})", function, index, slot.name,
+              vulkan::result_name(result));
+}
+
 // Every slot without an image in one message.
 dermis_result check_complete(const Log& log, const char* function, const Program& program) {
   std::array<char, failure_text_size> names;
@@ -169,7 +198,7 @@ dermis_result check_complete(const Log& log, const char* function, const Program
   return bad_argument(log, "{}: no image is bound to {}", function, std::string_view{names.data(), used});
 }
 
-dermis_result check_bindings(const dermis_view_t& view, Program& program, const dermis_frame& frame) {
+dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
   const Log& log = view.context->log;
   const char* const function = record_function(view);
   if (frame.binding_count > 0 && frame.bindings == nullptr)
@@ -201,6 +230,8 @@ dermis_result check_bindings(const dermis_view_t& view, Program& program, const 
       return bad_argument(log, "{}: bindings[{}] binds slot {} ('{}') a second time", function, i,
                           binding.slot, slot.name);
     if (const dermis_result result = check_binding(view, i, slot, binding); result != DERMIS_OK)
+      return result;
+    if (const dermis_result result = make_view(view, i, slot, frame, binding); result != DERMIS_OK)
       return result;
     image = {binding.image, binding.view,       host_state(binding.before), host_state(binding.after),
              binding.layer, binding.layer_count};
@@ -250,7 +281,7 @@ bool fill_constants(const dermis_frame& frame, const Program& program, const vul
 
 } // namespace
 
-dermis_result check_frame(const dermis_view_t& view, Program& program, const dermis_frame& frame,
+dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_frame& frame,
                           CheckedFrame& checked) {
   const Log& log = view.context->log;
   const char* const function = record_function(view);

@@ -49,6 +49,7 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
   size_t v = 0;
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
+    make_room(view.image_views, candidates[v]->slots.size());
     adopt(view.chooser, context.kinds, *candidates[v++]);
   });
   return DERMIS_OK;
@@ -141,11 +142,19 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   const auto index = static_cast<uint32_t>(at - declared.begin());
   if (at->by_budget || changes_passes(program, values))
     return replace(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
-  const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
-  if (result != DERMIS_OK) return result;
+  std::vector<std::vector<choice::Outcome>> outcomes; // by view
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
-    set_value(newest(view), view.chooser, graph.context->kinds, index, *value);
+    outcomes.push_back(outcomes_with(newest(view), view.chooser, graph.context->kinds, index, *value));
+  });
+  const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
+  if (result != DERMIS_OK) return result;
+  size_t v = 0; // from here on nothing fails
+  for_each_view(graph, [&](dermis_view_t& view) {
+    const std::lock_guard lock(view.mutex);
+    Program& changed = newest(view);
+    changed.settings[index] = *value;
+    changed.outcomes.swap(outcomes[v++]);
   });
   graph.input = std::move(input);
   return result;

@@ -2,6 +2,8 @@
 // A graph of the host and its views. Each view has the program that it runs, the one that waits for its next
 // record, and those that the device may still be executing.
 
+#include "integration/abi/commands/capture.hpp"
+#include "integration/abi/image_views/image_views.hpp"
 #include "integration/abi/program.hpp"
 
 #include <array>
@@ -11,7 +13,8 @@
 // may change the graph meanwhile: a change builds beside and takes `mutex` only to hand over.
 struct dermis_view_t {
   dermis_view_t(dermis_context from, dermis_graph of, void* pointer)
-      : context(from), graph(of), user(pointer), chooser(dermis::abi::make_chooser()) {}
+      : context(from), graph(of), user(pointer), chooser(dermis::abi::make_chooser()),
+        image_views(from->device) {}
 
   dermis_context context = nullptr;
   dermis_graph graph = nullptr;
@@ -37,6 +40,8 @@ struct dermis_view_t {
     uint64_t decided_for = 0; // as in Chooser
   } recorded;
   dermis::abi::Chooser chooser;
+  dermis::abi::ImageViews image_views;
+  dermis::abi::Capture capture; // the commands that were asked for last
 };
 
 struct dermis_graph_t {
@@ -68,6 +73,10 @@ inline const char* record_function(const dermis_view_t& view) {
   return &view == &view.graph->own ? "dermis_graph_record" : "dermis_view_record";
 }
 
+// DEVICE_LOST where reading times of the running program told so; from then on for the whole context. Under
+// the view's mutex.
+dermis_result check_loss(const dermis_view_t& view, const char* function);
+
 // Calls use(view) for each view of the graph, its own first. Under graph.changing.
 template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
   use(graph.own);
@@ -77,6 +86,8 @@ template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
 
 // What both the functions of a graph and of a view do; `function` names the one that was called.
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);
+dermis_result capture_frame(dermis_view_t& view, const char* function, const dermis_frame* frame,
+                            uint32_t* count, const dermis_command** commands);
 dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t frame_index);
 dermis_result get_choice(dermis_view_t& view, const char* function, uint64_t completed, dermis_choice* out);
 dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed, uint32_t* count,

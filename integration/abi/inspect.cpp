@@ -53,6 +53,19 @@ dermis_memory describe_memory(dermis_graph_t& graph) {
   return sum;
 }
 
+// Of one view, in an order that stays: shared transients, then plan by plan.
+std::vector<vulkan::MemoryRequest> heaps_of(const Program& program) {
+  std::vector<vulkan::MemoryRequest> heaps;
+  if (program.heap_pool)
+    for (const vulkan::HeapPool::Block& block : program.heap_pool->blocks())
+      heaps.push_back(block.request);
+  for (const Variant& variant : program.variants)
+    for (uint32_t h = 0; h < variant.compiled->plan.heaps.size(); ++h)
+      if (const vulkan::MemoryRequest request = variant.executor->heap_request(h); request.bytes > 0)
+        heaps.push_back(request);
+  return heaps;
+}
+
 } // namespace
 
 dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed, uint32_t* count,
@@ -72,7 +85,10 @@ dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t co
   }
   std::vector<vulkan::PassTiming> times(passes);
   uint64_t frame_index = 0;
-  if (!variant.executor->read_timings(completed, frame_index, times)) return DERMIS_NOT_READY;
+  if (!variant.executor->read_timings(completed, frame_index, times)) {
+    const dermis_result loss = check_loss(view, function);
+    return loss != DERMIS_OK ? loss : DERMIS_NOT_READY;
+  }
   return fill_array(log, function, count, out, passes, [&](uint32_t i) {
     dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
     const PassId declared = variant.compiled->plan.passes[i].declared;
@@ -105,10 +121,17 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_describe", [&] {
     if (size == nullptr) return bad_argument(log, "dermis_graph_describe: size is NULL");
-    const std::shared_ptr<Program> kept = keep_newest(graph->own);
+    const std::lock_guard changing(graph->changing);
+    std::shared_ptr<const Program> kept;
+    std::shared_ptr<const dermis::CompiledPlan> plan;
+    {
+      const std::lock_guard lock(graph->own.mutex); // which outcome is the newest changes with each frame
+      kept = graph->own.next ? graph->own.next : graph->own.running;
+      plan = kept->current().compiled;
+    }
     const Program& program = *kept;
     const dermis::KindRegistry& kinds = graph->context->kinds;
-    const dermis::CompiledPlan& compiled = *program.current().compiled;
+    const dermis::CompiledPlan& compiled = *plan;
     std::string description;
     switch (static_cast<int>(format)) {
     case DERMIS_DESCRIBE_JSON:
@@ -139,6 +162,18 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, der
     const std::lock_guard changing(graph->changing);
     write_sized(memory, size, describe_memory(*graph));
     return DERMIS_OK;
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_heaps(dermis_graph graph, uint32_t* count,
+                                                        dermis_memory_request* heaps) {
+  constexpr const char* function = "dermis_graph_heaps";
+  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
+  const Log& log = graph->context->log;
+  return guarded(log, function, [&] {
+    const auto all = heaps_of(*keep_newest(graph->own));
+    return fill_array(log, function, count, heaps, static_cast<uint32_t>(all.size()),
+                      [&](uint32_t i) { return request_of(all[i]); });
   });
 }
 

@@ -211,12 +211,13 @@ std::vector<uint8_t> serving_passes(const Plan& plan, const KindRegistry& kinds)
 
 } // namespace
 
-void set_value(Program& program, Chooser& chooser, const KindRegistry& kinds, uint32_t setting,
-               const SettingValue& value) {
-  program.settings[setting] = value;
-  for (choice::Outcome& outcome : program.outcomes)
+std::vector<choice::Outcome> outcomes_with(const Program& program, Chooser& chooser,
+                                           const KindRegistry& kinds, uint32_t setting,
+                                           const SettingValue& value) {
+  std::vector<choice::Outcome> outcomes = program.outcomes;
+  for (choice::Outcome& outcome : outcomes)
     outcome.settings[setting] = value;
-  describe_program(chooser, kinds, program);
+  return described(kinds, program, chooser.errors, chooser.costs, std::move(outcomes));
 }
 
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,

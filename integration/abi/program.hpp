@@ -105,9 +105,10 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
                            vulkan::HistoryReason history, Diagnostics& diagnostics,
                            std::shared_ptr<Program>& program);
 
-// Gives a setting that turns no pass on or off a new value, in all outcomes.
-void set_value(Program& program, Chooser& chooser, const KindRegistry& kinds, uint32_t setting,
-               const SettingValue& value);
+// The outcomes of the program with a new value of a setting that turns no pass on or off.
+std::vector<choice::Outcome> outcomes_with(const Program& program, Chooser& chooser,
+                                           const KindRegistry& kinds, uint32_t setting,
+                                           const SettingValue& value);
 
 // The value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
 std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,

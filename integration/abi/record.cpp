@@ -74,19 +74,22 @@ uint64_t squares_of(const vulkan::Rectangle& rectangle, uint64_t side) {
   return (rectangle.width + side - 1) / side * ((rectangle.height + side - 1) / side);
 }
 
-dermis_result record(dermis_view_t& view, const dermis_frame* given) {
+// `capture`: where the commands go instead of the frame's command buffer; or null.
+dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
   const Log& log = view.context->log;
   const char* const function = record_function(view);
   if (const dermis_result alive = check_alive(*view.context, function); alive != DERMIS_OK) return alive;
   dermis_frame frame = DERMIS_FRAME_INIT;
   if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
     return refused_size(log, read, function, "frame", stated_size(given), first_version_size<dermis_frame>);
+  if (capture != nullptr) frame.command_buffer = handle_of(*capture);
   Program& program = newest(view);
   CheckedFrame checked;
   if (const dermis_result result = check_frame(view, program, frame, checked); result != DERMIS_OK)
     return result;
   Chooser& chooser = view.chooser;
   if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
+  if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   choice::DecisionState state =
       program.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
   const vulkan::Rectangle& seen = checked.input.rectangle;
@@ -108,12 +111,18 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given) {
   chosen.history_invalid = checked.history_invalid;
   if (chosen.left_out) chosen.forecast.ms = chosen.forecast.spread_ms = 0;
   collect(view, frame.completed_frame_index);
+  if (capture != nullptr) capture_into(*capture, checked.input);
   if (const vulkan::RecordResult error = program.variants[variant].executor->record(checked.input)) {
     if (error.kind == vulkan::ErrorKind::device_lost) view.context->lost = true;
     const bool has_slot = error.slot >= 0 && static_cast<size_t>(error.slot) < program.slots.size();
     return fail(log, result_of(error.kind), diagnostic_of(error.kind), "{}: {}{}{}{}", function, error.text,
                 has_slot ? " (slot '" : "",
                 has_slot ? program.slots[static_cast<size_t>(error.slot)].name : "", has_slot ? "')" : "");
+  }
+  if (capture != nullptr && capture->failed) {
+    program.variants[variant].executor->discard_frame(frame.frame_index);
+    program.last_jitter_px = jitter_before;
+    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory", function);
   }
   view.recorded = {};
   view.recorded.known = true;
@@ -138,10 +147,34 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given) {
 
 } // namespace
 
+dermis_result check_loss(const dermis_view_t& view, const char* function) {
+  if (view.running)
+    for (const Variant& variant : view.running->variants)
+      if (variant.executor->saw_lost_device()) view.context->lost = true;
+  return check_alive(*view.context, function);
+}
+
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame) {
   if (frame == nullptr) return bad_argument(view.context->log, "{}: frame is NULL", record_function(view));
   const std::lock_guard lock(view.mutex);
-  return record(view, frame);
+  return record(view, frame, nullptr);
+}
+
+dermis_result capture_frame(dermis_view_t& view, const char* function, const dermis_frame* frame,
+                            uint32_t* count, const dermis_command** commands) {
+  const Log& log = view.context->log;
+  if (frame == nullptr) return bad_argument(log, "{}: frame is NULL", function);
+  if (count == nullptr) return bad_argument(log, "{}: count is NULL", function);
+  if (commands == nullptr) return bad_argument(log, "{}: commands is NULL", function);
+  *count = 0;
+  *commands = nullptr;
+  const std::lock_guard lock(view.mutex);
+  clear(view.capture);
+  const dermis_result result = record(view, frame, &view.capture);
+  if (result != DERMIS_OK) return result;
+  *count = static_cast<uint32_t>(view.capture.commands.size());
+  *commands = view.capture.commands.data();
+  return DERMIS_OK;
 }
 
 dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t frame_index) {
@@ -156,6 +189,14 @@ using namespace dermis::abi;
 extern "C" dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, const dermis_frame* frame) {
   if (graph == nullptr) return bad_argument({}, "dermis_graph_record: graph is NULL");
   return guarded(graph->context->log, "dermis_graph_record", [&] { return record_frame(graph->own, frame); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_commands(dermis_graph graph, const dermis_frame* frame,
+                                                           uint32_t* count, const dermis_command** commands) {
+  constexpr const char* function = "dermis_graph_commands";
+  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
+  return guarded(graph->context->log, function,
+                 [&] { return capture_frame(graph->own, function, frame, count, commands); });
 }
 
 extern "C" dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index) {

@@ -33,6 +33,7 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
                                           vulkan::HistoryReason::first_frame, diagnostics, program);
   const dermis_result result = conclude(log, made, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
+  make_room(view->image_views, program->slots.size());
   adopt(view->chooser, graph.context->kinds, *program);
   view->next = std::move(program);
   graph.others.push_back(std::move(view));
@@ -70,6 +71,14 @@ extern "C" dermis_result DERMIS_CALL dermis_view_record(dermis_view view, const 
   constexpr const char* function = "dermis_view_record";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
   return guarded(view->context->log, function, [&] { return record_frame(*view, frame); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_commands(dermis_view view, const dermis_frame* frame,
+                                                          uint32_t* count, const dermis_command** commands) {
+  constexpr const char* function = "dermis_view_commands";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function,
+                 [&] { return capture_frame(*view, function, frame, count, commands); });
 }
 
 extern "C" dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index) {

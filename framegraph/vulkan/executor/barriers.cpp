@@ -104,7 +104,7 @@ void submit_batch(const State& state, VkCommandBuffer commands, uint32_t images,
   info.pImageMemoryBarriers = state.image_barriers.data();
   info.bufferMemoryBarrierCount = buffers;
   info.pBufferMemoryBarriers = state.buffer_barriers.data();
-  state.device->vk.vkCmdPipelineBarrier2(commands, &info);
+  state.commands->vkCmdPipelineBarrier2(commands, &info);
 }
 
 VkImageAspectFlags aspects_of_slot(const State& state, size_t slot) {
@@ -172,7 +172,7 @@ void global_barrier(const State& state, VkCommandBuffer commands, const VkMemory
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.memoryBarrierCount = 1;
   info.pMemoryBarriers = &barrier;
-  state.device->vk.vkCmdPipelineBarrier2(commands, &info);
+  state.commands->vkCmdPipelineBarrier2(commands, &info);
 }
 
 } // namespace

@@ -207,6 +207,10 @@ MemoryRequest Executor::heap_request(uint32_t index) const noexcept {
                                                                     : MemoryRequest{};
 }
 
+bool Executor::saw_lost_device() const noexcept {
+  return state_->saw_lost_device;
+}
+
 uint64_t Executor::constant_bytes() const noexcept {
   return state_->environment.total_bytes;
 }

@@ -87,7 +87,10 @@ void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectan
   call.rectangle = rectangle;
   call.frame_index = frame.frame_index;
   call.view_user = frame.view_user;
-  state.host_pass(state.host_pass_user, call);
+  if (frame.host_pass != nullptr)
+    frame.host_pass(frame.host_pass_user, call);
+  else
+    state.host_pass(state.host_pass_user, call);
 }
 
 } // namespace dermis::vulkan

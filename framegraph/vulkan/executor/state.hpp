@@ -162,9 +162,11 @@ struct Executor::State {
   std::vector<uint32_t>
       slot_resource; // by slot: into Plan::resources, no_index when the host does not bind it
   Timestamps timestamps;
+  bool saw_lost_device = false;
   std::vector<VkImageMemoryBarrier2> image_barriers; // room for the largest batch
   std::vector<VkBufferMemoryBarrier2> buffer_barriers;
   std::vector<uint32_t> push_constants;
+  const FunctionTable* commands = nullptr; // that the frame is recorded with
   HostPassFunction host_pass = nullptr;
   void* host_pass_user = nullptr;
   std::vector<HostPort> host_ports; // room for the largest call

@@ -151,6 +151,68 @@ DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(PFN_vkGetInstance
                                                                VkInstance instance, VkPhysicalDevice physical_device,
                                                                uint32_t* count, dermis_requirement* items);
 
+/* ---- memory of the host ---------------------------------------------------------------------------------- */
+
+/* Host memory for everything that calls with a context, a graph, a view or one of their reports keep or use on the way.
+ * `alignment` is a power of two, 16 or more; NULL means: there is none, and the call fails with DERMIS_ERROR_MEMORY. May
+ * be called from any thread that is inside a Dermis call. Must not call Dermis, and must not throw. */
+typedef void*(DERMIS_CALL* dermis_allocate_fn)(void* user, size_t size, size_t alignment);
+typedef void(DERMIS_CALL* dermis_release_fn)(void* user, void* memory, size_t size, size_t alignment);
+
+/* Both functions must be callable until the last object and report that were made with them are destroyed. What goes
+ * past it: dermis_validate, which knows no context, and the few bytes that the C++ run time takes to tell that memory
+ * ran out. The static library and builds with sanitizers leave memory to the program: UNSUPPORTED there. */
+typedef struct dermis_allocator {
+  size_t struct_size;
+  dermis_allocate_fn allocate;
+  dermis_release_fn release;
+  void* user;
+} dermis_allocator;
+#define DERMIS_ALLOCATOR_INIT {sizeof(dermis_allocator), NULL, NULL, NULL}
+
+typedef enum dermis_memory_purpose {
+  DERMIS_MEMORY_TRANSIENT = 0, /* means something from the first to the last command of a recorded frame only: scratch */
+  DERMIS_MEMORY_HISTORY = 1,   /* from frame to frame */
+  DERMIS_MEMORY_CONSTANTS = 2, /* frame constants, tables, counters, stand-ins of what is not bound */
+  DERMIS_MEMORY_PURPOSE_FORCE_32BIT = 0x7fffffff
+} dermis_memory_purpose;
+
+typedef struct dermis_memory_request {
+  size_t struct_size;
+  dermis_memory_purpose purpose;
+  uint32_t memory_types; /* bit i: memory type i of the device will do */
+  uint64_t bytes;
+  uint64_t alignment;    /* of dermis_memory_block.offset; a power of two */
+  VkMemoryPropertyFlags required, preferred;
+} dermis_memory_request;
+#define DERMIS_MEMORY_REQUEST_INIT {sizeof(dermis_memory_request), DERMIS_MEMORY_TRANSIENT, 0, 0, 0, 0, 0}
+
+typedef struct dermis_memory_block {
+  size_t struct_size;
+  VkDeviceMemory memory;
+  uint64_t offset; /* bytes */
+  void* mapped;    /* where the block begins for the host, as long as it is the library's; needed where HOST_VISIBLE is */
+  void* user;      /* yours: comes back with the block */
+} dermis_memory_block;
+#define DERMIS_MEMORY_BLOCK_INIT {sizeof(dermis_memory_block), VK_NULL_HANDLE, 0, NULL, NULL}
+
+/* Fills *block and returns VK_SUCCESS, or returns what vkAllocateMemory would. Blocks may be parts of larger memory. A
+ * transient block may be used by commands of the host before and after a recorded frame, if these are ordered with the
+ * frame by a barrier over ALL_COMMANDS and MEMORY_WRITE | MEMORY_READ: its contents are then the host's to lose. Blocks
+ * go back one by one when no frame can use them any more. Called inside of create, reload, resize, set_setting,
+ * record and destroy calls, by their threads. Must not call Dermis. */
+typedef VkResult(DERMIS_CALL* dermis_take_memory_fn)(void* user, const dermis_memory_request* request,
+                                                     dermis_memory_block* block);
+typedef void(DERMIS_CALL* dermis_give_back_memory_fn)(void* user, const dermis_memory_block* block);
+
+typedef struct dermis_device_allocator {
+  size_t struct_size;
+  dermis_take_memory_fn take;
+  dermis_give_back_memory_fn give_back;
+  void* user;
+} dermis_device_allocator;
+#define DERMIS_DEVICE_ALLOCATOR_INIT {sizeof(dermis_device_allocator), NULL, NULL, NULL}
+
 /* ---- context --------------------------------------------------------------------------------------------- */
 
 #define DERMIS_CONTEXT_TIMINGS 0x1u /* write timestamps around each pass */
@@ -170,9 +232,11 @@ typedef struct dermis_context_desc {
   const VkAllocationCallbacks* vk_allocator; /* may be NULL; must outlive the context */
   dermis_log_fn log;                       /* may be NULL */
   void* log_user;
+  const dermis_allocator* allocator;       /* of host memory; NULL: the C library's */
+  const dermis_device_allocator* device_allocator; /* of device memory; NULL: vkAllocateMemory */
 } dermis_context_desc;
 #define DERMIS_CONTEXT_DESC_INIT \
-  {sizeof(dermis_context_desc), DERMIS_ABI_VERSION, 0, 0, 0, NULL, NULL, NULL, NULL, VK_NULL_HANDLE, NULL, NULL, NULL}
+  {sizeof(dermis_context_desc), DERMIS_ABI_VERSION, 0, 0, 0, NULL, NULL, NULL, NULL, VK_NULL_HANDLE, NULL, NULL, NULL, NULL, NULL}
 
 /* Resolves every Vulkan function by name and reports all that are missing at once. *context is NULL on failure.
  * Thread: any. Errors: ARGUMENT, VERSION, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
@@ -315,6 +379,11 @@ typedef struct dermis_memory {
 /* Of all views together. Thread: beside. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory);
 
+/* The blocks of transients and histories that one view of the graph takes, so that a host can plan for them before it
+ * makes more views. Two-call array. Thread: beside. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_heaps(dermis_graph graph, uint32_t* count,
+                                                        dermis_memory_request* heaps);
+
 typedef struct dermis_pass_timing {
   size_t struct_size;
   const char* pass;      /* lives until the next record or destroy */
@@ -325,7 +394,7 @@ typedef struct dermis_pass_timing {
 
 /* Device times of the newest completed frame, in plan order; needs DERMIS_CONTEXT_TIMINGS. `completed_frame_index`
  * as in dermis_frame. Of the graph's own view. Two-call array. Thread: one per view. Errors: ARGUMENT, INCOMPLETE,
- * NOT_READY. */
+ * NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, uint64_t completed_frame_index,
                                                           uint32_t* count, dermis_pass_timing* timings);
 
@@ -407,7 +476,7 @@ typedef struct dermis_choice {
   {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL, 0, 0, 0, 0}
 
 /* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame. Of the
- * graph's own view. Thread: one per view. Errors: ARGUMENT, NOT_READY. */
+ * graph's own view. Thread: one per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph, uint64_t completed_frame_index,
                                                          dermis_choice* choice);
 /* What is known of this device's times, as JSON for dermis_budget.calibration at the next start. *size in: room in
@@ -533,15 +602,19 @@ typedef struct dermis_image_binding {
   uint32_t slot;          /* dermis_slot.id */
   VkFormat format;
   VkImage image;          /* 2-D, one sample, created with dermis_slot.usage */
-  VkImageView view;       /* of mip 0 and one layer; for depth formats of the depth aspect alone */
+  VkImageView view;       /* of mip 0 and one layer; for depth formats of the depth aspect alone. With a content_id it
+                             may be null: then the library makes one and keeps it while the same image comes back */
   uint32_t width, height; /* extent of mip 0 */
   dermis_image_state before, after;
   uint32_t layer;         /* first layer that is bound, 0 where layer_count is 0 */
   uint32_t layer_count;   /* layers in the states told here; others are not touched: an eye each. 0: all layers */
+  uint64_t content_id;    /* your number of this image, never used for another: Vulkan gives the handle of a destroyed
+                             image to a new one. 0: none, and nothing is kept from frame to frame. At most 8 images may
+                             take turns in a slot within the frames in flight */
 } dermis_image_binding;
 #define DERMIS_IMAGE_BINDING_INIT \
   {sizeof(dermis_image_binding), 0, VK_FORMAT_UNDEFINED, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, \
-   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, 0, 0}
+   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, 0, 0, 0}
 
 typedef enum dermis_depth_kind {
   DERMIS_DEPTH_DEVICE = 0,      /* what the depth test wrote, for clip_from_view; reversed and infinite are fine */
@@ -591,6 +664,67 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, con
  * dermis_graph_resize. Its command buffer must not run. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index);
 
+/* ---- a frame as data ------------------------------------------------------------------------------------- */
+
+/* For a host that records all commands itself. What each command does is what the Vulkan function of its name does with
+ * these arguments. */
+typedef enum dermis_command_type {
+  DERMIS_COMMAND_BARRIER = 0,           /* vkCmdPipelineBarrier2: dependency */
+  DERMIS_COMMAND_DISPATCH = 1,          /* bind pipeline, bind `sets` from set 0 on, push constants, dispatch: groups */
+  DERMIS_COMMAND_DISPATCH_INDIRECT = 2, /* the same, with the groups from buffer and offset */
+  DERMIS_COMMAND_FILL_BUFFER = 3,       /* buffer, offset, bytes, value */
+  DERMIS_COMMAND_CLEAR_IMAGE = 4,       /* vkCmdClearColorImage: image, image_layout, color, ranges */
+  DERMIS_COMMAND_COPY_BUFFER = 5,       /* buffer, to_buffer, buffer_copies */
+  DERMIS_COMMAND_COPY_IMAGE = 6,        /* image, image_layout, to_image, to_layout, image_copies */
+  DERMIS_COMMAND_BLIT_IMAGE = 7,        /* the same with image_blits and filter */
+  DERMIS_COMMAND_RESET_QUERIES = 8,     /* query_pool, query, count */
+  DERMIS_COMMAND_WRITE_TIMESTAMP = 9,   /* vkCmdWriteTimestamp2: stages, query_pool, query */
+  DERMIS_COMMAND_HOST_PASS = 10,        /* your own pass: call, whose command_buffer is NULL; its function is not called */
+  DERMIS_COMMAND_TYPE_FORCE_32BIT = 0x7fffffff
+} dermis_command_type;
+
+/* Fields that the type does not name are zero. All are compute or transfer commands. */
+typedef struct dermis_command {
+  size_t struct_size;
+  dermis_command_type type;
+  uint32_t count;                     /* of ranges, regions or queries */
+  const char* pass;                   /* that it belongs to; "" around all passes */
+  const VkDependencyInfo* dependency;
+  VkPipeline pipeline;                /* VK_PIPELINE_BIND_POINT_COMPUTE */
+  VkPipelineLayout layout;
+  const VkDescriptorSet* sets;
+  const void* push_constants;         /* VK_SHADER_STAGE_COMPUTE_BIT, from offset 0 */
+  uint32_t set_count, push_bytes;
+  uint32_t groups[3];
+  uint32_t value;
+  VkBuffer buffer, to_buffer;
+  uint64_t offset, bytes;
+  VkImage image, to_image;
+  VkImageLayout image_layout, to_layout;
+  VkClearColorValue color;
+  const VkImageSubresourceRange* ranges;
+  const VkBufferCopy* buffer_copies;
+  const VkImageCopy* image_copies;
+  const VkImageBlit* image_blits;
+  VkFilter filter;
+  uint32_t query;
+  VkQueryPool query_pool;
+  VkPipelineStageFlags2 stages;
+  const dermis_pass_call* call;
+} dermis_command;
+#define DERMIS_COMMAND_INIT \
+  {sizeof(dermis_command), DERMIS_COMMAND_BARRIER, 0, NULL, NULL, VK_NULL_HANDLE, VK_NULL_HANDLE, NULL, NULL, 0, 0, \
+   {0, 0, 0}, 0, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, VK_NULL_HANDLE, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED, \
+   VK_IMAGE_LAYOUT_UNDEFINED, {{0, 0, 0, 0}}, NULL, NULL, NULL, NULL, VK_FILTER_NEAREST, 0, VK_NULL_HANDLE, 0, NULL}
+
+/* As dermis_graph_record, but the commands are returned and frame.command_buffer is not looked at. They stand for a
+ * recorded frame in every respect: record all of them once, in their order, outside of a render pass, on a queue of the
+ * context's family, or take the frame back with dermis_frame_discard. *commands is stepped by its first struct_size and
+ * lives until the next call that records this view, or its end. Allocates host memory until the list is as long as it
+ * gets. Thread: one per view. Errors: as dermis_graph_record, and MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_commands(dermis_graph graph, const dermis_frame* frame,
+                                                           uint32_t* count, const dermis_command** commands);
+
 /* ---- more views ------------------------------------------------------------------------------------------ */
 
 /* A camera of a graph, beside the graph's own: an eye, a player of a split screen, a mirror. Views share the plan, the
@@ -612,12 +746,15 @@ DERMIS_API void DERMIS_CALL dermis_view_destroy(dermis_view view);
 /* As dermis_graph_record, for this view: frame_index grows from frame to frame of the view, and completed_frame_index is
  * the newest of them that the device has finished. Thread: one per view. Errors: as dermis_graph_record. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_record(dermis_view view, const dermis_frame* frame);
+/* As dermis_graph_commands, for this view. Thread: one per view. Errors: as dermis_graph_commands. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(dermis_view view, const dermis_frame* frame, uint32_t* count,
+                                                          const dermis_command** commands);
 /* As dermis_frame_discard, for this view. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
-/* As dermis_graph_choice, for this view. Thread: one per view. Errors: ARGUMENT, NOT_READY. */
+/* As dermis_graph_choice, for this view. Thread: one per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_choice(dermis_view view, uint64_t completed_frame_index,
                                                         dermis_choice* choice);
-/* As dermis_graph_timings, for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY. */
+/* As dermis_graph_timings, for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint64_t completed_frame_index,
                                                          uint32_t* count, dermis_pass_timing* timings);
 
