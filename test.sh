@@ -25,6 +25,7 @@ if can_fuzz; then
   fuzz=yes
   packages+=("${fuzz_packages[@]}")
 fi
+may_install && packages+=("${interface_packages[@]}")
 install_packages
 for preset in "${presets[@]}"; do
   build_preset "$preset"
