@@ -61,6 +61,8 @@ struct GraphOptions {
   std::vector<std::string> unbound; // optional imports and exports that the host leaves out
   bool two_queues = false;          // passes declared async get a queue of their own where they can
   std::string out = "-";            // DOT, or JSON with --json
+  std::string html;                 // file for the page of the viewer instead; "": none
+  std::string frame;                // report of render --json, for the page; "": none
 };
 ExitCode graph(const Session& session, const GraphOptions& options);
 
