@@ -26,6 +26,7 @@ if can_fuzz; then
   packages+=("${fuzz_packages[@]}")
 fi
 may_install && packages+=("${interface_packages[@]}")
+viewer_packages+=(chromium) # opens the page in a test, which is skipped without
 install_packages
 for preset in "${presets[@]}"; do
   build_preset "$preset"
