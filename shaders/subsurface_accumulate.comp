@@ -111,11 +111,13 @@ shared vec3 lights_now[64], lights_before[64];
 shared float seen[64];
 
 vec3 change_over_the_tile() {
+  if (!(settings.follow > 0.0))
+    return vec3(1.0);
   light_pairs pairs = no_pairs();
   for (uint i = 0u; i < 64u; ++i)
     if (seen[i] > 0.0)
       add_pixel(pairs, lights_now[i], lights_before[i]);
-  return brightness_change(pairs);
+  return brightness_change(pairs, settings.follow);
 }
 
 // What is kept where the light of a whole tile went out: what was there, for when it comes back.

@@ -44,9 +44,9 @@ void add_pixel(inout light_pairs pairs, vec3 now, vec3 before) {
   pairs.pixels += 1.0;
 }
 
-// By how much all light of those pixels became brighter; 1 where what they differ by among each other explains it, as
-// noise of samples and shadows that move do, and where nothing was lit.
-vec3 brightness_change(light_pairs pairs) {
+// By how much all light of those pixels became brighter; 1 where what they differ by among each other explains it within
+// `sigmas` standard errors, as noise of samples and shadows that move do, and where nothing was lit.
+vec3 brightness_change(light_pairs pairs, float sigmas) {
   vec3 change = vec3(1.0);
   if (pairs.pixels < change_least_pixels)
     return change;
@@ -58,7 +58,7 @@ vec3 brightness_change(light_pairs pairs) {
     float variance = max(pairs.now_squared[c] - 2.0 * factor * pairs.product[c] + factor * factor * pairs.before_squared[c], 0.0) /
                      (pairs.pixels - 1.0);
     float error = variance * pairs.pixels / (pairs.before[c] * pairs.before[c]);
-    float way = (factor - 1.0) * (factor - 1.0), doubtful = change_sigmas * change_sigmas * error;
+    float way = (factor - 1.0) * (factor - 1.0), doubtful = sigmas * sigmas * error;
     if (way > doubtful)
       change[c] = 1.0 + (1.0 - doubtful / way) * (factor - 1.0);
   }

@@ -67,10 +67,10 @@ LightPairs lit_tile(double factor, double noise, uint32_t seed) {
 
 TEST(Accumulate, LightThatFlashesIsFollowedWhateverItsPattern) {
   for (const double factor : {0.0, 0.01, 0.9, 0.999, 1.001, 1.5, 60.0})
-    for (const double change : brightness_change(lit_tile(factor, 0, 1)))
+    for (const double change : brightness_change(lit_tile(factor, 0, 1), 3))
       EXPECT_NEAR(change, factor, 1e-6) << factor;
   // With noise of a twentieth the mean of 64 pixels is known within a hundredth.
-  for (const double change : brightness_change(lit_tile(1.5, 0.03, 2)))
+  for (const double change : brightness_change(lit_tile(1.5, 0.03, 2), 3))
     EXPECT_NEAR(change, 1.5, 0.05);
 }
 
@@ -79,7 +79,7 @@ TEST(Accumulate, NoiseOfSamplesIsNoChangeOfLight) {
   double squares = 0;
   constexpr int tiles = 2000;
   for (int i = 0; i < tiles; ++i)
-    for (const double change : brightness_change(lit_tile(1, 0.05, uint32_t(i)))) {
+    for (const double change : brightness_change(lit_tile(1, 0.05, uint32_t(i)), 3)) {
       changes += change != 1;
       squares += (change - 1) * (change - 1);
     }
@@ -97,9 +97,9 @@ TEST(Accumulate, AShadowThatMovesAndTilesOfFewPixelsAreNoChangeOfLight) {
   }
   for (int i = 0; i + 1 < change_least_pixels; ++i)
     add_pixel(few, {2, 2, 2}, {1, 1, 1});
-  EXPECT_EQ(brightness_change(moved), (std::array<double, 3>{1, 1, 1}));
-  EXPECT_EQ(brightness_change(few), (std::array<double, 3>{1, 1, 1}));
-  EXPECT_EQ(brightness_change({}), (std::array<double, 3>{1, 1, 1}));
+  EXPECT_EQ(brightness_change(moved, 3), (std::array<double, 3>{1, 1, 1}));
+  EXPECT_EQ(brightness_change(few, 3), (std::array<double, 3>{1, 1, 1}));
+  EXPECT_EQ(brightness_change({}, 3), (std::array<double, 3>{1, 1, 1}));
 }
 
 TEST(Accumulate, TheFirstFramesAreMeantEvenlyAndLaterOnesMove) {

@@ -35,7 +35,7 @@ void add_pixel(LightPairs& pairs, const std::array<double, 3>& now, const std::a
   pairs.pixels += 1;
 }
 
-std::array<double, 3> brightness_change(const LightPairs& pairs) {
+std::array<double, 3> brightness_change(const LightPairs& pairs, double sigmas) {
   std::array<double, 3> change = {1, 1, 1};
   if (pairs.pixels < change_least_pixels) return change;
   for (size_t c = 0; c < 3; ++c) {
@@ -47,7 +47,7 @@ std::array<double, 3> brightness_change(const LightPairs& pairs) {
                                      0.0) /
                             (pairs.pixels - 1);
     const double error = variance * pairs.pixels / (pairs.before[c] * pairs.before[c]);
-    const double way = (factor - 1) * (factor - 1), doubtful = change_sigmas * change_sigmas * error;
+    const double way = (factor - 1) * (factor - 1), doubtful = sigmas * sigmas * error;
     if (way > doubtful) change[c] = 1 + (1 - doubtful / way) * (factor - 1);
   }
   return change;

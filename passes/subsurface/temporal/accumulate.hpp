@@ -28,12 +28,11 @@ struct LightPairs {
 void add_pixel(LightPairs& pairs, const std::array<double, 3>& now, const std::array<double, 3>& before);
 
 // By how much all light of those pixels became brighter, from 0 on; 1 where what they differ by among each
-// other explains it, as noise of samples and shadows that move do, and where nothing was lit.
-std::array<double, 3> brightness_change(const LightPairs& pairs);
+// other explains it within `sigmas` standard errors, as noise of samples and shadows that move do, and where
+// nothing was lit.
+std::array<double, 3> brightness_change(const LightPairs& pairs, double sigmas);
 
 inline constexpr double change_least_pixels = 8; // that tell a change from noise
-// Standard errors beyond which a mean has changed: a third of a percent of changes that are none.
-inline constexpr double change_sigmas = 3;
 // Light that became so many times darker is shown without history, which waits for it to come back; and so
 // many times brighter begins anew, because nothing but rounding was left of it.
 inline constexpr double change_most = 64;

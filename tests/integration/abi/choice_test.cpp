@@ -131,6 +131,7 @@ struct KeptHistory : Choice {
     graph = make_graph(options);
     ASSERT_NE(graph, nullptr);
     ASSERT_EQ(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr), DERMIS_OK);
+    ASSERT_EQ(dermis_graph_set_setting(graph, "accumulate_follow", "0", nullptr), DERMIS_OK);
     make_images(graph);
   }
   // One frame lit from one side, `light` in the middle: what is flat would be copied. Scattering leaves the
