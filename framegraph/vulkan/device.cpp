@@ -54,9 +54,9 @@ Error make_device(const DeviceInput& input, Device& device) {
   device.vk.vkGetPhysicalDeviceProperties(device.physical, &device.properties);
   device.vk.vkGetPhysicalDeviceMemoryProperties(device.physical, &device.memory);
   const uint32_t version = device.properties.apiVersion;
-  if (version < VK_API_VERSION_1_3)
+  if (version < VK_API_VERSION_1_2)
     return {ErrorKind::unsupported, VK_SUCCESS,
-            fmt::format("the device {} speaks Vulkan {}.{}, 1.3 is needed", device.properties.deviceName,
+            fmt::format("the device {} speaks Vulkan {}.{}, 1.2 is needed", device.properties.deviceName,
                         VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
   if (Error error = read_queue_family(input, device)) return error;
   device.labels = input.labels;

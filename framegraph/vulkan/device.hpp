@@ -43,7 +43,8 @@ struct DeviceInput { // all handles belong to the host and must outlive the Devi
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
-  VkDevice device = VK_NULL_HANDLE; // Vulkan 1.3 with synchronization2 and maintenance4 enabled
+  // Vulkan 1.3 with synchronization2 and maintenance4 enabled, or 1.2 with the extensions of these names.
+  VkDevice device = VK_NULL_HANDLE;
   const VkAllocationCallbacks* allocator = nullptr; // may be null; must outlive the Device
   uint32_t queue_family = 0;                        // of the command buffers that will be recorded into
   bool labels = false;                              // object names and debug labels; needs VK_EXT_debug_utils
@@ -67,7 +68,7 @@ struct Device {
 };
 
 // Fills `device`. Errors: argument (a null handle, a queue family that does not exist or cannot compute),
-// unsupported (a physical device below Vulkan 1.3; every function the device does not give, all named in one
+// unsupported (a physical device below Vulkan 1.2; every function the device does not give, all named in one
 // text). `device` is unspecified on error. Free-threaded.
 Error make_device(const DeviceInput& input, Device& device);
 

@@ -2,6 +2,18 @@
 
 namespace dermis::vulkan {
 
+namespace {
+
+// A device of Vulkan 1.2 gives what became part of 1.3 under the names of the extensions, with the same
+// types.
+PFN_vkVoidFunction find_device_function(const FunctionTable& table, VkDevice device, const char* name) {
+  if (table.vkGetDeviceProcAddr == nullptr) return nullptr;
+  if (const PFN_vkVoidFunction function = table.vkGetDeviceProcAddr(device, name)) return function;
+  return table.vkGetDeviceProcAddr(device, (std::string(name) + "KHR").c_str());
+}
+
+} // namespace
+
 std::vector<std::string> load_functions(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
                                         VkDevice device, bool labels, FunctionTable& table) {
   std::vector<std::string> missing;
@@ -10,8 +22,7 @@ std::vector<std::string> load_functions(PFN_vkGetInstanceProcAddr get_instance_p
   table.name = reinterpret_cast<PFN_##name>(get_instance_proc_addr(instance, #name));                        \
   if (table.name == nullptr) missing.push_back(#name);
 #define DERMIS_LOAD_DEVICE(name)                                                                             \
-  if (table.vkGetDeviceProcAddr != nullptr)                                                                  \
-    table.name = reinterpret_cast<PFN_##name>(table.vkGetDeviceProcAddr(device, #name));                     \
+  table.name = reinterpret_cast<PFN_##name>(find_device_function(table, device, #name));                     \
   if (table.name == nullptr) missing.push_back(#name);
   DERMIS_INSTANCE_FUNCTIONS(DERMIS_LOAD_INSTANCE)
   DERMIS_DEVICE_FUNCTIONS(DERMIS_LOAD_DEVICE)

@@ -3,6 +3,10 @@
 #include "integration/abi/failure.hpp"
 #include "integration/abi/two_call.hpp"
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 namespace dermis::abi {
 namespace {
 
@@ -22,6 +26,24 @@ Function load(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance insta
   return reinterpret_cast<Function>(get_instance_proc_addr(instance, name));
 }
 
+std::vector<std::string> extensions_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                                       VkPhysicalDevice physical_device) {
+  const auto enumerate = load<PFN_vkEnumerateDeviceExtensionProperties>(
+      get_instance_proc_addr, instance, "vkEnumerateDeviceExtensionProperties");
+  uint32_t count = 0;
+  if (enumerate == nullptr || enumerate(physical_device, nullptr, &count, nullptr) != VK_SUCCESS) return {};
+  std::vector<VkExtensionProperties> properties(count);
+  if (enumerate(physical_device, nullptr, &count, properties.data()) != VK_SUCCESS) return {};
+  std::vector<std::string> names;
+  for (const VkExtensionProperties& one : properties)
+    names.emplace_back(one.extensionName);
+  return names;
+}
+
+bool has(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 } // namespace
 
 std::array<dermis_requirement, requirement_count>
@@ -37,28 +59,44 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
     get_properties(physical_device, &properties);
     version = properties.apiVersion;
   }
-  VkPhysicalDeviceVulkan12Features vulkan12{};
-  vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-  VkPhysicalDeviceVulkan13Features vulkan13{};
-  vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  vulkan13.pNext = &vulkan12;
+  const bool core = version >= VK_API_VERSION_1_3; // else extensions of 1.2
+  const std::vector<std::string> extensions =
+      core ? std::vector<std::string>{} : extensions_of(get_instance_proc_addr, instance, physical_device);
+  const bool has_synchronization2 = core || has(extensions, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
+  const bool has_maintenance4 = core || has(extensions, VK_KHR_MAINTENANCE_4_EXTENSION_NAME);
   VkPhysicalDeviceFeatures2 features{};
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-  features.pNext = &vulkan13; // a device before 1.3 does not know the struct and leaves it at zero
-  if (get_features != nullptr && version >= VK_API_VERSION_1_3) get_features(physical_device, &features);
+  VkPhysicalDeviceSynchronization2Features synchronization2{};
+  synchronization2.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES;
+  VkPhysicalDeviceMaintenance4Features maintenance4{};
+  maintenance4.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES;
+  if (has_synchronization2) features.pNext = &synchronization2;
+  if (has_maintenance4) {
+    maintenance4.pNext = features.pNext;
+    features.pNext = &maintenance4;
+  }
+  if (get_features != nullptr && version >= VK_API_VERSION_1_2) get_features(physical_device, &features);
 
   dermis_requirement api =
-      requirement(DERMIS_REQUIREMENT_API_VERSION, "VK_API_VERSION_1_3", version >= VK_API_VERSION_1_3,
-                  "the interface is written against Vulkan 1.3");
-  api.version = VK_API_VERSION_1_3;
+      requirement(DERMIS_REQUIREMENT_API_VERSION, "VK_API_VERSION_1_2", version >= VK_API_VERSION_1_2,
+                  "kernels are SPIR-V 1.5; with 1.3 the two extensions below are part of Vulkan");
+  api.version = VK_API_VERSION_1_2;
+  const auto extension = [&](const char* name, bool present, const char* why) {
+    dermis_requirement item = requirement(DERMIS_REQUIREMENT_DEVICE_EXTENSION, name, present, why);
+    item.required = core ? 0 : 1;
+    return item;
+  };
   const auto feature = [](const char* name, VkBool32 present, const char* why) {
     return requirement(DERMIS_REQUIREMENT_FEATURE, name, present == VK_TRUE, why);
   };
   return {api,
-          feature("synchronization2", vulkan13.synchronization2,
+          extension(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, has_synchronization2,
+                    "of a device that is used as Vulkan 1.2: enable it there"),
+          extension(VK_KHR_MAINTENANCE_4_EXTENSION_NAME, has_maintenance4,
+                    "of a device that is used as Vulkan 1.2: enable it there"),
+          feature("synchronization2", synchronization2.synchronization2,
                   "barriers are vkCmdPipelineBarrier2 with 64-bit masks"),
-          feature("maintenance4", vulkan13.maintenance4,
-                  "memory needs are asked before images exist; kernels use LocalSizeId"),
+          feature("maintenance4", maintenance4.maintenance4, "memory needs are asked before images exist"),
           feature("shaderStorageImageWriteWithoutFormat",
                   features.features.shaderStorageImageWriteWithoutFormat,
                   "a port accepts several image formats with one kernel")};

@@ -7,7 +7,7 @@
 
 namespace dermis::abi {
 
-inline constexpr uint32_t requirement_count = 4;
+inline constexpr uint32_t requirement_count = 6;
 
 // Every requirement with `present` filled from the device. All absent when the functions to ask are missing.
 std::array<dermis_requirement, requirement_count>

@@ -2,10 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
+
 namespace demo {
 namespace {
 
-Result<> create_device(VulkanHost& host) {
+// The features that were extensions before they became part of 1.3.
+struct ExtensionFeatures {
+  VkPhysicalDeviceSynchronization2Features synchronization2 =
+      vulkan_struct<VkPhysicalDeviceSynchronization2Features>(
+          VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES);
+  VkPhysicalDeviceMaintenance4Features maintenance4 = vulkan_struct<VkPhysicalDeviceMaintenance4Features>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES);
+};
+
+Result<> create_device(VulkanHost& host, bool as_vulkan_12) {
   auto features13 =
       vulkan_struct<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   auto features12 =
@@ -15,11 +26,20 @@ Result<> create_device(VulkanHost& host) {
   auto features = vulkan_struct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features11;
   features11.pNext = &features12;
-  features12.pNext = &features13;
+  ExtensionFeatures extension_features;
+  extension_features.synchronization2.pNext = &extension_features.maintenance4;
+  if (as_vulkan_12)
+    features12.pNext = &extension_features.synchronization2;
+  else
+    features12.pNext = &features13;
   vkGetPhysicalDeviceFeatures2(host.physical_device, &features);
   features.features.robustBufferAccess = VK_FALSE;
   features13.robustImageAccess = VK_FALSE;
-  if (!features13.synchronization2 || !features13.dynamicRendering || !features13.maintenance4) {
+  const bool fits =
+      as_vulkan_12 ? extension_features.synchronization2.synchronization2 &&
+                         extension_features.maintenance4.maintenance4
+                   : features13.synchronization2 && features13.dynamicRendering && features13.maintenance4;
+  if (!fits) {
     return Error{ErrorKind::environment,
                  fmt::format("'{}' lacks one of synchronization2, dynamicRendering, maintenance4",
                              host.properties.deviceName)};
@@ -33,9 +53,19 @@ Result<> create_device(VulkanHost& host) {
   info.pNext = &features;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
+  const char* const extensions[] = {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
+                                    VK_KHR_MAINTENANCE_4_EXTENSION_NAME};
+  if (as_vulkan_12) {
+    info.enabledExtensionCount = static_cast<uint32_t>(std::size(extensions));
+    info.ppEnabledExtensionNames = extensions;
+  }
   const VkResult created = vkCreateDevice(host.physical_device, &info, nullptr, &host.device);
   if (created != VK_SUCCESS) return vulkan_error("vkCreateDevice", created);
   volkLoadDeviceTable(&host.vk, host.device);
+  if (as_vulkan_12) {
+    host.vk.vkCmdPipelineBarrier2 = host.vk.vkCmdPipelineBarrier2KHR;
+    host.vk.vkQueueSubmit2 = host.vk.vkQueueSubmit2KHR;
+  }
   host.vk.vkGetDeviceQueue(host.device, host.queue_family, 0, &host.queue);
   vkGetPhysicalDeviceMemoryProperties(host.physical_device, &host.memory);
 
@@ -77,7 +107,7 @@ Result<std::unique_ptr<VulkanHost>> create_vulkan_host(const HostOptions& option
   host->properties = chosen->properties;
   host->queue_family = chosen->queue_family;
   host->timestamp_mask = chosen->timestamp_mask;
-  if (auto done = create_device(*host); !done) return done.error();
+  if (auto done = create_device(*host, options.as_vulkan_12); !done) return done.error();
   return host;
 }
 

@@ -74,7 +74,7 @@ bool validation_layer_is_there() {
 Result<> create_instance(const HostOptions& options, ValidationLog& log, VulkanInstance& made) {
   auto application = vulkan_struct<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
   application.pApplicationName = "dermis demo engine";
-  application.apiVersion = VK_API_VERSION_1_3;
+  application.apiVersion = options.as_vulkan_12 ? VK_API_VERSION_1_2 : VK_API_VERSION_1_3;
   auto info = vulkan_struct<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
   info.pApplicationInfo = &application;
 

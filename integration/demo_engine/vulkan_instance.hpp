@@ -12,8 +12,9 @@
 namespace demo {
 
 struct HostOptions {
-  bool validation = false; // Khronos layer with core and synchronization checks, also across submissions
-  std::string device;      // part of the device's name; "" = the first discrete GPU, else the first device
+  bool validation = false;   // Khronos layer with core and synchronization checks, also across submissions
+  std::string device;        // part of the device's name; "" = the first discrete GPU, else the first device
+  bool as_vulkan_12 = false; // as an engine that is not on 1.3 yet: 1.2 and extensions
 };
 
 // What the validation layer said. Filled from any thread that calls Vulkan.
@@ -40,8 +41,8 @@ Result<> load_vulkan();
 // Is the Khronos layer installed? After load_vulkan().
 bool validation_layer_is_there();
 
-// An instance for Vulkan 1.3, whose messages go to `log`. `made` is filled as far as it came also on failure.
-// Errors: environment when there is no driver or no layer.
+// An instance for Vulkan 1.3 (or 1.2), whose messages go to `log`. `made` is filled as far as it came also on
+// failure. Errors: environment when there is no driver or no layer.
 Result<> create_instance(const HostOptions& options, ValidationLog& log, VulkanInstance& made);
 
 // All devices of the instance, in the driver's order.

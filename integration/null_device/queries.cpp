@@ -66,9 +66,10 @@ VKAPI_ATTR VkResult VKAPI_CALL image_format_properties(VkPhysicalDevice,
 VKAPI_ATTR void VKAPI_CALL features(VkPhysicalDevice, VkPhysicalDeviceFeatures2* out) {
   out->features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
   for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
-    if (next->sType != VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES) continue;
-    auto* vulkan13 = reinterpret_cast<VkPhysicalDeviceVulkan13Features*>(next);
-    vulkan13->synchronization2 = vulkan13->maintenance4 = VK_TRUE;
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES)
+      reinterpret_cast<VkPhysicalDeviceSynchronization2Features*>(next)->synchronization2 = VK_TRUE;
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES)
+      reinterpret_cast<VkPhysicalDeviceMaintenance4Features*>(next)->maintenance4 = VK_TRUE;
   }
 }
 

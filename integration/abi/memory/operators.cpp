@@ -7,6 +7,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#if defined(_WIN32)
+#include <malloc.h>
+#endif
 
 namespace dermis::abi {
 namespace {
@@ -23,12 +26,28 @@ constexpr size_t room_for_header(size_t alignment) {
   return (sizeof(Header) + alignment - 1) / alignment * alignment;
 }
 
+#if defined(_WIN32) // it has no aligned_alloc
+void* from_c_library(size_t alignment, size_t size) {
+  return _aligned_malloc(size, alignment);
+}
+void to_c_library(void* memory) {
+  _aligned_free(memory);
+}
+#else
+void* from_c_library(size_t alignment, size_t size) {
+  return std::aligned_alloc(alignment, size);
+}
+void to_c_library(void* memory) {
+  std::free(memory);
+}
+#endif
+
 void* take(size_t size, size_t wanted) noexcept {
   const size_t alignment = std::max(wanted, least_alignment), front = room_for_header(alignment);
   const size_t total = (front + size + alignment - 1) / alignment * alignment; // as aligned_alloc wants it
   if (total < size) return nullptr;
   const HostAllocator& host = current_allocator();
-  void* memory = host.allocate == nullptr ? std::aligned_alloc(alignment, total)
+  void* memory = host.allocate == nullptr ? from_c_library(alignment, total)
                                           : host.allocate(host.user, total, alignment);
   if (memory == nullptr) return nullptr;
   std::byte* given = static_cast<std::byte*>(memory) + front;
@@ -43,7 +62,7 @@ void give_back(void* given) noexcept {
   std::memcpy(&header, static_cast<std::byte*>(given) - sizeof header, sizeof header);
   void* memory = static_cast<std::byte*>(given) - room_for_header(header.alignment);
   if (header.release == nullptr)
-    std::free(memory);
+    to_c_library(memory);
   else
     header.release(header.user, memory, header.size, header.alignment);
 }

@@ -128,7 +128,7 @@ DERMIS_API const char* DERMIS_CALL dermis_result_name(dermis_result result);
 /* ---- before the device exists ---------------------------------------------------------------------------- */
 
 typedef enum dermis_requirement_kind {
-  DERMIS_REQUIREMENT_API_VERSION = 0, /* version holds VK_API_VERSION_1_3 */
+  DERMIS_REQUIREMENT_API_VERSION = 0, /* version holds VK_API_VERSION_1_2 */
   DERMIS_REQUIREMENT_FEATURE = 1,     /* name of a VkBool32 in a VkPhysicalDevice...Features struct */
   DERMIS_REQUIREMENT_DEVICE_EXTENSION = 2,
   DERMIS_REQUIREMENT_KIND_FORCE_32BIT = 0x7fffffff

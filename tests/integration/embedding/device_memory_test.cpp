@@ -278,6 +278,24 @@ TEST(LostDevice, ThatShowsInTimestampsEndsTheContext) {
   }
 }
 
+TEST(TwoContexts, OnTwoDevicesKnowNothingOfEachOther) {
+  NullHost first, second;
+  for (NullHost* host : {&first, &second}) {
+    ASSERT_EQ(host->make_context(host->context_desc()), DERMIS_OK);
+    ASSERT_EQ(host->make_graph(), DERMIS_OK);
+    host->make_bindings();
+    ASSERT_EQ(host->record(), DERMIS_OK);
+  }
+  const uint64_t alive = second.device.alive(), commands = second.device.commands();
+  first.device.fail_creation(1, VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(first.reload(), DERMIS_ERROR_DEVICE_LOST);
+  EXPECT_EQ(first.record(), DERMIS_ERROR_DEVICE_LOST);
+  first.destroy();
+  EXPECT_EQ(second.device.alive(), alive);
+  EXPECT_EQ(second.device.commands(), commands);
+  EXPECT_EQ(second.record(), DERMIS_OK) << "the other's loss is not this one's";
+}
+
 // ---- reloads do not pile up
 
 TEST(ManyReloads, LeaveAsManyObjectsAndBytesAsThereWere) {

@@ -1,0 +1,53 @@
+// Engines that are not on Vulkan 1.3 yet: a device of 1.2 with two extensions gives the same pictures.
+
+#include "tests/integration/embedding/cameras.hpp"
+
+namespace dermis::abi_test {
+namespace {
+
+struct Vulkan12 : CameraTest {
+  static void SetUpTestSuite() {} // a host for each device, one after the other
+  static void TearDownTestSuite() {}
+  void SetUp() override {}
+  void TearDown() override {}
+
+  std::vector<float> light(bool as_vulkan_12) {
+    auto made = demo::create_vulkan_host({.validation = true, .device = "", .as_vulkan_12 = as_vulkan_12});
+    EXPECT_TRUE(made) << made.error().text;
+    if (!made) return {};
+    host = made.take();
+    InFlightTest::SetUp();
+    std::vector<float> out;
+    {
+      const dermis_graph graph = make_accumulating();
+      const Camera camera = make_camera(graph, 1);
+      for (uint64_t index = 1; index <= 5; ++index) {
+        const std::string text = read_text("configs/graphs/burley.json");
+        const dermis_source source = source_of(text, "burley.json");
+        if (index == 3) {
+          EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+        }
+        submit(index, [&](VkCommandBuffer into) {
+          dermis_frame frame = frame_of(camera, index);
+          frame.command_buffer = into;
+          ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+        });
+      }
+      out = light_of(camera);
+    }
+    InFlightTest::TearDown(); // no message of the validation layer
+    graphs.clear();
+    context = nullptr;
+    host.reset();
+    return out;
+  }
+};
+
+TEST_F(Vulkan12, WithItsExtensionsGivesThePicturesOf13) {
+  const std::vector<float> with_13 = light(false), with_12 = light(true);
+  ASSERT_FALSE(with_13.empty());
+  EXPECT_TRUE(with_13 == with_12);
+}
+
+} // namespace
+} // namespace dermis::abi_test

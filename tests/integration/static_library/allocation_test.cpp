@@ -1,0 +1,165 @@
+// Host memory where operator new is the program's: recording takes none, and running out of it is told and
+// leaves nothing behind.
+
+#include "tests/framegraph/test_tier.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <new>
+#include <sstream>
+
+namespace {
+
+// What operator new does on this thread.
+struct Allocations {
+  bool counting = false;
+  uint64_t count = 0;
+  uint64_t fail_at = 0; // the allocation that fails, from 1; 0: none
+};
+constinit thread_local Allocations allocations;
+
+void* allocate(size_t size, size_t alignment) {
+  if (allocations.counting && ++allocations.count == allocations.fail_at) throw std::bad_alloc();
+  void* memory = alignment > alignof(std::max_align_t)
+                     ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                     : std::malloc(size == 0 ? 1 : size);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+} // namespace
+
+// All other forms of new and delete call these. Inlined next to its uses, a delete looks mismatched to gcc.
+void* operator new(size_t size) {
+  return allocate(size, 0);
+}
+void* operator new(size_t size, std::align_val_t alignment) {
+  return allocate(size, static_cast<size_t>(alignment));
+}
+// std::stable_sort asks for its buffer so.
+void* operator new(size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return allocate(size, 0);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace dermis::abi_test {
+namespace {
+
+std::string shipped_graph() {
+  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/configs/graphs/burley.json", std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// Calls `change` with its first allocation failing, then its second, until it succeeds; every one of the
+// first 300, then some.
+void fail_each(const std::function<dermis_result()>& change, const std::function<void(uint64_t)>& after) {
+  constexpr uint64_t each_until = 300;
+  const uint64_t step = dermis::testing::seeds_of_tier(61, 1);
+  uint64_t failures = 0;
+  for (uint64_t number = 1;; number += number < each_until ? 1 : step) {
+    allocations = {true, 0, number};
+    const dermis_result result = change();
+    allocations.counting = false;
+    if (result == DERMIS_OK) break;
+    ++failures;
+    ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
+    after(number);
+  }
+  EXPECT_GT(failures, 50u);
+}
+
+struct Allocation : ::testing::Test {
+  NullHost host;
+  void SetUp() override {
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  }
+};
+
+TEST_F(Allocation, RecordingTakesNoHostMemory) {
+  for (int i = 0; i < 4; ++i) {
+    if (i == 2) {
+      ASSERT_EQ(host.reload(), DERMIS_OK); // and none to take over
+    }
+    allocations = {true, 0, 0};
+    const dermis_result result = host.record();
+    allocations.counting = false;
+    EXPECT_EQ(result, DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(allocations.count, 0u) << "frame " << i;
+  }
+}
+
+TEST_F(Allocation, ARefusedFrameTakesNoHostMemoryEither) {
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  frame.command_buffer = host.device.command_buffer();
+  frame.frame_index = host.last_frame + 1;
+  frame.completed_frame_index = host.last_frame;
+  allocations = {true, 0, 0};
+  const dermis_result result = dermis_graph_record(host.graph, &frame);
+  allocations.counting = false;
+  EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << "no image is bound";
+  EXPECT_EQ(allocations.count, 0u);
+}
+
+// The device that runs nothing takes its memory from the same place: objects that are left are counted in
+// HostMemory.
+TEST_F(Allocation, EachThatFailsInAReloadIsToldAndTheGraphRunsOn) {
+  fail_each([&] { return host.reload(); },
+            [&](uint64_t number) { ASSERT_EQ(host.record(), DERMIS_OK) << "allocation " << number; });
+}
+
+TEST_F(Allocation, AnAllocatorOfTheHostIsRefused) {
+  dermis_allocator allocator = DERMIS_ALLOCATOR_INIT;
+  allocator.allocate = [](void*, size_t, size_t) -> void* { return nullptr; };
+  allocator.release = [](void*, void*, size_t, size_t) {};
+  dermis_context_desc desc = host.context_desc();
+  desc.allocator = &allocator;
+  dermis_context context = nullptr;
+  EXPECT_EQ(dermis_context_create(&desc, &context), DERMIS_ERROR_UNSUPPORTED);
+  EXPECT_EQ(context, nullptr);
+}
+
+TEST(AllocationFailure, EachFailedAllocationOfAValidationIsToldAndTheNextCallWorks) {
+  const std::string text = shipped_graph();
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = "burley.json";
+  source.text = text.data();
+  source.length = text.size();
+  dermis_report report = nullptr;
+  fail_each(
+      [&] {
+        const dermis_result result = dermis_validate(&source, &report);
+        if (result == DERMIS_OK) dermis_report_destroy(report);
+        return result;
+      },
+      [&](uint64_t number) { ASSERT_EQ(report, nullptr) << "allocation " << number; });
+}
+
+} // namespace
+} // namespace dermis::abi_test

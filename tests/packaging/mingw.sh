@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# Builds the library and the smallest host for Windows with mingw-w64: they compile and link, the DLL exports the interface
+# and nothing else, and asks for the system's own libraries alone. Nothing is run.
+# usage: mingw.sh SOURCE_DIR BUILD_DIR   (BUILD_DIR: of a build for this machine; its write_bindings runs)
+# Exit codes: 0 fine, 1 not, 77 the cross compiler is not installed.
+set -euo pipefail
+source=$(realpath "$1")
+build=$(realpath "$2")
+triple=x86_64-w64-mingw32
+command -v $triple-g++-posix >/dev/null || { echo "skipped: $triple-g++-posix is not installed (package g++-mingw-w64-x86-64-posix)"; exit 77; }
+work=$build/mingw
+mkdir -p "$work/include" "$work/cmake/fmt" "$work/cmake/nlohmann_json"
+
+# The headers of other projects that are no headers of this system: those do not fit another one's.
+for folder in vulkan vk_video fmt nlohmann; do ln -sfn "/usr/include/$folder" "$work/include/$folder"; done
+for name in fmt nlohmann_json; do
+  cat > "$work/cmake/$name/${name}Config.cmake" <<CONFIG
+add_library($name::$name INTERFACE IMPORTED)
+set_target_properties($name::$name PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "$work/include")
+CONFIG
+  echo 'set(PACKAGE_VERSION 99) 
+set(PACKAGE_VERSION_COMPATIBLE TRUE)' > "$work/cmake/$name/${name}ConfigVersion.cmake"
+done
+cat > "$work/toolchain.cmake" <<TOOLCHAIN
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR x86_64)
+set(CMAKE_C_COMPILER $triple-gcc-posix)
+set(CMAKE_CXX_COMPILER $triple-g++-posix)
+set(CMAKE_RC_COMPILER $triple-windres)
+TOOLCHAIN
+cmake -G Ninja -S "$source" -B "$work/build" -DCMAKE_TOOLCHAIN_FILE="$work/toolchain.cmake" -DCMAKE_BUILD_TYPE=Release \
+  -DDERMIS_BUILD_TOOLS=OFF -DDERMIS_BUILD_TESTS=OFF -DDERMIS_INSTALL=OFF -DDERMIS_WARNINGS_AS_ERRORS=ON \
+  -Dfmt_DIR="$work/cmake/fmt" -Dnlohmann_json_DIR="$work/cmake/nlohmann_json" \
+  -DVulkan_INCLUDE_DIR="$work/include" -DVulkan_LIBRARY="$work/libvulkan-1.dll.a" \
+  -DDERMIS_WRITE_BINDINGS="$build/generated/write_bindings" >/dev/null
+
+# The loader, as far as linking against it goes: what the host calls of it.
+{ echo "LIBRARY vulkan-1.dll"; echo "EXPORTS"; grep -oh '\bvk[A-Z][A-Za-z0-9]*' "$source/integration/examples/headless.h" \
+  "$source/integration/examples/minimal.c" | sort -u; } > "$work/vulkan.def"
+$triple-dlltool -d "$work/vulkan.def" -l "$work/libvulkan-1.dll.a"
+
+cmake --build "$work/build" -j "$(nproc)" --target dermis_library >/dev/null || { cmake --build "$work/build" --target dermis_library; exit 1; }
+dll=$(find "$work/build" -name 'libdermis*.dll' | head -1)
+$triple-objdump -p "$dll" > "$work/headers.txt"
+sed -n 's/^\s*\[ *[0-9]*\]\s*\(+base\[ *[0-9]*\]\s*[0-9a-f]*\s*\)\?\(dermis_\w*\)$/\2/p' "$work/headers.txt" | sort > "$work/exported.txt"
+sed -n '/Ordinal\/Name Pointer/,$p' "$work/headers.txt" | grep -oE '\] +[A-Za-z_][A-Za-z0-9_]*$' | sed 's/.* //' | sort > "$work/exported.txt"
+diff "$source/integration/abi/symbols.txt" "$work/exported.txt" || { echo "symbols.txt (<) and the DLL (>) differ"; exit 1; }
+others=$(sed -n 's/.*DLL Name: //p' "$work/headers.txt" | grep -viE '^(kernel32|msvcrt|ucrtbase|api-ms-win-.*)\.dll$' || true)
+[[ -z $others ]] || { echo "the DLL needs more than the system's libraries:"; echo "$others"; exit 1; }
+import=$(find "$work/build" -name 'libdermis*.dll.a' | head -1)
+for language in c c++; do
+  $triple-g++-posix -x $language -Wall -Wextra -Werror -I"$work/include" -I"$source/integration/include" -I"$source/integration/examples" \
+    "$source/integration/examples/minimal.c" -x none -static -o "$work/minimal_$language.exe" "$import" "$work/libvulkan-1.dll.a"
+done
+echo "libdermis.dll exports $(wc -l < "$work/exported.txt") functions; the host links as C and C++"
