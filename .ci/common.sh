@@ -16,6 +16,9 @@ command -v npm >/dev/null || viewer_packages+=(npm)
 # What the fuzz targets need beside them.
 fuzz_packages=(clang libclang-rt-14-dev)
 
+# What compares the interface with its baseline, and a foreign renderer to run between; without them these tests are skipped.
+interface_packages=(abigail-tools libplacebo-dev)
+
 say() { printf '%s\n' "$*"; }
 fail() { # exit code, message
   printf '%s: %s\n' "$(basename "$0")" "$2" >&2

@@ -266,6 +266,7 @@ constexpr Entry entries[] = {
     {"subsurface.doubt", doubt},
     {"subsurface.allot", none},
     {"subsurface.mend", mend},
+    {"clear", none},
 };
 
 } // namespace

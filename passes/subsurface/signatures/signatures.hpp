@@ -18,6 +18,7 @@ extern const PassKind blend_kind, residual_kind;         // residual_signatures.
 extern const PassKind doubt_kind, allot_kind, mend_kind; // allot_signatures.cpp
 extern const PassKind probe_kind;                        // probe_signature.cpp
 extern const PassKind accumulate_kind;                   // accumulate_signature.cpp
+extern const PassKind clear_kind;                        // clear_signature.cpp
 
 // Ports that several kinds declare with the same meaning.
 namespace port {
@@ -71,12 +72,9 @@ inline constexpr Port velocity{
     "now - before: pixels to the right and down, jitter taken out; in a third channel view depth that the "
     "camera does not explain, world units. Unbound: what is seen stands still",
     {}};
-inline constexpr Port classes_before{"classes_before",
-                                     Usage::storage_buffer_read,
-                                     false,
-                                     "uint",
-                                     "what subsurface.classify wrote in the frame before",
-                                     {}};
+// Of an image that was cleared in the same frame and is written where there is subsurface: what was not
+// written reads 0 in the next frame.
+inline constexpr std::string_view part_of_cleared = "writeonly image2D";
 inline constexpr Format sampling_formats[] = {Format::rgba16f, Format::rgba32f};
 inline constexpr Port sampling{
     "sampling",
