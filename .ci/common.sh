@@ -5,7 +5,7 @@ packages=(
   cmake ninja-build g++ ccache glslang-tools
   libvulkan-dev libvulkan-volk-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev
   libtinygltf-dev libstb-dev libglm-dev libgtest-dev libgmock-dev libvalijson-dev
-  mesa-vulkan-drivers vulkan-validationlayers
+  mesa-vulkan-drivers vulkan-validationlayers libxml2-utils
 )
 
 # What the viewer's page is built with, where Node comes from nowhere else; without them it is left out.

@@ -132,12 +132,28 @@ Result<> read_inputs(VulkanHost& host, const Renderer& renderer, const SceneStat
   return success();
 }
 
+// Phases end where the next one begins.
+struct PhaseClock {
+  Clock::time_point start; // of rendering
+  std::vector<HostPhase>& phases;
+
+  void begin(const char* name) {
+    end();
+    const double now = 1000.0 * seconds_since(start);
+    phases.push_back({name, now, now});
+  }
+  void end() {
+    if (!phases.empty()) phases.back().end_ms = 1000.0 * seconds_since(start);
+  }
+};
+
 struct Session {
   VulkanHost& host;
   Renderer& renderer;
   DermisHost* dermis; // may be null
   Taa* taa;           // may be null
   const Scene& scene;
+  Clock::time_point start;
 };
 
 Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t frame_index) {
@@ -146,6 +162,8 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
   const SceneState state = state_at(session.scene, frame, renderer.view);
   set_frame(renderer, state, session.dermis ? scattering_of(*session.dermis) : Scattering::none);
   FrameOutputs out;
+  PhaseClock clock{session.start, out.phases};
+  clock.begin("record scene");
   out.frame = frame;
   out.seconds = state.seconds;
   out.cut = state.cut;
@@ -153,11 +171,14 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
   out.camera = camera_of(session.scene, state);
   auto done = run_commands(host, [&](VkCommandBuffer commands) {
     record_scene(renderer, commands, state);
+    clock.begin("run scene");
     return success();
   });
   if (!done) return done.error();
+  clock.begin("read inputs");
   done = read_inputs(host, renderer, state, out.inputs); // before the graph updates the lighting in place
   if (!done) return done.error();
+  clock.begin("record graph");
   done = run_commands(host, [&](VkCommandBuffer commands) -> Result<> {
     if (session.dermis) {
       auto recorded = record_graph(*session.dermis, renderer, state, commands, frame_index);
@@ -165,9 +186,11 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
     }
     record_composite(renderer, commands);
     if (session.taa) record_taa(*session.taa, renderer, commands, state);
+    clock.begin("run graph");
     return success();
   });
   if (!done) return done.error();
+  clock.begin("read pictures");
   if (session.dermis && hands_out_light(*session.dermis)) {
     done = read(host, renderer[Target::scattered], 3, out.scattered);
     if (!done) return done.error();
@@ -183,6 +206,7 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
   done = read(host, session.taa ? taa_result(*session.taa) : renderer[Target::color], 3, out.color);
   if (!done) return done.error();
   out.display = tonemap(out.color);
+  clock.end();
   if (renderer.queries.host)
     out.host_times = {{"shadows", elapsed_ms(renderer, at_start, after_shadows)},
                       {"gbuffer", elapsed_ms(renderer, after_shadows, after_gbuffer)},
@@ -254,7 +278,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
     if (auto done = callbacks.on_start(info); !done) return done.error();
 
   RenderSummary summary;
-  Session session{**host, **renderer, dermis.get(), taa.get(), *scene};
+  Session session{**host, **renderer, dermis.get(), taa.get(), *scene, start};
   for (uint32_t i = 0; i < options.frames; ++i) {
     if (dermis && options.reloads)
       for (const std::string& text : options.reloads(options.first_frame + i)) {

@@ -84,6 +84,12 @@ struct PassTime {
   double milliseconds = 0.0; // of device time
 };
 
+// What the host's thread did, milliseconds since rendering began; one behind the other.
+struct HostPhase {
+  std::string name;
+  double begin_ms = 0.0, end_ms = 0.0;
+};
+
 // What the graph was given; read back before it ran.
 struct GraphInputs {
   FloatImage lighting; // 3: diffuse light before albedo
@@ -131,6 +137,7 @@ struct FrameOutputs {
   std::vector<uint8_t> display;       // RGB, tonemapped and sRGB encoded
   std::vector<PassTime> host_times;   // shadows, gbuffer, lighting, composite
   std::optional<FrameChoice> choice;  // none without Dermis
+  std::vector<HostPhase> phases;      // of this frame; "run scene" and "run graph" wait for the device
   std::vector<PassTime> dermis_times; // passes of the graph in plan order; empty without Dermis or timestamps
 };
 

@@ -50,6 +50,18 @@ TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
   EXPECT_THAT(run(arguments).out, Not(HasSubstr("is there from an earlier run")));
 }
 
+TEST_F(BenchAll, ASuiteThatFailsIsToldFromOneWhoseRowsMissAndLeavesNoOldPage) {
+  const std::vector<std::string> arguments = {"bench",    "all",    "--out",  path("out"),
+                                              "--suites", "record", "--again"};
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  std::filesystem::remove(path("out/record.html"));
+  write("out/record.html/x", ""); // a folder has its name: the page cannot be written
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("failed"));
+  EXPECT_THAT(read("out/index.html"), HasSubstr("<td class=t>failed"));
+}
+
 TEST_F(BenchAll, ASuiteThatIsNotThereIsAUsageErrorWithASuggestion) {
   const Outcome outcome = run({"bench", "all", "--out", path("out"), "--suites", "recrod"});
   EXPECT_EQ(outcome.exit_code, 2);

@@ -19,6 +19,7 @@ protected:
     std::vector<uint8_t> rgb(32 * 16 * 3, value);
     rgb[0] = rgb[1] = rgb[2] = corner;
     std::string error;
+    std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
     EXPECT_TRUE(tools::write_png(path(name), 32, 16, rgb, error)) << error;
     return path(name);
   }
@@ -94,6 +95,41 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   EXPECT_EQ(run({"compare", a, a, "--region", "30,0,8x8"}).exit_code, 2);
   EXPECT_EQ(run({"compare", a, a, "--region", "a,b"}).exit_code, 2);
   EXPECT_EQ(run({"compare", a}).exit_code, 2);
+}
+
+TEST_F(Compare, FlipOfAPairAndOfFoldersIsThereWhenAskedFor) {
+  const std::string a = png("one/a.png", 0, 0), b = png("two/a.png", 255, 255);
+  png("one/b.png", 90, 90);
+  png("two/b.png", 90, 90);
+  const Outcome outcome = run({"compare", path("one"), path("two"), "--flip", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json rows = nlohmann::json::parse(outcome.out)["rows"];
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_NEAR(rows[0]["flip"], 0.96738, 1e-5); // black against white: tests/integration/files_flip_test.cpp
+  EXPECT_EQ(rows[1]["flip"], 0.0);
+  EXPECT_FALSE(nlohmann::json::parse(run({"compare", a, b, "--json"}).out)["rows"][0].contains("flip"));
+  EXPECT_EQ(run({"compare", path("one"), path("two"), "--flip", "--most-flip", "0.9"}).exit_code, 1);
+  EXPECT_EQ(run({"compare", path("one/b.png"), path("two/b.png"), "--flip", "--most-flip", "0"}).exit_code,
+            0);
+}
+
+TEST_F(Compare, FlipOfLinearLightDoesNotCareForItsUnit) {
+  const auto flip_of = [&](float a, float b) {
+    const Outcome outcome = run({"compare", exr("a.exr", a), exr("b.exr", b), "--flip", "--json"});
+    return nlohmann::json::parse(outcome.out)["rows"][0]["flip"].get<double>();
+  };
+  EXPECT_NEAR(flip_of(2.5f, 2.0f), flip_of(640.0f, 512.0f), 1e-6);
+  EXPECT_GT(flip_of(2.5f, 2.0f), 0.01);
+}
+
+TEST_F(Compare, APictureOfFlipIsBrighterWhereMoreIsSeen) {
+  const std::string a = png("a.png", 100, 255), b = png("b.png", 100, 100);
+  ASSERT_EQ(run({"compare", a, b, "--flip", "--flip-map", path("map.png")}).exit_code, 0);
+  std::string error;
+  const auto map = tools::read_png(path("map.png"), error);
+  ASSERT_TRUE(map) << error;
+  EXPECT_GT(map->at(0, 0, 0), map->at(31, 15, 0));
+  EXPECT_EQ(run({"compare", a, b, "--flip-map", path("map.png")}).exit_code, 2); // needs --flip
 }
 
 } // namespace

@@ -69,6 +69,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
   add_text_verbs(app, invocation);
   add_plan_verbs(app, invocation);
   add_schema_verb(app, invocation);
+  add_docs_verb(app, invocation);
   add_doctor_verb(app, invocation);
   add_picture_verbs(app, invocation);
   add_bench_verbs(app, invocation);

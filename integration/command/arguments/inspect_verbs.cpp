@@ -182,6 +182,16 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
       });
 }
 
+void add_docs_verb(CLI::App& app, Invocation& invocation) {
+  add_verb<DocsOptions>(
+      app, invocation, "docs", "Write the pages of documentation that follow from schemas and pass kinds",
+      "dermis docs --out docs\n  dermis docs --check", docs, [](CLI::App& verb, DocsOptions& options) {
+        verb.add_option("--out,-o", options.out, "Folder of the pages [docs]")->type_name("DIR");
+        verb.add_flag("--check", options.check,
+                      "Write nothing, fail where a page is not as it would be written");
+      });
+}
+
 void add_doctor_verb(CLI::App& app, Invocation& invocation) {
   add_verb<DoctorOptions>(app, invocation, "doctor",
                           "Show what this machine has of what Dermis needs, and what is done without",

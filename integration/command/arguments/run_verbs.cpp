@@ -26,6 +26,17 @@ void add_budget(CLI::App& verb, RenderOptions& options) {
       ->group(group);
 }
 
+void add_model(CLI::App& verb, ModelOptions& model) {
+  const char* group = "Model, for scenes that show one";
+  verb.add_option("--model", model.model, "glTF file")->type_name("FILE")->group(group);
+  verb.add_option("--albedo", model.albedo, "Picture, sRGB")->type_name("FILE")->group(group);
+  verb.add_option("--normal", model.normal, "Tangent-space normal map")->type_name("FILE")->group(group);
+  verb.add_option("--specular", model.specular, "Picture, linear")->type_name("FILE")->group(group);
+  verb.add_option("--height", model.height, "Height in metres that the model is scaled to")
+      ->check(CLI::Range(1e-3, 1e3))
+      ->group(group);
+}
+
 // X,Y,WxH: the corner, then the size.
 bool parse_region(const std::string& text, PictureRegion& region) {
   int read = 0;
@@ -59,6 +70,10 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--frames,-n", options.frames, "Frames to render [8]")
             ->check(CLI::Range(1u, max_frames));
         verb.add_option("--capture", options.capture, "Folder for what the graph saw")->type_name("DIR");
+        verb.add_option("--trace", options.trace,
+                        "Chrome trace of passes, phases of the host's thread and choices over frames, for "
+                        "ui.perfetto.dev and chrome://tracing")
+            ->type_name("FILE");
         verb.add_flag(
             "--taa", options.taa,
             "Temporal anti-aliasing in the engine, after the graph: sub-pixel jitter (Halton 2, 3)");
@@ -75,18 +90,71 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         add_settings(verb, options.settings);
         add_parts(verb, options.parts);
         add_budget(verb, options);
-        const char* group = "Model, for scenes that show one";
-        verb.add_option("--model", options.model.model, "glTF file")->type_name("FILE")->group(group);
-        verb.add_option("--albedo", options.model.albedo, "Picture, sRGB")->type_name("FILE")->group(group);
-        verb.add_option("--normal", options.model.normal, "Tangent-space normal map")
-            ->type_name("FILE")
-            ->group(group);
-        verb.add_option("--specular", options.model.specular, "Picture, linear")
-            ->type_name("FILE")
-            ->group(group);
-        verb.add_option("--height", options.model.height, "Height in metres that the model is scaled to")
-            ->check(CLI::Range(1e-3, 1e3))
-            ->group(group);
+        add_model(verb, options.model);
+      });
+  add_verb<CaptureOptions>(
+      app, invocation, "capture", "Write down what a graph would see of a scene: captured frames for apply",
+      "dermis capture configs/scenes/bust.json --out capture/", capture,
+      [](CLI::App& verb, CaptureOptions& options) {
+        verb.add_option("scene", options.scene, "Scene file")->required()->type_name("FILE");
+        verb.add_option("--out,-o", options.out, "Folder for the frames")->required()->type_name("DIR");
+        add_size(verb, options.size);
+        verb.add_option("--frames,-n", options.frames, "Frames to capture [8]")
+            ->check(CLI::Range(1u, max_frames));
+        verb.add_option("--first", options.first, "Frame of the scene to begin at [0]")
+            ->check(CLI::Range(0u, max_frames));
+        add_model(verb, options.model);
+      });
+  add_verb<WatchOptions>(
+      app, invocation, "watch",
+      "Render again whenever a file changes, and say what changed in plan and error",
+      "dermis watch configs/scenes/bust.json --graph configs/graphs/sap.json --out out/watch\n"
+      "  dermis watch configs/scenes/bust.json -g configs/graphs/sap.json -o out/watch --build 'cmake "
+      "--build "
+      "build/release'",
+      watch,
+      [](CLI::App& verb, WatchOptions& options) {
+        verb.add_option("scene", options.scene, "Scene file")->required()->type_name("FILE");
+        verb.add_option("--graph,-g", options.graph, "Graph file")->required()->type_name("FILE");
+        verb.add_option("--out,-o", options.out, "Folder for the newest pictures")
+            ->required()
+            ->type_name("DIR");
+        add_size(verb, options.size);
+        verb.add_option("--frames,-n", options.frames, "Frames of a rendering [4]")
+            ->check(CLI::Range(1u, max_frames));
+        verb.add_option("--subset", options.subset, "Pixels compared with the truth; 0: none [1024]")
+            ->check(CLI::Range(0u, max_subset));
+        verb.add_option("--build", options.build,
+                        "Command that builds this program anew where a shader changes: it holds its shaders")
+            ->type_name("LINE");
+        verb.add_option("--shaders", options.shaders, "Folder of the shaders [shaders]")->type_name("DIR");
+        verb.add_option("--rounds", options.rounds, "Renderings to make; 0: until Ctrl-C [0]");
+        add_settings(verb, options.settings);
+        add_parts(verb, options.parts);
+      },
+      true);
+  add_verb<ReportBugOptions>(
+      app, invocation, "report-bug",
+      "Put together what somebody else needs to see the same: graph, settings, device, plan and a frame",
+      "dermis report-bug configs/graphs/sap.json --set variant=base --out bug/", report_bug,
+      [](CLI::App& verb, ReportBugOptions& options) {
+        verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
+        verb.add_option("--out,-o", options.out, "Folder to make; it must not be there")
+            ->required()
+            ->type_name("DIR");
+        CLI::Option* frames =
+            verb.add_option("--frames", options.frames, "Capture of an engine, whose last frame is taken")
+                ->type_name("DIR");
+        verb.add_option("--scene", options.scene, "Scene to capture a frame of [configs/scenes/bust.json]")
+            ->excludes(frames)
+            ->type_name("FILE");
+        verb.add_option("--count,-n", options.count, "Which frame of it, counted from 1 [8]")
+            ->excludes(frames)
+            ->check(CLI::Range(1u, max_frames));
+        add_size(verb, options.size);
+        add_settings(verb, options.settings);
+        add_parts(verb, options.parts);
+        add_kinds(verb, options.parts);
       });
   add_verb<SheetOptions>(
       app, invocation, "sheet", "Render a scene with every technique and material into one picture",
@@ -152,7 +220,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
   add_verb<CompareOptions>(
       app, invocation, "compare", "Say how far two pictures, or two folders of them, are apart",
       "dermis compare out/a/frame_0007.png out/b/frame_0007.png --heat out/heat.png\n  dermis compare out/a "
-      "out/b --least-psnr 40",
+      "out/b --flip --least-psnr 40",
       compare, [](CLI::App& verb, CompareOptions& options) {
         verb.add_option("a", options.a, "PNG, EXR, or a folder of them")->required()->type_name("A");
         verb.add_option("b", options.b, "What it is compared with")->required()->type_name("B");
@@ -167,6 +235,22 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->check(CLI::Validator(check_region, "X,Y,WxH"))
             ->expected(1)
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        CLI::Option* flip = verb.add_flag("--flip", options.flip,
+                                          "Also FLIP, the difference that a reader sees who flips between A "
+                                          "and the reference B; of EXRs over the "
+                                          "exposures at which B can be shown");
+        verb.add_option("--flip-map", options.flip_map, "PNG for a picture of it")
+            ->needs(flip)
+            ->type_name("FILE");
+        verb.add_option("--pixels-per-degree", options.pixels_per_degree, "Of the reader's view [67]")
+            ->needs(flip)
+            ->check(CLI::Range(1.0, 1000.0))
+            ->type_name("N");
+        verb.add_option("--most-flip", options.most_flip,
+                        "Fail where a picture or region has more on average")
+            ->needs(flip)
+            ->check(CLI::Range(0.0, 1.0))
+            ->type_name("N");
         constexpr double most_db = 100;
         verb.add_option("--least-psnr", options.least_psnr, "Fail where a picture or region has less")
             ->check(CLI::Range(0.0, most_db))

@@ -95,6 +95,7 @@ struct Outcome {
   std::string suite, line; // that makes its files alone
   int64_t exit_code = 0;
   double seconds = 0;
+  bool written = false; // its files are those of this run
 };
 
 std::string line_of(const Suite& suite, const BenchAllOptions& options) {
@@ -113,12 +114,14 @@ std::vector<Outcome> read_index(const std::string& file) {
   if (!list.valid() || (*document)[list].kind != NodeKind::array) return found;
   for (NodeId one = (*document)[list].first_child; one.valid(); one = (*document)[one].next) {
     const NodeId name = document->find(one, "suite"), line = document->find(one, "line"),
-                 code = document->find(one, "exit_code"), seconds = document->find(one, "seconds");
+                 code = document->find(one, "exit_code"), seconds = document->find(one, "seconds"),
+                 written = document->find(one, "written");
     const auto is = [&](NodeId id, NodeKind kind) { return id.valid() && (*document)[id].kind == kind; };
     if (is(name, NodeKind::string) && is(line, NodeKind::string) && is(code, NodeKind::integer) &&
         seconds.valid())
       found.push_back({std::string(document->text(name)), std::string(document->text(line)),
-                       (*document)[code].integer, (*document)[seconds].real});
+                       (*document)[code].integer, (*document)[seconds].real,
+                       written.valid() && (*document)[written].integer != 0});
   }
   return found;
 }
@@ -132,13 +135,14 @@ std::string index_json(const std::vector<Outcome>& outcomes) {
         .member("line", one.line)
         .member("exit_code", one.exit_code)
         .member("seconds", one.seconds)
+        .member("written", one.written)
         .close();
   out.close().close();
   return std::move(out).finish();
 }
 
-std::string state_text(int64_t exit_code) {
-  return exit_code == 0 ? "done" : exit_code == 1 ? "done; rows miss what they should hold" : "failed";
+std::string state_text(const Outcome& one) {
+  return !one.written ? "failed" : one.exit_code == 0 ? "done" : "done; rows miss what they should hold";
 }
 
 std::string index_html(const Session& session, const std::vector<Outcome>& outcomes) {
@@ -152,7 +156,7 @@ std::string index_html(const Session& session, const std::vector<Outcome>& outco
   for (const Suite& suite : suites) {
     const auto at = std::find_if(outcomes.begin(), outcomes.end(),
                                  [&](const Outcome& one) { return one.suite == suite.name; });
-    if (at == outcomes.end() || at->exit_code > 1) {
+    if (at == outcomes.end() || !at->written) {
       body += fmt::format(
           "<tr><td class=t>{}<td class=t>{}<td class=t><td class=t>{}<td data-v=-1>&ndash;<td class=t>\n",
           suite.name, suite.what, at == outcomes.end() ? "not measured" : "failed");
@@ -162,15 +166,17 @@ std::string index_html(const Session& session, const std::vector<Outcome>& outco
     body +=
         fmt::format("<tr><td class=t><a href='{0}.html'>{0}</a><td class=t>{1}<td class=t><a href='{0}.json'>"
                     "JSON</a>{2}<td class=t>{3}<td data-v={4:.1f}>{5}<td class=t>{6}\n",
-                    suite.name, suite.what, csv, state_text(at->exit_code), at->seconds,
-                    format_duration(at->seconds), html_text(at->line));
+                    suite.name, suite.what, csv, state_text(*at), at->seconds, format_duration(at->seconds),
+                    html_text(at->line));
   }
   return html_page("Measurements of Dermis", body + "</tbody></table></div>\n");
 }
 
-bool is_there(const Outcome& outcome, const Files& files) {
-  const auto exists = [](const std::string& file) { return file.empty() || std::filesystem::exists(file); };
-  return outcome.exit_code <= 1 && exists(files.json) && exists(files.csv) && exists(files.html);
+bool are_there(const Files& files) {
+  const auto exists = [](const std::string& file) {
+    return file.empty() || std::filesystem::is_regular_file(file);
+  };
+  return exists(files.json) && exists(files.csv) && exists(files.html);
 }
 
 std::string unknown_suite(const std::vector<std::string>& asked) {
@@ -219,23 +225,28 @@ ExitCode bench_all(const Session& session, const BenchAllOptions& options) {
     Outcome outcome{name, line_of(suite, options)};
     const auto before =
         std::find_if(outcomes.begin(), outcomes.end(), [&](const Outcome& one) { return one.suite == name; });
-    if (before != outcomes.end() && before->line == outcome.line && !options.again &&
-        is_there(*before, files)) {
+    if (before != outcomes.end() && before->line == outcome.line && !options.again && before->written &&
+        are_there(files)) {
       say(session, fmt::format("{} of {}: {} is there from an earlier run\n", number, total, name));
       worst = std::max(worst, static_cast<ExitCode>(before->exit_code));
       continue;
     }
     say(session, fmt::format("{} of {}: {}\n", number, total, name));
-    Session quiet = session; // the page says it all
-    quiet.quiet = true;
-    quiet.command = outcome.line;
+    Session of_suite = session;
+    of_suite.quiet = session.quiet || session.json; // its table is none of our answer
+    of_suite.json = false;
+    of_suite.command = outcome.line;
     const auto start = std::chrono::steady_clock::now();
-    const ExitCode code = suite.run(quiet, options, files);
+    std::error_code ignored; // what a run that fails leaves there would be taken for its own
+    for (const std::string& file : {files.json, files.csv, files.html})
+      if (!file.empty()) std::filesystem::remove(file, ignored);
+    const ExitCode code = suite.run(of_suite, options, files);
     if (code == ExitCode::interrupted) return code;
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     outcome.exit_code = static_cast<int64_t>(code);
+    outcome.written = are_there(files);
     worst = std::max(worst, code);
-    say(session, fmt::format("  {}, {}\n", state_text(outcome.exit_code), format_duration(outcome.seconds)));
+    say(session, fmt::format("  {}, {}\n", state_text(outcome), format_duration(outcome.seconds)));
     if (before != outcomes.end()) outcomes.erase(before);
     outcomes.push_back(outcome);
     std::string problem = deliver_text(out.path_of("index.json"), index_json(outcomes));

@@ -1,8 +1,8 @@
 // dermis doctor: what this machine has of what Dermis needs, what is used, and what is done without and why.
 
 #include "framegraph/text/json_writer.hpp"
+#include "integration/command/inspect/survey.hpp"
 #include "integration/command/verbs.hpp"
-#include "integration/demo_engine/device_survey.hpp"
 
 #include <dermis/dermis.h>
 #include <fmt/format.h>
@@ -50,9 +50,16 @@ std::string screen(const demo::DeviceSurvey& survey) {
   return format_table(table);
 }
 
-std::string document(const demo::DeviceSurvey& survey, bool fits) {
+bool any_fits(const demo::DeviceSurvey& survey) {
+  return std::any_of(survey.devices.begin(), survey.devices.end(),
+                     [](const demo::SurveyedDevice& device) { return device.fits; });
+}
+
+} // namespace
+
+std::string survey_as_json(const demo::DeviceSurvey& survey) {
   JsonWriter json;
-  json.open_object().member("ok", fits).member("dermis", library_version());
+  json.open_object().member("ok", any_fits(survey)).member("dermis", library_version());
   json.member("loader", version_text(survey.loader_version))
       .member("validation_layer", survey.validation_layer);
   json.key("devices").open_array();
@@ -75,14 +82,11 @@ std::string document(const demo::DeviceSurvey& survey, bool fits) {
   return std::move(json).finish();
 }
 
-} // namespace
-
 ExitCode doctor(const Session& session, const DoctorOptions&) {
   const demo::Result<demo::DeviceSurvey> survey = demo::survey_devices();
   if (!survey) return fail(session, static_cast<ExitCode>(survey.error().kind), survey.error().text);
-  const bool fits = std::any_of(survey->devices.begin(), survey->devices.end(),
-                                [](const demo::SurveyedDevice& device) { return device.fits; });
-  if (session.json) print(document(*survey, fits));
+  const bool fits = any_fits(*survey);
+  if (session.json) print(survey_as_json(*survey));
   say(session, screen(*survey));
   if (fits) return ExitCode::ok;
   return session.json

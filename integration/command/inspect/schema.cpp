@@ -1,10 +1,13 @@
 // dermis schema: the JSON Schemas of all file formats.
 
 #include "framegraph/schema/graph_schema.hpp"
+#include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
+#include "integration/command/inspect/reference_pages/pages.hpp"
 #include "integration/command/inspect/schemas.hpp"
 #include "integration/command/output.hpp"
 #include "integration/command/verbs.hpp"
+#include "integration/files/bytes.hpp"
 #include "passes/subsurface/kinds.hpp"
 
 #include <fmt/format.h>
@@ -64,6 +67,31 @@ ExitCode schema(const Session& session, const SchemaOptions& options) {
   return fail(session, ExitCode::usage,
               fmt::format("there is no schema '{}'; {}", options.name,
                           suggestion.empty() ? "schemas: " + schema_names() : suggestion));
+}
+
+ExitCode docs(const Session& session, const DocsOptions& options) {
+  const std::pair<std::string, std::string> pages[] = {
+      {"format_reference.md", format_page(all_schemas())},
+      {"pass_kinds.md", kinds_page(subsurface::make_kinds())}};
+  OutputFolder folder;
+  if (const std::string problem = folder.open(options.out); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
+  for (const auto& [name, text] : pages) {
+    const std::string file = folder.path_of(name);
+    std::string problem;
+    if (options.check) {
+      const auto bytes = read_bytes(file, limits::file_bytes, problem);
+      if (!bytes || std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()) != text)
+        return fail(session, ExitCode::problems,
+                    fmt::format("{} is not what the declarations say now; dermis docs --out {} writes it",
+                                file, options.out));
+      continue;
+    }
+    problem = deliver_text(file, text);
+    if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+    say(session, fmt::format("{}\n", file));
+  }
+  return ExitCode::ok;
 }
 
 } // namespace dermis::tools

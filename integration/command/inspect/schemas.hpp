@@ -1,6 +1,8 @@
 #pragma once
 // The JSON Schemas that the command carries.
 
+#include "integration/command/session.hpp"
+
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +16,13 @@ struct NamedSchema {
 // Those that are written by hand in configs/schema/; those of graphs and fragments follow from the pass
 // kinds.
 std::span<const NamedSchema> written_schemas();
+
+struct DocsOptions {
+  std::string out = "docs"; // folder
+  bool check = false;       // write nothing, fail where a page is not as it would be written
+};
+// Writes the pages of documentation that follow from schemas and signatures.
+ExitCode docs(const Session& session, const DocsOptions& options);
 
 // "graph, profile, ...": for help.
 std::string schema_names();

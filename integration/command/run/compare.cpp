@@ -2,16 +2,19 @@
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/command/bench/report/heat_map.hpp"
+#include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
 #include "integration/command/verbs.hpp"
 #include "integration/files/difference.hpp"
 #include "integration/files/exr.hpp"
+#include "integration/files/flip.hpp"
 #include "integration/files/metrics.hpp"
 #include "integration/files/png.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace dermis::tools {
@@ -27,6 +30,7 @@ struct Pair {
 struct Compared {
   std::string name, region; // region "": the whole picture
   Difference difference;
+  double flip = -1, worst_flip = 0; // mean and largest; -1: not asked for
 };
 
 bool is_picture(const fs::path& path) {
@@ -76,7 +80,9 @@ std::optional<Image> read_picture(const fs::path& path, std::string& problem) {
 }
 
 // Both as values with peak 1: what a PNG shows, and the exposed luminance of an EXR, by the exposure of B.
-bool read_both(const Pair& pair, Image& a, Image& b, std::string& problem) {
+// `seen` (empty: not asked for) is what FLIP says of each pixel, with B as the reference.
+bool read_both(const Pair& pair, const CompareOptions& options, Image& a, Image& b, std::vector<float>& seen,
+               std::string& problem) {
   const auto first = read_picture(pair.a, problem);
   const auto second = first ? read_picture(pair.b, problem) : std::nullopt;
   if (!second) return false;
@@ -87,7 +93,9 @@ bool read_both(const Pair& pair, Image& a, Image& b, std::string& problem) {
                           second->channels);
     return false;
   }
-  if (pair.a.extension() == ".png") {
+  const bool is_png = pair.a.extension() == ".png";
+  if (options.flip) seen = flip(*second, *first, !is_png, options.pixels_per_degree);
+  if (is_png) {
     a = encoded(*first);
     b = encoded(*second);
     return true;
@@ -115,6 +123,32 @@ std::string write_heat(const std::string& path, const Image& a, const Image& b) 
   return problem;
 }
 
+std::string write_flip(const std::string& path, const Image& like, const std::vector<float>& seen) {
+  constexpr double decades = 3,
+                   least = -4; // of heat_color, which is logarithmic: here its colours stand for 0..1
+  std::vector<uint8_t> rgb;
+  for (const float value : seen)
+    for (const uint8_t channel : heat_color(std::pow(10.0, least + decades * double(value))))
+      rgb.push_back(channel);
+  std::string problem;
+  write_png(path, like.width, like.height, rgb, problem);
+  return problem;
+}
+
+Compared compare_region(const std::string& name, const std::string& region, const Image& a, const Image& b,
+                        const std::vector<float>& seen, const PixelRectangle& where) {
+  Compared row{name, region, compare_pictures(a, b, where)};
+  if (seen.empty()) return row;
+  row.flip = 0;
+  for (uint32_t y = where.y; y < where.y + where.height; ++y)
+    for (uint32_t x = where.x; x < where.x + where.width; ++x) {
+      const auto value = double(seen[size_t{y} * a.width + x]);
+      row.flip += value / (double(where.width) * where.height);
+      row.worst_flip = std::max(row.worst_flip, value);
+    }
+  return row;
+}
+
 std::string as_json(const std::vector<Compared>& rows, bool ok) {
   JsonWriter json;
   json.open_object().member("ok", ok).key("rows").open_array();
@@ -127,6 +161,7 @@ std::string as_json(const std::vector<Compared>& rows, bool ok) {
         .member("rmse", d.rmse)
         .member("max_error", d.max_error);
     json.member("worst_x", d.worst_x).member("worst_y", d.worst_y).member("nonfinite_pixels", d.nonfinite);
+    if (row.flip >= 0) json.member("flip", row.flip).member("flip_max", row.worst_flip);
     json.member("pixels", d.pixels).close();
   }
   json.close().close();
@@ -143,12 +178,16 @@ std::string as_table(const std::vector<Compared>& rows) {
                {"at"},
                {"not finite", true}},
               {}};
+  const bool with_flip = !rows.empty() && rows.front().flip >= 0;
+  if (with_flip) table.columns.insert(table.columns.begin() + 4, {"FLIP", true});
   for (const Compared& row : rows) {
     const Difference& d = row.difference;
     table.rows.push_back({row.name, row.region, format_decibels(d.psnr_db), fmt::format("{:.4f}", d.ssim),
                           fmt::format("{:.5f}", d.rmse), fmt::format("{:.4f}", d.max_error),
                           d.max_error > 0 ? fmt::format("{},{}", d.worst_x, d.worst_y) : "",
                           d.nonfinite > 0 ? fmt::format("{}", d.nonfinite) : ""});
+    auto& cells = table.rows.back();
+    if (with_flip) cells.insert(cells.begin() + 4, fmt::format("{:.4f}", row.flip));
   }
   return format_table(table);
 }
@@ -159,36 +198,46 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   std::string problem;
   const std::vector<Pair> pairs = pairs_of(options.a, options.b, problem);
   if (!problem.empty()) return fail(session, ExitCode::problems, problem);
-  if (!options.heat.empty() && pairs.size() > 1)
-    return fail(session, ExitCode::usage, "--heat draws one picture; name two files instead of folders");
+  if ((!options.heat.empty() || !options.flip_map.empty()) && pairs.size() > 1)
+    return fail(session, ExitCode::usage,
+                "--heat and --flip-map draw one picture; name two files instead of folders");
+  Progress progress(progress_style(session.quiet, session.json), "compare", "picture", pairs.size());
   std::vector<Compared> rows;
   for (const Pair& pair : pairs) {
     Image a, b;
-    if (!read_both(pair, a, b, problem)) return fail(session, ExitCode::problems, problem);
-    rows.push_back({pair.name, "", compare_pictures(a, b, {0, 0, a.width, a.height})});
+    std::vector<float> seen;
+    if (!read_both(pair, options, a, b, seen, problem)) return fail(session, ExitCode::problems, problem);
+    rows.push_back(compare_region(pair.name, "", a, b, seen, {0, 0, a.width, a.height}));
+    if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+    progress.update(static_cast<uint64_t>(&pair - pairs.data()) + 1);
     for (const PictureRegion& region : options.regions) {
       if (uint64_t{region.x} + region.size.width > a.width ||
           uint64_t{region.y} + region.size.height > a.height)
         return fail(session, ExitCode::usage,
                     fmt::format("the region {} is not inside of the {}x{} pixels of '{}'", region.text,
                                 a.width, a.height, pair.name));
-      rows.push_back({pair.name, region.text,
-                      compare_pictures(a, b, {region.x, region.y, region.size.width, region.size.height})});
+      rows.push_back(compare_region(pair.name, region.text, a, b, seen,
+                                    {region.x, region.y, region.size.width, region.size.height}));
     }
     if (!options.heat.empty()) problem = write_heat(options.heat, a, b);
+    if (problem.empty() && !options.flip_map.empty()) problem = write_flip(options.flip_map, a, seen);
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   }
   const bool ok = std::all_of(rows.begin(), rows.end(), [&](const Compared& row) {
-    return row.difference.nonfinite == 0 && row.difference.psnr_db >= options.least_psnr;
+    return row.difference.nonfinite == 0 && row.difference.psnr_db >= options.least_psnr &&
+           row.flip <= options.most_flip;
   });
   say(session, as_table(rows));
   if (session.json) print(as_json(rows, ok));
   if (ok) return ExitCode::ok;
   if (session.json) return ExitCode::problems;
+  std::string allowed;
+  if (options.least_psnr > 0) allowed = format_decibels(options.least_psnr);
+  if (options.most_flip < 1)
+    allowed += fmt::format("{}a FLIP of {}", allowed.empty() ? "" : " and ", options.most_flip);
   return fail(session, ExitCode::problems,
-              options.least_psnr > 0 ? fmt::format("the pictures differ by more than {} allow",
-                                                   format_decibels(options.least_psnr))
-                                     : "there are values that are not finite");
+              allowed.empty() ? "there are values that are not finite"
+                              : fmt::format("the pictures differ by more than {} allow", allowed));
 }
 
 } // namespace dermis::tools

@@ -9,6 +9,7 @@
 #include "integration/command/run/pass_times.hpp"
 #include "integration/command/run/rendered_frame.hpp"
 #include "integration/command/run/truth_run.hpp"
+#include "integration/command/trace/trace.hpp"
 #include "integration/demo_engine/files.hpp"
 #include "integration/files/capture_truth.hpp"
 #include "integration/files/exr.hpp"
@@ -47,6 +48,7 @@ struct Run {
   CaptureWriter capture{};
   bool textured_before = false;
   ChoiceReport choices{};
+  Trace trace{};
   bool transmission = false; // the graph adds light from behind before it scatters
 };
 
@@ -138,6 +140,7 @@ demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
       run.host_times.add(time.pass, time.milliseconds);
   }
   if (frame.choice) run.choices.add(frame.frame, *frame.choice);
+  if (!run.options.trace.empty()) run.trace.add(frame);
   run.exposure.add(captured->lighting.values, captured->profile);
   run.last = make_truth_frame(*captured);
   if (run.transmission) add_transmission(*captured, run.last);
@@ -280,6 +283,9 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   std::string problem;
   if (!options.capture.empty() && !run.capture.finish(problem))
     return fail(session, ExitCode::environment, problem);
+  if (!options.trace.empty())
+    problem = deliver_text(options.trace, run.trace.json(session.command, run.info.device));
+  if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   return report(run);
 }
 

@@ -29,11 +29,15 @@ struct Row {
   bool holds = false;
 };
 
-std::vector<Row> table_rows(uint32_t runs) {
+// Empty where it was stopped.
+std::vector<Row> table_rows(const Session& session, uint32_t runs) {
   std::vector<Row> rows;
+  Progress progress(progress_style(session.quiet, false), "supplement", "run", uint64_t{2} * runs);
   for (const bool dynamic : {false, true}) {
     std::array<std::vector<double>, 6> all;
     for (uint32_t run = 0; run < runs; ++run) {
+      if (interrupted()) return {};
+      progress.update(dynamic ? uint64_t{runs} + run : run);
       const auto values = run_supplement(dynamic, run);
       for (size_t k = 0; k < values.size(); ++k)
         all[k].push_back(values[k]);
@@ -111,7 +115,8 @@ std::string text_of(const std::vector<Row>& rows) {
 } // namespace
 
 ExitCode bench_supplement(const Session& session, const BenchSupplementOptions& options) {
-  std::vector<Row> rows = table_rows(options.runs);
+  std::vector<Row> rows = table_rows(session, options.runs);
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   const std::vector<Row> weights = weight_rows();
   rows.insert(rows.end(), weights.begin(), weights.end());
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");

@@ -1,0 +1,89 @@
+// dermis watch: a change of a file is answered with what it did to plan and error.
+#include "tests/command/command_fixture.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <thread>
+
+namespace dermis::test {
+namespace {
+
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+class Watch : public CommandTest {
+protected:
+  std::string copy(const std::string& from, const std::string& to) const {
+    std::ifstream file(from, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return write(to, text.str());
+  }
+  std::vector<std::string> arguments(const std::string& graph, const std::string& rounds) const {
+    return {"watch",    "configs/scenes/bust.json",
+            "--graph",  graph,
+            "--size",   "48x27",
+            "--frames", "1",
+            "--subset", "16",
+            "--rounds", rounds,
+            "--out",    path("out")};
+  }
+  // Does `work` once the first rendering is there.
+  std::thread after_the_first(std::function<void()> work) const {
+    return std::thread([picture = path("out/color_0000.exr"), work = std::move(work)] {
+      for (int i = 0; i < 600 && !std::filesystem::exists(picture); ++i)
+        std::this_thread::sleep_for(100ms);
+      std::this_thread::sleep_for(500ms); // files' times tell changes apart
+      work();
+    });
+  }
+};
+
+TEST_F(Watch, SaysWhatAChangedGraphDoesToThePlanAndTheError) {
+  const std::string graph = copy("configs/graphs/burley.json", "graph.json");
+  std::thread editor = after_the_first([&] { copy("configs/graphs/separable.json", "graph.json"); });
+  const Outcome outcome = run(arguments(graph, "2"));
+  editor.join();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("graph.json changed"));
+  EXPECT_THAT(outcome.out, HasSubstr("horizontal")); // a pass that burley does not have
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
+}
+
+TEST_F(Watch, GoesOnBehindAFileWithErrors) {
+  const std::string graph = copy("configs/graphs/burley.json", "graph.json");
+  std::thread editor = after_the_first([&] {
+    write("graph.json", "{ \"dermis\": 1, ");
+    std::this_thread::sleep_for(1500ms);
+    copy("configs/graphs/burley.json", "graph.json");
+  });
+  const Outcome outcome = run(arguments(graph, "3"));
+  editor.join();
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("graph.json:1:"));
+  EXPECT_THAT(outcome.out, HasSubstr("plan: the same"));
+}
+
+TEST_F(Watch, AShaderThatChangesIsBuiltByTheGivenLine) {
+  write("shaders/kernel.comp", "before");
+  std::thread editor = after_the_first([&] { write("shaders/kernel.comp", "behind it"); });
+  std::vector<std::string> words = arguments("configs/graphs/burley.json", "2");
+  words.insert(words.end(),
+               {"--shaders", path("shaders"), "--build", "echo built > '" + path("built") + "'"});
+  const Outcome outcome = run(words);
+  editor.join();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(path("built")));
+  EXPECT_THAT(outcome.out, HasSubstr("kernel.comp changed"));
+}
+
+TEST_F(Watch, CtrlCEndsIt) {
+  RunOptions options;
+  options.interrupt_after = path("out/color_0000.exr");
+  EXPECT_EQ(run(arguments("configs/graphs/burley.json", "0"), options).exit_code, 130);
+}
+
+} // namespace
+} // namespace dermis::test
