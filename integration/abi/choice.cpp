@@ -62,7 +62,10 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   if (conclude(log, result, std::move(diagnostics), report) != DERMIS_OK) return result;
 
   Chooser& chooser = graph.chooser;
-  if (tables.errors) chooser.errors = std::move(*tables.errors);
+  if (tables.errors) {
+    chooser.errors = std::move(*tables.errors);
+    chooser.found = choice::make_error_correction(chooser.errors.techniques.size());
+  }
   if (tables.calibration) {
     chooser.calibration = std::move(*tables.calibration);
     chooser.costs = choice::CostModel(chooser.calibration.costs);
