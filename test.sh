@@ -25,6 +25,8 @@ if can_fuzz; then
   fuzz=yes
   packages+=("${fuzz_packages[@]}")
 fi
+may_install && packages+=("${interface_packages[@]}")
+viewer_packages+=(chromium) # opens the page in a test, which is skipped without
 install_packages
 for preset in "${presets[@]}"; do
   build_preset "$preset"

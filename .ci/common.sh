@@ -8,8 +8,16 @@ packages=(
   mesa-vulkan-drivers vulkan-validationlayers
 )
 
+# What the viewer's page is built with, where Node comes from nowhere else; without them it is left out.
+viewer_packages=()
+command -v node >/dev/null || viewer_packages+=(nodejs)
+command -v npm >/dev/null || viewer_packages+=(npm)
+
 # What the fuzz targets need beside them.
 fuzz_packages=(clang libclang-rt-14-dev)
+
+# What compares the interface with its baseline, and a foreign renderer to run between; without them these tests are skipped.
+interface_packages=(abigail-tools libplacebo-dev)
 
 say() { printf '%s\n' "$*"; }
 fail() { # exit code, message
@@ -37,12 +45,14 @@ can_fuzz() {
   fi
 }
 
+# Installs `packages`, and `viewer_packages` where this user may.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
     say "This is no Debian: taking it that what these packages hold is installed: ${packages[*]}"
     return
   fi
   local missing become=()
+  if may_install; then packages+=("${viewer_packages[@]}"); fi
   mapfile -t missing < <(missing_packages "${packages[@]}")
   [[ ${#missing[@]} -gt 0 ]] || return 0
   if [[ $EUID -ne 0 ]]; then

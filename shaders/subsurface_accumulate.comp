@@ -1,6 +1,6 @@
 #version 460
 // Scattered light over frames, for hosts without anti-aliasing of their own: what a surface showed before is found again,
-// drawn towards what is around it now, and mixed with this frame's.
+// made as much brighter as its tile became, drawn towards what is around it now, and mixed with this frame's.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_accumulate.bindings.glsl"
@@ -12,28 +12,16 @@
 vec2 surface_before(ivec2 pixel);
 #include "reproject.glsl"
 
-uvec4 past_at(ivec2 pixel) { return texelFetch(past_image, previous_texel(pixel), 0); }
+const float mm_per_metre = 1000.0;
 
-// Light and number of frames in halves, depth in mm, profile.
-uvec4 pack_past(accumulated_light t, float depth, uint id) {
-  return uvec4(packHalf2x16(t.light.rg), packHalf2x16(vec2(t.light.b, t.count)), floatBitsToUint(depth), id);
-}
-accumulated_light unpack_past(uvec4 bits) {
-  vec2 pair = unpackHalf2x16(bits.y);
-  return accumulated_light(vec3(unpackHalf2x16(bits.x), pair.x), pair.y);
-}
-
-bool written_before(ivec2 pixel) {
-  ivec2 tile = pixel >> 3;
-  int columns = (frame.previous_rect.z + 7) >> 3;
-  return classes_before_data[tile.y * columns + tile.x] != class_none;
+accumulated_light past_at(ivec2 pixel) {
+  vec4 kept = texelFetch(past_image, previous_texel(pixel), 0);
+  return accumulated_light(kept.rgb, kept.a);
 }
 
 vec2 surface_before(ivec2 pixel) {
-  if (!written_before(pixel))
-    return vec2(0.0);
-  uvec4 bits = past_at(pixel);
-  return vec2(uintBitsToFloat(bits.z), float(bits.w));
+  vec2 kept = texelFetch(place_image, previous_texel(pixel), 0).rg;
+  return vec2(kept.r * mm_per_metre, kept.g);
 }
 
 bool is_surface(ivec2 pixel, uint id, float depth, float tolerance) {
@@ -55,7 +43,7 @@ bool sharp_history(previous_place place, uint id, float tolerance, out accumulat
         continue;
       if (!is_surface(pixel, id, place.depth, tolerance))
         return false;
-      accumulated_light one = unpack_past(past_at(pixel));
+      accumulated_light one = past_at(pixel);
       found.light += weight * one.light;
       found.count += weight * one.count;
     }
@@ -78,7 +66,7 @@ accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   found = accumulated_light(vec3(0.0), 0.0);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0) {
-      accumulated_light one = unpack_past(past_at(taps.first + ivec2(i & 1, i >> 1)));
+      accumulated_light one = past_at(taps.first + ivec2(i & 1, i >> 1));
       found.light += taps.weight[i] * one.light;
       found.count += taps.weight[i] * one.count;
     }
@@ -118,24 +106,66 @@ neighbourhood look_around(ivec2 pixel, uint id, float depth) {
   return neighbourhood(own + mean, sqrt(max(squares / max(count, 1.0) - mean * mean, vec3(0.0))), length(rise));
 }
 
+// By pixel of the tile: its light now and before; 0 pixels where there was none before.
+shared vec3 lights_now[64], lights_before[64];
+shared float seen[64];
+
+vec3 change_over_the_tile() {
+  light_pairs pairs = no_pairs();
+  for (uint i = 0u; i < 64u; ++i)
+    if (seen[i] > 0.0)
+      add_pixel(pairs, lights_now[i], lights_before[i]);
+  return brightness_change(pairs);
+}
+
+// What is kept where the light of a whole tile went out: what was there, for when it comes back.
+struct two_lights {
+  accumulated_light shown, kept;
+};
+two_lights with_history(accumulated_light history, vec3 light, neighbourhood around, vec3 change) {
+  accumulated_light now = accumulated_light(light, 0.0);
+  if (history.count > 0.0 && all(lessThan(change * change_most, vec3(1.0))))
+    return two_lights(now, history);
+  if (any(greaterThan(change, vec3(change_most))))
+    history.count = 0.0;
+  history.light *= change;
+  if (history.count > 0.0 && settings.clip > 0.0)
+    history = clip_to_neighbours(history, around.mean, around.deviation, settings.clip);
+  now = add_frame(history, light, settings.weight);
+  return two_lights(now, now);
+}
+
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
-    return;
+  bool listed = listed_pixel(pixel, copy_only);
   ivec2 texel = texel_of(pixel);
-  uint id = texelFetch(material_image, texel, 0).r;
-  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-  accumulated_light now = accumulated_light(texelFetch(scattered_image, texel, 0).rgb, 0.0);
-  bool scatters = id != 0u && !copy_only && depth > 0.0;
-  if (scatters) {
-    neighbourhood around = look_around(pixel, id, depth);
-    accumulated_light history = history_of(pixel, depth, id, around.rise);
-    if (history.count > 0.0 && settings.clip > 0.0)
-      history = clip_to_neighbours(history, around.mean, around.deviation, settings.clip);
-    now = add_frame(history, now.light, settings.weight);
+  uint id = 0u;
+  float depth = 0.0;
+  vec3 light = vec3(0.0);
+  neighbourhood around;
+  accumulated_light history = accumulated_light(vec3(0.0), 0.0);
+  bool scatters = false;
+  if (listed) {
+    id = texelFetch(material_image, texel, 0).r;
+    depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    light = texelFetch(scattered_image, texel, 0).rgb;
+    scatters = id != 0u && !copy_only && depth > 0.0;
   }
-  now = accumulated_light(round_to_half(now.light), round_to_half(now.count));
-  imageStore(accumulated_image, texel, vec4(now.light, 1.0));
-  imageStore(past_out_image, texel, pack_past(now, depth, scatters ? id : 0u));
+  if (scatters) {
+    around = look_around(pixel, id, depth);
+    history = history_of(pixel, depth, id, around.rise);
+  }
+  lights_now[gl_LocalInvocationIndex] = light;
+  lights_before[gl_LocalInvocationIndex] = history.light;
+  seen[gl_LocalInvocationIndex] = history.count;
+  barrier();
+  if (!listed)
+    return;
+  two_lights now = two_lights(accumulated_light(light, 0.0), accumulated_light(light, 0.0));
+  if (scatters)
+    now = with_history(history, light, around, change_over_the_tile());
+  imageStore(accumulated_image, texel, vec4(round_to_half(now.shown.light), 1.0));
+  imageStore(past_out_image, texel, round_to_half(vec4(now.kept.light, now.kept.count)));
+  imageStore(place_out_image, texel, round_to_half(vec4(depth / mm_per_metre, scatters ? float(id) : 0.0, 0.0, 0.0)));
 }

@@ -21,14 +21,11 @@ bool has_moments() { return settings.guidance == GUIDANCE_OCV; }
 
 vec4 guide_before(ivec2 pixel) { return texelFetch(guide_image, previous_texel(pixel), 0); }
 
-// The half sequences keep depth (metres) and profile in the guide itself, the others beside it.
+// The half sequences keep depth (metres) in the guide itself, the others beside it.
 vec2 surface_before(ivec2 pixel) {
-  ivec2 tile = pixel >> 3;
-  int columns = (frame.previous_rect.z + 7) >> 3;
-  if (classes_before_data[tile.y * columns + tile.x] == class_none)
-    return vec2(0.0);
-  vec2 kept = splits() ? guide_before(pixel).ba : texelFetch(place_image, previous_texel(pixel), 0).rg;
-  return vec2(kept.r * mm_per_metre, kept.g);
+  vec2 kept = guide_before(pixel).ba;
+  float depth = splits() ? kept.r : texelFetch(place_image, previous_texel(pixel), 0).r;
+  return vec2(depth * mm_per_metre, kept.g);
 }
 
 struct guide_state {
@@ -162,11 +159,11 @@ void main() {
   if (at.id != 0u)
     state.mean_count = state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
   imageStore(scattered_image, texel, vec4(round_to_half(at.light), 1.0));
-  vec2 place = vec2(at.depth / mm_per_metre, float(id));
+  float depth = at.depth / mm_per_metre;
   imageStore(guide_out_image, texel,
-             round_to_half(splits() ? vec4(state.sd, state.mean_count, place) : vec4(state.sd, state.mean_count, state.mean, 0.0)));
+             round_to_half(vec4(state.sd, state.mean_count, splits() ? depth : state.mean, float(id))));
   if (has_place_out())
-    imageStore(place_out_image, texel, round_to_half(vec4(place, 0.0, 0.0)));
+    imageStore(place_out_image, texel, vec4(round_to_half(depth), 0.0, 0.0, 0.0));
   if (has_control_out()) {
     float variance_g = state.moments.variance_g;
     vec4 control = vec4(variance_g > 0.0 ? state.moments.covariance / variance_g : 1.0, sqrt(variance_g),

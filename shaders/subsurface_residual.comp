@@ -23,10 +23,6 @@ const float memory = 1.9;        // samples that a moving mean of weight alpha i
 
 // Depth is kept in metres: half floats hold it within .05 % from a tenth of a millimetre to 65 km.
 vec2 surface_before(ivec2 pixel) {
-  ivec2 tile = pixel >> 3;
-  int columns = (frame.previous_rect.z + 7) >> 3;
-  if (classes_before_data[tile.y * columns + tile.x] == class_none)
-    return vec2(0.0);
   vec2 kept = texelFetch(place_image, previous_texel(pixel), 0).rg;
   return vec2(kept.r * mm_per_metre, kept.g);
 }

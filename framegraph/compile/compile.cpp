@@ -53,6 +53,10 @@ void clear(CompiledPlan& out) {
 
 } // namespace
 
+void CompileContext::add_reason(const Reason& reason) {
+  out->reasons.push_back(reason);
+}
+
 Compiler::Compiler() : context_(std::make_unique<CompileContext>()) {}
 Compiler::~Compiler() = default;
 

@@ -25,6 +25,15 @@ struct Culler {
     if (value != no_value && c.values[value].producer.valid()) need(c.values[value].producer, why, a, b);
   }
 
+  // Likewise, for the pass that is followed: it stands in for a producer that there is not, since it runs
+  // anyway.
+  void need_producer(uint32_t value, Reason::Why why, uint32_t a, uint32_t b) {
+    if (c.values.empty()) return;
+    const PassId producer = c.values[pick(value != no_value, value, 0u)].producer;
+    const bool exists = (int{value != no_value} & int{producer.valid()}) != 0;
+    need(PassId{pick(exists, producer.value, following.value)}, why, a, b);
+  }
+
   void follow(PassId pass) {
     for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
       const Use& use = c.uses[u];
@@ -35,9 +44,9 @@ struct Culler {
       const uint32_t resource = use.resource.value;
       if (use.frames_back > 0)
         need_value(c.final_value[use.part], Reason::Why::read_later_by, pass.value, resource);
-      need_value(use.read_value, Reason::Why::read_by, pass.value, resource);
+      need_producer(use.read_value, Reason::Why::read_by, pass.value, resource);
       // What is written in place may keep texels of the version before.
-      if (use.write_value != no_value)
+      if (c.overwrites && use.write_value != no_value)
         need_value(c.values[use.write_value].previous, Reason::Why::written_over_by, pass.value, resource);
     }
   }

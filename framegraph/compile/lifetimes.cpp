@@ -119,13 +119,8 @@ void explain_history(CompileContext& c, uint32_t resource, const Lifetime& life)
 void gather_usage(CompileContext& c) {
   c.lifetimes.assign(c.graph->resources.size(), {});
   c.narrow.clear();
-  for (auto pass = static_cast<uint32_t>(c.graph->passes.size());
-       pass-- > 0;) { // last first: `narrow` is a stack
-    if (!c.live[pass]) continue;
-    const PassKind& kind = c.kind(PassId{pass});
-    for (uint32_t u = c.first_use[pass + 1]; u-- > c.first_use[pass];)
-      note(c, u, kind);
-  }
+  for (auto u = static_cast<uint32_t>(c.uses.size()); u-- > 0;) // last first: `narrow` is a stack
+    if (c.live[c.uses[u].pass.value]) note(c, u, c.kind(c.uses[u].pass));
   for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {
     if (!c.facts[i].history) continue;
     Lifetime& life = c.lifetimes[i];

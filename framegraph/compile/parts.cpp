@@ -37,9 +37,10 @@ struct Divider {
     const Extent& extent = c.extents[binding.resource.value];
     c.diagnostics
         ->add(DiagnosticId::part_missing, c.graph->place_of(binding),
-              fmt::format("pass '{}' binds '{}{}', but at {}x{} texels '{}' has {} mips and {} layers",
+              fmt::format("pass '{}' binds '{}{}', but at {}x{} texels '{}' has {} mip{} and {} layer{}",
                           c.name(pass), resource.name, part_text(binding.part), extent.width, extent.height,
-                          resource.name, extent.mips, resource.layers))
+                          resource.name, extent.mips, extent.mips == 1 ? "" : "s", resource.layers,
+                          resource.layers == 1 ? "" : "s"))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
   }
 

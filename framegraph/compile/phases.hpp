@@ -3,6 +3,7 @@
 // compile/.
 
 #include "framegraph/compile/compile.hpp"
+#include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/pack.hpp"
 
 #include <array>
@@ -13,15 +14,6 @@
 namespace dermis {
 
 inline constexpr uint32_t no_value = 0xffffffffu;
-
-// Asks for memory that is needed soon.
-inline void fetch(const void* address) {
-#if defined(__GNUC__)
-  __builtin_prefetch(address);
-#else
-  static_cast<void>(address);
-#endif
-}
 
 // What most phases ask of a declaration, without its names and places in the file.
 struct ResourceFacts {
@@ -141,9 +133,9 @@ struct Loan { // memory of a history that a transient uses while it holds nothin
   uint64_t offset = 0;      // in each of its instances
 };
 
-struct Segment { // bytes of a heap and who had them last in this frame
+struct Segment { // bytes of a heap and who had them last in this frame; they follow each other without gaps
   uint64_t begin = 0, end = 0;
-  uint32_t resource = 0;    // into Plan::resources
+  uint32_t resource = 0;    // into Plan::resources; no_value: nobody
   uint32_t frames_back = 0; // a history's
 };
 
@@ -179,6 +171,15 @@ struct Answer { // what memory the device wants for one description
   MemoryNeeds needs;
 };
 
+struct Shape {      // what all resources that are declared alike have in common
+  ResourceId first; // of them
+  Extent extent;
+  bool answered = false; // for one use: the rest is what came of it
+  uint32_t vk_usage = 0;
+  Format format = Format::undefined;
+  MemoryNeeds needs;
+};
+
 struct MemoryGroup { // instances that may share a heap
   bool persistent = false;
   uint32_t type_bits = 0;
@@ -198,6 +199,9 @@ struct CompileContext {
   std::vector<uint8_t> bound;       // by resource: imports and exports the host binds
   std::vector<Extent> extents;
   std::vector<uint8_t> size_marks;
+  std::vector<Shape> shapes;
+  std::vector<uint32_t> shape_of;              // by resource: into shapes; no_value: by another's size
+  std::array<uint32_t, 32> shape_of_remainder; // by remainder of a hash: the shape met last
   std::vector<ResourceId> size_chain;
   // choose
   std::vector<SettingValue> settings;
@@ -251,7 +255,7 @@ struct CompileContext {
   // synchronize
   std::vector<SyncFacts> sync_facts; // by plan resource
   std::vector<ObjectState> states, ends;
-  std::vector<PassTouch> touches;
+  std::vector<PassTouch> touches;     // of one pass, and what is left of others
   std::vector<uint32_t> touch_number; // by object: of the last one, counted through all passes
   std::vector<uint32_t> touch_of_use;
   std::vector<uint32_t> lent_memory;        // by plan resource: into `memory`, of what it lends
@@ -301,8 +305,9 @@ struct CompileContext {
   bool host_owned(ResourceId id) const { return facts[id.value].host_owned; }
   void because(Reason::About about, uint32_t index, Reason::Why why, uint32_t a = 0, uint32_t b = 0,
                uint32_t c = 0) {
-    if (input->reasons) out->reasons.push_back({about, why, index, a, b, c});
+    if (input->reasons) add_reason({about, why, index, a, b, c});
   }
+  void add_reason(const Reason& reason); // apart, so that those who ask for none pay little
 };
 
 // The phases, in the order they run. Each adds diagnostics; compile() stops behind a phase that found errors.

@@ -234,6 +234,62 @@ MemoryNeeds needs_of(CompileContext& c, const PlanResource& resource) {
   return answer.needs;
 }
 
+bool same(Rational a, Rational b) {
+  return a.numerator == b.numerator && a.denominator == b.denominator;
+}
+
+// Whether two declarations, sized by no other resource, have the same size and formats at every view.
+bool alike(const ResourceDeclaration& a, const ResourceDeclaration& b) {
+  return same(a.size.x, b.size.x) && same(a.size.y, b.size.y) && a.size.base == b.size.base &&
+         a.size.rounding == b.size.rounding && a.size.align == b.size.align &&
+         a.size.border == b.size.border && a.type == b.type && a.mips == b.mips && a.layers == b.layers &&
+         a.stride == b.stride && a.extra_elements == b.extra_elements && a.formats == b.formats;
+}
+
+// Graphs have few shapes: most resources are like one that was looked at before.
+void find_extent(CompileContext& c, SizeResolver& resolver, ResourceId id) {
+  const ResourceDeclaration& declared = c.graph->resources[id.value];
+  const SizeExpression& size = declared.size;
+  const uint64_t mixed = static_cast<uint64_t>(size.x.numerator) * 31 +
+                         static_cast<uint64_t>(size.x.denominator) * 7 + declared.mips +
+                         (declared.formats.empty() ? 0 : static_cast<uint64_t>(declared.formats.front()));
+  uint32_t& met = c.shape_of_remainder[mixed % c.shape_of_remainder.size()];
+  if (met == no_value || !alike(c.graph->resources[c.shapes[met].first.value], declared)) {
+    if (!resolver.evaluate(id)) {
+      c.size_marks[id.value] = SizeResolver::failed;
+      return;
+    }
+    met = static_cast<uint32_t>(c.shapes.size());
+    Shape& shape = c.shapes.emplace_back();
+    shape.first = id;
+    shape.extent = c.extents[id.value];
+  }
+  c.extents[id.value] = c.shapes[met].extent;
+  c.shape_of[id.value] = met;
+  c.size_marks[id.value] = SizeResolver::done;
+}
+
+// Format and memory. Those of a shape are the same wherever nothing but the usage counts.
+void find_format(CompileContext& c, PlanResource& resource) {
+  const ResourceId id = resource.declared;
+  const Lifetime& life = c.lifetimes[id.value];
+  const bool host_owned = c.host_owned(id);
+  const bool alone = host_owned || c.input->reasons || life.first_narrow != no_value;
+  Shape* shape = alone || c.shape_of[id.value] == no_value ? nullptr : &c.shapes[c.shape_of[id.value]];
+  if (shape && shape->answered && shape->vk_usage == life.vk_usage) {
+    resource.format = shape->format;
+    c.needs.push_back(shape->needs);
+    return;
+  }
+  if (resource.type == ResourceType::image) choose_format(c, id, resource.format);
+  c.needs.push_back(host_owned ? MemoryNeeds{} : needs_of(c, resource));
+  if (!shape || (resource.type == ResourceType::image && resource.format == Format::undefined)) return;
+  shape->answered = true;
+  shape->vk_usage = life.vk_usage;
+  shape->format = resource.format;
+  shape->needs = c.needs.back();
+}
+
 } // namespace
 
 void resolve_sizes(CompileContext& c) {
@@ -242,6 +298,9 @@ void resolve_sizes(CompileContext& c) {
   c.extents.assign(count, {});
   c.facts.assign(count, {});
   c.size_marks.assign(count, SizeResolver::untouched);
+  c.shapes.clear();
+  c.shape_of.assign(count, no_value);
+  c.shape_of_remainder.fill(no_value);
   SizeResolver resolver{c};
   bool by_others = false;
   constexpr size_t ahead = 6;
@@ -273,7 +332,7 @@ void resolve_sizes(CompileContext& c) {
     if (declared.size.base == SizeExpression::Base::resource)
       by_others = true;
     else
-      c.size_marks[i] = resolver.evaluate(ResourceId{i}) ? SizeResolver::done : SizeResolver::failed;
+      find_extent(c, resolver, ResourceId{i});
   }
   for (uint32_t i = 0; by_others && i < count; ++i)
     resolver.resolve(ResourceId{i});
@@ -297,7 +356,6 @@ void resolve_formats(CompileContext& c) {
     if (!life.used && !c.bound[i]) continue;
     const ResourceFacts& facts = c.facts[i];
     PlanResource& resource = plan.resources.emplace_back();
-    if (facts.image) choose_format(c, id, resource.format);
     resource.declared = id;
     resource.type = facts.image ? ResourceType::image : ResourceType::buffer;
     resource.origin = facts.imported ? Origin::imported : Origin::transient;
@@ -311,7 +369,7 @@ void resolve_formats(CompileContext& c) {
     resource.instance_count = life.deepest_read + 1;
     resource.slot = own_slot;
     c.plan_resource[i] = static_cast<uint32_t>(plan.resources.size() - 1);
-    c.needs.push_back(c.host_owned(id) ? MemoryNeeds{} : needs_of(c, resource));
+    find_format(c, resource);
     if (life.deepest_read == 0) c.transient_bytes[i] = c.needs.back().size;
   }
 }

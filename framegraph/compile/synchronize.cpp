@@ -93,22 +93,6 @@ void Synchronizer::transfer(const PassTouch& touch, const ObjectState& state, co
   need(position, state.last_pass);
 }
 
-void Synchronizer::batch(uint32_t index, uint32_t after, uint32_t position) {
-  if (two_queues()) { // the passes between may be the other queue's
-    c.batch_of[index] = position;
-    return;
-  }
-  const bool shared = last_batch != no_value && (after == no_value || after < last_batch);
-  if (!shared) last_batch = position;
-  c.batch_of[index] = last_batch;
-}
-
-uint32_t Synchronizer::draft() {
-  c.drafts.emplace_back();
-  c.batch_of.push_back(no_value);
-  return static_cast<uint32_t>(c.drafts.size() - 1);
-}
-
 void Synchronizer::run_pass(uint32_t position) {
   PlanPass& pass = plan.passes[position];
   const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
@@ -116,16 +100,9 @@ void Synchronizer::run_pass(uint32_t position) {
   current = position;
   if (emit) add_accesses(pass, first_use, end);
   waiting_parts.clear();
-  for (const PassTouch& touch : c.touches)
-    run_touch(touch, position);
+  for (uint32_t i = 0; i < touch_count; ++i)
+    run_touch(c.touches[i], position);
   batch_parts(position);
-}
-
-void Synchronizer::place(uint32_t index, uint32_t after, uint32_t position) {
-  if (c.graph->parts && parts(c.drafts[index].resource) > 1)
-    waiting_parts.emplace_back(index, after);
-  else
-    batch(index, after, position);
 }
 
 void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
@@ -307,8 +284,8 @@ void synchronize(CompileContext& c) {
   }
   c.arrival_of.assign(plan.resources.size(), no_value);
   c.memory.resize(std::max(c.memory.size(), plan.heaps.size()));
-  for (std::vector<Segment>& segments : c.memory)
-    segments.clear();
+  for (uint32_t heap = 0; heap < plan.heaps.size(); ++heap)
+    c.memory[heap].assign(1, {0, plan.heaps[heap].size, no_value, 0});
   walk.lend();
   walk.find_memory();
   keep_orderings(c);

@@ -79,9 +79,11 @@ struct VersionScan {
     const auto first = static_cast<uint32_t>(c.uses.size());
     c.first_use.push_back(first);
     uint16_t number = 0;
+    uint32_t port_before = 0;
     bool sorted = true;
     for (const PortBinding& binding : c.graph->bindings_of(declared)) {
-      sorted &= c.uses.size() == first || c.uses.back().port <= binding.port;
+      sorted &= port_before <= binding.port;
+      port_before = binding.port;
       Use& use = c.uses.emplace_back();
       use.pass = pass;
       use.port = static_cast<uint16_t>(binding.port);
@@ -103,14 +105,14 @@ struct VersionScan {
     if (!sorted)
       std::stable_sort(c.uses.begin() + first, c.uses.end(),
                        [](const Use& a, const Use& b) { return a.port < b.port; });
-    for (uint32_t u = first; u < c.uses.size(); ++u)
-      read(u);
-    for (uint32_t u = first; u < c.uses.size(); ++u)
-      write(u);
+    const auto end = static_cast<uint32_t>(c.uses.size());
+    for (uint32_t u = first; u < end; ++u)
+      read(c.uses[u], u);
+    for (uint32_t u = first; u < end; ++u)
+      write(c.uses[u]);
   }
 
-  void read(uint32_t index) {
-    Use& use = c.uses[index];
+  void read(Use& use, uint32_t index) {
     if (!use.reads || use.frames_back > 0) return;
     const Meaning& meaning = c.current[use.part];
     if (unbound_import(use.asked))
@@ -135,8 +137,7 @@ struct VersionScan {
     return false;
   }
 
-  void write(uint32_t index) {
-    Use& use = c.uses[index];
+  void write(Use& use) {
     if (!use.writes) return;
     if (unbound_import(use.asked)) {
       use.trouble = Use::Trouble::unbound;
@@ -257,9 +258,10 @@ void resolve_versions(CompileContext& c) {
     scan.look_ahead(use, part);
 
   c.final_value.assign(c.current.size(), no_value);
-  for (uint32_t i = 0; i < c.final_value.size(); ++i) {
+  const size_t resources = c.graph->resources.size(), parts = c.final_value.size();
+  for (uint32_t i = 0; i < parts; ++i) {
     const uint32_t last = c.current[i].value; // parts have no stand-ins
-    const bool further = i >= c.graph->resources.size();
+    const bool further = i >= resources;
     if (last != no_value && (further || c.values[last].resource == ResourceId{i})) c.final_value[i] = last;
   }
   for (Use& use : c.uses)

@@ -36,6 +36,16 @@ constexpr Bit access_bits[] = {
     {access::shader_storage_write, "shader_storage_write"},
 };
 
+// As in VkImageUsageFlagBits and VkBufferUsageFlagBits.
+constexpr Bit image_usage_bits[] = {
+    {0x1, "transfer_source"}, {0x2, "transfer_destination"}, {0x4, "sampled"},
+    {0x8, "storage"},         {0x10, "color_attachment"},    {0x20, "depth_stencil_attachment"},
+};
+constexpr Bit buffer_usage_bits[] = {
+    {0x1, "transfer_source"}, {0x2, "transfer_destination"}, {0x10, "uniform"},
+    {0x20, "storage"},        {0x100, "indirect"},
+};
+
 template <size_t count> std::vector<std::string> names_of(uint64_t mask, const Bit (&bits)[count]) {
   std::vector<std::string> names;
   for (uint64_t bit = 1; bit != 0; bit <<= 1) {
@@ -65,6 +75,10 @@ std::string stage_text(Stage stages) {
 }
 std::string access_text(Access accesses) {
   return joined(access_names(accesses));
+}
+std::string usage_text(ResourceType type, uint32_t vk_usage) {
+  return joined(type == ResourceType::image ? names_of(vk_usage, image_usage_bits)
+                                            : names_of(vk_usage, buffer_usage_bits));
 }
 
 std::string_view layout_name(Layout layout) {

@@ -22,6 +22,7 @@ std::string_view read_when_text(ReadWhen when); // " where it is valid", to stan
 // The same joined by '|'; "none" for an empty mask.
 std::string stage_text(Stage stages);
 std::string access_text(Access accesses);
+std::string usage_text(ResourceType type, uint32_t vk_usage); // "sampled|storage"
 
 // As a graph file names it, behind the name of the resource: "#1..3[0]"; "" for all that it has.
 std::string range_text(const PlanResource& resource, const SubresourceRange& range);

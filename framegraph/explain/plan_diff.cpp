@@ -123,7 +123,7 @@ Lines resources(const SavedPlan& saved) {
     std::string text = resource.type == ResourceType::image
                            ? fmt::format("{} {}", format_info(resource.format).name, shape_text(resource))
                            : bytes_text(resource.bytes);
-    text += fmt::format(", usage {:#x}", resource.vk_usage);
+    text += fmt::format(", used as {}", usage_text(resource.type, resource.vk_usage));
     text += resource.first_instance == no_instance ? ", the host's"
                                                    : fmt::format(", {} instance{}", resource.instance_count,
                                                                  resource.instance_count == 1 ? "" : "s");

@@ -142,8 +142,8 @@ struct Speaker {
       return fmt::format("not {}: port '{}' of pass '{}' cannot work with it", format(),
                          port(reason.b, reason.c), pass(reason.b));
     case Reason::Why::format_unsupported:
-      return fmt::format("not {}: the device '{}' does not support it with image usage {:#x}", format(),
-                         plan.device_profile, reason.b);
+      return fmt::format("not {}: the device '{}' does not support it used as {}", format(),
+                         plan.device_profile, usage_text(ResourceType::image, reason.b));
     case Reason::Why::history_unused:
       return "no memory: no pass that runs uses it";
     case Reason::Why::history_unread:

@@ -16,8 +16,8 @@ struct Port {
   std::string_view name;
   Usage usage = Usage::sampled_image;
   bool optional = false;
-  std::string_view
-      glsl_type; // images: "texture2D", "utexture2D", "image2D", "uimage2D"; buffers: the element type
+  std::string_view glsl_type; // images: "texture2D", "utexture2D", "image2D", "uimage2D", updated ones that
+                              // the kernel never loads "writeonly image2D"; buffers: the element type
   std::string_view doc;
   std::span<const Format> formats = {}; // formats the shader can work with; empty = any the resource declares
   bool own_texels = false; // reads of an image: each invocation reads only the texels that it alone writes,

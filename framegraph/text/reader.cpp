@@ -142,11 +142,27 @@ std::vector<NodeId> children(const Document& document, NodeId node) {
   return out;
 }
 
+namespace {
+
+// The key by which a file of another kind says what it is; invalid: there is none.
+NodeId find_other_kind(const Document& document) {
+  for (const NodeId node : children(document, document.root()))
+    if (document.key(node).starts_with("dermis_") && document[node].kind == NodeKind::integer) return node;
+  return {};
+}
+
+} // namespace
+
 bool check_version(const Document& document, std::string_view key, int64_t supported,
                    Diagnostics& diagnostics) {
   if (!expect_kind(document, document.root(), "the file", NodeKind::object, diagnostics)) return false;
   const NodeId node = document.find(document.root(), key);
   if (!node.valid()) {
+    if (const NodeId other = find_other_kind(document); other.valid()) {
+      diagnostics.add(DiagnosticId::other_kind_of_file, document.where_key(other),
+                      fmt::format("the file says '{}' where '{}' is expected", document.key(other), key));
+      return false;
+    }
     const NodeId misspelt = find_misspelt(document, document.root(), key);
     diagnostics
         .add(misspelt.valid() ? DiagnosticId::unknown_key : DiagnosticId::missing_key,

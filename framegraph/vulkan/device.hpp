@@ -9,6 +9,36 @@
 
 namespace dermis::vulkan {
 
+enum class MemoryPurpose : uint8_t {
+  transient, // means something from the first to the last command of a recorded frame only
+  history,   // from frame to frame
+  constants  // written by the host, read by kernels; counters that kernels write; stand-ins of what is not
+             // bound
+};
+
+struct MemoryRequest {
+  MemoryPurpose purpose = MemoryPurpose::transient;
+  uint32_t memory_types = 0; // bit i: type i will do
+  uint64_t bytes = 0;
+  uint64_t alignment = 1; // of the block's offset; a power of two
+  VkMemoryPropertyFlags required = 0, preferred = 0;
+};
+
+struct MemoryBlock {
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  uint64_t offset = 0;    // bytes
+  void* mapped = nullptr; // where the block begins; host-visible memory alone
+  void* user = nullptr;   // the host's
+};
+
+// A host's own heaps. Both must not throw.
+struct HostMemory {
+  VkResult (*take)(void* user, const MemoryRequest& request,
+                   MemoryBlock& block) = nullptr; // null: use Vulkan
+  void (*give_back)(void* user, const MemoryBlock& block) = nullptr;
+  void* user = nullptr;
+};
+
 struct DeviceInput { // all handles belong to the host and must outlive the Device
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   VkInstance instance = VK_NULL_HANDLE;
@@ -18,6 +48,7 @@ struct DeviceInput { // all handles belong to the host and must outlive the Devi
   uint32_t queue_family = 0;                        // of the command buffers that will be recorded into
   bool labels = false;                              // object names and debug labels; needs VK_EXT_debug_utils
   bool timings = false;                             // timestamps around each pass
+  HostMemory host_memory{};
 };
 
 struct Device {
@@ -32,6 +63,7 @@ struct Device {
   uint32_t timestamp_valid_bits = 0; // of the queue family; 0: it cannot write timestamps
   bool labels = false;
   bool timings = false; // asked for, and timestamp_valid_bits > 0
+  HostMemory host_memory{};
 };
 
 // Fills `device`. Errors: argument (a null handle, a queue family that does not exist or cannot compute),

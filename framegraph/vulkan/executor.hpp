@@ -51,6 +51,7 @@ enum class HistoryReason : uint8_t {
 const char* history_reason_text(HistoryReason reason);
 
 class HeapPool;
+class Executor;
 
 struct Rectangle { // pixels; inside the allocated view size
   uint32_t x = 0, y = 0, width = 0, height = 0;
@@ -76,6 +77,7 @@ struct HostPass {
   std::span<const SettingValue> settings; // by PassKind::settings
   Rectangle rectangle;                    // that is rendered
   uint64_t frame_index = 0;
+  void* view_user = nullptr; // FrameInput::view_user
 };
 
 // Records passes whose kind has DispatchShape::host, between the plan's barriers. Must not throw.
@@ -92,6 +94,11 @@ struct ExecutorInput { // nothing is kept but `device`; all the rest is copied o
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE; // may be null
   const HeapPool* heap_pool = nullptr; // made with this plan among others: transients lie in its memory, and
                                        // no other user of it may run at the same time. Null: its own memory.
+  std::shared_ptr<const Plan> kept_plan =
+      nullptr; // the same as `plan`, shared from now on; null: it is copied
+  // Made with this device, these kinds, kernels and an environment of the same types: their pipelines serve
+  // the new one too, and live as long as any that uses them. May be destroyed before the new one.
+  std::span<const Executor* const> relatives{};
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid
   HostPassFunction host_pass =
       nullptr; // needed where the plan has passes that the host records; called by record()
@@ -115,9 +122,9 @@ struct HostImage {
   VkImage image = VK_NULL_HANDLE; // null: not bound
   VkImageView view = VK_NULL_HANDLE;
   HostState before, after;
+  // Of the image, that the barriers are about; 0 layers: all from the first.
+  uint32_t first_layer = 0, layers = 0;
 };
-
-class Executor;
 
 struct FrameInput {
   VkCommandBuffer command_buffer =
@@ -137,6 +144,13 @@ struct FrameInput {
   // frame after such a one. Shorter: the rest runs. What runs must not read what a pass that is left out
   // would write.
   std::span<const uint8_t> left_out;
+  void* view_user = nullptr; // handed to passes of the host
+  // For whoever wants the commands and no command buffer: its vkCmd... functions are called with
+  // `command_buffer` instead of the device's, and passes of the host go to this function. Null: the device's,
+  // the executor's.
+  const FunctionTable* commands = nullptr;
+  HostPassFunction host_pass = nullptr;
+  void* host_pass_user = nullptr;
 };
 
 // Like Error, without memory of its own.
@@ -196,7 +210,11 @@ public:
   // of the environment's counters. False: that frame was not recorded here, or another took its place since.
   // One thread at a time per executor.
   bool read_counters(uint64_t frame_index, std::span<uint32_t> counters) const noexcept;
+  // Reading times told that the device is lost. One thread at a time per executor.
+  bool saw_lost_device() const noexcept;
   const Plan& plan() const noexcept;
+  // Device memory that it took for heap `index` (Plan::heaps); bytes 0: it lies in the pool. Throws nothing.
+  MemoryRequest heap_request(uint32_t index) const noexcept;
   uint64_t constant_bytes() const noexcept; // device memory for set 1 and stand-ins of unbound ports
 
   Executor(const Executor&) = delete;

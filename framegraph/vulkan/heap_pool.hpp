@@ -21,19 +21,19 @@ public:
                       std::unique_ptr<HeapPool>& pool);
   ~HeapPool(); // after all executors that use it
 
+  struct Block {
+    MemoryRequest request;
+    MemoryBlock memory;
+  };
   // Null where no plan given to create() has a transient heap of these types.
-  VkDeviceMemory find(uint32_t memory_type_bits) const noexcept;
+  const Block* find(uint32_t memory_type_bits) const noexcept;
+  std::span<const Block> blocks() const noexcept { return blocks_; }
   uint64_t bytes() const noexcept;
 
   HeapPool(const HeapPool&) = delete;
   HeapPool& operator=(const HeapPool&) = delete;
 
 private:
-  struct Block {
-    uint32_t memory_type_bits = 0;
-    uint64_t bytes = 0;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-  };
   explicit HeapPool(const Device& device) : device_(&device) {}
   const Device* device_;
   std::vector<Block> blocks_;

@@ -7,6 +7,7 @@
 #include "passes/subsurface/probe.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -42,6 +43,44 @@ dermis_result read_tables(const Log& log, const dermis_budget& budget, Tables& o
   return DERMIS_OK;
 }
 
+// What changes in a view with new tables. The programs are named: recording may put `next` in the place of
+// `running` meanwhile.
+struct ViewTables {
+  choice::ErrorModel errors;
+  choice::ErrorCorrection found;
+  choice::Calibration calibration;
+  choice::CostModel costs;
+  struct Described {
+    std::shared_ptr<Program> program; // or null
+    std::vector<choice::Outcome> outcomes;
+  };
+  std::array<Described, 2> programs;
+};
+
+ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
+  ViewTables out;
+  const Chooser& now = view.chooser;
+  out.errors = given.errors ? *given.errors : now.errors;
+  out.found = given.errors ? choice::make_error_correction(out.errors.techniques.size()) : now.found;
+  out.calibration = given.calibration ? *given.calibration : now.calibration;
+  out.costs = given.calibration ? choice::CostModel(out.calibration.costs) : now.costs;
+  out.programs[0].program = view.running;
+  out.programs[1].program = view.next;
+  for (auto& [program, outcomes] : out.programs)
+    if (program)
+      outcomes = described(view.context->kinds, *program, out.errors, out.costs, program->outcomes);
+  return out;
+}
+
+void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
+  std::swap(view.chooser.errors, tables.errors);
+  std::swap(view.chooser.found, tables.found);
+  std::swap(view.chooser.calibration, tables.calibration);
+  std::swap(view.chooser.costs, tables.costs);
+  for (auto& [program, outcomes] : tables.programs)
+    if (program) program->outcomes.swap(outcomes);
+}
+
 dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, dermis_report* report) {
   const Log& log = graph.context->log;
   dermis_budget budget = DERMIS_BUDGET_INIT;
@@ -58,23 +97,25 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   Tables tables;
   if (const dermis_result result = read_tables(log, budget, tables, diagnostics); result != DERMIS_OK)
     return result;
-  const dermis_result result = diagnostics.has_errors() ? DERMIS_ERROR_CONFIG : DERMIS_OK;
-  if (conclude(log, result, std::move(diagnostics), report) != DERMIS_OK) return result;
+  if (diagnostics.has_errors()) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
 
-  Chooser& chooser = graph.chooser;
-  if (tables.errors) {
-    chooser.errors = std::move(*tables.errors);
-    chooser.found = choice::make_error_correction(chooser.errors.techniques.size());
-  }
-  if (tables.calibration) {
-    chooser.calibration = std::move(*tables.calibration);
-    chooser.costs = choice::CostModel(chooser.calibration.costs);
-  }
-  if (tables.errors || tables.calibration)
-    for (Program* program : {graph.running.get(), graph.next.get()})
-      if (program != nullptr) describe_program(chooser, graph.context->kinds, *program);
-  chooser.budget_ms = static_cast<double>(budget.milliseconds);
-  chooser.metered = (budget.flags & DERMIS_BUDGET_METER) != 0;
+  const std::lock_guard changing(graph.changing);
+  const bool anew = tables.errors || tables.calibration;
+  std::vector<ViewTables> views;
+  for_each_view(graph, [&](dermis_view_t& view) {
+    const std::lock_guard lock(view.mutex);
+    if (anew) views.push_back(tables_of(view, tables));
+  });
+  if (const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
+      result != DERMIS_OK)
+    return result;
+  size_t v = 0; // from here on nothing fails
+  for_each_view(graph, [&](dermis_view_t& view) {
+    const std::lock_guard lock(view.mutex);
+    if (anew) take_over(view, views[v++]);
+    view.chooser.budget_ms = static_cast<double>(budget.milliseconds);
+    view.chooser.metered = (budget.flags & DERMIS_BUDGET_METER) != 0;
+  });
   return DERMIS_OK;
 }
 
@@ -144,24 +185,27 @@ dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   return out;
 }
 
-dermis_result get_choice(dermis_graph_t& graph, uint64_t completed, dermis_choice* out) {
-  const Log& log = graph.context->log;
+} // namespace
+
+dermis_result get_choice(dermis_view_t& view, const char* function, uint64_t completed, dermis_choice* out) {
+  const Log& log = view.context->log;
+  if (out == nullptr) return bad_argument(log, "{}: choice is NULL", function);
   const size_t size = stated_size(out);
   if (const SizedRead read = check_size<dermis_choice>(size); read != SizedRead::ok)
-    return refused_size(log, read, "dermis_graph_choice: choice", size, first_version_size<dermis_choice>);
-  if (completed > graph.last_frame)
-    return bad_argument(log,
-                        "dermis_graph_choice: completed_frame_index is {}, the newest recorded frame is {}",
-                        completed, graph.last_frame);
-  if (!graph.running) return DERMIS_NOT_READY;
-  observe(graph.chooser, *graph.running, completed);
-  if (graph.chooser.newest.frame_index == 0 || graph.chooser.newest.program != graph.running->serial)
+    return refused_size(log, read, function, "choice", size, first_version_size<dermis_choice>);
+  const std::lock_guard lock(view.mutex);
+  if (completed > view.last_frame)
+    return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
+                        completed, view.last_frame);
+  if (!view.running) return DERMIS_NOT_READY;
+  observe(view.chooser, *view.running, completed);
+  if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
+  if (view.chooser.newest.frame_index == 0 || view.chooser.newest.program != view.running->serial)
     return DERMIS_NOT_READY;
-  write_sized(out, size, describe_choice(graph.chooser, *graph.running));
+  write_sized(out, size, describe_choice(view.chooser, *view.running));
   return DERMIS_OK;
 }
 
-} // namespace
 } // namespace dermis::abi
 
 using namespace dermis::abi;
@@ -182,8 +226,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph, uin
   if (graph == nullptr) return bad_argument({}, "dermis_graph_choice: graph is NULL");
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_choice", [&] {
-    if (choice == nullptr) return bad_argument(log, "dermis_graph_choice: choice is NULL");
-    return get_choice(*graph, completed_frame_index, choice);
+    return get_choice(graph->own, "dermis_graph_choice", completed_frame_index, choice);
   });
 }
 
@@ -192,8 +235,9 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_calibration", [&] {
     if (size == nullptr) return bad_argument(log, "dermis_graph_calibration: size is NULL");
+    const std::lock_guard lock(graph->own.mutex);
     const std::string json = dermis::choice::write_calibration(
-        {graph->context->device.properties.deviceName, graph->chooser.costs.calibration()});
+        {graph->context->device.properties.deviceName, graph->own.chooser.costs.calibration()});
     const size_t room = *size;
     *size = json.size() + 1;
     if (text == nullptr) return DERMIS_OK;

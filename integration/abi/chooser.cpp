@@ -119,19 +119,24 @@ Chooser make_chooser() {
   return chooser;
 }
 
-void describe_program(Chooser& chooser, const KindRegistry& kinds, Program& program) {
+std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
+                                       const choice::ErrorModel& errors, choice::CostModel& costs,
+                                       std::vector<choice::Outcome> outcomes) {
   std::vector<const Plan*> plans;
   for (const Variant& variant : program.variants)
-    plans.push_back(&variant.compiled.plan);
-  describe_outcomes(kinds, plans, chooser.errors, chooser.costs, program.outcomes);
+    plans.push_back(&variant.compiled->plan);
+  describe_outcomes(kinds, plans, errors, costs, outcomes);
+  return outcomes;
 }
 
-void make_room(Chooser& chooser, const Program& program) {
+void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program) {
+  program.outcomes = described(kinds, program, chooser.errors, chooser.costs, std::move(program.outcomes));
   size_t passes = chooser.times.size();
   for (const Variant& variant : program.variants)
-    passes = std::max(passes, variant.compiled.plan.passes.size());
+    passes = std::max(passes, variant.compiled->plan.passes.size());
   chooser.times.resize(passes);
   chooser.forecasts.resize(std::max(chooser.forecasts.size(), program.outcomes.size()));
+  program.serial = ++chooser.programs;
 }
 
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept {

@@ -1,6 +1,6 @@
 #pragma once
-// The library's choice for one graph: what it knows of costs and errors, what it decided for recent frames
-// and what became of them.
+// The library's choice for one view of a graph: what it knows of costs and errors, what it decided for recent
+// frames and what became of them.
 
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
@@ -68,12 +68,15 @@ struct Chooser {
 // With the tables that the library carries.
 Chooser make_chooser();
 
-// Allocates what deciding and observing need for `program`. Before its first record.
-void make_room(Chooser& chooser, const Program& program);
+// Makes a program one of this chooser's: what deciding and observing need is allocated. Before its first
+// record.
+void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program);
 
-// Tells the outcomes of `program` what their passes cost and which technique they are: after its making,
-// after a setting or a table changed.
-void describe_program(Chooser& chooser, const KindRegistry& kinds, Program& program);
+// The outcomes of `program` with what their passes cost and which technique they are, by these tables;
+// `costs` gets entries for what is new. After a setting or a table changed.
+std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
+                                       const choice::ErrorModel& errors, choice::CostModel& costs,
+                                       std::vector<choice::Outcome> outcomes);
 
 // Learns from frames of `program` that the device has finished. Allocates nothing.
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;

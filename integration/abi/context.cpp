@@ -95,6 +95,37 @@ dermis_result check_requirements(const dermis_context_desc& desc, const Log& log
               "dermis_context_create: the physical device lacks {}", missing);
 }
 
+dermis_result read_allocators(const dermis_context_desc& desc, const Log& log, HostAllocator& host,
+                              DeviceAllocator& device) {
+  constexpr const char* function = "dermis_context_create";
+  if (desc.allocator != nullptr) {
+    dermis_allocator given = DERMIS_ALLOCATOR_INIT;
+    if (const SizedRead read = read_sized(desc.allocator, given); read != SizedRead::ok)
+      return refused_size(log, read, function, "desc.allocator", stated_size(desc.allocator),
+                          first_version_size<dermis_allocator>);
+    if (given.allocate == nullptr || given.release == nullptr)
+      return bad_argument(log, "{}: desc.allocator.{} is NULL", function,
+                          given.allocate == nullptr ? "allocate" : "release");
+    if (!serves_host_allocator())
+      return fail(
+          log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
+          "{}: desc.allocator is served by the shared library alone; here operator new is the program's",
+          function);
+    host = {given.allocate, given.release, given.user};
+  }
+  if (desc.device_allocator != nullptr) {
+    dermis_device_allocator given = DERMIS_DEVICE_ALLOCATOR_INIT;
+    if (const SizedRead read = read_sized(desc.device_allocator, given); read != SizedRead::ok)
+      return refused_size(log, read, function, "desc.device_allocator", stated_size(desc.device_allocator),
+                          first_version_size<dermis_device_allocator>);
+    if (given.take == nullptr || given.give_back == nullptr)
+      return bad_argument(log, "{}: desc.device_allocator.{} is NULL", function,
+                          given.take == nullptr ? "take" : "give_back");
+    device = {given.take, given.give_back, given.user};
+  }
+  return DERMIS_OK;
+}
+
 dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   if (out == nullptr) return bad_argument({}, "dermis_context_create: context is NULL");
   *out = nullptr;
@@ -103,12 +134,18 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
     return refused_size({}, read, "dermis_context_create: desc", stated_size(given),
                         first_version_size<dermis_context_desc>);
-  const Log log{desc.log, desc.log_user};
+  Log log{desc.log, desc.log_user};
   if (const dermis_result result = check_desc(desc, log); result != DERMIS_OK) return result;
   if (const dermis_result result = check_requirements(desc, log); result != DERMIS_OK) return result;
 
+  DeviceAllocator device_allocator;
+  if (const dermis_result result = read_allocators(desc, log, log.memory, device_allocator);
+      result != DERMIS_OK)
+    return result;
+  const MemoryScope memory(log.memory);
   auto context = std::make_unique<dermis_context_t>();
   context->log = log;
+  context->device_allocator = device_allocator;
   vulkan::DeviceInput input;
   input.get_instance_proc_addr = desc.get_instance_proc_addr;
   input.instance = desc.instance;
@@ -118,6 +155,7 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   input.queue_family = desc.queue_family;
   input.labels = (desc.flags & DERMIS_CONTEXT_LABELS) != 0;
   input.timings = (desc.flags & DERMIS_CONTEXT_TIMINGS) != 0;
+  input.host_memory = host_memory_of(context->device_allocator);
   if (const vulkan::Error error = vulkan::make_device(input, context->device))
     return fail(log, result_of(error.kind), diagnostic_of(error.kind), "dermis_context_create: {}",
                 error.text);

@@ -6,6 +6,7 @@
 #include "framegraph/vulkan/device_profile.hpp"
 #include "integration/abi/failure.hpp"
 #include "integration/abi/host_kinds.hpp"
+#include "integration/abi/memory/device_memory.hpp"
 
 #include <atomic>
 #include <mutex>
@@ -13,6 +14,7 @@
 
 struct dermis_context_t {
   dermis::abi::Log log;
+  dermis::abi::DeviceAllocator device_allocator; // `device` refers to it
   dermis::vulkan::Device device;
   dermis::DeviceProfile profile; // refers to `device`
   dermis::KindRegistry kinds;

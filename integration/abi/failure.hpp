@@ -3,6 +3,7 @@
 // Nothing here allocates, so that running out of memory can be told too; and no exception leaves `guarded`.
 
 #include "framegraph/text/diagnostic.hpp"
+#include "integration/abi/memory/host_memory.hpp"
 #include "integration/abi/sized_struct.hpp"
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@ namespace dermis::abi {
 struct Log {
   dermis_log_fn function = nullptr;
   void* user = nullptr;
+  HostAllocator memory{}; // of calls that fail, or do not, with this log
 };
 
 inline constexpr size_t failure_text_size = 2048; // longer texts are cut
@@ -64,9 +66,15 @@ inline dermis_result refused_size(const Log& log, SizedRead why, std::string_vie
                       least, largest_struct_size);
 }
 
-// Runs the body of an exported function: whatever is thrown inside (by the standard library, by fmt) becomes
-// a result.
+inline dermis_result refused_size(const Log& log, SizedRead why, const char* function, const char* argument,
+                                  size_t stated, size_t least) {
+  return refused_size(log, why, fmt::format("{}: {}", function, argument), stated, least);
+}
+
+// Runs the body of an exported function, with the host's memory: whatever is thrown inside (by the standard
+// library, by fmt) becomes a result.
 template <class Body> dermis_result guarded(const Log& log, const char* function, Body&& body) noexcept {
+  const MemoryScope memory(log.memory);
   try {
     return body();
   } catch (const std::bad_alloc&) {

@@ -8,19 +8,19 @@
 namespace dermis::abi {
 namespace {
 
-constexpr const char* function = "dermis_graph_record";
 constexpr uint32_t known_flags = DERMIS_FRAME_RESET_HISTORY | DERMIS_FRAME_BOUNDS;
 
-dermis_result check_numbers(const dermis_graph_t& graph, const dermis_frame& frame) {
-  const Log& log = graph.context->log;
-  const uint32_t in_flight = graph.context->frames_in_flight;
+dermis_result check_numbers(const dermis_view_t& view, const dermis_frame& frame) {
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
+  const uint32_t in_flight = view.context->frames_in_flight;
   if (frame.command_buffer == VK_NULL_HANDLE)
     return bad_argument(log, "{}: command_buffer is NULL", function);
   if ((frame.flags & ~known_flags) != 0)
     return bad_argument(log, "{}: flags is {:#x}, known bits are {:#x}", function, frame.flags, known_flags);
-  if (frame.frame_index <= graph.last_frame)
+  if (frame.frame_index <= view.last_frame)
     return bad_argument(log, "{}: frame_index is {}, expected more than that of the frame before, {}",
-                        function, frame.frame_index, graph.last_frame);
+                        function, frame.frame_index, view.last_frame);
   if (frame.completed_frame_index >= frame.frame_index)
     return bad_argument(log, "{}: completed_frame_index is {}, expected less than frame_index, {}", function,
                         frame.completed_frame_index, frame.frame_index);
@@ -53,8 +53,8 @@ dermis_result check_numbers(const dermis_graph_t& graph, const dermis_frame& fra
   return DERMIS_OK;
 }
 
-dermis_result check_rectangle(const Log& log, const Plan& plan, const dermis_frame& frame,
-                              vulkan::Rectangle& out) {
+dermis_result check_rectangle(const Log& log, const char* function, const Plan& plan,
+                              const dermis_frame& frame, vulkan::Rectangle& out) {
   if (frame.rect_width == 0) {
     if (frame.rect_x != 0 || frame.rect_y != 0 || frame.rect_height != 0)
       return bad_argument(
@@ -78,8 +78,8 @@ std::pair<int32_t, int32_t> clip(uint32_t first, uint32_t size, uint32_t corner,
 }
 
 // Where subsurface may be, from the rectangle's corner.
-dermis_result check_bounds(const Log& log, const dermis_frame& frame, const vulkan::Rectangle& rectangle,
-                           std::array<int32_t, 4>& out) {
+dermis_result check_bounds(const Log& log, const char* function, const dermis_frame& frame,
+                           const vulkan::Rectangle& rectangle, std::array<int32_t, 4>& out) {
   if ((frame.flags & DERMIS_FRAME_BOUNDS) == 0) {
     if (frame.bounds_x != 0 || frame.bounds_y != 0 || frame.bounds_width != 0 || frame.bounds_height != 0)
       return bad_argument(log, "{}: bounds are given, and flags is without DERMIS_FRAME_BOUNDS", function);
@@ -97,10 +97,11 @@ std::string_view format_name(VkFormat format) {
   return known ? format_info(*known).name : "a format unknown to graphs";
 }
 
-dermis_result check_state(const dermis_graph_t& graph, uint32_t index, const Slot& slot, const char* which,
+dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot& slot, const char* which,
                           const dermis_image_state& state) {
-  const Log& log = graph.context->log;
-  const uint32_t own = graph.context->device.queue_family;
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
+  const uint32_t own = view.context->device.queue_family;
   if (state.access != 0 && state.stages == 0)
     return bad_argument(log, "{}: bindings[{}].{} ('{}') has access {:#x} but no stages", function, index,
                         which, slot.name, state.access);
@@ -108,17 +109,18 @@ dermis_result check_state(const dermis_graph_t& graph, uint32_t index, const Slo
     return bad_argument(log, "{}: bindings[{}].{}.layout ('{}') is not a layout", function, index, which,
                         slot.name);
   if (state.queue_family != VK_QUEUE_FAMILY_IGNORED && state.queue_family != own &&
-      state.queue_family >= graph.context->queue_family_count)
+      state.queue_family >= view.context->queue_family_count)
     return bad_argument(log, "{}: bindings[{}].{}.queue_family ('{}') is {}, the device has {} families",
                         function, index, which, slot.name, state.queue_family,
-                        graph.context->queue_family_count);
+                        view.context->queue_family_count);
   return DERMIS_OK;
 }
 
-dermis_result check_binding(const dermis_graph_t& graph, uint32_t index, const Slot& slot,
+dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slot& slot,
                             const dermis_image_binding& binding) {
-  const Log& log = graph.context->log;
-  if (binding.image == VK_NULL_HANDLE || binding.view == VK_NULL_HANDLE)
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
+  if (binding.image == VK_NULL_HANDLE || (binding.view == VK_NULL_HANDLE && binding.content_id == 0))
     return bad_argument(log, "{}: bindings[{}].{} ('{}') is null", function, index,
                         binding.image == VK_NULL_HANDLE ? "image" : "view", slot.name);
   if (static_cast<uint32_t>(binding.format) != format_info(slot.format).vulkan)
@@ -140,18 +142,50 @@ dermis_result check_binding(const dermis_graph_t& graph, uint32_t index, const S
     return bad_argument(log, "{}: bindings[{}].after.layout ('{}') is {}, to which no image can be brought",
                         function, index, slot.name,
                         binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ? "UNDEFINED" : "PREINITIALIZED");
-  if (const dermis_result result = check_state(graph, index, slot, "before", binding.before);
+  if (binding.layer > 0 && binding.layer_count == 0)
+    return bad_argument(log, "{}: bindings[{}].layer ('{}') is {} and layer_count 0, which means all layers",
+                        function, index, slot.name, binding.layer);
+  if (const dermis_result result = check_state(view, index, slot, "before", binding.before);
       result != DERMIS_OK)
     return result;
-  return check_state(graph, index, slot, "after", binding.after);
+  return check_state(view, index, slot, "after", binding.after);
 }
 
 vulkan::HostState host_state(const dermis_image_state& state) {
   return {state.layout, state.queue_family, state.stages, state.access};
 }
 
+// The image view of a binding that brings none.
+dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, const dermis_frame& frame,
+                        dermis_image_binding& binding) {
+  if (binding.view != VK_NULL_HANDLE) return DERMIS_OK;
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
+  const ImageViewKey key{binding.slot,
+                         binding.image,
+                         binding.content_id,
+                         binding.format,
+                         format_info(slot.format).depth ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                                                        : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT},
+                         binding.layer};
+  const VkResult result =
+      find_image_view(view.image_views, key, frame.frame_index, frame.completed_frame_index, binding.view);
+  if (result == VK_SUCCESS) return DERMIS_OK;
+  if (result == VK_ERROR_TOO_MANY_OBJECTS)
+    return bad_argument(
+        log,
+        "{}: bindings[{}] ('{}') takes turns with more than {} images within the frames in flight; "
+        "give views for them",
+        function, index, slot.name, image_views_a_slot);
+  const vulkan::ErrorKind kind = vulkan::kind_of(result);
+  if (kind == vulkan::ErrorKind::device_lost) view.context->lost = true;
+  return fail(log, result_of(kind), diagnostic_of(kind),
+              "{}: bindings[{}] ('{}'): vkCreateImageView failed ({})", function, index, slot.name,
+              vulkan::result_name(result));
+}
+
 // Every slot without an image in one message.
-dermis_result check_complete(const Log& log, const Program& program) {
+dermis_result check_complete(const Log& log, const char* function, const Program& program) {
   std::array<char, failure_text_size> names;
   size_t used = 0;
   for (size_t i = 0; i < program.slots.size(); ++i) {
@@ -164,8 +198,9 @@ dermis_result check_complete(const Log& log, const Program& program) {
   return bad_argument(log, "{}: no image is bound to {}", function, std::string_view{names.data(), used});
 }
 
-dermis_result check_bindings(const dermis_graph_t& graph, Program& program, const dermis_frame& frame) {
-  const Log& log = graph.context->log;
+dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
   if (frame.binding_count > 0 && frame.bindings == nullptr)
     return bad_argument(log, "{}: bindings is NULL and binding_count is {}", function, frame.binding_count);
   std::fill(program.images.begin(), program.images.end(), vulkan::HostImage{});
@@ -194,11 +229,14 @@ dermis_result check_bindings(const dermis_graph_t& graph, Program& program, cons
     if (image.image != VK_NULL_HANDLE)
       return bad_argument(log, "{}: bindings[{}] binds slot {} ('{}') a second time", function, i,
                           binding.slot, slot.name);
-    if (const dermis_result result = check_binding(graph, i, slot, binding); result != DERMIS_OK)
+    if (const dermis_result result = check_binding(view, i, slot, binding); result != DERMIS_OK)
       return result;
-    image = {binding.image, binding.view, host_state(binding.before), host_state(binding.after)};
+    if (const dermis_result result = make_view(view, i, slot, frame, binding); result != DERMIS_OK)
+      return result;
+    image = {binding.image, binding.view,       host_state(binding.before), host_state(binding.after),
+             binding.layer, binding.layer_count};
   }
-  return check_complete(log, program);
+  return check_complete(log, function, program);
 }
 
 // Clip space without the jitter: a picture shifted by `pixels` of `extent` is shifted by 2 pixels / extent
@@ -243,24 +281,27 @@ bool fill_constants(const dermis_frame& frame, const Program& program, const vul
 
 } // namespace
 
-dermis_result check_frame(const dermis_graph_t& graph, Program& program, const dermis_frame& frame,
+dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_frame& frame,
                           CheckedFrame& checked) {
-  const Log& log = graph.context->log;
-  if (const dermis_result result = check_numbers(graph, frame); result != DERMIS_OK) return result;
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
+  if (const dermis_result result = check_numbers(view, frame); result != DERMIS_OK) return result;
+  if (const dermis_result result = check_rectangle(log, function, program.variants.front().compiled->plan,
+                                                   frame, checked.input.rectangle);
+      result != DERMIS_OK)
+    return result;
   if (const dermis_result result =
-          check_rectangle(log, program.variants.front().compiled.plan, frame, checked.input.rectangle);
+          check_bounds(log, function, frame, checked.input.rectangle, checked.bounds);
       result != DERMIS_OK)
     return result;
-  if (const dermis_result result = check_bounds(log, frame, checked.input.rectangle, checked.bounds);
-      result != DERMIS_OK)
-    return result;
-  return check_bindings(graph, program, frame);
+  return check_bindings(view, program, frame);
 }
 
-dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, uint32_t outcome,
+dermis_result fill_frame(const dermis_view_t& view, const Program& program, uint32_t outcome,
                          const vulkan::Executor* before, uint32_t sample_units, const dermis_frame& frame,
                          CheckedFrame& checked) {
-  const Log& log = graph.context->log;
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
   const vulkan::Executor& executor = *program.variants[program.outcomes[outcome].plan].executor;
   const bool reset = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
   bool history_invalid = false;
@@ -282,6 +323,7 @@ dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, ui
   checked.input.reset_history = reset;
   checked.input.taken_over = before != nullptr && program.last_frame > 0; // of its pool of memory
   checked.input.before = before;
+  checked.input.view_user = view.user;
   checked.history_invalid = history_invalid;
   if (checked.bounds[2] == 0 || checked.bounds[3] == 0)
     checked.input.left_out = program.variants[program.outcomes[outcome].plan].serve_scattering;

@@ -1,5 +1,6 @@
 #pragma once
-// A host's frame against the program that would record it. Nothing here allocates or changes the graph.
+// A host's frame against the program that would record it. Nothing here allocates host memory or changes the
+// graph, but that image views are made for bindings without.
 
 #include "integration/abi/graph.hpp"
 
@@ -15,11 +16,11 @@ struct CheckedFrame {
 
 // Checks every field, fills program.images and what of `checked` does not hang on the outcome. ARGUMENT or
 // VERSION with a message that names the field.
-dermis_result check_frame(const dermis_graph_t& graph, Program& program, const dermis_frame& frame,
+dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_frame& frame,
                           CheckedFrame& checked);
 // The rest of `checked`, for one outcome of the program. `taken_over`: its variant did not record the last
 // frame. `sample_units`: as FrameConstants.
-dermis_result fill_frame(const dermis_graph_t& graph, const Program& program, uint32_t outcome,
+dermis_result fill_frame(const dermis_view_t& view, const Program& program, uint32_t outcome,
                          const vulkan::Executor* before, uint32_t sample_units, const dermis_frame& frame,
                          CheckedFrame& checked);
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-dermis_graph_t::dermis_graph_t(dermis_context owner) : context(owner), chooser(dermis::abi::make_chooser()) {
+dermis_graph_t::dermis_graph_t(dermis_context owner) : context(owner), own(owner, this, nullptr) {
   const std::lock_guard lock(context->mutex);
   context->graphs.push_back(this);
 }
@@ -19,6 +19,51 @@ dermis_graph_t::~dermis_graph_t() {
 namespace dermis::abi {
 namespace {
 
+using Candidates = std::vector<std::shared_ptr<Program>>; // by view, the graph's own first
+
+// Builds for every view beside what runs. Nothing has changed for any of them yet.
+dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulkan::HistoryReason reason,
+                               Diagnostics& diagnostics, Candidates& candidates) {
+  dermis_context_t& context = *graph.context;
+  bool recorded = false;
+  for_each_view(graph, [&](const dermis_view_t& view) {
+    const std::lock_guard lock(view.mutex);
+    recorded = recorded || view.last_frame > 0;
+  });
+  const vulkan::HistoryReason history = recorded ? reason : vulkan::HistoryReason::first_frame;
+  choice::ErrorModel errors;
+  choice::CostModel costs;
+  { // recording learns meanwhile
+    const std::lock_guard lock(graph.own.mutex);
+    errors = graph.own.chooser.errors;
+    costs = graph.own.chooser.costs;
+  }
+  candidates.resize(1 + graph.others.size());
+  const std::shared_ptr<Program> before = keep_newest(graph.own);
+  dermis_result result = build_program(context, input, history, graph.plans, before.get(), errors, costs,
+                                       diagnostics, candidates[0]);
+  for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
+    result = copy_program(context, input, *candidates[0], history, diagnostics, candidates[v]);
+  if (result != DERMIS_OK || diagnostics.has_errors())
+    return result; // errors of profiles come from the caller
+  size_t v = 0;
+  for_each_view(graph, [&](dermis_view_t& view) {
+    const std::lock_guard lock(view.mutex);
+    make_room(view.image_views, candidates[v]->slots.size());
+    adopt(view.chooser, context.kinds, *candidates[v++]);
+  });
+  return DERMIS_OK;
+}
+
+// They take over at the next record of each view. One that waited was never recorded.
+void hand_over(dermis_graph_t& graph, Candidates& candidates) noexcept {
+  size_t v = 0;
+  for_each_view(graph, [&](dermis_view_t& view) {
+    const std::lock_guard lock(view.mutex);
+    view.next.swap(candidates[v++]);
+  });
+}
+
 dermis_result create(dermis_context context, const dermis_graph_desc* given, dermis_graph* out,
                      dermis_report* report) {
   const Log& log = context->log;
@@ -30,25 +75,27 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   Diagnostics diagnostics;
   if (const dermis_result result = read_graph_desc(log, desc, graph->input, diagnostics); result != DERMIS_OK)
     return result;
-  dermis_result result = build_program(*context, graph->input, vulkan::HistoryReason::first_frame,
-                                       graph->plans, graph->chooser, diagnostics, graph->next);
+  Candidates candidates;
+  dermis_result result =
+      build_candidates(*graph, graph->input, vulkan::HistoryReason::first_frame, diagnostics, candidates);
   if (result == DERMIS_OK && diagnostics.has_errors()) result = DERMIS_ERROR_CONFIG; // of a profile
   result = conclude(log, result, std::move(diagnostics), report);
-  if (result == DERMIS_OK) *out = graph.release();
-  return result;
+  if (result != DERMIS_OK) return result;
+  hand_over(*graph, candidates);
+  *out = graph.release();
+  return DERMIS_OK;
 }
 
-// Builds a candidate from `input`; it takes over at the next record. On failure nothing has changed.
+// Builds candidates from `input`; they take over at the next record. On failure nothing has changed. Under
+// graph.changing.
 dermis_result replace(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
                       dermis_report* report) {
   Diagnostics diagnostics;
-  std::unique_ptr<Program> candidate;
-  const vulkan::HistoryReason history = graph.last_frame == 0 ? vulkan::HistoryReason::first_frame : reason;
-  const dermis_result built =
-      build_program(*graph.context, input, history, graph.plans, graph.chooser, diagnostics, candidate);
+  Candidates candidates;
+  const dermis_result built = build_candidates(graph, input, reason, diagnostics, candidates);
   const dermis_result result = conclude(graph.context->log, built, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
-  graph.next = std::move(candidate); // one that waited was never recorded
+  hand_over(graph, candidates);
   graph.input = std::move(input);
   return result;
 }
@@ -65,7 +112,8 @@ bool changes_passes(const Program& program, const std::vector<SettingValue>& val
 dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const std::string& json,
                           dermis_report* report) {
   const Log& log = graph.context->log;
-  Program& program = newest(graph);
+  const std::shared_ptr<Program> kept = keep_newest(graph.own);
+  const Program& program = *kept;
   const auto& declared = program.graph.settings;
   const auto at = std::find_if(declared.begin(), declared.end(),
                                [&](const SettingDeclaration& setting) { return setting.name == name; });
@@ -94,8 +142,20 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   const auto index = static_cast<uint32_t>(at - declared.begin());
   if (at->by_budget || changes_passes(program, values))
     return replace(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
+  std::vector<std::vector<choice::Outcome>> outcomes; // by view
+  for_each_view(graph, [&](dermis_view_t& view) {
+    const std::lock_guard lock(view.mutex);
+    outcomes.push_back(outcomes_with(newest(view), view.chooser, graph.context->kinds, index, *value));
+  });
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
-  set_value(program, graph.chooser, graph.context->kinds, index, *value);
+  if (result != DERMIS_OK) return result;
+  size_t v = 0; // from here on nothing fails
+  for_each_view(graph, [&](dermis_view_t& view) {
+    const std::lock_guard lock(view.mutex);
+    Program& changed = newest(view);
+    changed.settings[index] = *value;
+    changed.outcomes.swap(outcomes[v++]);
+  });
   graph.input = std::move(input);
   return result;
 }
@@ -129,6 +189,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, con
     if (source == nullptr) return bad_argument(log, "dermis_graph_reload: source is NULL");
     if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_reload"); alive != DERMIS_OK)
       return alive;
+    const std::lock_guard changing(graph->changing);
     ProgramInput input = graph->input;
     input.included.clear(); // files may have changed
     if (const dermis_result result =
@@ -150,6 +211,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uin
       return result;
     if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_resize"); alive != DERMIS_OK)
       return alive;
+    const std::lock_guard changing(graph->changing);
     ProgramInput input = graph->input;
     input.width = width;
     input.height = height;
@@ -168,6 +230,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph
     if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_set_setting");
         alive != DERMIS_OK)
       return alive;
+    const std::lock_guard changing(graph->changing);
     return set_setting(*graph, name, json, report);
   });
 }

@@ -1,30 +1,35 @@
 #pragma once
-// A graph of the host: the program that runs, the one that waits for the next record, and those that the
-// device may still be executing.
+// A graph of the host and its views. Each view has the program that it runs, the one that waits for its next
+// record, and those that the device may still be executing.
 
+#include "integration/abi/commands/capture.hpp"
+#include "integration/abi/image_views/image_views.hpp"
 #include "integration/abi/program.hpp"
 
 #include <array>
+#include <mutex>
 
-struct dermis_graph_t {
-  explicit dermis_graph_t(dermis_context owner); // registers itself with the context
-  ~dermis_graph_t();
-  dermis_graph_t(const dermis_graph_t&) = delete;
-  dermis_graph_t& operator=(const dermis_graph_t&) = delete;
+// One camera: what frames leave behind for the next. Recording takes `mutex` alone, so that another thread
+// may change the graph meanwhile: a change builds beside and takes `mutex` only to hand over.
+struct dermis_view_t {
+  dermis_view_t(dermis_context from, dermis_graph of, void* pointer)
+      : context(from), graph(of), user(pointer), chooser(dermis::abi::make_chooser()),
+        image_views(from->device) {}
 
   dermis_context context = nullptr;
-  dermis::abi::ProgramInput input;               // of the newest program
-  dermis::PlanCache plans;                       // of programs built before: what a setting flips back to
-  std::unique_ptr<dermis::abi::Program> running; // recorded last; null before the first record
-  std::unique_ptr<dermis::abi::Program> next;    // takes over at the next record; null: none
+  dermis_graph graph = nullptr;
+  void* user = nullptr;                          // handed to passes of the host
+  mutable std::mutex mutex;                      // guards all that follows
+  std::shared_ptr<dermis::abi::Program> running; // recorded last; null before the first record
+  std::shared_ptr<dermis::abi::Program> next;    // takes over at the next record; null: none
   // Replaced programs, until the frame they were recorded with last has completed. Each was replaced at a
   // different frame, and at most frames_in_flight frames are not complete.
-  std::array<std::unique_ptr<dermis::abi::Program>, dermis::vulkan::max_frames_in_flight + 1> retired;
+  std::array<std::shared_ptr<dermis::abi::Program>, dermis::vulkan::max_frames_in_flight + 1> retired;
   uint64_t last_frame = 0;
   // What the last record changed, until it is taken back or the next one comes.
   struct Recorded {
     bool known = false;
-    uint64_t last_frame = 0; // of the graph
+    uint64_t last_frame = 0; // of the view
     bool took_over = false;  // a new program: it was `next`
     size_t retired = 0;      // where the program before went, if took_over; the number of places: nowhere
     uint64_t replaced_last_frame = 0;
@@ -35,13 +40,57 @@ struct dermis_graph_t {
     uint64_t decided_for = 0; // as in Chooser
   } recorded;
   dermis::abi::Chooser chooser;
+  dermis::abi::ImageViews image_views;
+  dermis::abi::Capture capture; // the commands that were asked for last
+};
+
+struct dermis_graph_t {
+  explicit dermis_graph_t(dermis_context owner); // registers itself with the context
+  ~dermis_graph_t();
+  dermis_graph_t(const dermis_graph_t&) = delete;
+  dermis_graph_t& operator=(const dermis_graph_t&) = delete;
+
+  dermis_context context = nullptr;
+  std::mutex changing; // one change of the graph at a time; guards the rest. Taken before the mutex of a view
+  dermis::abi::ProgramInput input; // of the newest program
+  dermis::PlanCache plans;         // of programs built before: what a setting flips back to
+  dermis_view_t own;               // that dermis_graph_record records
+  std::vector<std::unique_ptr<dermis_view_t>> others;
 };
 
 namespace dermis::abi {
 
-// The program that the next record will use.
-inline Program& newest(dermis_graph_t& graph) {
-  return graph.next ? *graph.next : *graph.running;
+// The program that the next record will use. Under the view's mutex.
+inline Program& newest(dermis_view_t& view) {
+  return view.next ? *view.next : *view.running;
 }
+// The same, kept while another thread records.
+inline std::shared_ptr<Program> keep_newest(const dermis_view_t& view) {
+  const std::lock_guard lock(view.mutex);
+  return view.next ? view.next : view.running;
+}
+inline const char* record_function(const dermis_view_t& view) {
+  return &view == &view.graph->own ? "dermis_graph_record" : "dermis_view_record";
+}
+
+// DEVICE_LOST where reading times of the running program told so; from then on for the whole context. Under
+// the view's mutex.
+dermis_result check_loss(const dermis_view_t& view, const char* function);
+
+// Calls use(view) for each view of the graph, its own first. Under graph.changing.
+template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
+  use(graph.own);
+  for (const auto& view : graph.others)
+    use(*view);
+}
+
+// What both the functions of a graph and of a view do; `function` names the one that was called.
+dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);
+dermis_result capture_frame(dermis_view_t& view, const char* function, const dermis_frame* frame,
+                            uint32_t* count, const dermis_command** commands);
+dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t frame_index);
+dermis_result get_choice(dermis_view_t& view, const char* function, uint64_t completed, dermis_choice* out);
+dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed, uint32_t* count,
+                          dermis_pass_timing* out);
 
 } // namespace dermis::abi

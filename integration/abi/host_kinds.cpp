@@ -116,27 +116,31 @@ dermis_pass_port port_of(const vulkan::HostPort& port) {
 
 } // namespace
 
+void fill_host_pass(const vulkan::HostPass& call, HostPassCall& out) {
+  std::transform(call.ports.begin(), call.ports.end(), out.ports.begin(), port_of);
+  std::transform(call.settings.begin(), call.settings.end(), out.settings.begin(), number_of);
+  out.call = DERMIS_PASS_CALL_INIT;
+  out.call.pass = call.pass;
+  out.call.command_buffer = call.command_buffer;
+  out.call.ports = out.ports.data();
+  out.call.settings = out.settings.data();
+  out.call.port_count = static_cast<uint32_t>(call.ports.size());
+  out.call.setting_count = static_cast<uint32_t>(call.settings.size());
+  out.call.rect_x = call.rectangle.x;
+  out.call.rect_y = call.rectangle.y;
+  out.call.rect_width = call.rectangle.width;
+  out.call.rect_height = call.rectangle.height;
+  out.call.frame_index = call.frame_index;
+  out.call.view_user = call.view_user;
+}
+
 void record_host_pass(void* host_passes, const vulkan::HostPass& call) {
   const auto& passes = *static_cast<const HostPasses*>(host_passes);
   const auto found = std::find_if(passes.recorders.begin(), passes.recorders.end(),
                                   [&](const HostPasses::Recorder& one) { return one.kind == call.kind; });
-  std::array<dermis_pass_port, limits::host_kind_ports> ports;
-  std::array<double, limits::host_kind_settings> settings{};
-  std::transform(call.ports.begin(), call.ports.end(), ports.begin(), port_of);
-  std::transform(call.settings.begin(), call.settings.end(), settings.begin(), number_of);
-  dermis_pass_call out = DERMIS_PASS_CALL_INIT;
-  out.pass = call.pass;
-  out.command_buffer = call.command_buffer;
-  out.ports = ports.data();
-  out.settings = settings.data();
-  out.port_count = static_cast<uint32_t>(call.ports.size());
-  out.setting_count = static_cast<uint32_t>(call.settings.size());
-  out.rect_x = call.rectangle.x;
-  out.rect_y = call.rectangle.y;
-  out.rect_width = call.rectangle.width;
-  out.rect_height = call.rectangle.height;
-  out.frame_index = call.frame_index;
-  found->record(found->user, &out);
+  HostPassCall whole;
+  fill_host_pass(call, whole);
+  found->record(found->user, &whole.call);
 }
 
 } // namespace dermis::abi

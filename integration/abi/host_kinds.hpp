@@ -5,6 +5,7 @@
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
 
+#include <array>
 #include <vector>
 
 namespace dermis::abi {
@@ -19,6 +20,14 @@ struct HostPasses {
   HostKinds kinds;
   std::vector<Recorder> recorders; // by kind of `kinds`
 };
+
+// A call as the host sees it. `call` points into the two arrays.
+struct HostPassCall {
+  std::array<dermis_pass_port, limits::host_kind_ports> ports;
+  std::array<double, limits::host_kind_settings> settings;
+  dermis_pass_call call;
+};
+void fill_host_pass(const vulkan::HostPass& call, HostPassCall& out);
 
 // HostPassFunction of every executor; `host_passes` is the context's HostPasses.
 void record_host_pass(void* host_passes, const vulkan::HostPass& call);

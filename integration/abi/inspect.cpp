@@ -25,10 +25,10 @@ dermis_slot describe_slot(const Slot& slot, uint32_t id) {
   return out;
 }
 
-dermis_memory describe_memory(const Program& program) {
+dermis_memory describe_view_memory(const Program& program) {
   dermis_memory out = DERMIS_MEMORY_INIT;
   for (const Variant& variant : program.variants) {
-    const Plan& plan = variant.compiled.plan;
+    const Plan& plan = variant.compiled->plan;
     uint64_t unaliased = 0;
     for (const Placement& placement : plan.placements)
       if (!placement.persistent) unaliased += placement.size;
@@ -41,26 +41,57 @@ dermis_memory describe_memory(const Program& program) {
   return out;
 }
 
-dermis_result timings(dermis_graph_t& graph, uint64_t completed, uint32_t* count, dermis_pass_timing* out) {
-  const Log& log = graph.context->log;
-  constexpr const char* function = "dermis_graph_timings";
+dermis_memory describe_memory(dermis_graph_t& graph) {
+  dermis_memory sum = DERMIS_MEMORY_INIT;
+  for_each_view(graph, [&](const dermis_view_t& view) {
+    const dermis_memory one = describe_view_memory(*keep_newest(view));
+    sum.transient_bytes += one.transient_bytes;
+    sum.transient_unaliased_bytes += one.transient_unaliased_bytes;
+    sum.history_bytes += one.history_bytes;
+    sum.constant_bytes += one.constant_bytes;
+  });
+  return sum;
+}
+
+// Of one view, in an order that stays: shared transients, then plan by plan.
+std::vector<vulkan::MemoryRequest> heaps_of(const Program& program) {
+  std::vector<vulkan::MemoryRequest> heaps;
+  if (program.heap_pool)
+    for (const vulkan::HeapPool::Block& block : program.heap_pool->blocks())
+      heaps.push_back(block.request);
+  for (const Variant& variant : program.variants)
+    for (uint32_t h = 0; h < variant.compiled->plan.heaps.size(); ++h)
+      if (const vulkan::MemoryRequest request = variant.executor->heap_request(h); request.bytes > 0)
+        heaps.push_back(request);
+  return heaps;
+}
+
+} // namespace
+
+dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed, uint32_t* count,
+                          dermis_pass_timing* out) {
+  const Log& log = view.context->log;
   if (count == nullptr) return bad_argument(log, "{}: count is NULL", function);
-  if (completed > graph.last_frame)
+  const std::lock_guard lock(view.mutex);
+  if (completed > view.last_frame)
     return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
-                        completed, graph.last_frame);
-  Program& program = graph.running ? *graph.running : newest(graph);
+                        completed, view.last_frame);
+  Program& program = view.running ? *view.running : newest(view);
   const Variant& variant = program.current();
-  const auto passes = static_cast<uint32_t>(variant.compiled.plan.passes.size());
+  const auto passes = static_cast<uint32_t>(variant.compiled->plan.passes.size());
   if (out == nullptr) {
     *count = passes;
     return DERMIS_OK;
   }
   std::vector<vulkan::PassTiming> times(passes);
   uint64_t frame_index = 0;
-  if (!variant.executor->read_timings(completed, frame_index, times)) return DERMIS_NOT_READY;
+  if (!variant.executor->read_timings(completed, frame_index, times)) {
+    const dermis_result loss = check_loss(view, function);
+    return loss != DERMIS_OK ? loss : DERMIS_NOT_READY;
+  }
   return fill_array(log, function, count, out, passes, [&](uint32_t i) {
     dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
-    const PassId declared = variant.compiled.plan.passes[i].declared;
+    const PassId declared = variant.compiled->plan.passes[i].declared;
     timing.pass = program.graph.passes[declared.value].name.c_str();
     timing.frame_index = frame_index;
     timing.nanoseconds = times[i].nanoseconds;
@@ -68,7 +99,6 @@ dermis_result timings(dermis_graph_t& graph, uint64_t completed, uint32_t* count
   });
 }
 
-} // namespace
 } // namespace dermis::abi
 
 using namespace dermis::abi;
@@ -78,7 +108,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint
   if (graph == nullptr) return bad_argument({}, "dermis_graph_slots: graph is NULL");
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_slots", [&] {
-    const auto& all = newest(*graph).slots;
+    const std::shared_ptr<Program> program = keep_newest(graph->own);
+    const auto& all = program->slots;
     return fill_array(log, "dermis_graph_slots", count, slots, static_cast<uint32_t>(all.size()),
                       [&](uint32_t i) { return describe_slot(all[i], i); });
   });
@@ -90,9 +121,17 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_describe", [&] {
     if (size == nullptr) return bad_argument(log, "dermis_graph_describe: size is NULL");
-    const Program& program = newest(*graph);
+    const std::lock_guard changing(graph->changing);
+    std::shared_ptr<const Program> kept;
+    std::shared_ptr<const dermis::CompiledPlan> plan;
+    {
+      const std::lock_guard lock(graph->own.mutex); // which outcome is the newest changes with each frame
+      kept = graph->own.next ? graph->own.next : graph->own.running;
+      plan = kept->current().compiled;
+    }
+    const Program& program = *kept;
     const dermis::KindRegistry& kinds = graph->context->kinds;
-    const dermis::CompiledPlan& compiled = program.current().compiled;
+    const dermis::CompiledPlan& compiled = *plan;
     std::string description;
     switch (static_cast<int>(format)) {
     case DERMIS_DESCRIBE_JSON:
@@ -120,15 +159,28 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, der
     const size_t size = stated_size(memory);
     if (const SizedRead read = check_size<dermis_memory>(size); read != SizedRead::ok)
       return refused_size(log, read, "dermis_graph_memory: memory", size, first_version_size<dermis_memory>);
-    write_sized(memory, size, describe_memory(newest(*graph)));
+    const std::lock_guard changing(graph->changing);
+    write_sized(memory, size, describe_memory(*graph));
     return DERMIS_OK;
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_heaps(dermis_graph graph, uint32_t* count,
+                                                        dermis_memory_request* heaps) {
+  constexpr const char* function = "dermis_graph_heaps";
+  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
+  const Log& log = graph->context->log;
+  return guarded(log, function, [&] {
+    const auto all = heaps_of(*keep_newest(graph->own));
+    return fill_array(log, function, count, heaps, static_cast<uint32_t>(all.size()),
+                      [&](uint32_t i) { return request_of(all[i]); });
   });
 }
 
 extern "C" dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, uint64_t completed_frame_index,
                                                           uint32_t* count, dermis_pass_timing* timings) {
   if (graph == nullptr) return bad_argument({}, "dermis_graph_timings: graph is NULL");
-  const Log& log = graph->context->log;
-  return guarded(log, "dermis_graph_timings",
-                 [&] { return dermis::abi::timings(*graph, completed_frame_index, count, timings); });
+  constexpr const char* function = "dermis_graph_timings";
+  return guarded(graph->context->log, function,
+                 [&] { return get_timings(graph->own, function, completed_frame_index, count, timings); });
 }

@@ -53,7 +53,7 @@ std::vector<bool> pinned_settings(const Graph& graph, const std::vector<HostSett
 
 void tell_lost_histories(const Program& program, vulkan::HistoryReason reason, Diagnostics& diagnostics) {
   if (reason == vulkan::HistoryReason::first_frame) return;
-  const Plan& plan = program.current().compiled.plan;
+  const Plan& plan = program.current().compiled->plan;
   for (const PlanHistory& history : plan.histories) {
     const ResourceId declared = plan.resources[history.resource].declared;
     diagnostics.add(DiagnosticId::history_restarts, program.graph.resources[declared.value].where,
@@ -98,9 +98,10 @@ template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& val
   return std::as_bytes(std::span<const T>(values));
 }
 
-// One executor for each plan; where there are several, their transients share memory.
+// One executor for each plan; where there are several, their transients share memory. `relative`: another
+// program of the graph, whose pipelines are used again; or null.
 vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                             Program& program) {
+                             const Program* relative, Program& program) {
   std::vector<vulkan::KernelCode> kernels;
   for (const Kernel& kernel : embedded_kernels())
     kernels.push_back({kernel.shader, kernel.spirv});
@@ -134,23 +135,38 @@ vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vul
   if (program.variants.size() > 1) {
     std::vector<const Plan*> plans;
     for (const Variant& variant : program.variants)
-      plans.push_back(&variant.compiled.plan);
+      plans.push_back(&variant.compiled->plan);
     if (vulkan::Error error = vulkan::HeapPool::create(context.device, plans, program.heap_pool))
       return error;
   }
   executor.heap_pool = program.heap_pool.get();
+  std::vector<const vulkan::Executor*> relatives;
+  if (relative != nullptr)
+    for (const Variant& variant : relative->variants)
+      relatives.push_back(variant.executor.get());
   for (Variant& variant : program.variants) {
-    executor.plan = &variant.compiled.plan;
+    executor.plan = &variant.compiled->plan;
+    executor.kept_plan = {variant.compiled, executor.plan};
+    executor.relatives = relatives;
     if (vulkan::Error error = vulkan::Executor::create(executor, variant.executor)) return error;
+    relatives.push_back(variant.executor.get());
   }
   return {};
 }
 
+dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
+  diagnostics.add(diagnostic_of(error.kind), {}, error.text);
+  if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
+  // The library built the executor's input: what does not fit there is a defect of the library, not of the
+  // host.
+  return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
+}
+
 // What any of the plans wants of an image the host must provide.
 std::vector<Slot> slots_of(const Program& program) {
-  std::vector<Slot> slots = make_slots(program.graph, program.variants.front().compiled.plan);
+  std::vector<Slot> slots = make_slots(program.graph, program.variants.front().compiled->plan);
   for (const Variant& variant : program.variants) {
-    const std::vector<Slot> others = make_slots(program.graph, variant.compiled.plan);
+    const std::vector<Slot> others = make_slots(program.graph, variant.compiled->plan);
     for (size_t i = 0; i < slots.size(); ++i) {
       slots[i].vk_usage |= others[i].vk_usage;
       slots[i].read = slots[i].read || others[i].read;
@@ -195,22 +211,24 @@ std::vector<uint8_t> serving_passes(const Plan& plan, const KindRegistry& kinds)
 
 } // namespace
 
-void set_value(Program& program, Chooser& chooser, const KindRegistry& kinds, uint32_t setting,
-               const SettingValue& value) {
-  program.settings[setting] = value;
-  for (choice::Outcome& outcome : program.outcomes)
+std::vector<choice::Outcome> outcomes_with(const Program& program, Chooser& chooser,
+                                           const KindRegistry& kinds, uint32_t setting,
+                                           const SettingValue& value) {
+  std::vector<choice::Outcome> outcomes = program.outcomes;
+  for (choice::Outcome& outcome : outcomes)
     outcome.settings[setting] = value;
-  describe_program(chooser, kinds, program);
+  return described(kinds, program, chooser.errors, chooser.costs, std::move(outcomes));
 }
 
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            PlanCache& plans, Chooser& chooser, Diagnostics& diagnostics,
-                            std::unique_ptr<Program>& program) {
+                            PlanCache& plans, const Program* relative, const choice::ErrorModel& errors,
+                            choice::CostModel& costs, Diagnostics& diagnostics,
+                            std::shared_ptr<Program>& program) {
   auto composition = compose_sources(input, diagnostics);
   if (!composition) return DERMIS_ERROR_CONFIG;
   auto graph = read_graph(composition->document, context.kinds, diagnostics);
   if (!graph) return DERMIS_ERROR_CONFIG;
-  auto candidate = std::make_unique<Program>();
+  auto candidate = std::make_shared<Program>();
   candidate->graph = std::move(*graph);
   candidate->changes = std::move(composition->changes);
   for (const SourceFile& file : diagnostics.files)
@@ -229,28 +247,42 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);
   compile_input.host_formats = host_formats(candidate->graph, input.formats, diagnostics);
   auto made = choice::make_outcomes(
-      compile_input, chooser.errors, chooser.costs,
+      compile_input, errors, costs,
       [&](const CompileInput& one, Diagnostics& told) { return compile(one, plans, told); }, diagnostics,
       pinned_settings(candidate->graph, input.settings));
   if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
   candidate->outcomes = std::move(made->outcomes);
   for (CompiledPlan& compiled : made->plans) {
     std::vector<uint8_t> serving = serving_passes(compiled.plan, context.kinds);
-    candidate->variants.push_back({std::move(compiled), nullptr, false, std::move(serving)});
+    candidate->variants.push_back(
+        {std::make_shared<const CompiledPlan>(std::move(compiled)), nullptr, false, std::move(serving)});
   }
   candidate->slots = slots_of(*candidate);
   candidate->images.resize(candidate->slots.size());
 
-  if (const vulkan::Error error = make_executors(context, input, history, *candidate)) {
-    diagnostics.add(diagnostic_of(error.kind), {}, error.text);
-    if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
-    // The library built the executor's input: what does not fit there is a defect of the library, not of the
-    // host.
-    return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
-  }
+  if (const vulkan::Error error = make_executors(context, input, history, relative, *candidate))
+    return refused(context, error, diagnostics);
   tell_lost_histories(*candidate, history, diagnostics);
-  make_room(chooser, *candidate);
-  candidate->serial = ++chooser.programs;
+  program = std::move(candidate);
+  return DERMIS_OK;
+}
+
+dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const Program& of,
+                           vulkan::HistoryReason history, Diagnostics& diagnostics,
+                           std::shared_ptr<Program>& program) {
+  auto candidate = std::make_shared<Program>();
+  candidate->without_material = of.without_material;
+  candidate->graph = of.graph;
+  candidate->changes = of.changes;
+  candidate->files = of.files;
+  candidate->outcomes = of.outcomes;
+  for (const Variant& variant : of.variants)
+    candidate->variants.push_back({variant.compiled, nullptr, false, variant.serve_scattering});
+  candidate->settings = of.settings;
+  candidate->slots = of.slots;
+  candidate->images.resize(of.slots.size());
+  if (const vulkan::Error error = make_executors(context, input, history, &of, *candidate))
+    return refused(context, error, diagnostics);
   program = std::move(candidate);
   return DERMIS_OK;
 }

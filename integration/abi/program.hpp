@@ -64,12 +64,13 @@ struct Slot {
 
 // One plan of the graph, with what runs it.
 struct Variant {
-  CompiledPlan compiled;
+  std::shared_ptr<const CompiledPlan> compiled; // of all views
   std::unique_ptr<vulkan::Executor> executor;
   bool recorded = false;                   // at least once
   std::vector<uint8_t> serve_scattering{}; // by plan pass, 1: nothing to do where there is no subsurface
 };
 
+// For one view: views of one graph share what was compiled and the pipelines, all the rest is their own.
 struct Program {
   bool without_material = false; // no profile: passes that serve scattering are off
   uint64_t serial = 0;           // no two programs of a graph have the same
@@ -91,15 +92,23 @@ struct Program {
 };
 
 // Parses, compiles (or takes the plan from `plans`, where it then is) and allocates. On failure `diagnostics`
-// tells why and `program` is unchanged. Keeps in `input` what the host delivers and what was fitted. Thread:
-// any.
+// tells why and `program` is unchanged. Keeps in `input` what the host delivers and what was fitted. `costs`
+// gets entries for what is new. `relative`: the program before, whose pipelines are used again; or null.
+// Before the first record: adopt(). Thread: any.
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            PlanCache& plans, Chooser& chooser, Diagnostics& diagnostics,
-                            std::unique_ptr<Program>& program);
+                            PlanCache& plans, const Program* relative, const choice::ErrorModel& errors,
+                            choice::CostModel& costs, Diagnostics& diagnostics,
+                            std::shared_ptr<Program>& program);
 
-// Gives a setting that turns no pass on or off a new value, in all outcomes.
-void set_value(Program& program, Chooser& chooser, const KindRegistry& kinds, uint32_t setting,
-               const SettingValue& value);
+// The same program for another view. `input` as it was built from.
+dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const Program& of,
+                           vulkan::HistoryReason history, Diagnostics& diagnostics,
+                           std::shared_ptr<Program>& program);
+
+// The outcomes of the program with a new value of a setting that turns no pass on or off.
+std::vector<choice::Outcome> outcomes_with(const Program& program, Chooser& chooser,
+                                           const KindRegistry& kinds, uint32_t setting,
+                                           const SettingValue& value);
 
 // The value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
 std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,

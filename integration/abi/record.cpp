@@ -1,71 +1,81 @@
 #include "integration/abi/frame_check.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace dermis::abi {
 namespace {
 
 // Destroys replaced programs whose last frame the device has finished.
-void collect(dermis_graph_t& graph, uint64_t completed) {
-  for (auto& old : graph.retired)
+void collect(dermis_view_t& view, uint64_t completed) {
+  for (auto& old : view.retired)
     if (old && old->last_frame <= completed) old.reset();
 }
 
-void take_over(dermis_graph_t& graph) {
-  graph.recorded.took_over = graph.next != nullptr;
-  graph.recorded.retired = graph.retired.size();
-  if (!graph.next) return;
-  if (graph.running && graph.running->last_frame > 0)
-    for (size_t i = 0; i < graph.retired.size() && graph.running; ++i)
-      if (!graph.retired[i]) {
-        graph.retired[i] = std::move(graph.running);
-        graph.recorded.retired = i;
+void take_over(dermis_view_t& view) {
+  view.recorded.took_over = view.next != nullptr;
+  view.recorded.retired = view.retired.size();
+  if (!view.next) return;
+  if (view.running && view.running->last_frame > 0)
+    for (size_t i = 0; i < view.retired.size() && view.running; ++i)
+      if (!view.retired[i]) {
+        view.retired[i] = std::move(view.running);
+        view.recorded.retired = i;
       }
-  graph.running = std::move(graph.next);
+  view.running = std::move(view.next);
 }
 
 // As if the frame had not been recorded. Host memory stays as it is.
-dermis_result discard(dermis_graph_t& graph, uint64_t frame_index) {
-  const Log& log = graph.context->log;
-  dermis_graph_t::Recorded& recorded = graph.recorded;
-  if (!recorded.known || frame_index != graph.last_frame)
-    return bad_argument(
-        log, "dermis_frame_discard: frame_index is {}, expected that of the frame recorded last, {}{}",
-        frame_index, graph.last_frame,
-        recorded.known || graph.last_frame == 0 ? "" : ", which can be taken back once and alone");
-  if (recorded.took_over && graph.next)
-    return bad_argument(
-        log,
-        "dermis_frame_discard: the graph was reloaded or resized since frame {}, which was the "
-        "first of the graph before that: it cannot be taken back any more",
-        frame_index);
-  Program& program = *graph.running;
+dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_index) {
+  const Log& log = view.context->log;
+  dermis_view_t::Recorded& recorded = view.recorded;
+  if (!recorded.known || frame_index != view.last_frame)
+    return bad_argument(log, "{}: frame_index is {}, expected that of the frame recorded last, {}{}",
+                        function, frame_index, view.last_frame,
+                        recorded.known || view.last_frame == 0 ? ""
+                                                               : ", which can be taken back once and alone");
+  if (recorded.took_over && view.next)
+    return bad_argument(log,
+                        "{}: the graph was reloaded or resized since frame {}, which was the first of the "
+                        "graph before that: it "
+                        "cannot be taken back any more",
+                        function, frame_index);
+  Program& program = *view.running;
   if (!program.variants[recorded.variant].executor->discard_frame(frame_index))
-    return bad_argument(log, "dermis_frame_discard: frame {} was not recorded", frame_index);
+    return bad_argument(log, "{}: frame {} was not recorded", function, frame_index);
   program.last_frame = recorded.program_last_frame;
   program.last_jitter_px = recorded.last_jitter_px;
   program.outcome = recorded.outcome;
-  forget(graph.chooser, frame_index);
-  graph.chooser.state = recorded.decision;
-  graph.chooser.decided_for = recorded.decided_for;
+  forget(view.chooser, frame_index);
+  view.chooser.state = recorded.decision;
+  view.chooser.decided_for = recorded.decided_for;
   if (recorded.took_over) {
-    graph.next = std::move(graph.running);
-    if (recorded.retired < graph.retired.size()) graph.running = std::move(graph.retired[recorded.retired]);
-    if (graph.running) graph.running->last_frame = recorded.replaced_last_frame;
+    view.next = std::move(view.running);
+    if (recorded.retired < view.retired.size()) view.running = std::move(view.retired[recorded.retired]);
+    if (view.running) view.running->last_frame = recorded.replaced_last_frame;
   }
-  graph.last_frame = recorded.last_frame;
+  view.last_frame = recorded.last_frame;
   recorded = {};
   return DERMIS_OK;
 }
 
 // Who recorded the frame before, where that was another plan: of this program, or of the one that it
 // replaces.
-const vulkan::Executor* recorded_before(const dermis_graph_t& graph, const Program& program,
-                                        uint32_t variant) {
+const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant) {
   const bool first = program.last_frame == 0;
-  if (first && (!graph.next || !graph.running)) return nullptr;
-  const Program& other = first ? *graph.running : program;
+  if (first && (!view.next || !view.running)) return nullptr;
+  const Program& other = first ? *view.running : program;
   const uint32_t last = other.outcomes[other.outcome].plan;
   if (other.last_frame == 0 || (!first && last == variant)) return nullptr;
   return other.variants[last].executor.get();
+}
+
+// The jitter of the frame before, in pixels of the size that the view has now.
+std::array<double, 2> rescaled_jitter(const dermis_view_t& view, const vulkan::Executor& executor,
+                                      const vulkan::Executor& before) {
+  const vulkan::Rectangle was = before.previous_rectangle(), is = executor.previous_rectangle(&before);
+  const auto& jitter = view.running->last_jitter_px;
+  return {jitter[0] * is.width / std::max(was.width, 1u), jitter[1] * is.height / std::max(was.height, 1u)};
 }
 
 constexpr uint64_t tile_side = 8, block_side = 32; // pixels
@@ -75,20 +85,22 @@ uint64_t squares_of(const vulkan::Rectangle& rectangle, uint64_t side) {
   return (rectangle.width + side - 1) / side * ((rectangle.height + side - 1) / side);
 }
 
-dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
-  const Log& log = graph.context->log;
-  if (const dermis_result alive = check_alive(*graph.context, "dermis_graph_record"); alive != DERMIS_OK)
-    return alive;
+// `capture`: where the commands go instead of the frame's command buffer; or null.
+dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
+  if (const dermis_result alive = check_alive(*view.context, function); alive != DERMIS_OK) return alive;
   dermis_frame frame = DERMIS_FRAME_INIT;
   if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
-    return refused_size(log, read, "dermis_graph_record: frame", stated_size(given),
-                        first_version_size<dermis_frame>);
-  Program& program = newest(graph);
+    return refused_size(log, read, function, "frame", stated_size(given), first_version_size<dermis_frame>);
+  if (capture != nullptr) frame.command_buffer = handle_of(*capture);
+  Program& program = newest(view);
   CheckedFrame checked;
-  if (const dermis_result result = check_frame(graph, program, frame, checked); result != DERMIS_OK)
+  if (const dermis_result result = check_frame(view, program, frame, checked); result != DERMIS_OK)
     return result;
-  Chooser& chooser = graph.chooser;
-  if (graph.running) observe(chooser, *graph.running, frame.completed_frame_index);
+  Chooser& chooser = view.chooser;
+  if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
+  if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   choice::DecisionState state =
       program.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
   const vulkan::Rectangle& seen = checked.input.rectangle;
@@ -98,61 +110,109 @@ dermis_result record(dermis_graph_t& graph, const dermis_frame* given) {
   chosen.frame_index = frame.frame_index;
   const uint32_t variant = program.outcomes[chosen.outcome].plan;
   chosen.first_of_plan = !program.variants[variant].recorded;
-  const vulkan::Executor* before = recorded_before(graph, program, variant);
+  const vulkan::Executor* before = recorded_before(view, program, variant);
   const std::array<double, 2> jitter_before = program.last_jitter_px;
   const bool replaces = program.last_frame == 0 && before != nullptr;
-  if (replaces) program.last_jitter_px = graph.running->last_jitter_px;
+  if (replaces) program.last_jitter_px = rescaled_jitter(view, *program.variants[variant].executor, *before);
   if (const dermis_result result =
-          fill_frame(graph, program, chosen.outcome, before, chosen.sample_units, frame, checked);
+          fill_frame(view, program, chosen.outcome, before, chosen.sample_units, frame, checked);
       result != DERMIS_OK)
     return result;
   chosen.left_out = !checked.input.left_out.empty();
   chosen.history_invalid = checked.history_invalid;
   if (chosen.left_out) chosen.forecast.ms = chosen.forecast.spread_ms = 0;
-  collect(graph, frame.completed_frame_index);
+  collect(view, frame.completed_frame_index);
+  if (capture != nullptr) capture_into(*capture, checked.input);
   if (const vulkan::RecordResult error = program.variants[variant].executor->record(checked.input)) {
-    if (error.kind == vulkan::ErrorKind::device_lost) graph.context->lost = true;
+    if (error.kind == vulkan::ErrorKind::device_lost) view.context->lost = true;
     const bool has_slot = error.slot >= 0 && static_cast<size_t>(error.slot) < program.slots.size();
-    return fail(log, result_of(error.kind), diagnostic_of(error.kind), "dermis_graph_record: {}{}{}{}",
-                error.text, has_slot ? " (slot '" : "",
+    return fail(log, result_of(error.kind), diagnostic_of(error.kind), "{}: {}{}{}{}", function, error.text,
+                has_slot ? " (slot '" : "",
                 has_slot ? program.slots[static_cast<size_t>(error.slot)].name : "", has_slot ? "')" : "");
   }
-  graph.recorded = {};
-  graph.recorded.known = true;
-  graph.recorded.last_frame = graph.last_frame;
-  graph.recorded.replaced_last_frame = graph.running ? graph.running->last_frame : 0;
-  graph.recorded.program_last_frame = program.last_frame;
-  graph.recorded.last_jitter_px = jitter_before;
-  graph.recorded.outcome = program.outcome;
-  graph.recorded.variant = variant;
-  graph.recorded.decision = chooser.state;
-  graph.recorded.decided_for = chooser.decided_for;
-  if (replaces) graph.running->last_frame = frame.frame_index; // whose histories it copies
+  if (capture != nullptr && capture->failed) {
+    program.variants[variant].executor->discard_frame(frame.frame_index);
+    program.last_jitter_px = jitter_before;
+    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory", function);
+  }
+  view.recorded = {};
+  view.recorded.known = true;
+  view.recorded.last_frame = view.last_frame;
+  view.recorded.replaced_last_frame = view.running ? view.running->last_frame : 0;
+  view.recorded.program_last_frame = program.last_frame;
+  view.recorded.last_jitter_px = jitter_before;
+  view.recorded.outcome = program.outcome;
+  view.recorded.variant = variant;
+  view.recorded.decision = chooser.state;
+  view.recorded.decided_for = chooser.decided_for;
+  if (replaces) view.running->last_frame = frame.frame_index; // whose histories it copies
   program.last_frame = frame.frame_index;
   program.last_jitter_px = {frame.jitter_x, frame.jitter_y};
   program.outcome = chosen.outcome;
   program.variants[variant].recorded = true;
   remember(chooser, chosen, state);
-  graph.last_frame = frame.frame_index;
-  take_over(graph);
+  view.last_frame = frame.frame_index;
+  take_over(view);
   return DERMIS_OK;
 }
 
 } // namespace
+
+dermis_result check_loss(const dermis_view_t& view, const char* function) {
+  if (view.running)
+    for (const Variant& variant : view.running->variants)
+      if (variant.executor->saw_lost_device()) view.context->lost = true;
+  return check_alive(*view.context, function);
+}
+
+dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame) {
+  if (frame == nullptr) return bad_argument(view.context->log, "{}: frame is NULL", record_function(view));
+  const std::lock_guard lock(view.mutex);
+  return record(view, frame, nullptr);
+}
+
+dermis_result capture_frame(dermis_view_t& view, const char* function, const dermis_frame* frame,
+                            uint32_t* count, const dermis_command** commands) {
+  const Log& log = view.context->log;
+  if (frame == nullptr) return bad_argument(log, "{}: frame is NULL", function);
+  if (count == nullptr) return bad_argument(log, "{}: count is NULL", function);
+  if (commands == nullptr) return bad_argument(log, "{}: commands is NULL", function);
+  *count = 0;
+  *commands = nullptr;
+  const std::lock_guard lock(view.mutex);
+  clear(view.capture);
+  const dermis_result result = record(view, frame, &view.capture);
+  if (result != DERMIS_OK) return result;
+  *count = static_cast<uint32_t>(view.capture.commands.size());
+  *commands = view.capture.commands.data();
+  return DERMIS_OK;
+}
+
+dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t frame_index) {
+  const std::lock_guard lock(view.mutex);
+  return discard(view, function, frame_index);
+}
+
 } // namespace dermis::abi
 
 using namespace dermis::abi;
 
 extern "C" dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, const dermis_frame* frame) {
   if (graph == nullptr) return bad_argument({}, "dermis_graph_record: graph is NULL");
-  const Log& log = graph->context->log;
-  return guarded(log, "dermis_graph_record", [&] {
-    if (frame == nullptr) return bad_argument(log, "dermis_graph_record: frame is NULL");
-    return record(*graph, frame);
-  });
+  return guarded(graph->context->log, "dermis_graph_record", [&] { return record_frame(graph->own, frame); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_commands(dermis_graph graph, const dermis_frame* frame,
+                                                           uint32_t* count, const dermis_command** commands) {
+  constexpr const char* function = "dermis_graph_commands";
+  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
+  return guarded(graph->context->log, function,
+                 [&] { return capture_frame(graph->own, function, frame, count, commands); });
 }
 
 extern "C" dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index) {
-  if (graph == nullptr) return bad_argument({}, "dermis_frame_discard: graph is NULL");
-  return guarded(graph->context->log, "dermis_frame_discard", [&] { return discard(*graph, frame_index); });
+  constexpr const char* function = "dermis_frame_discard";
+  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
+  return guarded(graph->context->log, function,
+                 [&] { return discard_frame(graph->own, function, frame_index); });
 }

@@ -66,6 +66,21 @@ template <>
 inline constexpr size_t first_version_size<dermis_frame> = offsetof(dermis_frame, depth_kind) +
                                                            sizeof(dermis_depth_kind);
 
+template <>
+inline constexpr size_t first_version_size<dermis_view_desc> = offsetof(dermis_view_desc, user) +
+                                                               sizeof(void*);
+
+template <>
+inline constexpr size_t first_version_size<dermis_allocator> = offsetof(dermis_allocator, user) +
+                                                               sizeof(void*);
+template <>
+inline constexpr size_t
+    first_version_size<dermis_device_allocator> = offsetof(dermis_device_allocator, user) + sizeof(void*);
+template <>
+inline constexpr size_t first_version_size<dermis_memory_request> = offsetof(dermis_memory_request,
+                                                                             preferred) +
+                                                                    sizeof(VkMemoryPropertyFlags);
+
 inline size_t stated_size(const void* structure) {
   size_t size = 0;
   std::memcpy(&size, structure, sizeof size);

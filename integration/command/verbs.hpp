@@ -61,6 +61,8 @@ struct GraphOptions {
   std::vector<std::string> unbound; // optional imports and exports that the host leaves out
   bool two_queues = false;          // passes declared async get a queue of their own where they can
   std::string out = "-";            // DOT, or JSON with --json
+  std::string html;                 // file for the page of the viewer instead; "": none
+  std::string frame;                // report of render --json, for the page; "": none
 };
 ExitCode graph(const Session& session, const GraphOptions& options);
 
@@ -133,8 +135,40 @@ struct RenderOptions {
     samples,
     skips
   } debug = Debug::none; // also pictures of what the graph did
+  std::string trace;     // file for a Chrome trace; "": none
 };
 ExitCode render(const Session& session, const RenderOptions& options);
+
+struct CaptureOptions {
+  std::string scene, out;
+  Size size{640, 360};
+  uint32_t frames = 8, first = 0;
+  ModelOptions model;
+};
+ExitCode capture(const Session& session, const CaptureOptions& options);
+
+struct WatchOptions {
+  std::string scene, graph, out;
+  GraphParts parts;
+  std::vector<NamedValue> settings;
+  Size size{320, 180};
+  uint32_t frames = 4, subset = 1024;
+  std::string build;               // command that builds the program anew where a shader changed; "": none
+  std::string shaders = "shaders"; // folder of those
+  uint32_t rounds = 0;             // renderings to make; 0: until it is stopped
+};
+ExitCode watch(const Session& session, const WatchOptions& options);
+
+struct ReportBugOptions {
+  std::string graph, out;
+  std::string scene = "configs/scenes/bust.json";
+  std::string frames; // capture to take instead of the scene; "": none
+  GraphParts parts;
+  std::vector<NamedValue> settings;
+  Size size{640, 360};
+  uint32_t count = 8; // frames of the scene up to the one that is kept
+};
+ExitCode report_bug(const Session& session, const ReportBugOptions& options);
 
 struct CalibrateOptions {
   std::string graph = "configs/graphs/skin.json", scene = "configs/scenes/bust.json", out = "-";
@@ -174,25 +208,39 @@ struct PictureRegion {
 struct CompareOptions {
   std::string a, b;
   std::vector<PictureRegion> regions;
-  std::string heat;      // file for a picture of the differences; "": none
-  double least_psnr = 0; // dB; fail below
+  std::string heat;              // file for a picture of the differences; "": none
+  double least_psnr = 0;         // dB; fail below
+  bool flip = false;             // also FLIP
+  std::string flip_map;          // file for a picture of it; "": none
+  double pixels_per_degree = 67; // of the reader's view, for FLIP
+  double most_flip = 1;          // mean FLIP; fail above
 };
 ExitCode compare(const Session& session, const CompareOptions& options);
 
 struct BenchCompileOptions {
   std::string shapes = "tests/benchmark/shapes.json";
-  std::string graphs;    // folder of graph files to measure instead; "": none
-  std::string json;      // file to write; "": none
-  bool optimize = false; // also the level that takes seconds a graph
+  std::string graphs;     // folder of graph files to measure instead; "": none
+  std::string json, html; // files to write; "": none
+  bool optimize = false;  // also the level that takes seconds a graph
 };
 ExitCode bench_compile(const Session& session, const BenchCompileOptions& options);
 
 struct BenchRecordOptions {
   std::string graphs = "configs/graphs", profile = "configs/profiles/skin.json";
-  std::string json; // file to write; "": none
+  std::string json, html; // files to write; "": none
   Size size{1280, 720};
 };
 ExitCode bench_record(const Session& session, const BenchRecordOptions& options);
+
+struct BenchAllOptions {
+  std::string out;                         // folder
+  std::vector<std::string> suites;         // only these; empty: all
+  std::string head;                        // folder of the head scan; "": its scenes are left out
+  std::string cache = "build/bench_truth"; // folder for references
+  bool again = false;                      // also what an earlier run has measured
+};
+std::string bench_suite_names(); // "compile, record, ..."
+ExitCode bench_all(const Session& session, const BenchAllOptions& options);
 
 struct BenchErrorTimeOptions {
   std::string file = "tests/benchmark/error_time.json"; // what is measured

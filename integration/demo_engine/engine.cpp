@@ -256,6 +256,13 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   RenderSummary summary;
   Session session{**host, **renderer, dermis.get(), taa.get(), *scene};
   for (uint32_t i = 0; i < options.frames; ++i) {
+    if (dermis && options.reloads)
+      for (const std::string& text : options.reloads(options.first_frame + i)) {
+        auto taken = reload_graph(*dermis, text);
+        if (!taken) return taken.error();
+        ++summary.reloads;
+        summary.refused_reloads += *taken ? 0 : 1;
+      }
     auto frame = render_frame(session, options.first_frame + i, uint64_t{i} + 1);
     if (!frame) return frame.error();
     ++summary.frames;

@@ -50,8 +50,11 @@ struct RenderOptions {
   std::optional<CameraPlace> camera;
   double zoom = 1.0; // how many times larger the camera shows things: its field of view shrinks; > 0
   std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text
-  double budget_ms = 0;  // of device time for the graph's choices, a frame; 0: their defaults
-  bool metered = false;  // judge times by the calibration alone: the same choices on every machine
+  double budget_ms = 0; // of device time for the graph's choices, a frame; 0: their defaults
+  bool metered = false; // judge times by the calibration alone: the same choices on every machine
+  // Texts that the graph is reloaded with before a frame, one after the other; those with errors leave it as
+  // it is. May be empty. The graph must include nothing.
+  std::function<std::vector<std::string>(uint32_t frame)> reloads = {};
   NamedText calibration; // JSON of an earlier run's RenderSummary::calibration; "": the library's own
 };
 
@@ -144,6 +147,7 @@ struct RenderInfo {
 
 struct RenderSummary {
   uint32_t frames = 0;
+  uint32_t reloads = 0, refused_reloads = 0; // refused: among `reloads`
   std::string calibration; // what the graph learned of the device's times, JSON; "" without Dermis
   std::vector<std::string> validation_messages; // empty unless validation found something
 };

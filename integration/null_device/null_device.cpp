@@ -33,18 +33,23 @@ NullDeviceState::~NullDeviceState() {
 }
 
 VkResult count_creation(NullDeviceState& state) {
+  const std::lock_guard lock(state.mutex);
   ++state.creations;
   if (state.failing_creation == 0 || --state.failing_creation != 0) return VK_SUCCESS;
   return state.failure;
 }
 
-NullObject* add_object(NullDeviceState& state) {
+NullObject* add_object(NullDeviceState& state, uint64_t memory_bytes) {
   auto object = std::make_unique<NullObject>();
+  object->bytes = memory_bytes;
+  const std::lock_guard lock(state.mutex);
+  state.memory_bytes += memory_bytes;
   state.alive.insert(object.get());
   return object.release();
 }
 
 void remove_object(NullDeviceState& state, NullObject* object) {
+  const std::lock_guard lock(state.mutex);
   if (state.alive.erase(object) == 0) return; // null, or not of this device
   state.memory_bytes -= object->bytes;
   delete object;
@@ -97,18 +102,26 @@ uint64_t NullDevice::barriers() const {
 }
 
 uint64_t NullDevice::alive() const {
+  const std::lock_guard lock(state_->mutex);
   return state_->alive.size();
 }
 
 uint64_t NullDevice::memory_bytes() const {
+  const std::lock_guard lock(state_->mutex);
   return state_->memory_bytes;
 }
 
 uint64_t NullDevice::creations() const {
+  const std::lock_guard lock(state_->mutex);
   return state_->creations;
 }
 
+void NullDevice::fail_queries(VkResult result) {
+  state_->query_failure = result;
+}
+
 void NullDevice::fail_creation(uint64_t creation, VkResult result) {
+  const std::lock_guard lock(state_->mutex);
   state_->failing_creation = creation;
   state_->failure = result;
 }

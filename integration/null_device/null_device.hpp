@@ -11,7 +11,7 @@ namespace dermis {
 
 struct NullDeviceState;
 
-// One thread at a time. The handles belong to the device and die with it.
+// Free-threaded, as Vulkan's are. The handles belong to the device and die with it.
 class NullDevice {
 public:
   NullDevice();
@@ -39,6 +39,8 @@ public:
 
   // The call that is number `creation` from now, 1 being the next, fails with `result`; 0: none does.
   void fail_creation(uint64_t creation, VkResult result);
+  // What asking for timestamps gives from now on.
+  void fail_queries(VkResult result);
 
 private:
   std::unique_ptr<NullDeviceState> state_;

@@ -30,12 +30,10 @@ VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice device, const Info* info, const V
                                       Handle* handle) {
   NullDeviceState& state = state_of(device);
   if (const VkResult result = count_creation(state); result != VK_SUCCESS) return result;
-  NullObject* object = add_object(state);
+  uint64_t bytes = 0;
+  if constexpr (requires { info->allocationSize; }) bytes = info->allocationSize;
+  NullObject* object = add_object(state, bytes);
   if constexpr (requires { needs_of(*info); }) object->needs = needs_of(*info);
-  if constexpr (requires { info->allocationSize; }) {
-    object->bytes = info->allocationSize;
-    state.memory_bytes += object->bytes;
-  }
   *handle = reinterpret_cast<Handle>(object);
   return VK_SUCCESS;
 }

@@ -4,8 +4,10 @@
 
 #include "integration/null_device/null_device.hpp"
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <unordered_set>
 
 namespace dermis {
@@ -19,7 +21,10 @@ struct NullObject {
 struct NullDeviceState {
   // Loaders put a pointer there, layers look for it.
   void* dispatch = nullptr;
-  uint64_t commands = 0, barriers = 0, memory_bytes = 0, creations = 0;
+  std::atomic<uint64_t> commands = 0, barriers = 0;
+  std::atomic<VkResult> query_failure = VK_SUCCESS;
+  std::mutex mutex; // guards all that follows
+  uint64_t memory_bytes = 0, creations = 0;
   uint64_t failing_creation = 0;
   VkResult failure = VK_SUCCESS;
   std::unordered_set<NullObject*> alive;
@@ -36,7 +41,7 @@ template <class Handle> NullObject& object_of(Handle handle) {
 
 // VK_SUCCESS, or the failure that was asked for.
 VkResult count_creation(NullDeviceState& state);
-NullObject* add_object(NullDeviceState& state);
+NullObject* add_object(NullDeviceState& state, uint64_t memory_bytes = 0);
 void remove_object(NullDeviceState& state, NullObject* object);
 
 // The entry points; null for a name that is unknown.

@@ -6,6 +6,7 @@
 #include "passes/subsurface/profiles/radial_table.hpp"
 #include "passes/subsurface/sap/sap_tiles.hpp"
 #include "passes/subsurface/separable/separable_kernel.hpp"
+#include "passes/subsurface/temporal/accumulate.hpp"
 #include "passes/subsurface/temporal/reproject.hpp"
 #include "passes/subsurface/truth/surface.hpp"
 
@@ -35,6 +36,8 @@ std::string declare_port(const Port& port, uint32_t binding) {
   case Usage::storage_image_write:
     return fmt::format("layout({}) writeonly uniform {} {}_image;\n", layout, port.glsl_type, port.name);
   case Usage::storage_image_update: // a load needs to know the format
+    if (port.glsl_type.substr(0, 9) == "writeonly")
+      return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
     return fmt::format("layout({}, rgba16f) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
   case Usage::storage_buffer_read:
     return fmt::format("layout(std430, {}) readonly buffer {}_block {{ {} {}_data[]; }};\n", layout,
@@ -111,6 +114,9 @@ std::string shared_constants() {
       "const float reproject_depth_share = {};\n"
       "const float reproject_slope_pixels = {:.1f};\n"
       "const float reproject_least_weight = {};\n"
+      "const float change_least_pixels = {:.1f}; // temporal/accumulate.hpp\n"
+      "const float change_sigmas = {:.1f};\n"
+      "const float change_most = {:.1f};\n"
       "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
       "const float counter_log2_steps = {:.1f};\n\n#endif\n",
       subsurface::copy_below_d_px, subsurface::flat_reach_d, subsurface::flat_tolerance,
@@ -125,7 +131,8 @@ std::string shared_constants() {
       subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
       subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
       subsurface::reproject_largest_velocity, subsurface::reproject_depth_share,
-      subsurface::reproject_slope_pixels, subsurface::reproject_least_weight, subsurface::counter_log2_shift,
+      subsurface::reproject_slope_pixels, subsurface::reproject_least_weight, subsurface::change_least_pixels, subsurface::change_sigmas,
+      subsurface::change_most, subsurface::counter_log2_shift,
       subsurface::counter_log2_steps);
 }
 

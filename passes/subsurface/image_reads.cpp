@@ -284,6 +284,7 @@ constexpr Entry entries[] = {
     {"subsurface.mend", mend},
     {"subsurface.contrast", contrast},
     {"subsurface.afis_tiles", afis_tiles},
+    {"clear", none},
 };
 
 } // namespace

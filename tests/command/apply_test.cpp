@@ -62,11 +62,12 @@ TEST_F(Captures, EvenLightStaysAsItIs) {
 TEST_F(Captures, TheValidationLayerHasNothingToSay) {
   write_plane(path("capture/frame_0000"));
   Plane other;
-  other.width = 48; // another size: another graph
+  other.width = 48; // another size: the graph is resized, its histories with it
   write_plane(path("capture/frame_0001"), other);
   RunOptions options;
   options.environment = validation_environment();
-  for (const char* graph : {burley, "configs/graphs/separable.json"}) {
+  for (const char* graph : {burley, "configs/graphs/separable.json", "configs/graphs/sap_residual.json",
+                            "configs/graphs/afis_guided.json"}) {
     const Outcome outcome = run({"apply", "--graph", graph, "--frames", path("capture"), "--out", path("out"),
                                  "--json", "--repeat", "3"},
                                 options);

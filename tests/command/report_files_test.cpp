@@ -52,6 +52,17 @@ TEST(ReportFiles, HtmlEscapesTextAndLoadsNothingFromElsewhere) {
     EXPECT_THAT(page, Not(HasSubstr(loaded)));
 }
 
+TEST(ReportFiles, BaselinesAreGreyAndOwnTechniquesAreNot) {
+  for (const char* own : {"sap", "sap_residual", "hybrid", "restir"})
+    EXPECT_FALSE(is_baseline(own)) << own;
+  for (const char* other : {"fixed", "separable", "afis", "pyramid", "burley"})
+    EXPECT_TRUE(is_baseline(other)) << other;
+  Report report = small_report();
+  EXPECT_THAT(report_as_html(report), Not(HasSubstr("s0 base")));
+  report.plots[0].series[0].baseline = true;
+  EXPECT_THAT(report_as_html(report), HasSubstr("<g class='s0 base'>"));
+}
+
 TEST(ReportFiles, Base64IsThatOfTheStandard) { // RFC 4648, section 10
   const auto coded = [](std::string_view text) {
     return base64({reinterpret_cast<const uint8_t*>(text.data()), text.size()});

@@ -144,7 +144,7 @@ TEST(Parts, MipsBeyondThoseOfTheViewAreRefused) {
   ASSERT_EQ(errors.size(), 2u);
   for (const Diagnostic& error : errors) {
     EXPECT_EQ(error.id, DiagnosticId::part_missing);
-    EXPECT_THAT(error.text, HasSubstr("at 64x64 texels 'chain' has 7 mips and 1 layers"));
+    EXPECT_THAT(error.text, HasSubstr("at 64x64 texels 'chain' has 7 mips and 1 layer"));
     EXPECT_EQ(error.related.size(), 1u);
   }
   EXPECT_EQ(errors[0].where.line, b.graph.place_of(b.read(4, 0)).line);

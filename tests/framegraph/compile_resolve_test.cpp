@@ -1,10 +1,14 @@
 // Sizes, formats, limits and memory.
 
+#include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/pack.hpp"
+#include "framegraph/model/splitmix.hpp"
 #include "tests/framegraph/graph_builder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <tuple>
 
 namespace dermis::testing {
 namespace {
@@ -142,6 +146,54 @@ TEST(Formats, TheFirstOneThatEveryPortAndTheDeviceCanUseIsTaken) {
   EXPECT_EQ(errors[0].id, DiagnosticId::no_usable_format);
 }
 
+TEST(Formats, EveryResourceWithoutAUsableOneIsReported) { // also those that are declared alike
+  Chain b;
+  for (const char* name : {"other", "third"}) {
+    b.image(name).formats = {Format::r8_unorm};
+    b.pass(name, "test.shade", {{"a", "light"}}, {{"out", name}});
+    b.pass(std::string("keep ") + name, "test.probe", {{"a", name}}, {});
+  }
+  b.device.supports = [](Format format, uint32_t) { return format != Format::r8_unorm; };
+  CompileInput input = b.input();
+  for (const bool reasons : {false, true}) {
+    input.reasons = reasons;
+    EXPECT_THAT(refused(b, input), SizeIs(2));
+  }
+}
+
+TEST(Sizes, ManyShapesInAnyOrderAreKeptApart) {
+  GraphBuilder b;
+  b.import("light");
+  struct Expected {
+    uint32_t width, height, mips;
+    Format format;
+  };
+  const auto expected = [](uint32_t i) {
+    const uint32_t shape = i * 37 % 96; // each comes back, others between
+    return Expected{64 * (1 + shape % 6), 64 * (1 + shape / 6 % 4), 1 + shape / 24 % 2,
+                    shape / 48 == 0 ? Format::rgba16f : Format::r32f};
+  };
+  constexpr uint32_t count = 400;
+  for (uint32_t i = 0; i < count; ++i) {
+    const std::string name = "image" + std::to_string(i);
+    ResourceDeclaration& image = b.image(name);
+    image.size.x = {expected(i).width / 64, 1};
+    image.size.y = {expected(i).height / 64, 1};
+    image.mips = expected(i).mips;
+    image.formats = {expected(i).format};
+    b.pass("pass" + std::to_string(i), "test.shade", {{"a", "light"}}, {{"out", name}});
+    b.pass("keep" + std::to_string(i), "test.probe", {{"a", name}}, {});
+  }
+  const Plan plan = compiled(b).plan;
+  for (uint32_t i = 0; i < count; ++i) {
+    const PlanResource image = resource_of(b, plan, "image" + std::to_string(i));
+    const Expected wanted = expected(i);
+    EXPECT_EQ(std::tie(image.width, image.height, image.mips, image.format),
+              std::tie(wanted.width, wanted.height, wanted.mips, wanted.format))
+        << i;
+  }
+}
+
 TEST(Formats, TheHostBindsOneOfTheDeclaredOnes) {
   Chain b;
   b.graph.resources[0].formats = {Format::rgba16f, Format::b10g11r11f};
@@ -198,6 +250,21 @@ TEST(Packing, ItemsThatFollowEachOtherShareTheirMemory) {
   EXPECT_EQ(packing.size, 64u);
   EXPECT_EQ(packing.size, packing.lower_bound);
   EXPECT_EQ(pack_items({}).size, 0u);
+}
+
+TEST(Packing, NumbersThatShareBitsAreFoundOnEveryProcessor) {
+  SplitMix64 random{1};
+  for (uint32_t round = 0; round < 1000; ++round) {
+    std::array<uint32_t, numbers_at_once> numbers{};
+    for (uint32_t& number : numbers)
+      number = static_cast<uint32_t>(random.next()) & static_cast<uint32_t>(random.next());
+    const uint32_t mask = uint32_t{1} << random.below(32) | (round % 2 == 0 ? 0x80000000u : 0);
+    uint32_t expected = 0;
+    for (uint32_t i = 0; i < numbers_at_once; ++i)
+      expected |= static_cast<uint32_t>((numbers[i] & mask) != 0) << i;
+    ASSERT_EQ(sharing_bits(numbers.data(), mask), expected);
+    ASSERT_EQ(sharing_bits_anywhere(numbers.data(), mask), expected);
+  }
 }
 
 TEST(Packing, MemoryTypesThatDoNotAgreeGetHeapsOfTheirOwn) {

@@ -263,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(
                              "\"history\": \"kept#1@-2\"",
                              Id::bad_part,
                              "\"kept#1@-2\"",
-                             {"'kept' has 1 mips"}},
+                             {"'kept' has 1 mip"}},
                       Damage{"BuffersHaveNoMips",
                              "\"tiles\": \"list\", \"history\"",
                              "\"tiles\": \"list#0\", \"history\"",

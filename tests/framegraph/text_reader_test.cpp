@@ -165,6 +165,9 @@ TEST(Reader, TheVersionKeyIsRequiredAndChecked) {
   EXPECT_FALSE(check_version(*misspelt.document, "version", 1, misspelt.diagnostics));
   expect_only(misspelt.diagnostics, DiagnosticId::unknown_key, 1, 3,
               {"\"version\": 1", "did you mean 'version'?"});
+  Parsed other = parse("{ \"name\": \"n\",\n  \"dermis_profile\": 1 }");
+  EXPECT_FALSE(check_version(*other.document, "dermis", 1, other.diagnostics));
+  expect_only(other.diagnostics, DiagnosticId::other_kind_of_file, 2, 3, {"'dermis_profile'", "'dermis'"});
   Parsed newer = parse("{ \"v\": 2 }");
   EXPECT_FALSE(check_version(*newer.document, "v", 1, newer.diagnostics));
   expect_only(newer.diagnostics, DiagnosticId::unsupported_version, 1, 8, {"version 1"});

@@ -1,11 +1,13 @@
 """Bindings made from the header alone, as an author for another language would: structs, enumerations and functions are
 read from dermis.h, and the library is called through them.
-usage: bindings.py LIBRARY SOURCE_DIR"""
+With an engine (bindings_engine.c as a library) they also run a frame of a graph.
+usage: bindings.py LIBRARY SOURCE_DIR [ENGINE]"""
 import ctypes
 import re
 import sys
 
 library_path, source = sys.argv[1:3]
+engine_path = sys.argv[3] if len(sys.argv) > 3 else None
 header = open(source + "/integration/include/dermis/dermis.h", encoding="utf-8").read()
 code = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
 
@@ -15,6 +17,7 @@ plain = {
     # Of Vulkan: 32-bit enumerations and flags, 64-bit flags, and handles, which are as wide as pointers here.
     "VkFormat": ctypes.c_int32, "VkImageLayout": ctypes.c_int32, "VkImageUsageFlags": ctypes.c_uint32,
     "VkPipelineStageFlags2": ctypes.c_uint64, "VkAccessFlags2": ctypes.c_uint64,
+    "VkMemoryPropertyFlags": ctypes.c_uint32, "VkFilter": ctypes.c_int32, "VkClearColorValue": ctypes.c_uint32 * 4,
 }
 types = dict(plain)
 for name in re.findall(r"typedef enum (\w+) \{", code):
@@ -85,3 +88,82 @@ result, said = validate(graph.replace(b'"name": "burley"', b'"nmae": "burley"'))
 expect(result == enumerators["DERMIS_ERROR_CONFIG"], f"a misspelt key gives {result}")
 expect(any(code == "unknown_key" and line == 4 for code, line, _ in said), f"the misspelt key is not named: {said}")
 print(f"{len(functions)} functions and {sum(1 for t in types.values() if isinstance(t, type(ctypes.Structure)))} structs bound")
+
+
+kept = []  # an address keeps nothing alive
+
+
+def filled(struct, /, **fields):
+    """A struct of the interface, zero but for its size and `fields`."""
+    made = types[struct]()
+    kept.append(made)
+    if hasattr(made, "struct_size"):
+        made.struct_size = ctypes.sizeof(made)
+    for field, value in fields.items():
+        setattr(made, field, value)
+    return made
+
+
+def called(name, *arguments):
+    result = getattr(library, name)(*arguments)
+    expect(result == enumerators["DERMIS_OK"], f"{name} gives {result}: {library.dermis_last_error()}")
+
+
+def source_of(name, text):
+    return filled("dermis_source", name=name, text=text, length=len(text))
+
+
+def run(engine, side=64):
+    """One frame of a lit wall of skin, as minimal.c has it; the names of the passes and their times in ns."""
+    for name in ("instance", "gpu", "device", "commands", "loader"):
+        getattr(engine, f"engine_{name}").restype = ctypes.c_void_p
+    engine.engine_image.argtypes = [ctypes.c_int32, ctypes.c_uint32, ctypes.c_uint32, ctypes.c_float, ctypes.c_int32,
+                                    ctypes.c_void_p]
+    engine.engine_create()
+    context, made = ctypes.c_void_p(), ctypes.c_void_p()
+    called("dermis_context_create", ctypes.addressof(filled(
+        "dermis_context_desc", abi_version=int(re.search(r"DERMIS_ABI_VERSION (\d+)", code).group(1)),
+        flags=1, instance=engine.engine_instance(), physical_device=engine.engine_gpu(), device=engine.engine_device(),
+        get_instance_proc_addr=engine.engine_loader())), ctypes.addressof(context))
+    skin = open(source + "/configs/profiles/skin.json", "rb").read()
+    profile = filled("dermis_profile", id=1, source=source_of(b"skin.json", skin))
+    depth = filled("dermis_slot_format", name=b"depth", format=100)  # VK_FORMAT_R32_SFLOAT
+    unbound = (ctypes.c_char_p * 3)(b"albedo", b"scatter_scale", b"scattered_light")
+    called("dermis_graph_create", context, ctypes.addressof(filled(
+        "dermis_graph_desc", source=source_of(b"burley.json", graph), width=side, height=side,
+        profiles=ctypes.addressof(profile), profile_count=1, unbound=ctypes.addressof(unbound), unbound_count=3,
+        formats=ctypes.addressof(depth), format_count=1)), ctypes.addressof(made), None)
+    count = ctypes.c_uint32(16)
+    slots = (types["dermis_slot"] * 16)(filled("dermis_slot"))
+    called("dermis_graph_slots", made, ctypes.addressof(count), ctypes.addressof(slots))
+    bindings = []
+    for slot in list(slots)[:count.value]:
+        if not slot.bound:
+            continue
+        handles = (ctypes.c_uint64 * 2)()
+        value = {b"depth": 0.5}.get(slot.name, 1.0)
+        engine.engine_image(slot.format, side, slot.usage, value, slot.name == b"material", ctypes.addressof(handles))
+        rests = filled("dermis_image_state", layout=1, queue_family=0xffffffff, stages=1 << 16, access=1 << 16)  # ALL_COMMANDS, MEMORY_WRITE
+        bindings.append(filled("dermis_image_binding", slot=slot.id, format=slot.format, image=handles[0],
+                               view=handles[1], width=side, height=side, before=rests, after=rests))
+    bound = (types["dermis_image_binding"] * len(bindings))(*bindings)
+    frame = filled("dermis_frame", command_buffer=engine.engine_commands(), bindings=ctypes.addressof(bound),
+                   binding_count=len(bindings), frame_index=1, depth_kind=enumerators["DERMIS_DEPTH_VIEW_UNITS"])
+    for index, value in {0: 2.0, 5: -2.0, 10: -1.0, 11: -0.1, 14: -1.0}.items():
+        frame.clip_from_view[index] = value
+    called("dermis_graph_record", made, ctypes.addressof(frame))
+    engine.engine_submit_and_wait()
+    times = (types["dermis_pass_timing"] * 16)(filled("dermis_pass_timing"))
+    count.value = 16
+    called("dermis_graph_timings", made, 1, ctypes.addressof(count), ctypes.addressof(times))
+    out = {getattr(one, "pass").decode(): one.nanoseconds for one in list(times)[:count.value]}
+    library.dermis_graph_destroy(made)
+    library.dermis_context_destroy(context)
+    engine.engine_destroy()
+    return out
+
+
+if engine_path:
+    passes = run(ctypes.CDLL(engine_path))
+    expect("classify" in passes and all(time > 0 for time in passes.values()), f"the frame ran {passes}")
+    print(f"a frame of {len(passes)} passes, {sum(passes.values()) / 1e6:.3f} ms")

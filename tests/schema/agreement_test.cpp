@@ -33,7 +33,7 @@ constexpr DiagnosticId structural[] = {
     DiagnosticId::out_of_range,        DiagnosticId::limit_exceeded, DiagnosticId::integer_precision,
     DiagnosticId::unsupported_version, DiagnosticId::invalid_value,  DiagnosticId::unknown_kind,
     DiagnosticId::unknown_port,        DiagnosticId::missing_port,   DiagnosticId::unknown_kind_setting,
-    DiagnosticId::port_direction,      DiagnosticId::profile_keys,
+    DiagnosticId::port_direction,      DiagnosticId::profile_keys,   DiagnosticId::other_kind_of_file,
 };
 
 using Reader = void (*)(const std::string& text, Diagnostics& diagnostics);

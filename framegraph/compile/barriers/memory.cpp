@@ -3,70 +3,58 @@
 #include "framegraph/compile/barriers/synchronizer.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace dermis {
 
-uint32_t Synchronizer::last_pass(const Segment& of) const {
-  uint32_t last = no_value;
-  const SyncFacts& own = facts(of.resource);
-  for (uint32_t part = 0; part < own.parts; ++part) {
-    const ObjectState& state = c.states[own.first_object + of.frames_back * own.parts + part];
-    if (state.touched) last = last == no_value ? state.last_pass : std::max(last, state.last_pass);
-  }
-  return last;
-}
-
 uint32_t Synchronizer::take_over(uint32_t resource, uint32_t barrier) {
   const SyncFacts& own = facts(resource);
-  const uint32_t memory = own.memory;
-  const uint64_t begin = own.begin, end = own.end;
-  std::vector<Segment>& segments = c.memory[memory];
-  if (roles(resource) == 1) { // histories say what they wait for themselves
+  std::vector<Segment>& segments = c.memory[own.memory];
+  if (own.roles == 1) { // histories say what they wait for themselves
     because(barrier, Reason::Why::first_use, resource);
     c.arrival_of[resource] = barrier;
   }
-  const auto first = behind(segments, begin);
-  auto last = first;
-  uint64_t reached = begin;
-  uint32_t after = no_value;
-  for (; last != segments.end() && last->begin < end; ++last) {
-    if (last->begin > reached) c.arrivals.push_back({reached, last->begin, memory, barrier, resource});
-    inherit(*last, resource, barrier, false);
-    const uint32_t ended = last_pass(*last);
-    after = after == no_value ? ended : std::max(after, ended);
-    reached = last->end;
+  const size_t first = behind(segments, own.begin);
+  size_t last = first;
+  uint32_t after = 0; // and one more
+  for (; last < segments.size() && segments[last].begin < own.end; ++last) {
+    const Segment& before = segments[last];
+    if (before.resource == no_value) {
+      c.arrivals.push_back(
+          {std::max(own.begin, before.begin), std::min(own.end, before.end), own.memory, barrier, resource});
+      continue;
+    }
+    after = std::max(after, inherit(before, resource, barrier, false));
   }
-  if (reached < end) c.arrivals.push_back({reached, end, memory, barrier, resource});
-  // What is left of the first and the last of them stays.
-  std::array<Segment, 3> pieces;
-  size_t count = 0;
-  if (first != last && first->begin < begin)
-    pieces[count++] = {first->begin, begin, first->resource, first->frames_back};
-  pieces[count++] = {begin, end, resource, 0};
-  if (first != last && (last - 1)->end > end)
-    pieces[count++] = {end, (last - 1)->end, (last - 1)->resource, (last - 1)->frames_back};
-  const auto replaced = static_cast<size_t>(last - first);
-  const size_t in_place = std::min(replaced, count);
-  std::copy_n(pieces.begin(), in_place, first);
-  if (replaced > count)
-    segments.erase(first + static_cast<std::ptrdiff_t>(count), last);
-  else
-    segments.insert(first + static_cast<std::ptrdiff_t>(in_place),
-                    pieces.begin() + static_cast<std::ptrdiff_t>(in_place),
-                    pieces.begin() + static_cast<std::ptrdiff_t>(count));
-  return after;
+  // What is left of the first and the last of them stays. What there is not is written over by what is.
+  Segment left = segments[first], right = segments[last - 1];
+  const auto has_left = static_cast<size_t>(left.begin < own.begin);
+  const auto has_right = static_cast<size_t>(right.end > own.end);
+  left.end = own.begin;
+  right.begin = own.end;
+  const size_t pieces = 1 + has_left + has_right, replaced = last - first;
+  const auto end = segments.begin() + static_cast<std::ptrdiff_t>(last);
+  if (replaced > pieces)
+    segments.erase(end - static_cast<std::ptrdiff_t>(replaced - pieces), end);
+  else if (replaced < pieces)
+    segments.insert(end, pieces - replaced, {});
+  segments[first] = left;
+  segments[first + has_left + has_right] = right;
+  segments[first + has_left] = {own.begin, own.end, resource, 0};
+  return after - 1;
 }
 
-std::vector<Segment>::iterator Synchronizer::behind(std::vector<Segment>& segments, uint64_t at) {
-  auto first = segments.begin();
-  for (auto left = segments.end() - first; left > 0;) { // without a branch that nobody can foretell
-    const auto half = left / 2;
-    const bool before = first[half].end <= at;
-    first += before ? half + 1 : 0;
-    left = before ? left - half - 1 : half;
+size_t Synchronizer::behind(const std::vector<Segment>& segments, uint64_t at) {
+  constexpr size_t few = 16; // are counted: nobody can foretell where a search would turn
+  size_t first = 0, left = segments.size();
+  while (left > few) {
+    const size_t half = left / 2;
+    first += pick(segments[first + half].end <= at, half, size_t{0});
+    left -= half;
   }
-  return first;
+  size_t count = 0;
+  for (size_t i = first; i < first + left; ++i)
+    count += static_cast<size_t>(segments[i].end <= at);
+  return first + count;
 }
 
 void Synchronizer::inherit(const ObjectState& state, uint32_t barrier, bool frame_before) {
@@ -95,13 +83,25 @@ void Synchronizer::wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint3
   frame_before ? need_frame_before(position, earlier) : need(position, earlier);
 }
 
-void Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before) {
-  const uint32_t first = facts(from.resource).first_object + from.frames_back * parts(from.resource);
-  for (uint32_t part = 0; part < parts(from.resource); ++part)
-    inherit(c.states[first + part], barrier, frame_before);
-  if (from.resource != resource && roles(resource) == 1) c.drafts[barrier].why = PlanBarrier::Why::alias;
-  because(barrier, from.resource == resource ? Reason::Why::behind_last_use : Reason::Why::takes_memory,
-          from.resource, frame_before ? 1 : 0);
+uint32_t Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before) {
+  const SyncFacts& of = facts(from.resource);
+  const ObjectState* state = c.states.data() + of.first_object + from.frames_back * of.parts;
+  PlanBarrier& draft = c.drafts[barrier];
+  uint32_t last = 0;
+  if (of.parts == 1 && !two_queues()) {
+    wait_for(draft, tail(*state));
+    last = state->touched ? state->last_pass + 1 : 0;
+  } else {
+    for (uint32_t part = 0; part < of.parts; ++part, ++state) {
+      inherit(*state, barrier, frame_before);
+      if (state->touched) last = std::max(last, state->last_pass + 1);
+    }
+  }
+  const bool own = from.resource == resource;
+  if (!own && roles(resource) == 1) draft.why = PlanBarrier::Why::alias;
+  because(barrier, own ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from.resource,
+          frame_before ? 1 : 0);
+  return last;
 }
 
 void Synchronizer::find_memory() {
@@ -131,8 +131,8 @@ void Synchronizer::lend() {
     c.lent_memory[loan.from] = memory;
     memory += 2;
     c.memory.resize(std::max<size_t>(c.memory.size(), memory));
-    c.memory[memory - 2].clear();
     const uint64_t size = plan.placements[plan.resources[loan.from].first_instance].size;
+    c.memory[memory - 2].assign(1, {0, size, no_value, 0});
     c.memory[memory - 1].assign(1, {0, size, loan.from, roles(loan.from) - 1});
   }
 }
@@ -143,8 +143,10 @@ void Synchronizer::settle_arrivals() {
   for (const Arrival& arrival : c.arrivals) {
     const bool lent = arrival.memory >= plan.heaps.size(); // in the frame before, the instance beside it
     std::vector<Segment>& segments = c.memory[arrival.memory + (lent ? 1 : 0)];
-    for (auto at = behind(segments, arrival.begin); at != segments.end() && at->begin < arrival.end; ++at)
-      if (at->resource != arrival.resource) inherit(*at, arrival.resource, arrival.barrier, true);
+    for (size_t i = behind(segments, arrival.begin); i < segments.size() && segments[i].begin < arrival.end;
+         ++i)
+      if (segments[i].resource != arrival.resource && segments[i].resource != no_value)
+        inherit(segments[i], arrival.resource, arrival.barrier, true);
   }
   settle_parts();
 }

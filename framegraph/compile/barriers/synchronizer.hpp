@@ -22,10 +22,12 @@ struct Synchronizer {
   CompileContext& c;
   Plan& plan;
   const std::array<UsageSet, usage_sets>& sets;
+  const bool beside = !c.queue.empty(); // there is an async queue
   std::vector<std::pair<uint32_t, uint32_t>> waiting_parts =
       {};                         // barriers for parts, and what they stand behind
   uint32_t current = 0;           // position
   uint32_t touches_before = 1;    // of the passes walked through so far: see CompileContext::touch_number
+  uint32_t touch_count = 0;       // of the pass in hand, first in CompileContext::touches
   bool emit = false;              // barriers; otherwise only how each object ends
   uint32_t last_batch = no_value; // position of the pass behind it
 
@@ -54,7 +56,7 @@ struct Synchronizer {
   // The oldest instance of a history was one role younger when the frame before ended, and so on.
   void find_ends();
 
-  bool two_queues() const { return !c.queue.empty(); }
+  bool two_queues() const { return beside; }
   Queue queue_at(uint32_t position) const { return plan.passes[position].queue; }
 
   // The pass at `position` comes after the one at `earlier`, of the other queue.
@@ -79,9 +81,22 @@ struct Synchronizer {
 
   // Adds a barrier for the pass at `position` that waits for nothing of this frame behind the pass at
   // `after`.
-  void batch(uint32_t index, uint32_t after, uint32_t position);
+  void batch(uint32_t index, uint32_t after, uint32_t position) {
+    if (two_queues()) { // the passes between may be the other queue's
+      c.batch_of[index] = position;
+      return;
+    }
+    const bool free = (int{after == no_value} | int{after < last_batch}) != 0;
+    last_batch = pick((int{last_batch != no_value} & int{free}) != 0, last_batch, position);
+    c.batch_of[index] = last_batch;
+  }
 
-  uint32_t draft();
+  uint32_t draft() {
+    const auto index = static_cast<uint32_t>(c.batch_of.size());
+    c.drafts.emplace_back();
+    c.batch_of.push_back(no_value);
+    return index;
+  }
 
   // Brings the drafts into the order of their batches, those of one batch as they were found.
   void sort_into_batches();
@@ -91,7 +106,12 @@ struct Synchronizer {
   // Barriers for parts of one image stand in one batch, so that they can become one barrier.
   void batch_parts(uint32_t position);
 
-  void place(uint32_t index, uint32_t after, uint32_t position);
+  void place(uint32_t index, uint32_t after, uint32_t position) {
+    if (c.graph->parts && parts(c.drafts[index].resource) > 1)
+      waiting_parts.emplace_back(index, after);
+    else
+      batch(index, after, position);
+  }
 
   void run_touch(const PassTouch& touch, uint32_t position);
 
@@ -107,9 +127,6 @@ struct Synchronizer {
   // The first barrier of an object whose old contents do not count.
   void arrive(const PassTouch& touch, const UsageSet& set, Layout layout, uint32_t position);
 
-  // The last pass of this frame that touched any part of the resource.
-  uint32_t last_pass(const Segment& of) const;
-
   // Memory passes from those that had its bytes before in this frame; where there is none, from those that
   // had them last in the frame before, which are known when the walk is over. Earlier ones than the last had
   // to be done before it: the wait reaches them through it.
@@ -117,7 +134,7 @@ struct Synchronizer {
   uint32_t take_over(uint32_t resource, uint32_t barrier);
 
   // The first segment that ends behind `at`.
-  static std::vector<Segment>::iterator behind(std::vector<Segment>& segments, uint64_t at);
+  static size_t behind(const std::vector<Segment>& segments, uint64_t at);
 
   void inherit(const ObjectState& state, uint32_t barrier, bool frame_before);
 
@@ -131,7 +148,8 @@ struct Synchronizer {
   // Behind the wait for a point, which ends where the barrier begins.
   void wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier, bool frame_before);
 
-  void inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before);
+  // Returns the position behind the last pass that touched it.
+  uint32_t inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before);
 
   // Where each resource arrives. What a history lends is memory of its own, twice: before it is written, and
   // after the last read of its oldest frame. The instance of the latter is that of the former in the next

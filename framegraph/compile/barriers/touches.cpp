@@ -8,12 +8,16 @@
 namespace dermis {
 
 void Synchronizer::collect(uint32_t first_use, uint32_t end) {
-  c.touches.clear();
-  c.touch_of_use.resize(end - first_use);
-  for (uint32_t u = first_use; u < end; ++u) {
+  if (c.touch_of_use.size() < end - first_use) {
+    c.touch_of_use.resize(end - first_use);
+    c.touches.resize(end - first_use);
+  }
+  touch_count = 0;
+  PassTouch* const touches = c.touches.data();
+  uint32_t* touch_number = c.touch_of_use.data();
+  for (uint32_t u = first_use; u < end; ++u, ++touch_number) {
     const Use& use = c.uses[u];
-    uint32_t& touch_of_use = c.touch_of_use[u - first_use];
-    touch_of_use = no_value;
+    *touch_number = no_value;
     if (use.trouble != Use::Trouble::none) continue;
     const uint32_t resource = c.plan_resource[use.resource.value];
     const SyncFacts& of = facts(resource);
@@ -21,16 +25,16 @@ void Synchronizer::collect(uint32_t first_use, uint32_t end) {
     const uint32_t object = object_of(of, use.frames_back, part);
     uint32_t& number = c.touch_number[object];
     if (number < touches_before) { // by an earlier pass
-      number = touches_before + static_cast<uint32_t>(c.touches.size());
-      c.touches.push_back({object, resource, use.frames_back, 0, false, part, Layout::undefined});
+      number = touches_before + touch_count;
+      touches[touch_count++] = {object, resource, use.frames_back, 0, false, part, Layout::undefined};
     }
-    touch_of_use = number - touches_before;
-    PassTouch& touch = c.touches[touch_of_use];
+    *touch_number = number - touches_before;
+    PassTouch& touch = touches[*touch_number];
     touch.usages = static_cast<uint8_t>(touch.usages | 1u << static_cast<uint32_t>(use.usage));
     touch.certain |= use.when == ReadWhen::always;
     if (of.image) touch.layout = sets[touch.usages].image_layout;
   }
-  touches_before += static_cast<uint32_t>(c.touches.size());
+  touches_before += touch_count;
   if (c.graph->parts) unify_layouts(first_use, end);
 }
 

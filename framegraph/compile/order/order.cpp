@@ -58,7 +58,7 @@ struct Orderer {
     c.first_before.assign(size_t{passes} + 1, 0);
     for (const Use& use : c.uses) {
       const bool reads = (use.trouble == Use::Trouble::none) & (use.read_value != no_value);
-      const PassId other = c.values[reads ? use.read_value : 0].producer;
+      const PassId other = c.values[pick(reads, use.read_value, 0u)].producer;
       const bool waits = (int{reads} & int{other.valid()} & int{other != use.pass}) != 0;
       forward &= !waits | (other < use.pass);
       c.before[count] = other.value;

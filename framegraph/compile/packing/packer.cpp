@@ -1,11 +1,11 @@
 // Dynamic storage allocation: intervals in time get places in one range of bytes.
 
+#include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/pack.hpp"
 #include "framegraph/model/splitmix.hpp"
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <functional>
 #include <numeric>
 
@@ -119,30 +119,15 @@ struct GapFinder {
   void pass(uint64_t begin, uint64_t end) {
     const uint64_t start = align_up(free_from, alignment);
     const uint64_t slack = begin - start - size;
-    const uint64_t better =
-        -static_cast<uint64_t>(slack < best_slack); // all bits or none: compilers branch on `?`
-    best ^= (best ^ start) & better;
-    best_slack ^= (best_slack ^ (slack & keep)) & better;
+    const bool better = slack < best_slack;
+    best = pick(better, start, best);
+    best_slack = pick(better, slack & keep, best_slack);
     free_from = std::max(free_from, end);
   }
-  uint64_t place() const { return best_slack < no_gap ? best : align_up(free_from, alignment); }
+  uint64_t place() const { return pick(best_slack < no_gap, best, align_up(free_from, alignment)); }
 };
 
-constexpr uint32_t chunk = 32; // placed items that are looked at together
-
-// Which of the next `chunk` items are alive in some of the positions `when`, as bits.
-uint32_t alive(const uint32_t* items, uint32_t when) {
-  uint8_t hit[chunk];
-  for (uint32_t i = 0; i < chunk; ++i)
-    hit[i] = (items[i] & when) != 0 ? 1 : 0;
-  uint32_t bits = 0;
-  for (uint32_t part = 0; part < chunk / 8; ++part) {
-    uint64_t bytes = 0;
-    std::memcpy(&bytes, hit + size_t{part} * 8, sizeof bytes);
-    bits |= static_cast<uint32_t>(bytes * 0x0102040810204080 >> 56) << (part * 8); // one bit of each byte
-  }
-  return bits;
-}
+constexpr uint32_t chunk = numbers_at_once; // placed items that are looked at together
 
 // Positions of a block in which an item is alive, as bits; the highest says that it began before the block.
 uint32_t positions_in(uint32_t block, const PackItem& item) {
@@ -180,8 +165,8 @@ size_t Packer::gather(const Block& block, uint32_t positions, bool began, Range*
   steps_ += block.count;
   size_t count = 0;
   for (size_t from = 0; from < block.count; from += chunk) {
-    uint32_t bits = alive(block.when.data() + from, positions & ~began_before);
-    if (began) bits &= ~alive(block.when.data() + from, began_before);
+    uint32_t bits = sharing_bits(block.when.data() + from, positions & ~began_before);
+    if (began) bits &= ~sharing_bits(block.when.data() + from, began_before);
     for (; bits != 0; bits &= bits - 1)
       to[count++] = block.ranges[from + static_cast<size_t>(std::countr_zero(bits))];
   }
@@ -197,7 +182,7 @@ uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last,
     const uint32_t positions = positions_in(first, item);
     steps_ += block.count;
     for (size_t from = 0; from < block.count; from += chunk)
-      for (uint32_t bits = alive(block.when.data() + from, positions); bits != 0; bits &= bits - 1) {
+      for (uint32_t bits = sharing_bits(block.when.data() + from, positions); bits != 0; bits &= bits - 1) {
         const Range& other = block.ranges[from + static_cast<size_t>(std::countr_zero(bits))];
         gaps.pass(other.begin, other.end);
       }
@@ -215,10 +200,9 @@ uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last,
   b[count_b] = end_of_list;
   for (size_t left = count_a + count_b; left > 0; --left) {
     const bool from_b = b->begin < a->begin;
-    const Range next = from_b ? *b : *a;
-    a += from_b ? 0 : 1;
-    b += from_b ? 1 : 0;
-    gaps.pass(next.begin, next.end);
+    gaps.pass(pick(from_b, b->begin, a->begin), pick(from_b, b->end, a->end));
+    b += static_cast<size_t>(from_b);
+    a += size_t{1} - static_cast<size_t>(from_b);
   }
   return gaps.place();
 }
@@ -257,9 +241,12 @@ bool Packer::try_order(std::span<const uint32_t> order, Fit fit, Packing& out) {
 void Packer::sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32_t>& sorted) {
   constexpr size_t few_sizes = 32;
   sizes_.clear();
-  for (size_t i = 0; i < given.size() && sizes_.size() <= few_sizes; ++i)
-    if (std::find(sizes_.begin(), sizes_.end(), items_[i].size) == sizes_.end())
-      sizes_.push_back(items_[i].size);
+  for (size_t i = 0; i < given.size() && sizes_.size() <= few_sizes; ++i) {
+    bool known = false;
+    for (const uint64_t size : sizes_) // to the end: where it is found is as good as random
+      known |= size == items_[i].size;
+    if (!known) sizes_.push_back(items_[i].size);
+  }
   if (sizes_.size() > few_sizes) {
     sorted = given;
     std::stable_sort(sorted.begin(), sorted.end(),
@@ -358,7 +345,7 @@ void Packer::search(uint64_t steps, Packing& out) {
 void Packer::try_again(Packing& out) {
   // A part in this many of the bound: less would not pay for the time. In large graphs more is left to gain.
   constexpr size_t many_items = 4096;
-  const uint64_t much = items_.size() < many_items ? 12 : 16;
+  const uint64_t much = items_.size() < many_items ? 11 : 16;
   const auto worth_it = [&] { return out.size - out.lower_bound > out.lower_bound / much; };
   if (!worth_it()) return;
   const auto count = static_cast<uint32_t>(items_.size());

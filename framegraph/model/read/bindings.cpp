@@ -251,9 +251,10 @@ private:
     else if (resource.origin == Origin::imported || resource.exported)
       problem = fmt::format("'{}' is bound by the host, as a whole", resource.name);
     else if (resource.mips != 0 && last_mip >= resource.mips)
-      problem = fmt::format("'{}' has {} mips", resource.name, resource.mips);
+      problem = fmt::format("'{}' has {} mip{}", resource.name, resource.mips, resource.mips == 1 ? "" : "s");
     else if (last_layer >= resource.layers)
-      problem = fmt::format("'{}' has {} layers", resource.name, resource.layers);
+      problem =
+          fmt::format("'{}' has {} layer{}", resource.name, resource.layers, resource.layers == 1 ? "" : "s");
     if (problem.empty()) return true;
     reader_
         .error(DiagnosticId::bad_part, found.where, fmt::format("{} names '{}', but {}", what, text, problem))

@@ -75,6 +75,14 @@ VkImageMemoryBarrier2 image_barrier(VkImage image, VkImageAspectFlags aspects, c
   return out;
 }
 
+// What of its image a host binds.
+VkImageMemoryBarrier2 host_barrier(const HostImage& host, VkImageAspectFlags aspects, const Scopes& s) {
+  VkImageMemoryBarrier2 out = image_barrier(host.image, aspects, s);
+  out.subresourceRange.baseArrayLayer = host.first_layer;
+  if (host.layers > 0) out.subresourceRange.layerCount = host.layers;
+  return out;
+}
+
 VkBufferMemoryBarrier2 buffer_barrier(VkBuffer buffer, const Scopes& s) {
   VkBufferMemoryBarrier2 out{};
   out.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
@@ -96,7 +104,7 @@ void submit_batch(const State& state, VkCommandBuffer commands, uint32_t images,
   info.pImageMemoryBarriers = state.image_barriers.data();
   info.bufferMemoryBarrierCount = buffers;
   info.pBufferMemoryBarriers = state.buffer_barriers.data();
-  state.device->vk.vkCmdPipelineBarrier2(commands, &info);
+  state.commands->vkCmdPipelineBarrier2(commands, &info);
 }
 
 VkImageAspectFlags aspects_of_slot(const State& state, size_t slot) {
@@ -122,7 +130,7 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     const Scopes s = scopes_of(*state.device, barrier, host);
     if (nothing_to_do(barrier, s)) continue;
     if (host_owned) {
-      state.image_barriers[images++] = image_barrier(host->image, barrier_aspects(resource.format), s);
+      state.image_barriers[images++] = host_barrier(*host, barrier_aspects(resource.format), s);
       continue;
     }
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
@@ -164,7 +172,7 @@ void global_barrier(const State& state, VkCommandBuffer commands, const VkMemory
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.memoryBarrierCount = 1;
   info.pMemoryBarriers = &barrier;
-  state.device->vk.vkCmdPipelineBarrier2(commands, &info);
+  state.commands->vkCmdPipelineBarrier2(commands, &info);
 }
 
 } // namespace
@@ -197,7 +205,7 @@ void record_acquires(State& state, const FrameInput& frame) noexcept {
     if (!foreign(*state.device, host.before.queue_family)) continue;
     const Scopes s{0, all_commands, 0, all_memory, host.before.layout, host.before.layout};
     VkImageMemoryBarrier2& out = state.image_barriers[images++];
-    out = image_barrier(host.image, aspects_of_slot(state, slot), s);
+    out = host_barrier(host, aspects_of_slot(state, slot), s);
     out.srcQueueFamilyIndex = host.before.queue_family;
     out.dstQueueFamilyIndex = state.device->queue_family;
   }
@@ -212,7 +220,7 @@ void record_releases(State& state, const FrameInput& frame) noexcept {
     if (!foreign(*state.device, host.after.queue_family)) continue;
     const Scopes s{all_commands, 0, VK_ACCESS_2_MEMORY_WRITE_BIT, 0, host.after.layout, host.after.layout};
     VkImageMemoryBarrier2& out = state.image_barriers[images++];
-    out = image_barrier(host.image, aspects_of_slot(state, slot), s);
+    out = host_barrier(host, aspects_of_slot(state, slot), s);
     out.srcQueueFamilyIndex = state.device->queue_family;
     out.dstQueueFamilyIndex = host.after.queue_family;
   }

@@ -90,7 +90,7 @@ Error check_passes(State& state, const KindRegistry& kinds) {
       return argument(fmt::format("kind '{}' has {} ports, the port mask holds {}", kind.name,
                                   kind.ports.size(), mask_bits));
     if (pass.kernel != no_index) {
-      const Kernel& kernel = state.kernels[pass.kernel];
+      const Kernel& kernel = *state.kernels[pass.kernel];
       if (kernel.dispatch == DispatchShape::over_tiles && pass.ports[kernel.indirect_port].access == no_index)
         return argument(fmt::format("pass '{}' dispatches over tiles, but its port '{}' is not bound",
                                     pass.name, kind.ports[kernel.indirect_port].name));
@@ -147,8 +147,8 @@ void reserve_for_recording(State& state) {
   for (size_t p = 0; p < state.passes.size(); ++p)
     largest =
         std::max(largest, state.plan.passes[p].barrier_count + state.passes[p].writable_stand_ins.size());
-  for (const Kernel& kernel : state.kernels)
-    most_settings = std::max<size_t>(most_settings, kernel.push_bytes / sizeof(uint32_t));
+  for (const auto& kernel : state.kernels)
+    most_settings = std::max<size_t>(most_settings, kernel->push_bytes / sizeof(uint32_t));
   state.image_barriers.resize(largest);
   state.buffer_barriers.resize(largest);
   state.push_constants.resize(most_settings);
@@ -160,7 +160,6 @@ void reserve_for_recording(State& state) {
 
 Executor::State::~State() {
   if (device == nullptr) return;
-  destroy_kernels(*this);
   destroy_descriptors(*this);
   destroy_environment(*this);
   destroy_stand_ins(*this);
@@ -170,9 +169,9 @@ Executor::State::~State() {
 
 Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& executor) {
   if (Error error = check_input(input)) return error;
-  auto state = std::make_unique<State>();
+  auto state = std::make_unique<State>(
+      input.kept_plan != nullptr ? input.kept_plan : std::make_shared<const Plan>(*input.plan));
   state->device = input.device;
-  state->plan = *input.plan;
   state->frames_in_flight = input.frames_in_flight;
   state->poison = input.poison;
   state->heap_pool = input.heap_pool;
@@ -181,7 +180,10 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   make_slots(*state);
   make_histories(*state, input);
   if (Error error = create_environment(*state, input.environment)) return error;
-  if (Error error = create_kernels(*state, input)) return error;
+  std::vector<std::shared_ptr<const Kernel>> relatives;
+  for (const Executor* relative : input.relatives)
+    relatives.insert(relatives.end(), relative->state_->kernels.begin(), relative->state_->kernels.end());
+  if (Error error = create_kernels(*state, input, relatives)) return error;
   if (Error error = check_passes(*state, *input.kinds)) return error;
   if (Error error = check_host_passes(*state, input)) return error;
   if (Error error = create_memory(*state, *input.graph)) return error;
@@ -198,6 +200,15 @@ Executor::~Executor() = default;
 
 const Plan& Executor::plan() const noexcept {
   return state_->plan;
+}
+
+MemoryRequest Executor::heap_request(uint32_t index) const noexcept {
+  return index < state_->heaps.size() && state_->heaps[index].owned ? state_->heaps[index].request
+                                                                    : MemoryRequest{};
+}
+
+bool Executor::saw_lost_device() const noexcept {
+  return state_->saw_lost_device;
 }
 
 uint64_t Executor::constant_bytes() const noexcept {

@@ -12,7 +12,7 @@ void list_ports(State& state, const KindRegistry& kinds) {
   for (uint32_t p = 0; p < state.passes.size(); ++p) {
     Pass& pass = state.passes[p];
     if (pass.kernel == no_index) continue;
-    const Kernel& kernel = state.kernels[pass.kernel];
+    const Kernel& kernel = *state.kernels[pass.kernel];
     for (uint32_t port = 0; port < kernel.ports.size(); ++port) {
       if (!kernel.ports[port].type) continue;
       PortWrite write;
@@ -42,7 +42,7 @@ void prepare_writes(State& state) {
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstBinding = port.port;
     write.descriptorCount = 1;
-    write.descriptorType = *state.kernels[pass.kernel].ports[port.port].type;
+    write.descriptorType = *state.kernels[pass.kernel]->ports[port.port].type;
     write.pImageInfo = &d.images[i];
     write.pBufferInfo = &d.buffers[i];
     d.buffers[i] = {VK_NULL_HANDLE, 0, VK_WHOLE_SIZE};
@@ -64,7 +64,7 @@ Error create_sets(State& state) {
   std::vector<VkDescriptorSetLayout> layouts;
   for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
     for (const Pass& pass : state.passes)
-      if (pass.kernel != no_index) layouts.push_back(state.kernels[pass.kernel].set_layout);
+      if (pass.kernel != no_index) layouts.push_back(state.kernels[pass.kernel]->set_layout);
   if (layouts.empty()) return {};
   VkDescriptorPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;

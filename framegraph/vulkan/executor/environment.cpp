@@ -85,18 +85,16 @@ Error create_buffer(State& state) {
   device.vk.vkGetBufferMemoryRequirements(device.device, environment.buffer, &needs);
   constexpr VkMemoryPropertyFlags visible =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  if (Error error = allocate(device, needs, visible, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
-                             "environment buffer", environment.memory))
-    return error;
+  const MemoryRequest request{
+      MemoryPurpose::constants,           needs.memoryTypeBits, needs.size, needs.alignment, visible,
+      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
+  if (Error error = take_memory(device, request, "environment buffer", environment.memory)) return error;
   const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, environment.buffer,
-                                    environment.memory, 0};
+                                    environment.memory.memory, environment.memory.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindBufferMemory2", "environment buffer");
-  void* mapped = nullptr;
-  result = device.vk.vkMapMemory(device.device, environment.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
-  if (result != VK_SUCCESS) return call_error(result, "vkMapMemory", "environment buffer");
-  environment.mapped = static_cast<std::byte*>(mapped);
-  std::memset(mapped, 0, environment.total_bytes);
+  environment.mapped = static_cast<std::byte*>(environment.memory.mapped);
+  std::memset(environment.mapped, 0, environment.total_bytes);
   return {};
 }
 
@@ -208,7 +206,7 @@ void destroy_environment(State& state) {
   device.vk.vkDestroyDescriptorSetLayout(device.device, environment.set_layout, device.allocator);
   device.vk.vkDestroySampler(device.device, environment.sampler, device.allocator);
   device.vk.vkDestroyBuffer(device.device, environment.buffer, device.allocator);
-  device.vk.vkFreeMemory(device.device, environment.memory, device.allocator); // unmaps
+  give_back_memory(device, environment.memory);
 }
 
 void clear_counters(State& state, uint32_t frame_slot) noexcept {

@@ -86,7 +86,11 @@ void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectan
   call.settings = {state.host_settings.data(), pass.host_settings};
   call.rectangle = rectangle;
   call.frame_index = frame.frame_index;
-  state.host_pass(state.host_pass_user, call);
+  call.view_user = frame.view_user;
+  if (frame.host_pass != nullptr)
+    frame.host_pass(frame.host_pass_user, call);
+  else
+    state.host_pass(state.host_pass_user, call);
 }
 
 } // namespace dermis::vulkan

@@ -169,28 +169,32 @@ Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel&
 
 } // namespace
 
-Error create_kernels(State& state, const ExecutorInput& input) {
+Kernel::~Kernel() {
+  device->vk.vkDestroyPipeline(device->device, pipeline, device->allocator);
+  device->vk.vkDestroyPipelineLayout(device->device, layout, device->allocator);
+  device->vk.vkDestroyDescriptorSetLayout(device->device, set_layout, device->allocator);
+}
+
+Error create_kernels(State& state, const ExecutorInput& input,
+                     std::span<const std::shared_ptr<const Kernel>> relatives) {
   for (uint32_t p = 0; p < state.passes.size(); ++p) {
     const KindId kind = state.plan.passes[p].kind;
     const DispatchShape dispatch = (*input.kinds)[kind].dispatch;
     if (dispatch == DispatchShape::none || dispatch == DispatchShape::host) continue;
-    const auto existing = std::find_if(state.kernels.begin(), state.kernels.end(),
-                                       [&](const Kernel& kernel) { return kernel.kind == kind; });
+    const auto runs = [&](const auto& kernel) { return kernel->kind == kind; };
+    const auto existing = std::find_if(state.kernels.begin(), state.kernels.end(), runs);
     state.passes[p].kernel = static_cast<uint32_t>(existing - state.kernels.begin());
     if (existing != state.kernels.end()) continue;
-    Kernel& added = state.kernels.emplace_back();
-    if (Error error = create_kernel(state, input, kind, added)) return error;
+    const auto relative = std::find_if(relatives.begin(), relatives.end(), runs);
+    if (relative != relatives.end()) {
+      state.kernels.push_back(*relative);
+      continue;
+    }
+    const auto added = std::make_shared<Kernel>(*state.device);
+    if (Error error = create_kernel(state, input, kind, *added)) return error;
+    state.kernels.push_back(added);
   }
   return {};
-}
-
-void destroy_kernels(State& state) {
-  const Device& device = *state.device;
-  for (const Kernel& kernel : state.kernels) {
-    device.vk.vkDestroyPipeline(device.device, kernel.pipeline, device.allocator);
-    device.vk.vkDestroyPipelineLayout(device.device, kernel.layout, device.allocator);
-    device.vk.vkDestroyDescriptorSetLayout(device.device, kernel.set_layout, device.allocator);
-  }
 }
 
 } // namespace dermis::vulkan

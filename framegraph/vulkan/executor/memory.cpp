@@ -7,39 +7,27 @@
 namespace dermis::vulkan {
 namespace {
 
-// Types that must not be chosen for ordinary memory, whatever their other properties.
-constexpr VkMemoryPropertyFlags special_memory =
-    VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
-    VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
-
-Error allocate_type(const Device& device, uint64_t bytes, uint32_t type, const std::string& thing,
-                    VkDeviceMemory& memory) {
-  VkMemoryAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-  info.allocationSize = bytes;
-  info.memoryTypeIndex = type;
-  const VkResult result = device.vk.vkAllocateMemory(device.device, &info, device.allocator, &memory);
-  if (result == VK_SUCCESS) return {};
-  memory = VK_NULL_HANDLE;
-  return call_error(result, "vkAllocateMemory",
-                    fmt::format("{}, {} bytes of memory type {}", thing, bytes, type));
-}
-
 Error create_heaps(State& state) {
   state.heaps.assign(state.plan.heaps.size(), {});
-  for (size_t h = 0; h < state.heaps.size(); ++h) {
+  for (uint32_t h = 0; h < state.heaps.size(); ++h) {
     const Heap& heap = state.plan.heaps[h];
     HeapMemory& memory = state.heaps[h];
     if (!heap.persistent && state.heap_pool != nullptr) {
-      memory.memory = state.heap_pool->find(heap.memory_type_bits);
-      if (memory.memory == VK_NULL_HANDLE)
+      const HeapPool::Block* shared = state.heap_pool->find(heap.memory_type_bits);
+      if (shared == nullptr)
         return {ErrorKind::argument, VK_SUCCESS, "the heap pool was made without this plan"};
+      memory.block = shared->memory;
       continue;
     }
     memory.owned = true;
+    memory.request = {heap.persistent ? MemoryPurpose::history : MemoryPurpose::transient,
+                      heap.memory_type_bits,
+                      heap.size,
+                      heap_alignment(*state.device, state.plan, h),
+                      0,
+                      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
     const std::string thing = fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
-    if (Error error = allocate_heap(*state.device, heap.memory_type_bits, heap.size, thing, memory.memory))
-      return error;
+    if (Error error = take_memory(*state.device, memory.request, thing, memory.block)) return error;
   }
   return {};
 }
@@ -90,8 +78,9 @@ Error create_image(State& state, const PlanResource& resource, const Placement& 
   VkMemoryRequirements needs{};
   device.vk.vkGetImageMemoryRequirements(device.device, instance.image, &needs);
   if (Error error = check_needs(state, placement, needs, name)) return error;
+  const HeapMemory& heap = state.heaps[placement.heap];
   const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, instance.image,
-                                   state.heaps[placement.heap].memory, placement.offset};
+                                   heap.block.memory, heap.block.offset + placement.offset};
   result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", name);
   constexpr uint32_t viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
@@ -145,43 +134,14 @@ Error create_buffer(State& state, const PlanResource& resource, const Placement&
   VkMemoryRequirements needs{};
   device.vk.vkGetBufferMemoryRequirements(device.device, instance.buffer, &needs);
   if (Error error = check_needs(state, placement, needs, name)) return error;
+  const HeapMemory& heap = state.heaps[placement.heap];
   const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, instance.buffer,
-                                    state.heaps[placement.heap].memory, placement.offset};
+                                    heap.block.memory, heap.block.offset + placement.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
   return call_error(result, "vkBindBufferMemory2", name);
 }
 
 } // namespace
-
-std::optional<uint32_t> choose_memory_type(const Device& device, uint32_t allowed,
-                                           VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred) {
-  std::optional<uint32_t> fallback;
-  for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
-    const VkMemoryPropertyFlags flags = device.memory.memoryTypes[i].propertyFlags;
-    if ((allowed >> i & 1u) == 0 || (flags & required) != required || (flags & special_memory) != 0) continue;
-    if ((flags & preferred) == preferred) return i;
-    if (!fallback) fallback = i;
-  }
-  return fallback;
-}
-
-Error allocate(const Device& device, const VkMemoryRequirements& needs, VkMemoryPropertyFlags required,
-               VkMemoryPropertyFlags preferred, const std::string& thing, VkDeviceMemory& memory) {
-  const auto type = choose_memory_type(device, needs.memoryTypeBits, required, preferred);
-  if (!type) return {ErrorKind::unsupported, VK_SUCCESS, thing + ": the device has no memory type for it"};
-  return allocate_type(device, needs.size, *type, thing, memory);
-}
-
-Error allocate_heap(const Device& device, uint32_t memory_type_bits, uint64_t bytes, const std::string& thing,
-                    VkDeviceMemory& memory) {
-  const auto type = choose_memory_type(device, memory_type_bits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-  if (!type)
-    return {ErrorKind::unsupported, VK_SUCCESS,
-            fmt::format("{}: the device has no memory type among {:#x}", thing, memory_type_bits)};
-  if (Error error = allocate_type(device, bytes, *type, thing, memory)) return error;
-  name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(memory), thing.c_str());
-  return {};
-}
 
 Error create_memory(State& state, const Graph& graph) {
   if (Error error = create_heaps(state)) return error;
@@ -213,7 +173,7 @@ void destroy_memory(State& state) {
     device.vk.vkDestroyBuffer(device.device, instance.buffer, device.allocator);
   }
   for (const HeapMemory& heap : state.heaps)
-    if (heap.owned) device.vk.vkFreeMemory(device.device, heap.memory, device.allocator);
+    if (heap.owned) give_back_memory(device, heap.block);
 }
 
 } // namespace dermis::vulkan

@@ -75,8 +75,8 @@ void push_settings(State& state, const FrameInput& frame, const PlanPass& planne
                                   ? std::bit_cast<uint32_t>(static_cast<float>(value.real))
                                   : static_cast<uint32_t>(static_cast<int32_t>(value.integer));
   }
-  state.device->vk.vkCmdPushConstants(frame.command_buffer, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                                      kernel.push_bytes, state.push_constants.data());
+  state.commands->vkCmdPushConstants(frame.command_buffer, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                                     kernel.push_bytes, state.push_constants.data());
 }
 
 VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& kernel) {
@@ -108,7 +108,7 @@ VkExtent2D first_written_size(const State& state, const Pass& pass) { // zero: n
 
 void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
               const Kernel& kernel, const Rectangle& r) {
-  const FunctionTable& vk = state.device->vk;
+  const FunctionTable& vk = *state.commands;
   const VkCommandBuffer commands = frame.command_buffer;
   const uint32_t across = tiles_along(r.width), down = tiles_along(r.height);
   switch (kernel.dispatch) {
@@ -144,9 +144,9 @@ void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, co
 
 void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size_t p,
                 const Rectangle& rectangle) {
-  const FunctionTable& vk = state.device->vk;
+  const FunctionTable& vk = *state.commands;
   const Pass& pass = state.passes[p];
-  const Kernel& kernel = state.kernels[pass.kernel];
+  const Kernel& kernel = *state.kernels[pass.kernel];
   if (kernel.counts) record_counters_in_order(state, frame);
   vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   const bool environment = state.environment.set_layout != VK_NULL_HANDLE;
@@ -159,7 +159,7 @@ void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size
 }
 
 void run_clear(State& state, const FrameInput& frame, size_t p) {
-  const FunctionTable& vk = state.device->vk;
+  const FunctionTable& vk = *state.commands;
   const PlanPass& planned = state.plan.passes[p];
   const VkClearColorValue zero{};
   for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
@@ -173,10 +173,12 @@ void run_clear(State& state, const FrameInput& frame, size_t p) {
       vk.vkCmdFillBuffer(frame.command_buffer, instance.buffer, 0, VK_WHOLE_SIZE, 0);
       continue;
     }
-    const VkImage image =
-        host_owned ? frame.images[static_cast<size_t>(resource.slot)].image : instance.image;
+    const HostImage* host = host_owned ? &frame.images[static_cast<size_t>(resource.slot)] : nullptr;
+    const VkImage image = host_owned ? host->image : instance.image;
     VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
                                   VK_REMAINING_ARRAY_LAYERS};
+    if (host_owned) range.baseArrayLayer = host->first_layer;
+    if (host_owned && host->layers > 0) range.layerCount = host->layers;
     if (access.range != resource.whole())
       range = {VK_IMAGE_ASPECT_COLOR_BIT, access.range.first_mip, access.range.mips, access.range.first_layer,
                access.range.layers};
@@ -199,14 +201,19 @@ void run_pass(State& state, const FrameInput& frame, uint32_t frame_slot, size_t
     run_kernel(state, frame, frame_slot, p, rectangle);
 }
 
-void begin_label(const Device& device, VkCommandBuffer commands, const char* name) {
-  if (!device.labels) return;
-  const VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name, {0, 0, 0, 0}};
-  device.vk.vkCmdBeginDebugUtilsLabelEXT(commands, &label);
+// Who takes the commands himself learns the passes by their labels.
+bool labelled(const State& state) {
+  return state.device->labels || state.commands != &state.device->vk;
 }
 
-void end_label(const Device& device, VkCommandBuffer commands) {
-  if (device.labels) device.vk.vkCmdEndDebugUtilsLabelEXT(commands);
+void begin_label(const State& state, VkCommandBuffer commands, const char* name) {
+  if (!labelled(state)) return;
+  const VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name, {0, 0, 0, 0}};
+  state.commands->vkCmdBeginDebugUtilsLabelEXT(commands, &label);
+}
+
+void end_label(const State& state, VkCommandBuffer commands) {
+  if (labelled(state)) state.commands->vkCmdEndDebugUtilsLabelEXT(commands);
 }
 
 void finish_frame(State& state, const FrameInput& frame, uint32_t frame_slot, const Rectangle& rectangle) {
@@ -233,7 +240,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
                                   ? Rectangle{0, 0, state.plan.view_width, state.plan.view_height}
                                   : frame.rectangle;
   if (const RecordResult refused = check_frame(state, frame, rectangle)) return refused;
-  const Device& device = *state.device;
+  state.commands = frame.commands == nullptr ? &state.device->vk : frame.commands;
   const VkCommandBuffer commands = frame.command_buffer;
   const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);
   remember_before_frame(state, frame_slot);
@@ -251,11 +258,11 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   record_initialisation(state, commands);
   for (size_t p = 0; p < state.passes.size(); ++p) {
     const PlanPass& planned = state.plan.passes[p];
-    begin_label(device, commands, state.passes[p].name.c_str());
+    begin_label(state, commands, state.passes[p].name.c_str());
     record_barriers(state, frame, planned.first_barrier, planned.barrier_count,
                     state.passes[p].writable_stand_ins);
     if (!is_left_out(frame, p)) run_pass(state, frame, frame_slot, p, rectangle);
-    end_label(device, commands);
+    end_label(state, commands);
     write_timestamp(state, commands, frame_slot, static_cast<uint32_t>(p) + 1);
   }
   record_barriers(state, frame, state.plan.first_final_barrier, state.plan.final_barrier_count, {});

@@ -8,6 +8,11 @@ namespace {
 
 constexpr uint64_t stand_in_buffer_bytes = 16; // the largest element a buffer block can start with
 
+MemoryRequest request_of(const VkMemoryRequirements& needs) {
+  return {MemoryPurpose::constants,           needs.memoryTypeBits, needs.size, needs.alignment, 0,
+          VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
+}
+
 Error create_image(const Device& device, StandIn& stand_in) {
   VkImageCreateInfo info = image_create_info({});
   info.format = stand_in.format;
@@ -21,11 +26,9 @@ Error create_image(const Device& device, StandIn& stand_in) {
   name_object(device, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(stand_in.image), "stand-in image");
   VkMemoryRequirements needs{};
   device.vk.vkGetImageMemoryRequirements(device.device, stand_in.image, &needs);
-  if (Error error =
-          allocate(device, needs, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "stand-in image", stand_in.memory))
-    return error;
+  if (Error error = take_memory(device, request_of(needs), "stand-in image", stand_in.memory)) return error;
   const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, stand_in.image,
-                                   stand_in.memory, 0};
+                                   stand_in.memory.memory, stand_in.memory.offset};
   result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", "stand-in image");
   VkImageViewCreateInfo view{};
@@ -49,11 +52,9 @@ Error create_buffer(const Device& device, StandIn& stand_in) {
   }
   VkMemoryRequirements needs{};
   device.vk.vkGetBufferMemoryRequirements(device.device, stand_in.buffer, &needs);
-  if (Error error =
-          allocate(device, needs, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "stand-in buffer", stand_in.memory))
-    return error;
+  if (Error error = take_memory(device, request_of(needs), "stand-in buffer", stand_in.memory)) return error;
   const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, stand_in.buffer,
-                                    stand_in.memory, 0};
+                                    stand_in.memory.memory, stand_in.memory.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
   return call_error(result, "vkBindBufferMemory2", "stand-in buffer");
 }
@@ -88,7 +89,7 @@ void destroy_stand_ins(State& state) {
     device.vk.vkDestroyImageView(device.device, stand_in.view, device.allocator);
     device.vk.vkDestroyImage(device.device, stand_in.image, device.allocator);
     device.vk.vkDestroyBuffer(device.device, stand_in.buffer, device.allocator);
-    device.vk.vkFreeMemory(device.device, stand_in.memory, device.allocator);
+    give_back_memory(device, stand_in.memory);
   }
 }
 

@@ -2,6 +2,7 @@
 // What an Executor keeps, part by part, and the functions that make and use the parts. Internal to
 // vulkan/executor/. Each part frees itself from its destroy function, whatever of it exists.
 
+#include "framegraph/vulkan/device_memory.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/heap_pool.hpp"
 
@@ -13,7 +14,8 @@ inline constexpr uint32_t no_index = 0xffffffffu;
 inline constexpr uint64_t indirect_entry_bytes = 16; // group counts x, y, z and one more word
 
 struct HeapMemory { // of a plan heap
-  VkDeviceMemory memory = VK_NULL_HANDLE;
+  MemoryRequest request;
+  MemoryBlock block;
   bool owned = false; // false: of the pool
 };
 
@@ -36,7 +38,7 @@ struct StandIn {                         // what an unbound optional port sees: 
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
+  MemoryBlock memory;
 };
 
 struct KernelPort {
@@ -44,7 +46,8 @@ struct KernelPort {
   VkFormat stand_in = VK_FORMAT_UNDEFINED; // format of the image an unbound port would see
 };
 
-struct Kernel { // one per pass kind of the plan that dispatches
+struct Kernel { // one per pass kind that dispatches; shared by the executors that run it
+  const Device* device = nullptr;
   KindId kind;
   DispatchShape dispatch = DispatchShape::none;
   uint32_t indirect_port = no_index;
@@ -55,6 +58,11 @@ struct Kernel { // one per pass kind of the plan that dispatches
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
   VkPipeline pipeline = VK_NULL_HANDLE;
+
+  explicit Kernel(const Device& owner) : device(&owner) {}
+  ~Kernel();
+  Kernel(const Kernel&) = delete;
+  Kernel& operator=(const Kernel&) = delete;
 };
 
 struct Environment {             // descriptor set 1
@@ -64,7 +72,7 @@ struct Environment {             // descriptor set 1
   uint64_t counters_offset = 0, counters_stride = 0;
   uint64_t total_bytes = 0;
   VkBuffer buffer = VK_NULL_HANDLE;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
+  MemoryBlock memory;
   std::byte* mapped = nullptr; // the constants of frame slot 0 come first
   VkSampler sampler = VK_NULL_HANDLE;
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE; // null: no environment
@@ -134,7 +142,8 @@ struct BeforeFrame { // what recording the last frame changed: see Executor::dis
 
 struct Executor::State {
   const Device* device = nullptr;
-  Plan plan;
+  std::shared_ptr<const Plan> shared_plan;
+  const Plan& plan;
   uint32_t frames_in_flight = 1;
   const HeapPool* heap_pool = nullptr; // or null
   std::vector<HeapMemory> heaps;
@@ -145,7 +154,7 @@ struct Executor::State {
   std::vector<StandIn> stand_ins;
   bool stand_ins_ready = false;
   bool poison = false; // ExecutorInput::poison
-  std::vector<Kernel> kernels;
+  std::vector<std::shared_ptr<const Kernel>> kernels;
   Environment environment;
   Descriptors descriptors;
   std::vector<Pass> passes;
@@ -153,9 +162,11 @@ struct Executor::State {
   std::vector<uint32_t>
       slot_resource; // by slot: into Plan::resources, no_index when the host does not bind it
   Timestamps timestamps;
+  bool saw_lost_device = false;
   std::vector<VkImageMemoryBarrier2> image_barriers; // room for the largest batch
   std::vector<VkBufferMemoryBarrier2> buffer_barriers;
   std::vector<uint32_t> push_constants;
+  const FunctionTable* commands = nullptr; // that the frame is recorded with
   HostPassFunction host_pass = nullptr;
   void* host_pass_user = nullptr;
   std::vector<HostPort> host_ports; // room for the largest call
@@ -166,7 +177,7 @@ struct Executor::State {
   Rectangle previous_rectangle;
   BeforeFrame before_frame;
 
-  State() = default;
+  explicit State(std::shared_ptr<const Plan> from) : shared_plan(std::move(from)), plan(*shared_plan) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State();
@@ -175,16 +186,6 @@ struct Executor::State {
 using State = Executor::State;
 
 // ---- memory.cpp
-// Index of the best type among `allowed`: all of `required`, and of those the first with `preferred`;
-// nullopt: none.
-std::optional<uint32_t> choose_memory_type(const Device& device, uint32_t allowed,
-                                           VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred);
-// Allocates what `needs` says, of a type with `required` and if possible `preferred`.
-Error allocate(const Device& device, const VkMemoryRequirements& needs, VkMemoryPropertyFlags required,
-               VkMemoryPropertyFlags preferred, const std::string& thing, VkDeviceMemory& memory);
-// A block of one of these memory types, on the device if it can be.
-Error allocate_heap(const Device& device, uint32_t memory_type_bits, uint64_t bytes, const std::string& thing,
-                    VkDeviceMemory& memory);
 Error create_memory(State& state, const Graph& graph); // heaps, images, buffers, views
 void destroy_memory(State& state);
 
@@ -200,8 +201,9 @@ void clear_counters(State& state, uint32_t frame_slot) noexcept;
 void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept;
 
 // ---- kernels.cpp
-Error create_kernels(State& state, const ExecutorInput& input);
-void destroy_kernels(State& state);
+// `relatives`: kernels that may be used again.
+Error create_kernels(State& state, const ExecutorInput& input,
+                     std::span<const std::shared_ptr<const Kernel>> relatives);
 
 // ---- history.cpp
 void remember_before_frame(State& state, uint32_t frame_slot) noexcept;

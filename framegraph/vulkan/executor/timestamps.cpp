@@ -23,15 +23,15 @@ Error create_timestamps(State& state) {
 void begin_timestamps(State& state, VkCommandBuffer commands, uint32_t frame_slot) noexcept {
   Timestamps& t = state.timestamps;
   if (t.pool == VK_NULL_HANDLE) return;
-  state.device->vk.vkCmdResetQueryPool(commands, t.pool, frame_slot * t.per_frame, t.per_frame);
+  state.commands->vkCmdResetQueryPool(commands, t.pool, frame_slot * t.per_frame, t.per_frame);
   write_timestamp(state, commands, frame_slot, 0);
 }
 
 void write_timestamp(State& state, VkCommandBuffer commands, uint32_t frame_slot, uint32_t index) noexcept {
   const Timestamps& t = state.timestamps;
   if (t.pool == VK_NULL_HANDLE) return;
-  state.device->vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, t.pool,
-                                        frame_slot * t.per_frame + index);
+  state.commands->vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, t.pool,
+                                       frame_slot * t.per_frame + index);
 }
 
 bool Executor::read_timings(uint64_t completed_frame_index, uint64_t& frame_index,
@@ -50,6 +50,7 @@ bool Executor::read_timings(uint64_t completed_frame_index, uint64_t& frame_inde
   const VkResult result = device.vk.vkGetQueryPoolResults(
       device.device, t.pool, newest * t.per_frame, t.per_frame, t.per_frame * sizeof(uint64_t),
       t.ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT);
+  if (result == VK_ERROR_DEVICE_LOST) state.saw_lost_device = true;
   if (result != VK_SUCCESS) return false;
   constexpr uint32_t all_bits = 64;
   const uint64_t mask = device.timestamp_valid_bits >= all_bits

@@ -55,5 +55,6 @@ void add_schema_verb(CLI::App& app, Invocation& invocation);
 void add_doctor_verb(CLI::App& app, Invocation& invocation);
 void add_picture_verbs(CLI::App& app, Invocation& invocation);
 void add_bench_verbs(CLI::App& app, Invocation& invocation);
+void add_shell_verbs(CLI::App& app, Invocation& invocation);
 
 } // namespace dermis::tools

@@ -72,6 +72,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
   add_doctor_verb(app, invocation);
   add_picture_verbs(app, invocation);
   add_bench_verbs(app, invocation);
+  add_shell_verbs(app, invocation);
 
   for (int i = 0; i < argc; ++i)
     invocation.session.command += (i == 0 ? "" : " ") + std::string(argv[i]);

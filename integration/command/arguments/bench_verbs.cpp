@@ -33,8 +33,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--graphs", options.graphs, "Measure the graph files of a folder instead")
             ->type_name("DIR");
         verb.add_flag("--optimize", options.optimize, "Also the packing level that takes seconds a graph");
-        verb.add_option("--json", options.json, "File for the rows, - for standard output")
-            ->type_name("FILE");
+        add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);
   add_verb<BenchRecordOptions>(
@@ -46,10 +45,24 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--profile", options.profile, "Profile of id 1 [configs/profiles/skin.json]")
             ->type_name("FILE");
         add_size(verb, options.size);
-        verb.add_option("--json", options.json, "File for the rows, - for standard output")
-            ->type_name("FILE");
+        add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);
+  add_verb<BenchAllOptions>(
+      bench, invocation, "all",
+      "Every suite, with pages and an index of them; a run that was stopped goes on",
+      "dermis bench all --out build/bench", bench_all, [](CLI::App& verb, BenchAllOptions& options) {
+        verb.add_option("--out,-o", options.out, "Folder for pages and rows")->required()->type_name("DIR");
+        verb.add_option("--suites", options.suites,
+                        fmt::format("Only these, separated by commas: {}", bench_suite_names()))
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--head", options.head, "Folder of the head scan, for the suites that can show it")
+            ->type_name("DIR");
+        verb.add_flag("--again", options.again,
+                      "Measure also what an earlier run into this folder has measured");
+        add_cache(verb, options.cache);
+      });
   add_verb<BenchErrorTimeOptions>(
       bench, invocation, "error-time", "Run time against error of every technique at every still scene",
       "dermis bench error-time --size 640x360 --json build/error_time.json --html build/error_time.html",

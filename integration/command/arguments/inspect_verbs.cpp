@@ -69,13 +69,26 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
       });
   add_verb<GraphOptions>(
-      app, invocation, "graph", "Write the graph and its plan as DOT (or JSON with --json)",
-      "dermis graph configs/graphs/burley.json | dot -Tsvg > burley.svg", graph,
-      [](CLI::App& verb, GraphOptions& options) {
+      app, invocation, "graph", "Write the graph and its plan as a page, as DOT, or as JSON with --json",
+      "dermis graph configs/graphs/skin.json --html skin.html\n"
+      "  dermis graph configs/graphs/burley.json | dot -Tsvg > burley.svg",
+      graph, [](CLI::App& verb, GraphOptions& options) {
         verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
         verb.add_flag_callback(
                 "--dot", [] {}, "DOT for Graphviz; the default")
             ->excludes("--json");
+        CLI::Option* html =
+            verb.add_option(
+                    "--html", options.html,
+                    "One page to open in a browser, offline: graph, lifetimes, memory, barriers, and the "
+                    "plans of up to 64 combinations of choices")
+                ->excludes("--json")
+                ->excludes("--dot")
+                ->type_name("FILE");
+        verb.add_option("--frame", options.frame,
+                        "Answer of render --json: its times and tiles go into the page")
+            ->needs(html)
+            ->type_name("FILE");
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
@@ -83,6 +96,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_parts(verb, options.parts);
         add_kinds(verb, options.parts);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
+            ->excludes(html)
             ->type_name("FILE");
       });
   add_verb<TestOptions>(

@@ -387,7 +387,7 @@ void fill_plots(const Bench& bench, Report& report) {
       if (one.subject != s || !(one.error.figures.rmse > 0)) continue;
       const TechniqueRequest& request = bench.techniques[one.technique]->request();
       if (plot.series.empty() || plot.series.back().name != request.technique)
-        plot.series.push_back({request.technique, {}});
+        plot.series.push_back({request.technique, {}, is_baseline(request.technique)});
       const double ms = spread_of(one.device_ms).median;
       plot.series.back().points.push_back({ms, one.error.figures.rmse,
                                            fmt::format("{} {}: {:.2f} ms, RMSE {:.5f}", request.technique,

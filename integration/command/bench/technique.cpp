@@ -66,7 +66,7 @@ demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHos
   return made;
 }
 
-demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoice& slots) {
+demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoice& slots, bool follows) {
   DeviceGraphRequest wanted;
   wanted.graph_name = request_.graph;
   wanted.graph_text = text_;
@@ -78,19 +78,23 @@ demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoic
   wanted.unbound = slots.unbound;
   for (const auto& [slot, format] : slots.formats)
     wanted.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
-  made_anew_ = device_ == nullptr || wanted.width != made_for_.width || wanted.height != made_for_.height ||
-               wanted.unbound != made_for_.unbound || wanted.formats != made_for_.formats;
+  const bool same = device_ != nullptr && same_but_size(wanted, made_for_);
+  made_anew_ = !same || wanted.width != made_for_.width || wanted.height != made_for_.height;
   if (!made_anew_) return demo::success();
-  device_.reset();
   Diagnostics diagnostics;
   const CompileChoices choices = read_choices(loaded_.graph, request_.set, slots.unbound);
   if (!choices.problem.empty()) return input_error(request_.graph, choices.problem);
   auto plan = compile_generic(loaded_, {wanted.width, wanted.height}, choices, diagnostics);
   if (!plan) return input_error(request_.graph, text_of(diagnostics));
-  auto device = DeviceGraph::create(host_, wanted);
-  if (!device) return device.error();
+  if (same && follows) {
+    if (auto resized = device_->resize(wanted.width, wanted.height); !resized) return resized.error();
+  } else {
+    device_.reset();
+    auto device = DeviceGraph::create(host_, wanted);
+    if (!device) return device.error();
+    device_ = device.take();
+  }
   plan_ = std::move(*plan);
-  device_ = device.take();
   made_for_ = std::move(wanted);
   return demo::success();
 }
@@ -98,7 +102,7 @@ demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoic
 demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& frame, bool follows) {
   const SlotChoice slots = choose_slots(loaded_.graph, frame);
   if (!slots.problem.empty()) return input_error(request_.graph, slots.problem);
-  if (auto ready = prepare(frame, slots); !ready) return ready.error();
+  if (auto ready = prepare(frame, slots, follows); !ready) return ready.error();
   for (const SlotData& data : slots.data)
     if (auto given = device_->upload(data.slot, data.texels, data.channels); !given) return given.error();
   device_->skip_to(std::exchange(next_frame_index_, 0));

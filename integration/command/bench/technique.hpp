@@ -38,7 +38,8 @@ public:
                                                             std::span<const float> sap_tables);
 
   // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel. `follows`: it comes
-  // after the frame that was scattered last, so histories go on; otherwise they begin anew.
+  // after the frame that was scattered last, so histories go on, where the graph says so also over another
+  // size; otherwise they begin anew.
   demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false);
   // The next frame is the first of a new graph: frame numbers and histories begin again.
   void start_anew() { device_.reset(); }
@@ -65,7 +66,7 @@ public:
 private:
   TechniqueRun(demo::VulkanHost& host, TechniqueRequest request)
       : host_(host), request_(std::move(request)) {}
-  demo::Result<> prepare(const CapturedFrame& frame, const SlotChoice& slots);
+  demo::Result<> prepare(const CapturedFrame& frame, const SlotChoice& slots, bool follows);
 
   demo::VulkanHost& host_;
   TechniqueRequest request_;

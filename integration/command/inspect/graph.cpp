@@ -1,11 +1,32 @@
-// dermis graph: the graph with its plan as a picture for Graphviz, or as JSON.
+// dermis graph: the graph with its plan as a picture for Graphviz, as JSON, or as a page to look at.
 
 #include "framegraph/explain/plan_dot.hpp"
 #include "framegraph/explain/plan_json.hpp"
 #include "integration/command/inspect/graph_input.hpp"
+#include "integration/command/inspect/view.hpp"
 #include "integration/command/output.hpp"
 
+#include <fmt/format.h>
+
 namespace dermis::tools {
+namespace {
+
+ExitCode write_view(const Session& session, const GraphOptions& options, const LoadedGraph& loaded,
+                    const CompileChoices& choices, Diagnostics& diagnostics) {
+  const ViewAnswer view =
+      make_view(loaded, {options.size, session.command, options.frame, choices}, diagnostics);
+  if (!view.problem.empty()) return fail(session, ExitCode::environment, view.problem);
+  if (view.page.empty()) return fail_graph(session, options.graph, diagnostics);
+  print_diagnostics(session, diagnostics);
+  const std::string problem = deliver_text(options.html, view.page);
+  if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+  if (options.html != "-")
+    say(session,
+        fmt::format("{}: {}, to be opened in a browser\n", options.html, format_bytes(view.page.size())));
+  return ExitCode::ok;
+}
+
+} // namespace
 
 ExitCode graph(const Session& session, const GraphOptions& options) {
   Diagnostics diagnostics;
@@ -14,6 +35,7 @@ ExitCode graph(const Session& session, const GraphOptions& options) {
   CompileChoices choices = read_choices(loaded->graph, options.settings, options.unbound);
   choices.two_queues = options.two_queues;
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+  if (!options.html.empty()) return write_view(session, options, *loaded, choices, diagnostics);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   print_diagnostics(session, diagnostics);

@@ -32,13 +32,8 @@ struct Run {
   PassTimes times;
 };
 
-// A frame that has another size or other images than the one before needs a graph of its own; history starts
-// anew.
-bool fits(const DeviceGraphRequest& a, const DeviceGraphRequest& b) {
-  return a.width == b.width && a.height == b.height && a.formats == b.formats && a.unbound == b.unbound &&
-         a.profiles == b.profiles;
-}
-
+// A frame that has other images or profiles than the one before needs a graph of its own; history starts
+// anew. One of another size goes on with what the graph keeps over that.
 demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& slots) {
   DeviceGraphRequest request;
   request.graph_name = run.options.graph;
@@ -53,7 +48,11 @@ demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& s
     request.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
   for (const auto& one : frame.description.profiles)
     request.profiles.push_back({one.id, one.profile.name, profile_as_json(one.profile)});
-  if (run.device != nullptr && fits(request, run.request)) return demo::success();
+  if (run.device != nullptr && same_but_size(request, run.request)) {
+    if (request.width == run.request.width && request.height == run.request.height) return demo::success();
+    run.request = std::move(request);
+    return run.device->resize(run.request.width, run.request.height);
+  }
   run.device.reset();
   auto made = DeviceGraph::create(run.host, request);
   if (!made) return made.error();

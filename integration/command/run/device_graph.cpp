@@ -139,6 +139,12 @@ dermis_image_state c_state(const demo::ImageState& state) {
 
 } // namespace
 
+bool same_but_size(const DeviceGraphRequest& a, const DeviceGraphRequest& b) {
+  return a.graph_name == b.graph_name && a.graph_text == b.graph_text && a.overlays == b.overlays &&
+         a.formats == b.formats && a.unbound == b.unbound && a.profiles == b.profiles &&
+         a.settings == b.settings;
+}
+
 demo::Result<std::unique_ptr<DeviceGraph>> DeviceGraph::create(demo::VulkanHost& host,
                                                                const DeviceGraphRequest& request) {
   std::unique_ptr<DeviceGraph> made(new DeviceGraph(host));
@@ -178,6 +184,15 @@ demo::Result<> DeviceGraph::create_images() {
     slots_.push_back({slot, slot.name, image.take(), {}});
   }
   return demo::success();
+}
+
+demo::Result<> DeviceGraph::resize(uint32_t width, uint32_t height) {
+  dermis_report report = nullptr;
+  const dermis_result result = dermis_graph_resize(graph_, width, height, &report);
+  if (result != DERMIS_OK) return error_of("dermis_graph_resize", result, report);
+  dermis_report_destroy(report);
+  slots_.clear(); // each frame is waited for
+  return create_images();
 }
 
 DeviceGraph::Slot* DeviceGraph::find(std::string_view name) {

@@ -32,6 +32,8 @@ struct DeviceGraphRequest {
   std::vector<std::string> unbound;                          // optional slots
   std::vector<std::pair<std::string, std::string>> settings; // name, JSON text
 };
+// Do both differ in size at most?
+bool same_but_size(const DeviceGraphRequest& a, const DeviceGraphRequest& b);
 
 // Owns context, graph and one image a bound slot; all die before the host. One thread.
 class DeviceGraph {
@@ -42,6 +44,10 @@ public:
   ~DeviceGraph();
   DeviceGraph(const DeviceGraph&) = delete;
   DeviceGraph& operator=(const DeviceGraph&) = delete;
+
+  // Another allocated size; histories go on where the graph says so. What images held is lost. Errors: as
+  // create; the graph is then of no use.
+  demo::Result<> resize(uint32_t width, uint32_t height);
 
   bool has(std::string_view slot) const; // bound
   // Fills the image of a slot; missing channels are 0, alpha 1. Slots that are not bound are ignored.

@@ -150,7 +150,7 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
   info.overlay_count = static_cast<uint32_t>(overlays.size());
   Includes includes{desc};
   if (desc.include) info.include = deliver_include;
-  info.include_user = &includes; // never asked again: this engine reloads no graph
+  info.include_user = &includes; // never asked again: this engine reloads no graph that includes others
   Report report;
   dermis_graph graph = nullptr;
   const dermis_result result = dermis_graph_create(host.context, &info, &graph, &report.handle);
@@ -234,6 +234,16 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   // A setting may change what the graph uses; slots and their names belong to the plan that was replaced.
   if (auto done = query_slots(*host); !done) return done.error();
   return host;
+}
+
+Result<bool> reload_graph(DermisHost& host, const std::string& text) {
+  const dermis_source source = source_of("reloaded graph", text);
+  Report report;
+  const dermis_result result = dermis_graph_reload(host.graph, &source, &report.handle);
+  if (result == DERMIS_ERROR_CONFIG) return false;
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_reload", result, report.handle);
+  if (auto done = query_slots(host); !done) return done.error();
+  return true;
 }
 
 std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& host) {

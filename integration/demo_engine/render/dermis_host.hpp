@@ -44,6 +44,10 @@ bool hands_out_sampling(const DermisHost& host);
 bool hands_out_skips(const DermisHost& host);
 const std::vector<std::string>& warnings_of(const DermisHost& host);
 
+// The graph anew from another text; false: it has errors, and what ran runs on. Errors: environment,
+// internal.
+Result<bool> reload_graph(DermisHost& host, const std::string& text);
+
 // Records the graph between lighting and composite. All targets rest before and after. frame_index from 1.
 // Errors: environment, internal.
 Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,

@@ -14,6 +14,7 @@
  *   3. dermis_graph_slots          the images that the graph wants, by name and number
  *   4. each frame: fill a dermis_frame (bindings, camera, frame numbers), dermis_graph_record, submit yourself
  *   5. dermis_graph_destroy, dermis_context_destroy, after the device has finished the recorded frames
+ *   More cameras (an eye each, a split screen): dermis_view_create once each, dermis_view_record each frame.
  *
  * BARRIER CONTRACT
  *   Before dermis_graph_record each bound image is in `before.layout` and was last touched by `before.stages` and
@@ -34,8 +35,11 @@
  *   DERMIS_ERROR_DEVICE_LOST only destroy.
  *
  * THREADS
- *   Stated at each function. "Any" means: from any thread, at any time. "One per graph" means: no two calls with
- *   the same graph at the same time; different graphs are independent.
+ *   Stated at each function. "Any" means: from any thread, at any time. "One per view" means: no two calls with the
+ *   same view at the same time; different views are independent, and so are graphs. A graph has a view of its own,
+ *   which dermis_graph_record and dermis_frame_discard mean. "Beside" means: any, also while other threads record
+ *   views of the graph: these go on with what they have, and changes of a graph wait for each other. Create and
+ *   destroy come first and last: nobody else uses the object then.
  */
 #ifndef DERMIS_DERMIS_H
 #define DERMIS_DERMIS_H
@@ -94,6 +98,7 @@ typedef enum dermis_severity {
 
 typedef struct dermis_context_t* dermis_context;
 typedef struct dermis_graph_t* dermis_graph;
+typedef struct dermis_view_t* dermis_view;
 typedef struct dermis_report_t* dermis_report;
 
 /* One message. Strings belong to the report (or, in a log call, to the library until the call returns). */
@@ -146,6 +151,68 @@ DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(PFN_vkGetInstance
                                                                VkInstance instance, VkPhysicalDevice physical_device,
                                                                uint32_t* count, dermis_requirement* items);
 
+/* ---- memory of the host ---------------------------------------------------------------------------------- */
+
+/* Host memory for everything that calls with a context, a graph, a view or one of their reports keep or use on the way.
+ * `alignment` is a power of two, 16 or more; NULL means: there is none, and the call fails with DERMIS_ERROR_MEMORY. May
+ * be called from any thread that is inside a Dermis call. Must not call Dermis, and must not throw. */
+typedef void*(DERMIS_CALL* dermis_allocate_fn)(void* user, size_t size, size_t alignment);
+typedef void(DERMIS_CALL* dermis_release_fn)(void* user, void* memory, size_t size, size_t alignment);
+
+/* Both functions must be callable until the last object and report that were made with them are destroyed. What goes
+ * past it: dermis_validate, which knows no context, and the few bytes that the C++ run time takes to tell that memory
+ * ran out. The static library and builds with sanitizers leave memory to the program: UNSUPPORTED there. */
+typedef struct dermis_allocator {
+  size_t struct_size;
+  dermis_allocate_fn allocate;
+  dermis_release_fn release;
+  void* user;
+} dermis_allocator;
+#define DERMIS_ALLOCATOR_INIT {sizeof(dermis_allocator), NULL, NULL, NULL}
+
+typedef enum dermis_memory_purpose {
+  DERMIS_MEMORY_TRANSIENT = 0, /* means something from the first to the last command of a recorded frame only: scratch */
+  DERMIS_MEMORY_HISTORY = 1,   /* from frame to frame */
+  DERMIS_MEMORY_CONSTANTS = 2, /* frame constants, tables, counters, stand-ins of what is not bound */
+  DERMIS_MEMORY_PURPOSE_FORCE_32BIT = 0x7fffffff
+} dermis_memory_purpose;
+
+typedef struct dermis_memory_request {
+  size_t struct_size;
+  dermis_memory_purpose purpose;
+  uint32_t memory_types; /* bit i: memory type i of the device will do */
+  uint64_t bytes;
+  uint64_t alignment;    /* of dermis_memory_block.offset; a power of two */
+  VkMemoryPropertyFlags required, preferred;
+} dermis_memory_request;
+#define DERMIS_MEMORY_REQUEST_INIT {sizeof(dermis_memory_request), DERMIS_MEMORY_TRANSIENT, 0, 0, 0, 0, 0}
+
+typedef struct dermis_memory_block {
+  size_t struct_size;
+  VkDeviceMemory memory;
+  uint64_t offset; /* bytes */
+  void* mapped;    /* where the block begins for the host, as long as it is the library's; needed where HOST_VISIBLE is */
+  void* user;      /* yours: comes back with the block */
+} dermis_memory_block;
+#define DERMIS_MEMORY_BLOCK_INIT {sizeof(dermis_memory_block), VK_NULL_HANDLE, 0, NULL, NULL}
+
+/* Fills *block and returns VK_SUCCESS, or returns what vkAllocateMemory would. Blocks may be parts of larger memory. A
+ * transient block may be used by commands of the host before and after a recorded frame, if these are ordered with the
+ * frame by a barrier over ALL_COMMANDS and MEMORY_WRITE | MEMORY_READ: its contents are then the host's to lose. Blocks
+ * go back one by one when no frame can use them any more. Called inside of create, reload, resize, set_setting,
+ * record and destroy calls, by their threads. Must not call Dermis. */
+typedef VkResult(DERMIS_CALL* dermis_take_memory_fn)(void* user, const dermis_memory_request* request,
+                                                     dermis_memory_block* block);
+typedef void(DERMIS_CALL* dermis_give_back_memory_fn)(void* user, const dermis_memory_block* block);
+
+typedef struct dermis_device_allocator {
+  size_t struct_size;
+  dermis_take_memory_fn take;
+  dermis_give_back_memory_fn give_back;
+  void* user;
+} dermis_device_allocator;
+#define DERMIS_DEVICE_ALLOCATOR_INIT {sizeof(dermis_device_allocator), NULL, NULL, NULL}
+
 /* ---- context --------------------------------------------------------------------------------------------- */
 
 #define DERMIS_CONTEXT_TIMINGS 0x1u /* write timestamps around each pass */
@@ -165,9 +232,11 @@ typedef struct dermis_context_desc {
   const VkAllocationCallbacks* vk_allocator; /* may be NULL; must outlive the context */
   dermis_log_fn log;                       /* may be NULL */
   void* log_user;
+  const dermis_allocator* allocator;       /* of host memory; NULL: the C library's */
+  const dermis_device_allocator* device_allocator; /* of device memory; NULL: vkAllocateMemory */
 } dermis_context_desc;
 #define DERMIS_CONTEXT_DESC_INIT \
-  {sizeof(dermis_context_desc), DERMIS_ABI_VERSION, 0, 0, 0, NULL, NULL, NULL, NULL, VK_NULL_HANDLE, NULL, NULL, NULL}
+  {sizeof(dermis_context_desc), DERMIS_ABI_VERSION, 0, 0, 0, NULL, NULL, NULL, NULL, VK_NULL_HANDLE, NULL, NULL, NULL, NULL, NULL}
 
 /* Resolves every Vulkan function by name and reports all that are missing at once. *context is NULL on failure.
  * Thread: any. Errors: ARGUMENT, VERSION, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
@@ -254,15 +323,17 @@ DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source
  * DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context, const dermis_graph_desc* desc,
                                                          dermis_graph* graph, dermis_report* report);
-/* Builds a new graph beside the running one and swaps it in at the next record. On failure nothing changes. Histories
+/* Builds a new graph beside the running one and swaps it in at the next record of each view. On failure nothing changes. Histories
  * and settings are carried over by name where they agree; what is not is listed in the report.
- * Thread: one per graph. Errors: as dermis_graph_create. */
+ * Thread: beside. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_source* source,
                                                          dermis_report* report);
-/* A new allocated size. Histories become invalid, but for images declared "on_resize": "rescale". Thread: one per graph. Errors: as dermis_graph_create. */
+/* A new allocated size of all views. Histories become invalid, but for images declared "on_resize": "rescale".
+ * Thread: beside. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width, uint32_t height,
                                                          dermis_report* report);
-/* The device must have finished every frame recorded with it. NULL is ignored. Thread: one per graph. */
+/* Its views are destroyed with it. The device must have finished every frame recorded with them. NULL is ignored.
+ * Thread: any, alone with this graph. */
 DERMIS_API void DERMIS_CALL dermis_graph_destroy(dermis_graph graph);
 
 typedef struct dermis_slot {
@@ -280,7 +351,7 @@ typedef struct dermis_slot {
 } dermis_slot;
 #define DERMIS_SLOT_INIT {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0}
 
-/* The slots that the next record expects; ask again after a reload. Two-call array. Thread: one per graph.
+/* The slots that the next record expects; ask again after a reload. The same for all views. Two-call array. Thread: beside.
  * Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint32_t* count, dermis_slot* slots);
 
@@ -291,7 +362,7 @@ typedef enum dermis_describe_format {
   DERMIS_DESCRIBE_FORMAT_FORCE_32BIT = 0x7fffffff
 } dermis_describe_format;
 
-/* *size in: room in `text`; out: bytes needed with the final 0. text may be NULL. Thread: one per graph.
+/* *size in: room in `text`; out: bytes needed with the final 0. text may be NULL. Thread: beside.
  * Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, dermis_describe_format format,
                                                            size_t* size, char* text);
@@ -305,8 +376,13 @@ typedef struct dermis_memory {
 } dermis_memory;
 #define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}
 
-/* Thread: one per graph. Errors: ARGUMENT. */
+/* Of all views together. Thread: beside. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory);
+
+/* The blocks of transients and histories that one view of the graph takes, so that a host can plan for them before it
+ * makes more views. Two-call array. Thread: beside. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_heaps(dermis_graph graph, uint32_t* count,
+                                                        dermis_memory_request* heaps);
 
 typedef struct dermis_pass_timing {
   size_t struct_size;
@@ -317,12 +393,14 @@ typedef struct dermis_pass_timing {
 #define DERMIS_PASS_TIMING_INIT {sizeof(dermis_pass_timing), NULL, 0, 0}
 
 /* Device times of the newest completed frame, in plan order; needs DERMIS_CONTEXT_TIMINGS. `completed_frame_index`
- * as in dermis_frame. Two-call array. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE, NOT_READY. */
+ * as in dermis_frame. Of the graph's own view. Two-call array. Thread: one per view. Errors: ARGUMENT, INCOMPLETE,
+ * NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, uint64_t completed_frame_index,
                                                           uint32_t* count, dermis_pass_timing* timings);
 
 /* Sets a declared setting from JSON text ("16", "true", "\"post\""), effective at the next record. A value that
- * changes which passes run recompiles here. Thread: one per graph. Errors: ARGUMENT, CONFIG, and those of creation. */
+ * changes which passes run recompiles here. For all views. Thread: beside. Errors: ARGUMENT, CONFIG, and those of
+ * creation. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name, const char* json,
                                                               dermis_report* report);
 
@@ -331,7 +409,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph
 #define DERMIS_BUDGET_METER 0x1u /* times come from the calibration alone, never from timestamps: the same frames
                                     give the same choices on every machine */
 
-/* Device time that the graph may take. Settings declared with "by": "budget" are then chosen in each record: the least
+/* Device time that a frame of one view may take. Settings declared with "by": "budget" are then chosen in each record: the least
  * expected error whose expected time fits. All plans that this can lead to exist from creation on; changing between
  * them allocates nothing. Times are learned with DERMIS_CONTEXT_TIMINGS; else they are those of the calibration. */
 typedef struct dermis_budget {
@@ -343,7 +421,7 @@ typedef struct dermis_budget {
 } dermis_budget;
 #define DERMIS_BUDGET_INIT {sizeof(dermis_budget), 0, 0, NULL, NULL}
 
-/* Effective at the next record; kept over reload and resize. Thread: one per graph. Errors: ARGUMENT, VERSION, CONFIG,
+/* For all views; effective at the next record; kept over reload and resize. Thread: beside. Errors: ARGUMENT, VERSION, CONFIG,
  * MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph, const dermis_budget* budget,
                                                              dermis_report* report);
@@ -397,12 +475,13 @@ typedef struct dermis_choice {
 #define DERMIS_CHOICE_INIT \
   {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL, 0, 0, 0, 0}
 
-/* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame.
- * Thread: one per graph. Errors: ARGUMENT, NOT_READY. */
+/* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame. Of the
+ * graph's own view. Thread: one per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph, uint64_t completed_frame_index,
                                                          dermis_choice* choice);
 /* What is known of this device's times, as JSON for dermis_budget.calibration at the next start. *size in: room in
- * `text`; out: bytes needed with the final 0. text may be NULL. Thread: one per graph. Errors: ARGUMENT, INCOMPLETE. */
+ * `text`; out: bytes needed with the final 0. text may be NULL. As the graph's own view
+ * learned it. Thread: beside. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size, char* text);
 
 /* ---- passes of the host ---------------------------------------------------------------------------------- */
@@ -463,7 +542,7 @@ typedef struct dermis_pass_port {
   {sizeof(dermis_pass_port), VK_NULL_HANDLE, VK_NULL_HANDLE, VK_FORMAT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, \
    VK_NULL_HANDLE, 0}
 
-/* All of it is valid until the function returns. The images and views of a graph are the same from frame to frame until
+/* All of it is valid until the function returns. The images and image views of a view are the same from frame to frame until
  * it is reloaded, resized or given a setting that changes its passes, but for those with history, which take turns. */
 typedef struct dermis_pass_call {
   size_t struct_size;
@@ -474,9 +553,10 @@ typedef struct dermis_pass_call {
   uint32_t port_count, setting_count;
   uint32_t rect_x, rect_y, rect_width, rect_height; /* rendered part of the view in pixels */
   uint64_t frame_index;
+  void* view_user;               /* dermis_view_desc.user; NULL: the graph's own view */
 } dermis_pass_call;
 #define DERMIS_PASS_CALL_INIT \
-  {sizeof(dermis_pass_call), NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0}
+  {sizeof(dermis_pass_call), NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, NULL}
 
 /* Records the pass into the command buffer; called inside dermis_graph_record, by its thread. The library has put the
  * barriers before it and will put those after it, by what the ports declare: touch nothing but the ports that way, put
@@ -522,13 +602,19 @@ typedef struct dermis_image_binding {
   uint32_t slot;          /* dermis_slot.id */
   VkFormat format;
   VkImage image;          /* 2-D, one sample, created with dermis_slot.usage */
-  VkImageView view;       /* of mip 0, layer 0; for depth formats of the depth aspect alone */
+  VkImageView view;       /* of mip 0 and one layer; for depth formats of the depth aspect alone. With a content_id it
+                             may be null: then the library makes one and keeps it while the same image comes back */
   uint32_t width, height; /* extent of mip 0 */
   dermis_image_state before, after;
+  uint32_t layer;         /* first layer that is bound, 0 where layer_count is 0 */
+  uint32_t layer_count;   /* layers in the states told here; others are not touched: an eye each. 0: all layers */
+  uint64_t content_id;    /* your number of this image, never used for another: Vulkan gives the handle of a destroyed
+                             image to a new one. 0: none, and nothing is kept from frame to frame. At most 8 images may
+                             take turns in a slot within the frames in flight */
 } dermis_image_binding;
 #define DERMIS_IMAGE_BINDING_INIT \
   {sizeof(dermis_image_binding), 0, VK_FORMAT_UNDEFINED, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, \
-   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}}
+   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, 0, 0, 0}
 
 typedef enum dermis_depth_kind {
   DERMIS_DEPTH_DEVICE = 0,      /* what the depth test wrote, for clip_from_view; reversed and infinite are fine */
@@ -570,13 +656,107 @@ typedef struct dermis_frame {
 #define DERMIS_FRAME_INIT \
   {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, DERMIS_DEPTH_DEVICE, 0, 0, 0, 0}
 
-/* Records the plan. Never submits, waits, prints or allocates host memory. On an error nothing was recorded.
- * Thread: one per graph. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
+/* Records the plan for the graph's own view. Never submits, waits for the device, prints or allocates host memory. On an
+ * error nothing was recorded. Thread: one per view. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, const dermis_frame* frame);
 /* The frame recorded last will never be submitted: the graph is as it was before that record, histories included, and
  * frame_index may be used again. At most one frame, and before the next dermis_graph_record, dermis_graph_reload or
- * dermis_graph_resize. Its command buffer must not run. Thread: one per graph. Errors: ARGUMENT. */
+ * dermis_graph_resize. Its command buffer must not run. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index);
+
+/* ---- a frame as data ------------------------------------------------------------------------------------- */
+
+/* For a host that records all commands itself. What each command does is what the Vulkan function of its name does with
+ * these arguments. */
+typedef enum dermis_command_type {
+  DERMIS_COMMAND_BARRIER = 0,           /* vkCmdPipelineBarrier2: dependency */
+  DERMIS_COMMAND_DISPATCH = 1,          /* bind pipeline, bind `sets` from set 0 on, push constants, dispatch: groups */
+  DERMIS_COMMAND_DISPATCH_INDIRECT = 2, /* the same, with the groups from buffer and offset */
+  DERMIS_COMMAND_FILL_BUFFER = 3,       /* buffer, offset, bytes, value */
+  DERMIS_COMMAND_CLEAR_IMAGE = 4,       /* vkCmdClearColorImage: image, image_layout, color, ranges */
+  DERMIS_COMMAND_COPY_BUFFER = 5,       /* buffer, to_buffer, buffer_copies */
+  DERMIS_COMMAND_COPY_IMAGE = 6,        /* image, image_layout, to_image, to_layout, image_copies */
+  DERMIS_COMMAND_BLIT_IMAGE = 7,        /* the same with image_blits and filter */
+  DERMIS_COMMAND_RESET_QUERIES = 8,     /* query_pool, query, count */
+  DERMIS_COMMAND_WRITE_TIMESTAMP = 9,   /* vkCmdWriteTimestamp2: stages, query_pool, query */
+  DERMIS_COMMAND_HOST_PASS = 10,        /* your own pass: call, whose command_buffer is NULL; its function is not called */
+  DERMIS_COMMAND_TYPE_FORCE_32BIT = 0x7fffffff
+} dermis_command_type;
+
+/* Fields that the type does not name are zero. All are compute or transfer commands. */
+typedef struct dermis_command {
+  size_t struct_size;
+  dermis_command_type type;
+  uint32_t count;                     /* of ranges, regions or queries */
+  const char* pass;                   /* that it belongs to; "" around all passes */
+  const VkDependencyInfo* dependency;
+  VkPipeline pipeline;                /* VK_PIPELINE_BIND_POINT_COMPUTE */
+  VkPipelineLayout layout;
+  const VkDescriptorSet* sets;
+  const void* push_constants;         /* VK_SHADER_STAGE_COMPUTE_BIT, from offset 0 */
+  uint32_t set_count, push_bytes;
+  uint32_t groups[3];
+  uint32_t value;
+  VkBuffer buffer, to_buffer;
+  uint64_t offset, bytes;
+  VkImage image, to_image;
+  VkImageLayout image_layout, to_layout;
+  VkClearColorValue color;
+  const VkImageSubresourceRange* ranges;
+  const VkBufferCopy* buffer_copies;
+  const VkImageCopy* image_copies;
+  const VkImageBlit* image_blits;
+  VkFilter filter;
+  uint32_t query;
+  VkQueryPool query_pool;
+  VkPipelineStageFlags2 stages;
+  const dermis_pass_call* call;
+} dermis_command;
+#define DERMIS_COMMAND_INIT \
+  {sizeof(dermis_command), DERMIS_COMMAND_BARRIER, 0, NULL, NULL, VK_NULL_HANDLE, VK_NULL_HANDLE, NULL, NULL, 0, 0, \
+   {0, 0, 0}, 0, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, VK_NULL_HANDLE, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED, \
+   VK_IMAGE_LAYOUT_UNDEFINED, {{0, 0, 0, 0}}, NULL, NULL, NULL, NULL, VK_FILTER_NEAREST, 0, VK_NULL_HANDLE, 0, NULL}
+
+/* As dermis_graph_record, but the commands are returned and frame.command_buffer is not looked at. They stand for a
+ * recorded frame in every respect: record all of them once, in their order, outside of a render pass, on a queue of the
+ * context's family, or take the frame back with dermis_frame_discard. *commands is stepped by its first struct_size and
+ * lives until the next call that records this view, or its end. Allocates host memory until the list is as long as it
+ * gets. Thread: one per view. Errors: as dermis_graph_record, and MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_commands(dermis_graph graph, const dermis_frame* frame,
+                                                           uint32_t* count, const dermis_command** commands);
+
+/* ---- more views ------------------------------------------------------------------------------------------ */
+
+/* A camera of a graph, beside the graph's own: an eye, a player of a split screen, a mirror. Views share the plan, the
+ * pipelines, settings and budget; histories, transient memory, frame numbers and what is learned of times are each one's
+ * own. All have the graph's allocated size and slots; each frame renders its own rectangle into its own images. */
+typedef struct dermis_view_desc {
+  size_t struct_size;
+  void* user; /* dermis_pass_call.view_user */
+} dermis_view_desc;
+#define DERMIS_VIEW_DESC_INIT {sizeof(dermis_view_desc), NULL}
+
+/* Compiles nothing; allocates what a view needs. desc may be NULL. *view is NULL on failure. *report (may be NULL) gets
+ * the messages. Thread: beside. Errors: ARGUMENT, VERSION, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph, const dermis_view_desc* desc,
+                                                        dermis_view* view, dermis_report* report);
+/* The device must have finished every frame recorded with it. NULL is ignored. Not after dermis_graph_destroy, which
+ * destroys it. Thread: beside, alone with this view. Errors: none. */
+DERMIS_API void DERMIS_CALL dermis_view_destroy(dermis_view view);
+/* As dermis_graph_record, for this view: frame_index grows from frame to frame of the view, and completed_frame_index is
+ * the newest of them that the device has finished. Thread: one per view. Errors: as dermis_graph_record. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_record(dermis_view view, const dermis_frame* frame);
+/* As dermis_graph_commands, for this view. Thread: one per view. Errors: as dermis_graph_commands. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(dermis_view view, const dermis_frame* frame, uint32_t* count,
+                                                          const dermis_command** commands);
+/* As dermis_frame_discard, for this view. Thread: one per view. Errors: ARGUMENT. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
+/* As dermis_graph_choice, for this view. Thread: one per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_choice(dermis_view view, uint64_t completed_frame_index,
+                                                        dermis_choice* choice);
+/* As dermis_graph_timings, for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint64_t completed_frame_index,
+                                                         uint32_t* count, dermis_pass_timing* timings);
 
 #ifdef __cplusplus
 }

@@ -6,20 +6,23 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr Format past_formats[] = {Format::rgba32_uint};
-constexpr std::string_view past_doc = "light, number of frames behind it, view depth, profile id";
+constexpr Format past_formats[] = {Format::rgba16f};
+constexpr Format place_formats[] = {Format::rg16f};
+constexpr std::string_view past_doc = "light, number of frames behind it";
+constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
 
 constexpr Port ports[] = {
     {"scattered", Usage::sampled_image, false, "texture2D", "scattered light of this frame", {}},
     port::material,
     port::depth,
     port::velocity,
-    port::classes_before,
-    {"past", Usage::sampled_image, false, "utexture2D", past_doc, past_formats},
+    {"past", Usage::sampled_image, false, "texture2D", past_doc, past_formats},
+    {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
     port::tiles,
     port::arguments,
     {"accumulated", Usage::storage_image_write, false, "image2D", "scattered light over frames", {}},
-    {"past_out", Usage::storage_image_write, false, "uimage2D", past_doc, past_formats},
+    {"past_out", Usage::storage_image_write, false, "image2D", past_doc, past_formats},
+    {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
 };
 
 constexpr KindSetting settings[] = {

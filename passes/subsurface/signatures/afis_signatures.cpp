@@ -100,12 +100,12 @@ constexpr Port afis_tiles_ports[] = {
 };
 
 constexpr Format guide_formats[] = {Format::rgba16f};
-constexpr Format place_formats[] = {Format::rg16f};
+constexpr Format place_formats[] = {Format::r16f};
 constexpr Format control_formats[] = {Format::rgba16f, Format::rgba32f};
 constexpr std::string_view guide_doc =
-    "standard deviation of one frame's exposed luminance, mean number of samples; then with split_half depth "
-    "in metres and profile id, else the moving mean of what is watched";
-constexpr std::string_view place_doc = "depth in metres, profile id; not with split_half";
+    "standard deviation of one frame's exposed luminance, mean number of samples, depth in metres with "
+    "split_half and else the moving mean of what is watched, profile id; 0 where nothing was written";
+constexpr std::string_view place_doc = "depth in metres; not with split_half";
 constexpr std::string_view control_doc =
     "weight of the control, its standard deviation, means of light and control; with ocv";
 
@@ -124,14 +124,13 @@ constexpr Port guided_ports[] = {
     port::depth,
     port::scatter_scale,
     port::velocity,
-    port::classes_before,
     {"guide", Usage::sampled_image, false, "texture2D", guide_doc, guide_formats},
     {"place", Usage::sampled_image, true, "texture2D", place_doc, place_formats},
     {"control", Usage::sampled_image, true, "texture2D", control_doc, control_formats},
     port::tiles,
     port::arguments,
     port::scattered,
-    {"guide_out", Usage::storage_image_write, false, "image2D", guide_doc, guide_formats},
+    {"guide_out", Usage::storage_image_update, false, port::part_of_cleared, guide_doc, guide_formats},
     {"place_out", Usage::storage_image_write, true, "image2D", place_doc, place_formats},
     {"control_out", Usage::storage_image_write, true, "image2D", control_doc, control_formats},
     port::sampling,

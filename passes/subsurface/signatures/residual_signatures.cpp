@@ -53,7 +53,7 @@ constexpr Format ratio_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::rg16f};
 constexpr std::string_view ratio_doc =
     "rgb running ratio of sampled light to the pyramid's, a = samples behind it";
-constexpr std::string_view place_doc = "view depth in metres, profile id";
+constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
 
 constexpr Port residual_ports[] = {
     light_port("light"),
@@ -71,7 +71,6 @@ constexpr Port residual_ports[] = {
     sure_light,
     port::velocity,
     classes,
-    port::classes_before,
     {"ratio", Usage::sampled_image, false, "texture2D", ratio_doc, ratio_formats},
     {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
     port::tiles,
@@ -79,7 +78,7 @@ constexpr Port residual_ports[] = {
     {"mended", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
      light_formats},
     {"ratio_out", Usage::storage_image_write, false, "image2D", ratio_doc, ratio_formats},
-    {"place_out", Usage::storage_image_write, false, "image2D", place_doc, place_formats},
+    {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
     port::sampling,
 };
 

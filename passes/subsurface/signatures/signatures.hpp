@@ -18,6 +18,7 @@ extern const PassKind blend_kind, residual_kind;                        // resid
 extern const PassKind doubt_kind, contrast_kind, allot_kind, mend_kind; // allot_signatures.cpp
 extern const PassKind probe_kind;                                       // probe_signature.cpp
 extern const PassKind accumulate_kind;                                  // accumulate_signature.cpp
+extern const PassKind clear_kind;                                       // clear_signature.cpp
 
 // Ports that several kinds declare with the same meaning.
 namespace port {
@@ -79,12 +80,9 @@ inline constexpr Port shares{"shares",
                              "uint",
                              "by tile of the render rectangle: steps of samples it was given, 0 to 3",
                              {}};
-inline constexpr Port classes_before{"classes_before",
-                                     Usage::storage_buffer_read,
-                                     false,
-                                     "uint",
-                                     "what subsurface.classify wrote in the frame before",
-                                     {}};
+// Of an image that was cleared in the same frame and is written where there is subsurface: what was not
+// written reads 0 in the next frame.
+inline constexpr std::string_view part_of_cleared = "writeonly image2D";
 inline constexpr Format sampling_formats[] = {Format::rgba16f, Format::rgba32f};
 inline constexpr Port sampling{
     "sampling",

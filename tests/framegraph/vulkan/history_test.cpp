@@ -182,6 +182,23 @@ TEST_F(ReplacedHistory, OfAnotherSizeItGoesOnOnlyWhereItIsToBeRescaled) {
   }
 }
 
+TEST_F(ReplacedHistory, ACutInTheFrameOfAnotherSizeStartsAnew) {
+  SmallGraph g = counter();
+  for (ResourceDeclaration& resource : g.graph.resources)
+    resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
+  make_executor(g, side, side);
+  bind(g, "result", {});
+  for (int i = 1; i <= 3; ++i)
+    ASSERT_FALSE(frame());
+  take_over(g, 2 * side + 5, side / 2);
+  EXPECT_FALSE(executor->history_state(0, true, replaced.get()).valid);
+  const TestImage result = bind(g, "result", {});
+  ASSERT_FALSE(frame(0.0f, {}, true));
+  EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
+  wait();
+  replaced.reset();
+}
+
 TEST_F(ReplacedHistory, TexelsOfAnotherSizeAreTheNearestOnes) {
   // shown = kept@-1; kept = source, a ramp.
   SmallGraph g;

@@ -1,66 +1,19 @@
 // Frames in flight: what a reload replaces lives until the device has finished with it.
 
-#include "tests/integration/abi/dermis_fixture.hpp"
+#include "tests/integration/abi/in_flight.hpp"
 
 namespace dermis::abi_test {
 namespace {
 
-// Command buffers and fences of three frames, submitted without waiting. Three, because a program is retired
-// one record after its last frame: with two in flight that frame is complete before anyone could destroy it
-// early.
-struct InFlight : DermisTest {
-  static constexpr uint32_t frames = 3;
-  std::array<VkCommandBuffer, frames> commands{};
-  std::array<VkFence, frames> fences{};
-
-  void SetUp() override {
-    DermisTest::SetUp();
-    if (!host) return;
-    dermis_context_destroy(context);
-    dermis_context_desc desc = context_desc();
-    desc.frames_in_flight = frames;
-    ASSERT_EQ(dermis_context_create(&desc, &context), DERMIS_OK) << dermis_last_error();
-    auto allocate =
-        demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-    allocate.commandPool = host->pool;
-    allocate.commandBufferCount = frames;
-    ASSERT_EQ(host->vk.vkAllocateCommandBuffers(host->device, &allocate, commands.data()), VK_SUCCESS);
-    const auto fence = demo::vulkan_struct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-    for (VkFence& made : fences)
-      ASSERT_EQ(host->vk.vkCreateFence(host->device, &fence, nullptr, &made), VK_SUCCESS);
-  }
-
-  void TearDown() override {
-    if (host) {
-      host->vk.vkDeviceWaitIdle(host->device);
-      for (const VkFence fence : fences)
-        host->vk.vkDestroyFence(host->device, fence, nullptr);
-      host->vk.vkFreeCommandBuffers(host->device, host->pool, frames, commands.data());
-    }
-    DermisTest::TearDown();
-  }
-
-  // Frame `index` (from 1): waits for the frame whose command buffer it takes, records, submits, does not
-  // wait.
+struct InFlight : InFlightTest {
   void run(dermis_graph graph, const std::vector<dermis_image_binding>& bound, uint64_t index) {
-    const size_t ring = index % frames;
     dermis_frame one = frame(bound);
     one.frame_index = index;
-    one.completed_frame_index = index > frames ? index - frames : 0;
-    if (index > frames) {
-      ASSERT_EQ(host->vk.vkWaitForFences(host->device, 1, &fences[ring], VK_TRUE, UINT64_MAX), VK_SUCCESS);
-      ASSERT_EQ(host->vk.vkResetFences(host->device, 1, &fences[ring]), VK_SUCCESS);
-    }
-    const auto begin =
-        demo::vulkan_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
-    ASSERT_EQ(host->vk.vkBeginCommandBuffer(commands[ring], &begin), VK_SUCCESS);
-    one.command_buffer = commands[ring];
-    ASSERT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host->vk.vkEndCommandBuffer(commands[ring]), VK_SUCCESS);
-    auto submit = demo::vulkan_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &commands[ring];
-    ASSERT_EQ(host->vk.vkQueueSubmit(host->queue, 1, &submit, fences[ring]), VK_SUCCESS);
+    one.completed_frame_index = completed_before(index);
+    submit(index, [&](VkCommandBuffer into) {
+      one.command_buffer = into;
+      ASSERT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+    });
     last_frame = index;
   }
 };

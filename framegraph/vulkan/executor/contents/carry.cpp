@@ -34,7 +34,7 @@ VkImageMemoryBarrier2 layout_change(VkImage image, const VkImageSubresourceRange
 }
 
 // Before: all that earlier commands wrote is seen; after: all later commands see the copy.
-void submit(const Device& device, VkCommandBuffer commands, VkImageMemoryBarrier2* images, uint32_t count,
+void submit(const FunctionTable& vk, VkCommandBuffer commands, VkImageMemoryBarrier2* images, uint32_t count,
             bool before) {
   VkMemoryBarrier2 memory{};
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
@@ -54,15 +54,15 @@ void submit(const Device& device, VkCommandBuffer commands, VkImageMemoryBarrier
   info.pMemoryBarriers = &memory;
   info.imageMemoryBarrierCount = count;
   info.pImageMemoryBarriers = images;
-  device.vk.vkCmdPipelineBarrier2(commands, &info);
+  vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
-void copy_buffer(const Device& device, VkCommandBuffer commands, const PlanResource& resource, VkBuffer from,
-                 VkBuffer to) {
-  submit(device, commands, nullptr, 0, true);
+void copy_buffer(const FunctionTable& vk, VkCommandBuffer commands, const PlanResource& resource,
+                 VkBuffer from, VkBuffer to) {
+  submit(vk, commands, nullptr, 0, true);
   const VkBufferCopy all{0, 0, resource.bytes};
-  device.vk.vkCmdCopyBuffer(commands, from, to, 1, &all);
-  submit(device, commands, nullptr, 0, false);
+  vk.vkCmdCopyBuffer(commands, from, to, 1, &all);
+  submit(vk, commands, nullptr, 0, false);
 }
 
 struct Kept { // one frame of a history
@@ -75,7 +75,7 @@ struct Kept { // one frame of a history
 };
 
 // Each part that ports tell apart is in a layout of its own.
-void change_layouts(const Device& device, VkCommandBuffer commands, const Kept& frame, VkImageLayout other,
+void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const Kept& frame, VkImageLayout other,
                     bool before) {
   for (uint32_t part = 0; part < frame.history.parts; ++part) {
     const Plan& plan = frame.state.plan;
@@ -86,7 +86,7 @@ void change_layouts(const Device& device, VkCommandBuffer commands, const Kept& 
                                                  {barrier_aspects(frame.resource().format), range.first_mip,
                                                   range.mips, range.first_layer, range.layers},
                                                  before ? own : other, before ? other : own);
-    submit(device, commands, &change, 1, before);
+    submit(vk, commands, &change, 1, before);
   }
 }
 
@@ -96,43 +96,43 @@ VkOffset3D corner(const PlanResource& resource, uint32_t mip) {
 }
 
 // Texels of another size are the nearest ones: what histories hold (depths, profiles) need not mix.
-void copy_image(const Device& device, VkCommandBuffer commands, const Kept& from, const Kept& to) {
+void copy_image(const FunctionTable& vk, VkCommandBuffer commands, const Kept& from, const Kept& to) {
   constexpr VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                           target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
   const PlanResource &old_size = from.resource(), &new_size = to.resource();
   const VkImageAspectFlags aspects = barrier_aspects(new_size.format);
   const VkImage image = to.instance().image;
-  change_layouts(device, commands, from, source, true);
+  change_layouts(vk, commands, from, source, true);
   VkImageMemoryBarrier2 discard =
       layout_change(image, {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
                     VK_IMAGE_LAYOUT_UNDEFINED, target);
-  submit(device, commands, &discard, 1, true);
+  submit(vk, commands, &discard, 1, true);
   for (uint32_t mip = 0; mip < new_size.mips; ++mip) {
     const VkImageSubresourceLayers layers{aspects, mip, 0, new_size.layers};
     const VkOffset3D old_end = corner(old_size, mip), new_end = corner(new_size, mip);
     if (same_size(old_size, new_size)) {
       const VkExtent3D extent{static_cast<uint32_t>(new_end.x), static_cast<uint32_t>(new_end.y), 1};
       const VkImageCopy all{layers, {0, 0, 0}, layers, {0, 0, 0}, extent};
-      device.vk.vkCmdCopyImage(commands, from.instance().image, source, image, target, 1, &all);
+      vk.vkCmdCopyImage(commands, from.instance().image, source, image, target, 1, &all);
     } else {
       const VkImageBlit all{layers, {{0, 0, 0}, old_end}, layers, {{0, 0, 0}, new_end}};
-      device.vk.vkCmdBlitImage(commands, from.instance().image, source, image, target, 1, &all,
-                               VK_FILTER_NEAREST);
+      vk.vkCmdBlitImage(commands, from.instance().image, source, image, target, 1, &all, VK_FILTER_NEAREST);
     }
   }
-  change_layouts(device, commands, to, target, false);
+  change_layouts(vk, commands, to, target, false);
 }
 
-// The kind of the pass that writes the newest frame: another kind means something else by it.
+// The kind of the pass that writes the newest frame last: another kind means something else by it.
 KindId writer_of(const State& state, const PlanHistory& history) {
+  KindId writer;
   for (const PlanPass& pass : state.plan.passes)
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
       const PlanAccess& access = state.plan.accesses[a];
       if (access.resource == history.resource && access.frames_back == 0 &&
           (access.access & all_write_access) != 0)
-        return pass.kind;
+        writer = pass.kind;
     }
-  return {};
+  return writer;
 }
 
 bool usable(const State& to, uint32_t to_history, const State& from, uint32_t from_history) {
@@ -199,9 +199,9 @@ void record_carried(State& to, const State& from, VkCommandBuffer commands, bool
       Instance& target = to.instances[instance_of(to, resource, back)];
       const Kept source{from, kept, back};
       if (resource.type == ResourceType::buffer)
-        copy_buffer(*to.device, commands, resource, source.instance().buffer, target.buffer);
+        copy_buffer(*to.commands, commands, resource, source.instance().buffer, target.buffer);
       else
-        copy_image(*to.device, commands, source, {to, wanted, back});
+        copy_image(*to.commands, commands, source, {to, wanted, back});
       target.ready = true;
     }
   }

@@ -19,7 +19,8 @@ struct Target {
   bool clear = true; // false: created without transfer usage, contents stay undefined
 };
 
-void record_barrier(const Device& device, VkCommandBuffer commands, const Target& target, bool before_clear) {
+void record_barrier(const FunctionTable& vk, VkCommandBuffer commands, const Target& target,
+                    bool before_clear) {
   VkImageMemoryBarrier2 image{};
   image.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   image.srcStageMask =
@@ -50,27 +51,26 @@ void record_barrier(const Device& device, VkCommandBuffer commands, const Target
   info.pImageMemoryBarriers = &image;
   info.bufferMemoryBarrierCount = target.buffer != VK_NULL_HANDLE ? 1 : 0;
   info.pBufferMemoryBarriers = &buffer;
-  device.vk.vkCmdPipelineBarrier2(commands, &info);
+  vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
-void initialise(const Device& device, VkCommandBuffer commands, const Target& target) {
-  record_barrier(device, commands, target, true);
+void initialise(const FunctionTable& vk, VkCommandBuffer commands, const Target& target) {
+  record_barrier(vk, commands, target, true);
   if (!target.clear) return;
   if (target.image != VK_NULL_HANDLE)
-    device.vk.vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &zero, 1,
-                                   &target.range);
-  if (target.buffer != VK_NULL_HANDLE)
-    device.vk.vkCmdFillBuffer(commands, target.buffer, 0, VK_WHOLE_SIZE, 0);
-  record_barrier(device, commands, target, false);
+    vk.vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &zero, 1,
+                            &target.range);
+  if (target.buffer != VK_NULL_HANDLE) vk.vkCmdFillBuffer(commands, target.buffer, 0, VK_WHOLE_SIZE, 0);
+  record_barrier(vk, commands, target, false);
 }
 
 } // namespace
 
 void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
-  const Device& device = *state.device;
+  const FunctionTable& vk = *state.commands;
   if (!state.stand_ins_ready)
     for (const StandIn& stand_in : state.stand_ins)
-      initialise(device, commands, {stand_in.image, stand_in.buffer, VK_IMAGE_LAYOUT_GENERAL});
+      initialise(vk, commands, {stand_in.image, stand_in.buffer, VK_IMAGE_LAYOUT_GENERAL});
   state.stand_ins_ready = true;
   for (const PlanHistory& history : state.plan.histories) {
     const PlanResource& resource = state.plan.resources[history.resource];
@@ -83,7 +83,7 @@ void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
       for (uint32_t part = 0; part < history.parts; ++part) {
         const SubresourceRange& range = state.plan.history_parts[history.first_part + part];
         const Layout layout = state.plan.history_layouts[history.first_layout + back * history.parts + part];
-        initialise(device, commands,
+        initialise(vk, commands,
                    {instance.image,
                     instance.buffer,
                     static_cast<VkImageLayout>(layout),

@@ -33,7 +33,7 @@ void record(State& state, VkCommandBuffer commands, const VkImageMemoryBarrier2*
   info.pImageMemoryBarriers = image;
   info.bufferMemoryBarrierCount = buffer ? 1 : 0;
   info.pBufferMemoryBarriers = buffer;
-  state.device->vk.vkCmdPipelineBarrier2(commands, &info);
+  state.commands->vkCmdPipelineBarrier2(commands, &info);
 }
 
 } // namespace
@@ -56,15 +56,15 @@ void record_poison(State& state, VkCommandBuffer commands, const VkImageMemoryBa
     else
       value.float32[i] = std::numeric_limits<float>::quiet_NaN();
   record(state, commands, &before, nullptr);
-  state.device->vk.vkCmdClearColorImage(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value,
-                                        1, &image.subresourceRange);
+  state.commands->vkCmdClearColorImage(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1,
+                                       &image.subresourceRange);
   record(state, commands, &after, nullptr);
 }
 
 void record_poison(State& state, VkCommandBuffer commands, const VkBufferMemoryBarrier2& buffer) noexcept {
   const VkBufferMemoryBarrier2 before = until_fill(buffer), after = from_fill(buffer);
   record(state, commands, nullptr, &before);
-  state.device->vk.vkCmdFillBuffer(commands, buffer.buffer, 0, VK_WHOLE_SIZE, poison_word);
+  state.commands->vkCmdFillBuffer(commands, buffer.buffer, 0, VK_WHOLE_SIZE, poison_word);
   record(state, commands, nullptr, &after);
 }
 

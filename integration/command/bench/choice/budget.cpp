@@ -169,6 +169,27 @@ demo::Result<> measure_scene(Bench& bench, const std::string& scene) {
   return demo::success();
 }
 
+// What a scene's frames take and how far they are from the truth, over the budget.
+void add_plots(Report& report) {
+  Plot time{"mean device time of a frame", "budget, ms", "ms", {}};
+  Plot error{"error", "budget, ms", "RMSE of linear luminance", {}};
+  for (size_t row = 0; row < report.table.rows.size(); ++row) {
+    const auto number = [&](std::string_view key) { return std::get<double>(report.table.at(row, key)); };
+    const std::string& scene = std::get<std::string>(report.table.at(row, "scene"));
+    if (time.series.empty() || time.series.back().name != scene) {
+      time.series.push_back({scene, {}});
+      error.series.push_back({scene, {}});
+    }
+    const std::string label = fmt::format("{} within {:.2f} ms: {:.2f} ms, RMSE {:.5f}", scene,
+                                          number("budget_ms"), number("mean_ms"), number("mean_rmse"));
+    time.series.back().points.push_back({number("budget_ms"), number("mean_ms"), label, false});
+    error.series.back().points.push_back({number("budget_ms"), number("mean_rmse"), label, false});
+  }
+  report.plots = {time, error};
+  report.plots_title = "Over the budget";
+  report.plots_text = "Point at a budget to see what its frames took and how far they were from the truth.";
+}
+
 std::string cell(const ReportValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.3g}", *number);
@@ -229,6 +250,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options)
   }
   if (report.table.rows.empty()) return fail(session, ExitCode::usage, "no scene is left to measure");
   report.facts = machine_facts(session.command, bench.device);
+  add_plots(report);
   if (!session.quiet && options.json != "-" && options.html != "-") print(text_of(report));
   const std::string problem = deliver_report(report, options.json, "", options.html);
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);

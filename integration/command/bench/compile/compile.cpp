@@ -3,6 +3,7 @@
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "integration/command/bench/compile/shapes.hpp"
+#include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/thread_time.hpp"
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/output.hpp"
@@ -192,6 +193,49 @@ void write_row(JsonWriter& out, const Row& row) {
   out.member("batches_per_pass", row.batches_per_pass).close();
 }
 
+Report page_of(const Session& session, const std::vector<Row>& rows) {
+  Report report;
+  report.bench = "compile";
+  report.title = "What compiling a graph costs";
+  report.summary = "CPU time of the thread that compiles, and how tightly the heaps are packed.";
+  report.facts = machine_facts(session.command, "");
+  report.table.columns = {{"shape", "shape"},
+                          {"passes", "passes"},
+                          {"rotating", "graphs"},
+                          {"level", "level"},
+                          {"order", "order"},
+                          {"reasons_on", "with reasons"},
+                          {"ns_per_pass", "ns a pass, median"},
+                          {"low", "10 %"},
+                          {"high", "90 %"},
+                          {"goal", "goal"},
+                          {"heap_mib", "heap, MiB", 4},
+                          {"ratio", "heap / live at once", 5},
+                          {"worst_ratio", "worst", 5},
+                          {"slowest_ms", "slowest, ms"},
+                          {"batches_per_pass", "batches a pass"}};
+  Plot plot{"packing level fast, without reasons", "passes", "ns a pass", {}};
+  for (const Row& row : rows) {
+    const bool timed = row.samples > 0;
+    const auto time = [&](double value) { return timed && value > 0 ? ReportValue(value) : ReportValue(); };
+    const std::string level(level_names[static_cast<size_t>(row.options.level)]);
+    report.table.rows.push_back({row.shape, int64_t{row.passes}, int64_t{row.rotating}, level,
+                                 std::string(order_names[static_cast<size_t>(row.options.order)]),
+                                 std::string(row.options.reasons ? "yes" : "no"), time(row.median),
+                                 time(row.low), time(row.high), time(row.goal), row.heap_bytes / mebibyte,
+                                 row.ratio, row.worst_ratio, row.slowest_ms, row.batches_per_pass});
+    if (!timed || row.options.reasons || row.options.level != PackingLevel::fast) continue;
+    if (plot.series.empty() || plot.series.back().name != row.shape) plot.series.push_back({row.shape, {}});
+    plot.series.back().points.push_back(
+        {double(row.passes), row.median,
+         fmt::format("{} of {} passes: {:.0f} ns a pass", row.shape, row.passes, row.median), false});
+  }
+  if (!plot.series.empty()) report.plots = {plot};
+  report.plots_title = "Time over size";
+  report.plots_text = "Point at a row to see what it is.";
+  return report;
+}
+
 struct Bench {
   const Session& session;
   Diagnostics diagnostics = {};
@@ -280,6 +324,8 @@ ExitCode bench_compile(const Session& session, const BenchCompileOptions& option
     good = bench.add_given(options.graphs);
   }
   if (!good) return fail_graph(session, options.graphs, bench.diagnostics);
+  const std::string refused = deliver_report(page_of(session, bench.rows), "", "", options.html);
+  if (!refused.empty()) return fail(session, ExitCode::environment, refused);
   if (options.json.empty()) return ExitCode::ok;
   JsonWriter out;
   out.open_object().member("dermis_bench", "compile").member("clock", "CPU time of the thread");

@@ -151,7 +151,8 @@ void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicT
          peak_spp, reads, mean_of(one.device_ms, counted), largest_of(one.device_ms, counted),
          mean_of(one.sampling_ms, counted), one.figures.psnr_db_frame, accumulated, one.figures.psnr_db_sdr8,
          flicker, static_cast<int64_t>(one.history_bytes)});
-    PlotSeries series{technique.request.technique + " " + technique.guidance, {}};
+    const std::string series_name = technique.request.technique + " " + technique.guidance;
+    PlotSeries series{series_name, {}, is_baseline(technique.request.technique)};
     for (size_t t = 0; t < one.figures.psnr_db.size(); ++t) {
       const double rmse = std::pow(10.0, -one.figures.psnr_db[t] / 20);
       series.points.push_back(
@@ -161,7 +162,7 @@ void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicT
     plot.series.push_back(std::move(series));
     if (one.spp.empty()) continue;
     constexpr double least_shown = 0.1; // the axis is logarithmic
-    PlotSeries taken{technique.request.technique + " " + technique.guidance, {}};
+    PlotSeries taken{series_name, {}, is_baseline(technique.request.technique)};
     for (size_t t = 0; t < one.spp.size(); ++t)
       taken.points.push_back({double(t), std::max(one.spp[t], least_shown),
                               fmt::format("{}, frame {}: {:.2f}", name_of(technique), t, one.spp[t]), false});

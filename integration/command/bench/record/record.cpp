@@ -5,6 +5,7 @@
 #include "framegraph/text/limits.hpp"
 #include "integration/command/bench/record/allocation_count.hpp"
 #include "integration/command/bench/record/counted_host.hpp"
+#include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/thread_time.hpp"
 #include "integration/command/output.hpp"
 #include "integration/command/verbs.hpp"
@@ -131,6 +132,38 @@ std::string write_rows(const std::string& file, const std::vector<Row>& rows) {
   return deliver_text(file, std::move(out).finish());
 }
 
+Report page_of(const Session& session, const std::vector<Row>& rows) {
+  Report report;
+  report.bench = "record";
+  report.title = "What recording costs the host's thread";
+  report.summary = "CPU time of the thread that records frames, on a device whose functions only count.";
+  report.facts = machine_facts(session.command, "");
+  report.facts.emplace_back("repetitions",
+                            fmt::format("{} samples of {} frames", samples, frames_per_sample));
+  report.table.columns = {{"graph", "graph"},
+                          {"passes", "passes"},
+                          {"commands", "commands a frame"},
+                          {"barriers", "barriers a frame"},
+                          {"allocations", "allocations a frame"},
+                          {"median_us", "µs a frame, median", 4},
+                          {"low_us", "10 %", 4},
+                          {"high_us", "90 %", 4},
+                          {"us_per_pass", "µs a pass"},
+                          {"goal_us_per_pass", "goal"},
+                          {"goal_met", "goal met"}};
+  for (const Row& row : rows)
+    report.table.rows.push_back({row.graph, int64_t{row.passes}, row.commands, row.barriers, row.allocations,
+                                 row.median, row.low, row.high, row.per_pass(), goal_per_pass,
+                                 row.per_pass() <= goal_per_pass && row.allocations == 0.0});
+  report.plots = {{"time of a frame", "passes", "µs", {{"graphs", {}}}}};
+  for (const Row& row : rows)
+    report.plots[0].series[0].points.push_back(
+        {double(row.passes), row.median, fmt::format("{}: {:.2f} µs", row.graph, row.median), false});
+  report.plots_title = "Over passes";
+  report.plots_text = "Point at a graph to see its name.";
+  return report;
+}
+
 constexpr std::string_view table_head = "graph           passes  commands  barriers  allocations    us/frame "
                                         "    10 %     90 %  us/pass    goal\n";
 
@@ -182,7 +215,7 @@ ExitCode bench_record(const Session& session, const BenchRecordOptions& options)
   std::string profile;
   if (const std::string problem = read_sources(options, graphs, profile); !problem.empty())
     return fail(session, ExitCode::problems, problem);
-  const bool table = !session.quiet && options.json != "-";
+  const bool table = !session.quiet && options.json != "-" && options.html != "-";
   if (table) print(table_head);
   std::vector<Row> rows;
   for (const Source& graph : graphs) {
@@ -193,8 +226,8 @@ ExitCode bench_record(const Session& session, const BenchRecordOptions& options)
     if (table) print(table_line(measured.row));
     rows.push_back(measured.row);
   }
-  if (options.json.empty()) return ExitCode::ok;
-  const std::string problem = write_rows(options.json, rows);
+  std::string problem = options.json.empty() ? "" : write_rows(options.json, rows);
+  if (problem.empty()) problem = deliver_report(page_of(session, rows), "", "", options.html);
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }
 

@@ -14,9 +14,9 @@ namespace {
 // Eight hues that stay apart for colour-blind readers (Okabe & Ito 2008), darker or lighter by scheme; names
 // beyond take them again with a dashed rim.
 constexpr std::string_view style = R"(<style>
-:root{color-scheme:light dark;--bg:#fff;--fg:#1c1e21;--dim:#63686e;--line:#d9dce0;--head:#f3f4f6;--mark:#e7f3ec;
+:root{color-scheme:light dark;--bg:#fff;--fg:#1c1e21;--dim:#63686e;--line:#d9dce0;--head:#f3f4f6;--mark:#e7f3ec;--g:#8a9097;
 --c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#b0568f;--c4:#a37b00;--c5:#3d9bd1;--c6:#555;--c7:#c22}
-@media(prefers-color-scheme:dark){:root{--bg:#16181b;--fg:#e4e6e8;--dim:#9aa0a6;--line:#33373c;--head:#202327;--mark:#1c3226;
+@media(prefers-color-scheme:dark){:root{--bg:#16181b;--fg:#e4e6e8;--dim:#9aa0a6;--line:#33373c;--head:#202327;--mark:#1c3226;--g:#7d848c;
 --c0:#56a8e0;--c1:#f08a45;--c2:#35c79b;--c3:#dd8fc0;--c4:#e6c229;--c5:#8fd0f5;--c6:#bbb;--c7:#f77}}
 body{background:var(--bg);color:var(--fg);font:15px/1.5 system-ui,sans-serif;margin:2rem auto;padding:0 1.2rem;max-width:1500px}
 h1{font-size:1.6rem;margin:0 0 .3rem}h2{font-size:1.15rem;margin:2.2rem 0 .6rem}p{max-width:75ch}
@@ -34,6 +34,7 @@ circle{fill:var(--c);stroke:var(--c);stroke-width:1.8}circle.open{fill:var(--bg)
 .maps img{width:100%;image-rendering:pixelated;border:1px solid var(--line)}
 .s0,.s8{--c:var(--c0)}.s1,.s9{--c:var(--c1)}.s2,.s10{--c:var(--c2)}.s3,.s11{--c:var(--c3)}.s4,.s12{--c:var(--c4)}
 .s5,.s13{--c:var(--c5)}.s6,.s14{--c:var(--c6)}.s7,.s15{--c:var(--c7)}
+.base{--c:var(--g)}
 .s8 circle,.s9 circle,.s10 circle,.s11 circle,.s12 circle,.s13 circle,.s14 circle,.s15 circle{stroke-dasharray:2.5 1.5}
 </style>
 )";
@@ -83,20 +84,31 @@ void add_table(std::string& page, const ReportTable& table) {
   page += "</tbody></table></div>\n";
 }
 
-void add_plots(std::string& page, const std::vector<Plot>& plots) {
+void add_plots(std::string& page, const Report& report) {
+  const std::vector<Plot>& plots = report.plots;
   if (plots.empty()) return;
   std::vector<std::string> names;
+  std::vector<bool> baseline;
   for (const Plot& plot : plots)
     for (const PlotSeries& series : plot.series)
-      if (std::find(names.begin(), names.end(), series.name) == names.end()) names.push_back(series.name);
-  page += plots.front().over_frames
-              ? "<h2>Frame by frame</h2><p>Point at a frame to see its value.</p><div class=legend>"
-              : "<h2>Time against error</h2><p>Filled points are on the Pareto front: nothing else is both "
-                "faster "
-                "and more exact. Point at one to see what it is.</p><div class=legend>";
+      if (std::find(names.begin(), names.end(), series.name) == names.end()) {
+        names.push_back(series.name);
+        baseline.push_back(series.baseline);
+      }
+  const bool frames = plots.front().over_frames;
+  const std::string_view title = !report.plots_title.empty() ? report.plots_title
+                                 : frames                    ? "Frame by frame"
+                                                             : "Time against error";
+  const std::string_view text =
+      !report.plots_text.empty() ? report.plots_text
+      : frames                   ? "Point at a frame to see its value. Baselines are grey."
+               : "Filled points are on the Pareto front: nothing else is both faster and more exact. "
+                 "Point at one to see what it is. Baselines are grey.";
+  page += fmt::format("<h2>{}</h2><p>{}</p><div class=legend>", html_text(title), html_text(text));
   for (size_t i = 0; i < names.size(); ++i)
-    page += fmt::format("<span class=s{}><svg viewBox='0 0 14 14'><circle cx=7 cy=7 r=5 /></svg> {}</span>",
-                        i, html_text(names[i]));
+    page +=
+        fmt::format("<span class='s{}{}'><svg viewBox='0 0 14 14'><circle cx=7 cy=7 r=5 /></svg> {}</span>",
+                    i, baseline[i] ? " base" : "", html_text(names[i]));
   page += "</div><div class=plots>\n";
   for (const Plot& plot : plots)
     page += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", plot_as_svg(plot, names),
@@ -142,6 +154,14 @@ std::string html_text(std::string_view text) {
   return escaped;
 }
 
+std::string html_page(std::string_view title, std::string_view body) {
+  std::string page = "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport "
+                     "content='width=device-width,initial-scale=1'>";
+  page += fmt::format("<title>{}</title>\n", html_text(title));
+  page.append(style).append("<body>").append(body).append(script);
+  return page + "</body></html>\n";
+}
+
 std::string base64(std::span<const uint8_t> bytes) {
   constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -158,11 +178,8 @@ std::string base64(std::span<const uint8_t> bytes) {
 }
 
 std::string report_as_html(const Report& report) {
-  std::string page = "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport "
-                     "content='width=device-width,initial-scale=1'>";
-  page += fmt::format("<title>{}</title>\n", html_text(report.title));
-  page += style;
-  page += fmt::format("<body><h1>{}</h1><p>{}</p><dl>\n", html_text(report.title), html_text(report.summary));
+  std::string page;
+  page += fmt::format("<h1>{}</h1><p>{}</p><dl>\n", html_text(report.title), html_text(report.summary));
   for (const auto& [name, text] : report.facts)
     page += fmt::format("<dt>{}<dd>{}\n", html_text(name), html_text(text));
   page += "</dl>\n";
@@ -170,7 +187,7 @@ std::string report_as_html(const Report& report) {
   for (const std::string& note : report.notes)
     page += fmt::format("<li>{}\n", html_text(note));
   if (!report.notes.empty()) page += "</ul>\n";
-  add_plots(page, report.plots);
+  add_plots(page, report);
   if (!report.more.rows.empty()) {
     page += fmt::format("<h2>{}</h2><p>{}</p>\n", html_text(report.more_title), html_text(report.more_text));
     add_table(page, report.more);
@@ -179,8 +196,7 @@ std::string report_as_html(const Report& report) {
   add_table(page, report.table);
   for (const ReportPictures& group : report.pictures)
     add_pictures(page, group);
-  page += script;
-  return page + "</body></html>\n";
+  return html_page(report.title, page);
 }
 
 } // namespace dermis::tools

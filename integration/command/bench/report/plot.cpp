@@ -110,7 +110,7 @@ std::string plot_as_svg(const Plot& plot, const std::vector<std::string>& names)
   add_front(svg, plot, x, y);
   for (const PlotSeries& series : plot.series) {
     const auto place = std::find(names.begin(), names.end(), series.name) - names.begin();
-    svg += fmt::format("<g class=s{}>", place);
+    svg += fmt::format("<g class='s{}{}'>", place, series.baseline ? " base" : "");
     if (plot.over_frames) {
       svg += "<polyline class=line points='";
       for (const PlotPoint& point : series.points)

@@ -56,6 +56,12 @@ std::string csv_value(const ReportValue& value) {
 
 } // namespace
 
+bool is_baseline(std::string_view technique) {
+  constexpr std::string_view own[] = {"sap", "hybrid", "restir"}; // and what begins like them: sap_residual
+  return std::none_of(std::begin(own), std::end(own),
+                      [&](std::string_view name) { return technique.starts_with(name); });
+}
+
 ReportValue& ReportTable::at(size_t row, std::string_view key) {
   const auto column =
       std::find_if(columns.begin(), columns.end(), [&](const ReportColumn& one) { return one.key == key; });

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -34,6 +35,7 @@ struct PlotPoint {
 struct PlotSeries {
   std::string name; // the same name has the same colour in all plots
   std::vector<PlotPoint> points;
+  bool baseline = false; // what ours is measured against: grey
 };
 // Both axes logarithmic. Points on the front are filled and joined by a line.
 struct Plot {
@@ -59,6 +61,7 @@ struct Report {
   std::vector<std::string> notes;                         // what was left out and why
   ReportTable table;
   std::vector<Plot> plots;
+  std::string plots_title, plots_text; // "": those of time against error, or over frames
   std::vector<ReportPictures> pictures;
   std::string more_title,
       more_text; // of a second table, in HTML alone: where what was published is set beside ours
@@ -80,7 +83,10 @@ std::string report_as_html(const Report& report);
 std::string deliver_report(const Report& report, const std::string& json, const std::string& csv,
                            const std::string& html);
 
-// SVG of a plot; `colors` holds the names of all series of the page in order.
+// Is it what others do, and not one of the project's own techniques? By its name in the reports.
+bool is_baseline(std::string_view technique);
+
+// SVG of a plot; `names` holds the names of all series of the page in order.
 std::string plot_as_svg(const Plot& plot, const std::vector<std::string>& names);
 
 } // namespace dermis::tools

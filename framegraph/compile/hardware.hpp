@@ -1,0 +1,65 @@
+#pragma once
+// What the phases of compile() tell the processor: what it will need, and where it should not guess. Internal
+// to compile/.
+
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace dermis {
+
+// Asks for memory that is needed soon.
+inline void fetch(const void* address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#else
+  static_cast<void>(address);
+#endif
+}
+
+// `a` if `first`, else `b`, without a branch: for what is as good as random, where compilers branch on `?`.
+template <std::unsigned_integral T> constexpr T pick(bool first, T a, T b) {
+  return static_cast<T>(b ^ ((a ^ b) & static_cast<T>(-static_cast<T>(first))));
+}
+
+// Which of the next `numbers_at_once` numbers have a bit in common with `mask`: bit i for numbers[i].
+inline constexpr uint32_t numbers_at_once = 32;
+
+inline uint32_t sharing_bits_anywhere(const uint32_t* numbers, uint32_t mask) { // on any processor
+  uint8_t hit[numbers_at_once];
+  for (uint32_t i = 0; i < numbers_at_once; ++i)
+    hit[i] = (numbers[i] & mask) != 0 ? 1 : 0;
+  uint32_t bits = 0;
+  for (uint32_t part = 0; part < numbers_at_once / 8; ++part) {
+    uint64_t bytes = 0;
+    std::memcpy(&bytes, hit + size_t{part} * 8, sizeof bytes);
+    bits |= static_cast<uint32_t>(bytes * 0x0102040810204080 >> 56) << (part * 8); // one bit of each byte
+  }
+  return bits;
+}
+
+inline uint32_t sharing_bits(const uint32_t* numbers, uint32_t mask) {
+#if defined(__SSE2__)
+  const __m128i wanted = _mm_set1_epi32(static_cast<int>(mask)), none = _mm_setzero_si128();
+  uint32_t missed = 0;
+  for (uint32_t half = 0; half < 2; ++half) {
+    const auto missing = [&](uint32_t quarter) { // all bits of each of four numbers that have none of them
+      const uint32_t* at = numbers + half * 16 + quarter * 4;
+      return _mm_cmpeq_epi32(_mm_and_si128(_mm_loadu_si128(reinterpret_cast<const __m128i*>(at)), wanted),
+                             none);
+    };
+    const __m128i low = _mm_packs_epi32(missing(0), missing(1));
+    const __m128i high = _mm_packs_epi32(missing(2), missing(3));
+    missed |= static_cast<uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(low, high))) << (half * 16);
+  }
+  return ~missed;
+#else
+  return sharing_bits_anywhere(numbers, mask);
+#endif
+}
+
+} // namespace dermis

@@ -1,0 +1,116 @@
+#include "framegraph/vulkan/device_memory.hpp"
+
+#include "framegraph/compile/plan.hpp"
+#include "framegraph/vulkan/create_infos.hpp"
+
+#include <algorithm>
+#include <fmt/core.h>
+#include <optional>
+
+namespace dermis::vulkan {
+namespace {
+
+// Types that must not be chosen for ordinary memory, whatever their other properties.
+constexpr VkMemoryPropertyFlags special_memory =
+    VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
+    VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
+
+// All of `required`, and of those the first with `preferred`; nullopt: none.
+std::optional<uint32_t> choose_type(const Device& device, const MemoryRequest& request) {
+  std::optional<uint32_t> fallback;
+  for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
+    const VkMemoryPropertyFlags flags = device.memory.memoryTypes[i].propertyFlags;
+    if ((request.memory_types >> i & 1u) == 0 || (flags & request.required) != request.required ||
+        (flags & special_memory) != 0)
+      continue;
+    if ((flags & request.preferred) == request.preferred) return i;
+    if (!fallback) fallback = i;
+  }
+  return fallback;
+}
+
+Error take_from_host(const Device& device, const MemoryRequest& request, const std::string& thing,
+                     MemoryBlock& block) {
+  MemoryBlock given;
+  const VkResult result = device.host_memory.take(device.host_memory.user, request, given);
+  if (result != VK_SUCCESS)
+    return call_error(result, "the host's allocator", fmt::format("{}, {} bytes", thing, request.bytes));
+  const bool unmapped =
+      (request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0 && given.mapped == nullptr;
+  if (given.memory != VK_NULL_HANDLE && given.offset % request.alignment == 0 && !unmapped) {
+    block = given;
+    return {};
+  }
+  give_back_memory(device, given);
+  return {ErrorKind::vulkan, VK_SUCCESS,
+          fmt::format("{}: the host's allocator gave {}", thing,
+                      given.memory == VK_NULL_HANDLE ? std::string("no memory")
+                      : unmapped
+                          ? std::string("memory that is not mapped")
+                          : fmt::format("offset {}, no multiple of {}", given.offset, request.alignment))};
+}
+
+} // namespace
+
+Error take_memory(const Device& device, const MemoryRequest& request, const std::string& thing,
+                  MemoryBlock& block) {
+  if (device.host_memory.take != nullptr) return take_from_host(device, request, thing, block);
+  const auto type = choose_type(device, request);
+  if (!type)
+    return {ErrorKind::unsupported, VK_SUCCESS,
+            fmt::format("{}: the device has no memory type among {:#x}", thing, request.memory_types)};
+  VkMemoryAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  info.allocationSize = request.bytes;
+  info.memoryTypeIndex = *type;
+  MemoryBlock taken;
+  VkResult result = device.vk.vkAllocateMemory(device.device, &info, device.allocator, &taken.memory);
+  if (result != VK_SUCCESS)
+    return call_error(result, "vkAllocateMemory",
+                      fmt::format("{}, {} bytes of memory type {}", thing, request.bytes, *type));
+  if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
+    result = device.vk.vkMapMemory(device.device, taken.memory, 0, VK_WHOLE_SIZE, 0, &taken.mapped);
+    if (result != VK_SUCCESS) {
+      give_back_memory(device, taken);
+      return call_error(result, "vkMapMemory", thing);
+    }
+  }
+  name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(taken.memory), thing.c_str());
+  block = taken;
+  return {};
+}
+
+void give_back_memory(const Device& device, const MemoryBlock& block) {
+  if (device.host_memory.take == nullptr)
+    device.vk.vkFreeMemory(device.device, block.memory, device.allocator); // unmaps
+  else if (block.memory != VK_NULL_HANDLE)
+    device.host_memory.give_back(device.host_memory.user, block);
+}
+
+uint64_t heap_alignment(const Device& device, const Plan& plan, uint32_t heap) {
+  uint64_t alignment = 1;
+  for (const PlanResource& resource : plan.resources) {
+    if (resource.first_instance == no_instance || plan.placements[resource.first_instance].heap != heap)
+      continue;
+    VkMemoryRequirements2 needs{};
+    needs.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2;
+    if (resource.type == ResourceType::image) {
+      const VkImageCreateInfo info = image_create_info({resource.format, resource.width, resource.height,
+                                                        resource.mips, resource.layers, resource.vk_usage});
+      VkDeviceImageMemoryRequirements ask{};
+      ask.sType = VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS;
+      ask.pCreateInfo = &info;
+      device.vk.vkGetDeviceImageMemoryRequirements(device.device, &ask, &needs);
+    } else {
+      const VkBufferCreateInfo info = buffer_create_info({resource.bytes, resource.vk_usage});
+      VkDeviceBufferMemoryRequirements ask{};
+      ask.sType = VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS;
+      ask.pCreateInfo = &info;
+      device.vk.vkGetDeviceBufferMemoryRequirements(device.device, &ask, &needs);
+    }
+    alignment = std::max(alignment, needs.memoryRequirements.alignment);
+  }
+  return std::max(alignment, device.properties.limits.bufferImageGranularity);
+}
+
+} // namespace dermis::vulkan

@@ -1,0 +1,19 @@
+#pragma once
+// Device memory of the host's heaps, between dermis.h and the executor.
+
+#include "framegraph/vulkan/device.hpp"
+#include "integration/include/dermis/dermis.h"
+
+namespace dermis::abi {
+
+struct DeviceAllocator {                // copied from dermis_device_allocator
+  dermis_take_memory_fn take = nullptr; // null: the library's own
+  dermis_give_back_memory_fn give_back = nullptr;
+  void* user = nullptr;
+};
+
+// `allocator` must live as long as the device.
+vulkan::HostMemory host_memory_of(DeviceAllocator& allocator);
+dermis_memory_request request_of(const vulkan::MemoryRequest& request);
+
+} // namespace dermis::abi

@@ -1,0 +1,98 @@
+// operator new and delete of the shared library, which no other library sees: it has a C++ run time of its
+// own, hidden as everything but dermis_*, so that every container of it comes here.
+#include "integration/abi/memory/host_memory.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+namespace dermis::abi {
+namespace {
+
+// In front of each allocation: whom it goes back to, wherever and whenever that happens.
+struct Header {
+  dermis_release_fn release;
+  void* user;
+  size_t size, alignment; // as asked of the allocator
+};
+constexpr size_t least_alignment = alignof(std::max_align_t);
+
+constexpr size_t room_for_header(size_t alignment) {
+  return (sizeof(Header) + alignment - 1) / alignment * alignment;
+}
+
+void* take(size_t size, size_t wanted) noexcept {
+  const size_t alignment = std::max(wanted, least_alignment), front = room_for_header(alignment);
+  const size_t total = (front + size + alignment - 1) / alignment * alignment; // as aligned_alloc wants it
+  if (total < size) return nullptr;
+  const HostAllocator& host = current_allocator();
+  void* memory = host.allocate == nullptr ? std::aligned_alloc(alignment, total)
+                                          : host.allocate(host.user, total, alignment);
+  if (memory == nullptr) return nullptr;
+  std::byte* given = static_cast<std::byte*>(memory) + front;
+  const Header header{host.allocate == nullptr ? nullptr : host.release, host.user, total, alignment};
+  std::memcpy(given - sizeof header, &header, sizeof header);
+  return given;
+}
+
+void give_back(void* given) noexcept {
+  if (given == nullptr) return;
+  Header header;
+  std::memcpy(&header, static_cast<std::byte*>(given) - sizeof header, sizeof header);
+  void* memory = static_cast<std::byte*>(given) - room_for_header(header.alignment);
+  if (header.release == nullptr)
+    std::free(memory);
+  else
+    header.release(header.user, memory, header.size, header.alignment);
+}
+
+void* take_or_throw(size_t size, size_t alignment) {
+  if (void* given = take(size, alignment)) return given;
+  throw std::bad_alloc();
+}
+
+} // namespace
+
+bool serves_host_allocator() noexcept {
+  return true;
+}
+
+} // namespace dermis::abi
+
+using dermis::abi::give_back;
+using dermis::abi::take;
+using dermis::abi::take_or_throw;
+
+// The forms for arrays call these.
+void* operator new(size_t size) {
+  return take_or_throw(size, 1);
+}
+void* operator new(size_t size, std::align_val_t alignment) {
+  return take_or_throw(size, static_cast<size_t>(alignment));
+}
+void* operator new(size_t size, const std::nothrow_t&) noexcept {
+  return take(size, 1);
+}
+void* operator new(size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return take(size, static_cast<size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, size_t) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, size_t, std::align_val_t) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, std::align_val_t, const std::nothrow_t&) noexcept {
+  give_back(memory);
+}

@@ -1,0 +1,104 @@
+// Views: cameras of one graph, each with histories of its own.
+#include "integration/abi/graph.hpp"
+#include "integration/abi/report.hpp"
+
+#include <algorithm>
+
+namespace dermis::abi {
+namespace {
+
+// A view that takes part in the graph as it is now: the first record takes the program over.
+dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermis_view* out,
+                     dermis_report* report) {
+  const Log& log = graph.context->log;
+  dermis_view_desc desc = DERMIS_VIEW_DESC_INIT;
+  const SizedRead read = given == nullptr ? SizedRead::ok : read_sized(given, desc);
+  if (read != SizedRead::ok)
+    return refused_size(log, read, "dermis_view_create: desc", stated_size(given),
+                        first_version_size<dermis_view_desc>);
+  const std::lock_guard changing(graph.changing);
+  auto view = std::make_unique<dermis_view_t>(graph.context, &graph, desc.user);
+  {
+    const std::lock_guard lock(graph.own.mutex);
+    const Chooser& from = graph.own.chooser;
+    view->chooser.errors = from.errors;
+    view->chooser.calibration = from.calibration;
+    view->chooser.costs = from.costs;
+    view->chooser.budget_ms = from.budget_ms;
+    view->chooser.metered = from.metered;
+  }
+  Diagnostics diagnostics;
+  std::shared_ptr<Program> program;
+  const dermis_result made = copy_program(*graph.context, graph.input, *keep_newest(graph.own),
+                                          vulkan::HistoryReason::first_frame, diagnostics, program);
+  const dermis_result result = conclude(log, made, std::move(diagnostics), report);
+  if (result != DERMIS_OK) return result;
+  make_room(view->image_views, program->slots.size());
+  adopt(view->chooser, graph.context->kinds, *program);
+  view->next = std::move(program);
+  graph.others.push_back(std::move(view));
+  *out = graph.others.back().get();
+  return DERMIS_OK;
+}
+
+} // namespace
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph, const dermis_view_desc* desc,
+                                                        dermis_view* view, dermis_report* report) {
+  constexpr const char* function = "dermis_view_create";
+  if (view != nullptr) *view = nullptr;
+  if (report != nullptr) *report = nullptr;
+  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
+  const Log& log = graph->context->log;
+  return guarded(log, function, [&] {
+    if (view == nullptr) return bad_argument(log, "{}: view is NULL", function);
+    if (const dermis_result alive = check_alive(*graph->context, function); alive != DERMIS_OK) return alive;
+    return create(*graph, desc, view, report);
+  });
+}
+
+extern "C" void DERMIS_CALL dermis_view_destroy(dermis_view view) {
+  if (view == nullptr) return;
+  dermis_graph_t& graph = *view->graph;
+  const std::lock_guard changing(graph.changing);
+  std::erase_if(graph.others, [&](const auto& one) { return one.get() == view; });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_record(dermis_view view, const dermis_frame* frame) {
+  constexpr const char* function = "dermis_view_record";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function, [&] { return record_frame(*view, frame); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_commands(dermis_view view, const dermis_frame* frame,
+                                                          uint32_t* count, const dermis_command** commands) {
+  constexpr const char* function = "dermis_view_commands";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function,
+                 [&] { return capture_frame(*view, function, frame, count, commands); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index) {
+  constexpr const char* function = "dermis_view_discard";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function, [&] { return discard_frame(*view, function, frame_index); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_choice(dermis_view view, uint64_t completed_frame_index,
+                                                        dermis_choice* choice) {
+  constexpr const char* function = "dermis_view_choice";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function,
+                 [&] { return get_choice(*view, function, completed_frame_index, choice); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint64_t completed_frame_index,
+                                                         uint32_t* count, dermis_pass_timing* timings) {
+  constexpr const char* function = "dermis_view_timings";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function,
+                 [&] { return get_timings(*view, function, completed_frame_index, count, timings); });
+}

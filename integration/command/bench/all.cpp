@@ -1,0 +1,250 @@
+// dermis bench all: every suite, one after the other, with an index page. What an earlier run into the same
+// folder has measured with the same line is not measured again.
+
+#include "framegraph/text/document.hpp"
+#include "framegraph/text/json_writer.hpp"
+#include "framegraph/text/suggest.hpp"
+#include "integration/command/bench/report/html.hpp"
+#include "integration/command/bench/report/report.hpp"
+#include "integration/command/output.hpp"
+#include "integration/command/verbs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+
+namespace dermis::tools {
+namespace {
+
+struct Files {
+  std::string json, csv, html;
+};
+
+struct Suite {
+  std::string_view name, what;
+  bool rows_as_table;    // writes CSV, too
+  bool shows_head;       // takes --head
+  std::string_view line; // options beyond the files, as a person would give them
+  ExitCode (*run)(const Session&, const BenchAllOptions&, const Files&);
+};
+
+template <class Options> Options with_files(const Files& files) {
+  Options options;
+  options.json = files.json;
+  options.html = files.html;
+  return options;
+}
+
+// From what takes seconds to what takes long.
+constexpr Suite suites[] = {
+    {"record", "What recording a frame costs the host's thread", false, false, "",
+     [](const Session& session, const BenchAllOptions&, const Files& files) {
+       return bench_record(session, with_files<BenchRecordOptions>(files));
+     }},
+    {"skip", "What frames cost that do not need all of a graph", false, false, "",
+     [](const Session& session, const BenchAllOptions&, const Files& files) {
+       return bench_skip(session, with_files<BenchSkipOptions>(files));
+     }},
+    {"truth", "Laws with known answers, beside what every technique makes of them", true, false, "",
+     [](const Session& session, const BenchAllOptions&, const Files& files) {
+       auto options = with_files<BenchTruthOptions>(files);
+       options.csv = files.csv;
+       return bench_truth(session, options);
+     }},
+    {"supplement", "Table 1 of the supplement on control variates", false, false, "",
+     [](const Session& session, const BenchAllOptions&, const Files& files) {
+       return bench_supplement(session, with_files<BenchSupplementOptions>(files));
+     }},
+    {"compile", "Time and memory of compiling drawn graphs", false, false, "",
+     [](const Session& session, const BenchAllOptions&, const Files& files) {
+       return bench_compile(session, with_files<BenchCompileOptions>(files));
+     }},
+    {"stability", "Every technique under what is known to break such techniques", false, false, "",
+     [](const Session& session, const BenchAllOptions&, const Files& files) {
+       return bench_stability(session, with_files<BenchStabilityOptions>(files));
+     }},
+    {"budget", "How well frames keep to a budget, and what error that costs", false, false, "",
+     [](const Session& session, const BenchAllOptions& all, const Files& files) {
+       auto options = with_files<BenchBudgetOptions>(files);
+       options.cache = all.cache;
+       return bench_budget(session, options);
+     }},
+    {"error-time", "Run time against error of every technique at every still scene", true, true,
+     " --size 640x360",
+     [](const Session& session, const BenchAllOptions& all, const Files& files) {
+       auto options = with_files<BenchErrorTimeOptions>(files);
+       options.csv = files.csv;
+       options.head = all.head;
+       options.cache = all.cache;
+       return bench_error_time(session, options);
+     }},
+    {"dynamic", "Samples, time, error and flicker while light, camera or things change", true, true, "",
+     [](const Session& session, const BenchAllOptions& all, const Files& files) {
+       auto options = with_files<BenchDynamicOptions>(files);
+       options.csv = files.csv;
+       options.head = all.head;
+       options.cache = all.cache;
+       return bench_dynamic(session, options);
+     }},
+};
+
+struct Outcome {
+  std::string suite, line; // that makes its files alone
+  int64_t exit_code = 0;
+  double seconds = 0;
+};
+
+std::string line_of(const Suite& suite, const BenchAllOptions& options) {
+  std::string line = fmt::format("dermis bench {}{}", suite.name, suite.line);
+  if (suite.shows_head && !options.head.empty()) line += fmt::format(" --head {}", options.head);
+  return line + fmt::format(" --json {0}.json{1} --html {0}.html", suite.name,
+                            suite.rows_as_table ? fmt::format(" --csv {}.csv", suite.name) : "");
+}
+
+// What an earlier run left in index.json; nothing where there is none, or another program wrote it.
+std::vector<Outcome> read_index(const std::string& file) {
+  Diagnostics ignored;
+  std::vector<Outcome> found;
+  const auto document = std::filesystem::exists(file) ? read_document(file, ignored) : std::nullopt;
+  const NodeId list = document ? document->find(document->root(), "suites") : NodeId{};
+  if (!list.valid() || (*document)[list].kind != NodeKind::array) return found;
+  for (NodeId one = (*document)[list].first_child; one.valid(); one = (*document)[one].next) {
+    const NodeId name = document->find(one, "suite"), line = document->find(one, "line"),
+                 code = document->find(one, "exit_code"), seconds = document->find(one, "seconds");
+    const auto is = [&](NodeId id, NodeKind kind) { return id.valid() && (*document)[id].kind == kind; };
+    if (is(name, NodeKind::string) && is(line, NodeKind::string) && is(code, NodeKind::integer) &&
+        seconds.valid())
+      found.push_back({std::string(document->text(name)), std::string(document->text(line)),
+                       (*document)[code].integer, (*document)[seconds].real});
+  }
+  return found;
+}
+
+std::string index_json(const std::vector<Outcome>& outcomes) {
+  JsonWriter out;
+  out.open_object().member("dermis_bench", "all").key("suites").open_array();
+  for (const Outcome& one : outcomes)
+    out.open_object(true)
+        .member("suite", one.suite)
+        .member("line", one.line)
+        .member("exit_code", one.exit_code)
+        .member("seconds", one.seconds)
+        .close();
+  out.close().close();
+  return std::move(out).finish();
+}
+
+std::string state_text(int64_t exit_code) {
+  return exit_code == 0 ? "done" : exit_code == 1 ? "done; rows miss what they should hold" : "failed";
+}
+
+std::string index_html(const Session& session, const std::vector<Outcome>& outcomes) {
+  std::string body =
+      "<h1>Measurements of Dermis</h1><p>Each suite has a page, and its rows for programs.</p><dl>\n";
+  for (const auto& [name, text] : machine_facts(session.command, ""))
+    body += fmt::format("<dt>{}<dd>{}\n", html_text(name), html_text(text));
+  body += "</dl><div class=wide><table><thead><tr><th class=t>suite<th class=t>what<th class=t>rows<th "
+          "class=t>state"
+          "<th>time<th class=t>made by</thead><tbody>\n";
+  for (const Suite& suite : suites) {
+    const auto at = std::find_if(outcomes.begin(), outcomes.end(),
+                                 [&](const Outcome& one) { return one.suite == suite.name; });
+    if (at == outcomes.end() || at->exit_code > 1) {
+      body += fmt::format(
+          "<tr><td class=t>{}<td class=t>{}<td class=t><td class=t>{}<td data-v=-1>&ndash;<td class=t>\n",
+          suite.name, suite.what, at == outcomes.end() ? "not measured" : "failed");
+      continue;
+    }
+    const std::string csv = suite.rows_as_table ? fmt::format(" <a href='{}.csv'>CSV</a>", suite.name) : "";
+    body +=
+        fmt::format("<tr><td class=t><a href='{0}.html'>{0}</a><td class=t>{1}<td class=t><a href='{0}.json'>"
+                    "JSON</a>{2}<td class=t>{3}<td data-v={4:.1f}>{5}<td class=t>{6}\n",
+                    suite.name, suite.what, csv, state_text(at->exit_code), at->seconds,
+                    format_duration(at->seconds), html_text(at->line));
+  }
+  return html_page("Measurements of Dermis", body + "</tbody></table></div>\n");
+}
+
+bool is_there(const Outcome& outcome, const Files& files) {
+  const auto exists = [](const std::string& file) { return file.empty() || std::filesystem::exists(file); };
+  return outcome.exit_code <= 1 && exists(files.json) && exists(files.csv) && exists(files.html);
+}
+
+std::string unknown_suite(const std::vector<std::string>& asked) {
+  std::vector<std::string_view> names;
+  for (const Suite& suite : suites)
+    names.push_back(suite.name);
+  for (const std::string& one : asked)
+    if (std::find(names.begin(), names.end(), one) == names.end()) {
+      const std::string suggestion = did_you_mean(one, names);
+      return fmt::format("there is no suite '{}'; {}", one,
+                         suggestion.empty() ? "suites: " + bench_suite_names() : suggestion);
+    }
+  return "";
+}
+
+} // namespace
+
+std::string bench_suite_names() {
+  std::string names;
+  for (const Suite& suite : suites)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", suite.name);
+  return names;
+}
+
+ExitCode bench_all(const Session& session, const BenchAllOptions& options) {
+  if (const std::string problem = unknown_suite(options.suites); !problem.empty())
+    return fail(session, ExitCode::usage, problem);
+  OutputFolder out;
+  if (const std::string problem = out.open(options.out); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
+
+  std::vector<Outcome> outcomes = read_index(out.path_of("index.json"));
+  const auto asked = [&](const Suite& suite) {
+    return options.suites.empty() ||
+           std::find(options.suites.begin(), options.suites.end(), suite.name) != options.suites.end();
+  };
+  const auto total = std::count_if(std::begin(suites), std::end(suites), asked);
+  ExitCode worst = ExitCode::ok;
+  int64_t number = 0;
+  for (const Suite& suite : suites) {
+    if (!asked(suite)) continue;
+    ++number;
+    const std::string name(suite.name);
+    const Files files{out.path_of(name + ".json"), suite.rows_as_table ? out.path_of(name + ".csv") : "",
+                      out.path_of(name + ".html")};
+    Outcome outcome{name, line_of(suite, options)};
+    const auto before =
+        std::find_if(outcomes.begin(), outcomes.end(), [&](const Outcome& one) { return one.suite == name; });
+    if (before != outcomes.end() && before->line == outcome.line && !options.again &&
+        is_there(*before, files)) {
+      say(session, fmt::format("{} of {}: {} is there from an earlier run\n", number, total, name));
+      worst = std::max(worst, static_cast<ExitCode>(before->exit_code));
+      continue;
+    }
+    say(session, fmt::format("{} of {}: {}\n", number, total, name));
+    Session quiet = session; // the page says it all
+    quiet.quiet = true;
+    quiet.command = outcome.line;
+    const auto start = std::chrono::steady_clock::now();
+    const ExitCode code = suite.run(quiet, options, files);
+    if (code == ExitCode::interrupted) return code;
+    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    outcome.exit_code = static_cast<int64_t>(code);
+    worst = std::max(worst, code);
+    say(session, fmt::format("  {}, {}\n", state_text(outcome.exit_code), format_duration(outcome.seconds)));
+    if (before != outcomes.end()) outcomes.erase(before);
+    outcomes.push_back(outcome);
+    std::string problem = deliver_text(out.path_of("index.json"), index_json(outcomes));
+    if (problem.empty()) problem = deliver_text(out.path_of("index.html"), index_html(session, outcomes));
+    if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+  }
+  say(session, fmt::format("{}\n", out.path_of("index.html")));
+  if (session.json) print(index_json(outcomes));
+  return worst;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,24 @@
+// Light and dark: as the system says, or as the reader chose.
+
+const order = ['auto', 'light', 'dark'];
+
+export function color(variable) {
+  return getComputedStyle(document.documentElement).getPropertyValue(variable).trim();
+}
+
+// Calls `changed` whenever colours are others.
+export function make_theme_button(button, changed) {
+  let at = 0;
+  const show = () => {
+    button.textContent = `Theme: ${order[at]}`;
+    if (order[at] === 'auto') delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = order[at];
+  };
+  button.addEventListener('click', () => {
+    at = (at + 1) % order.length;
+    show();
+    changed();
+  });
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', changed);
+  show();
+}

@@ -1,0 +1,67 @@
+// dermis bench all: an index of suites, and a run that goes on where another one stopped.
+#include "tests/command/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace dermis::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class BenchAll : public CommandTest {
+protected:
+  std::string read(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+};
+
+TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
+  const std::vector<std::string> arguments = {"bench", "all", "--out", path("out"), "--suites", "record"};
+  const Outcome first = run(arguments);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(files("out"), testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
+  const std::string index = read("out/index.html");
+  EXPECT_THAT(index, HasSubstr("<a href='record.html'>"));
+  EXPECT_THAT(index, HasSubstr("dermis bench record --json record.json --html record.html"));
+  EXPECT_THAT(index, HasSubstr("not measured")); // the other suites
+  EXPECT_THAT(index, HasSubstr("<dt>processor"));
+  EXPECT_THAT(read("out/record.html"), HasSubstr("chain of 100"));
+
+  const auto written = std::filesystem::last_write_time(path("out/record.json"));
+  const Outcome second = run(arguments);
+  EXPECT_EQ(second.exit_code, 0);
+  EXPECT_THAT(second.out, HasSubstr("record is there from an earlier run"));
+  EXPECT_EQ(std::filesystem::last_write_time(path("out/record.json")), written);
+
+  // A suite whose page is gone is measured again, and so is one that was made by another line.
+  std::filesystem::remove(path("out/record.html"));
+  EXPECT_THAT(run(arguments).out, Not(HasSubstr("is there from an earlier run")));
+  nlohmann::json state = nlohmann::json::parse(read("out/index.json"));
+  state["suites"][0]["line"] = "dermis bench record --graphs elsewhere";
+  std::ofstream(path("out/index.json")) << state;
+  EXPECT_THAT(run(arguments).out, Not(HasSubstr("is there from an earlier run")));
+}
+
+TEST_F(BenchAll, ASuiteThatIsNotThereIsAUsageErrorWithASuggestion) {
+  const Outcome outcome = run({"bench", "all", "--out", path("out"), "--suites", "recrod"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'record'?"));
+  EXPECT_THAT(files(), testing::IsEmpty());
+}
+
+TEST_F(BenchAll, AnIndexThatIsNoneOfOursIsNotBelieved) {
+  write("out/index.json",
+        R"({ "suites": [ { "suite": 1, "line": [], "exit_code": "x", "seconds": null } ] })");
+  EXPECT_EQ(run({"bench", "all", "--out", path("out"), "--suites", "record"}).exit_code, 0);
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,87 @@
+// Images that come without a view: the library keeps one for each content_id, and handles may be used again.
+
+#include "tests/integration/embedding/cameras.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+namespace dermis::abi_test {
+namespace {
+
+struct ContentId : CameraTest {
+  uint64_t submitted = 0;
+  void run(dermis_graph graph, const Camera& camera, uint64_t index) {
+    submit(++submitted, [&](VkCommandBuffer into) {
+      dermis_frame frame = frame_of(camera, index);
+      frame.command_buffer = into;
+      ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+    });
+  }
+  static void give_up_views(Camera& camera, uint64_t first_id) {
+    for (dermis_image_binding& binding : camera.bound) {
+      binding.view = VK_NULL_HANDLE;
+      binding.content_id = first_id++;
+    }
+  }
+};
+
+TEST_F(ContentId, ReplacesTheHostsViews) {
+  std::vector<float> light[2];
+  for (const bool without : {false, true}) {
+    const dermis_graph graph = make_accumulating();
+    Camera camera = make_camera(graph, 1);
+    if (without) give_up_views(camera, 1);
+    wait();
+    for (uint64_t index = 1; index <= 5; ++index)
+      run(graph, camera, index);
+    light[without ? 1 : 0] = light_of(camera);
+  }
+  EXPECT_TRUE(light[0] == light[1]);
+}
+
+// The validation layer tells when a view of a destroyed image is used.
+TEST_F(ContentId, TellsImagesApartThatHadTheSameHandle) {
+  const dermis_graph graph = make_accumulating();
+  uint64_t id = 1, index = 0;
+  std::vector<float> expected;
+  for (uint32_t seed = 1; seed <= 4; ++seed) {
+    Camera camera = make_camera(graph, seed); // the images of the one before are gone, their handles are free
+    give_up_views(camera, id);
+    id += camera.bound.size();
+    const std::vector<float> before = light_of(camera);
+    dermis_frame frame = frame_of(camera, ++index);
+    frame.flags |= DERMIS_FRAME_RESET_HISTORY;
+    submit(++submitted, [&](VkCommandBuffer into) {
+      frame.command_buffer = into;
+      ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+    });
+    EXPECT_FALSE(before == light_of(camera)) << "it is this image that the graph wrote";
+  }
+}
+
+TEST_F(ContentId, OfMoreImagesThanThereIsRoomForIsRefusedOnlyWhileTheyAreInUse) {
+  const dermis_graph graph = make_accumulating();
+  Camera camera = make_camera(graph, 1);
+  for (uint64_t index = 1; index <= 40; ++index) { // each frame another one, three in flight
+    give_up_views(camera, index * 100);
+    run(graph, camera, index);
+  }
+  wait();
+}
+
+TEST(ContentIdOnTheNullDevice, MakesAViewOnceAndGivesItBack) {
+  NullHost host;
+  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
+  ASSERT_EQ(host.make_graph(), DERMIS_OK);
+  host.make_bindings();
+  host.give_up_views();
+  host.device.fail_creation(1, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+  EXPECT_EQ(host.record(), DERMIS_ERROR_DEVICE_MEMORY);
+  EXPECT_THAT(dermis_last_error(), testing::HasSubstr("vkCreateImageView"));
+  ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  const uint64_t creations = host.device.creations();
+  for (int i = 0; i < 5; ++i)
+    ASSERT_EQ(host.record(), DERMIS_OK);
+  EXPECT_EQ(host.device.creations(), creations);
+}
+
+} // namespace
+} // namespace dermis::abi_test

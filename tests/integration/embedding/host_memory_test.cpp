@@ -1,0 +1,221 @@
+// Memory from the host: all of it comes from there and goes back there, and running out of it at any
+// allocation is told and leaves nothing behind.
+
+#include "tests/framegraph/test_tier.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <functional>
+
+namespace dermis::abi_test {
+namespace {
+
+// Counts, and refuses the allocation that is asked for.
+struct Heap {
+  uint64_t blocks = 0, bytes = 0; // alive
+  uint64_t calls = 0;
+  uint64_t refused = 0; // number of the call, from 1; 0: none
+  bool misaligned = false;
+
+  static void* DERMIS_CALL allocate(void* user, size_t size, size_t alignment) {
+    Heap& heap = *static_cast<Heap*>(user);
+    if (++heap.calls == heap.refused) return nullptr;
+    ++heap.blocks;
+    heap.bytes += size;
+    heap.misaligned = heap.misaligned || alignment < 16 || (alignment & (alignment - 1)) != 0;
+    return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  }
+  static void DERMIS_CALL release(void* user, void* memory, size_t size, size_t) {
+    Heap& heap = *static_cast<Heap*>(user);
+    --heap.blocks;
+    heap.bytes -= size;
+    std::free(memory);
+  }
+  dermis_allocator allocator() {
+    dermis_allocator out = DERMIS_ALLOCATOR_INIT;
+    out.allocate = allocate;
+    out.release = release;
+    out.user = this;
+    return out;
+  }
+};
+
+struct HostMemory : ::testing::Test {
+  Heap heap;
+  dermis_allocator allocator = heap.allocator();
+  NullHost host;
+
+  void SetUp() override {
+    const dermis_context_desc desc = with_heap();
+    const dermis_result made = host.make_context(desc);
+    if (made == DERMIS_ERROR_UNSUPPORTED)
+      GTEST_SKIP() << "with sanitizers the program's operator new serves the library: "
+                   << dermis_last_error();
+    ASSERT_EQ(made, DERMIS_OK) << dermis_last_error();
+  }
+  dermis_context_desc with_heap() {
+    dermis_context_desc desc = host.context_desc();
+    desc.allocator = &allocator;
+    return desc;
+  }
+  void TearDown() override {
+    host.destroy();
+    EXPECT_EQ(heap.blocks, 0u) << "what was kept in caches goes with them";
+    EXPECT_EQ(heap.bytes, 0u);
+  }
+  void make_graph() {
+    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  }
+
+  // Calls `change` with its first allocation refused, then its second, until it succeeds: every one of the
+  // first 300, then every `step`-th.
+  void refuse_each(uint64_t step, const std::function<dermis_result()>& change,
+                   const std::function<void()>& after) {
+    constexpr uint64_t each_until = 300;
+    uint64_t refusals = 0;
+    for (uint64_t number = 1;; number += number < each_until ? 1 : step) {
+      const uint64_t blocks = heap.blocks, bytes = heap.bytes;
+      const uint64_t alive = host.device.alive(), device_bytes = host.device.memory_bytes();
+      heap.calls = 0;
+      heap.refused = number;
+      const dermis_result result = change();
+      heap.refused = 0;
+      if (result == DERMIS_OK) break;
+      ++refusals;
+      ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
+      ASSERT_GE(heap.blocks, blocks) << "allocation " << number
+                                     << ": more may be kept in caches, nothing may be gone";
+      ASSERT_GE(heap.bytes, bytes) << "allocation " << number;
+      ASSERT_EQ(host.device.alive(), alive) << "allocation " << number;
+      ASSERT_EQ(host.device.memory_bytes(), device_bytes) << "allocation " << number;
+      after();
+    }
+    RecordProperty("refusals", std::to_string(refusals));
+    EXPECT_GT(refusals, 5u);
+    EXPECT_FALSE(heap.misaligned);
+  }
+  void still_records() { ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error(); }
+  static uint64_t step() { return dermis::testing::seeds_of_tier(61, 1); }
+};
+
+TEST_F(HostMemory, AllOfItGoesBack) {
+  make_graph();
+  const uint64_t running = heap.blocks;
+  EXPECT_GT(running, 100u) << "the graph lives in the host's memory";
+  const uint64_t calls = heap.calls;
+  for (int i = 0; i < 4; ++i)
+    ASSERT_EQ(host.record(), DERMIS_OK);
+  EXPECT_EQ(heap.calls, calls) << "recording takes none";
+  dermis_report report = nullptr;
+  const std::string wrong = "{";
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.text = wrong.data();
+  source.length = wrong.size();
+  EXPECT_EQ(dermis_graph_reload(host.graph, &source, &report), DERMIS_ERROR_CONFIG);
+  host.destroy();
+  EXPECT_GT(heap.blocks, 0u) << "the report is still there";
+  EXPECT_NE(std::string(dermis_report_text(report)), "");
+  dermis_report_destroy(report);
+  EXPECT_EQ(heap.blocks, 0u);
+  EXPECT_EQ(heap.bytes, 0u);
+}
+
+TEST_F(HostMemory, AContextThatCannotBeMadeLeavesNothing) {
+  host.destroy();
+  refuse_each(
+      1,
+      [&] {
+        const dermis_result result = host.make_context(with_heap());
+        EXPECT_EQ(result == DERMIS_OK, host.context != nullptr);
+        return result;
+      },
+      [] {});
+}
+
+TEST_F(HostMemory, AGraphThatCannotBeMadeLeavesNothing) {
+  refuse_each(
+      step(), [&] { return host.make_graph(); }, [&] { EXPECT_EQ(host.graph, nullptr); });
+}
+
+TEST_F(HostMemory, ARefusedReloadLeavesTheGraphAsItWas) {
+  make_graph();
+  refuse_each(
+      step(), [&] { return host.reload(); }, [&] { still_records(); });
+}
+
+TEST_F(HostMemory, ARefusedResizeLeavesTheGraphAsItWas) {
+  make_graph();
+  uint32_t calls = 0;
+  refuse_each(
+      step(), [&] { return dermis_graph_resize(host.graph, 32 + ++calls % 7, 32, nullptr); },
+      [&] { still_records(); });
+}
+
+TEST_F(HostMemory, ARefusedSettingLeavesTheGraphAsItWas) {
+  make_graph();
+  refuse_each(
+      1, [&] { return dermis_graph_set_setting(host.graph, "accumulate_clip", "2", nullptr); },
+      [&] { still_records(); });
+}
+
+TEST_F(HostMemory, ARefusedBudgetLeavesTheGraphAsItWas) {
+  make_graph();
+  size_t size = 0;
+  ASSERT_EQ(dermis_graph_calibration(host.graph, &size, nullptr), DERMIS_OK);
+  std::string text(size, '\0');
+  ASSERT_EQ(dermis_graph_calibration(host.graph, &size, text.data()), DERMIS_OK);
+  dermis_source calibration = DERMIS_SOURCE_INIT;
+  calibration.text = text.data();
+  calibration.length = size - 1;
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  budget.milliseconds = 1;
+  budget.calibration = &calibration;
+  refuse_each(
+      step(), [&] { return dermis_graph_set_budget(host.graph, &budget, nullptr); },
+      [&] { still_records(); });
+}
+
+TEST_F(HostMemory, AViewThatCannotBeMadeLeavesNothing) {
+  make_graph();
+  dermis_view view = nullptr;
+  refuse_each(
+      1, [&] { return dermis_view_create(host.graph, nullptr, &view, nullptr); },
+      [&] {
+        EXPECT_EQ(view, nullptr);
+        still_records();
+      });
+  EXPECT_EQ(host.record(view, 1), DERMIS_OK) << dermis_last_error();
+}
+
+TEST_F(HostMemory, ARecordedFrameNeedsNone) {
+  make_graph();
+  heap.calls = 0;
+  heap.refused = 1;
+  EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(heap.calls, 0u);
+  ASSERT_EQ(host.reload(), DERMIS_ERROR_MEMORY);
+  heap.refused = 0;
+  ASSERT_EQ(host.reload(), DERMIS_OK);
+  heap.calls = 0;
+  EXPECT_EQ(host.record(), DERMIS_OK) << "a program takes over without memory";
+  EXPECT_EQ(heap.calls, 0u);
+}
+
+TEST_F(HostMemory, HalfAnAllocatorIsRefused) {
+  host.destroy();
+  allocator.release = nullptr;
+  EXPECT_EQ(host.make_context(with_heap()), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), ::testing::HasSubstr("desc.allocator.release is NULL"));
+  allocator = heap.allocator();
+  allocator.struct_size = 3;
+  EXPECT_EQ(host.make_context(with_heap()), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), ::testing::HasSubstr("desc.allocator.struct_size"));
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,128 @@
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace dermis::abi_test {
+namespace {
+
+std::string text_of(const std::string& path) { // from the root of the sources
+  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/" + path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+dermis_source source_from(const std::string& text, const char* name) {
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = name;
+  source.text = text.data();
+  source.length = text.size();
+  return source;
+}
+
+} // namespace
+
+NullHost::~NullHost() {
+  destroy();
+}
+
+void NullHost::destroy() {
+  dermis_graph_destroy(graph);
+  dermis_context_destroy(context);
+  graph = nullptr;
+  context = nullptr;
+}
+
+dermis_context_desc NullHost::context_desc() {
+  dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
+  desc.flags = DERMIS_CONTEXT_TIMINGS;
+  desc.instance = device.instance();
+  desc.physical_device = device.physical();
+  desc.device = device.device();
+  desc.get_instance_proc_addr = NullDevice::loader();
+  return desc;
+}
+
+dermis_result NullHost::make_context(const dermis_context_desc& desc) {
+  return dermis_context_create(&desc, &context);
+}
+
+dermis_result NullHost::make_graph(uint32_t side) {
+  static const std::string text = text_of("configs/graphs/burley.json"),
+                           overlay_text = text_of("configs/overlays/accumulate.json"),
+                           skin = text_of("configs/profiles/skin.json");
+  dermis_profile profile = DERMIS_PROFILE_INIT;
+  profile.id = 1;
+  profile.source = source_from(skin, "skin.json");
+  const dermis_source overlay = source_from(overlay_text, "accumulate.json");
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_from(text, "burley.json");
+  desc.width = desc.height = side;
+  desc.profiles = &profile;
+  desc.profile_count = 1;
+  desc.overlays = &overlay;
+  desc.overlay_count = 1;
+  return dermis_graph_create(context, &desc, &graph, nullptr);
+}
+
+void NullHost::make_bindings() {
+  bindings_.clear();
+  uint32_t count = 0;
+  if (dermis_graph_slots(graph, &count, nullptr) != DERMIS_OK) return;
+  std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
+  if (dermis_graph_slots(graph, &count, slots.data()) != DERMIS_OK) return;
+  for (const dermis_slot& slot : slots) {
+    dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
+    binding.slot = slot.id;
+    binding.format = slot.format;
+    binding.width = slot.width;
+    binding.height = slot.height;
+    binding.image = device.make_image();
+    binding.view = device.make_view();
+    binding.before = binding.after = {VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
+                                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT};
+    bindings_.push_back(binding);
+  }
+}
+
+void NullHost::give_up_views() {
+  uint64_t id = 0;
+  for (dermis_image_binding& binding : bindings_) {
+    binding.view = VK_NULL_HANDLE;
+    binding.content_id = ++id;
+  }
+}
+
+dermis_result NullHost::reload(const std::string& text) const {
+  static const std::string own = text_of("configs/graphs/burley.json");
+  const dermis_source source = source_from(text.empty() ? own : text, "burley.json");
+  return dermis_graph_reload(graph, &source, nullptr);
+}
+
+dermis_frame NullHost::frame_at(uint64_t index) const {
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  frame.command_buffer = device.command_buffer();
+  frame.bindings = bindings_.data();
+  frame.binding_count = static_cast<uint32_t>(bindings_.size());
+  frame.frame_index = index;
+  frame.completed_frame_index = index - 1;
+  frame.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
+  frame.clip_from_view[0] = frame.clip_from_view[15] = 1.0f;
+  frame.clip_from_view[5] = frame.clip_from_view[10] = -1.0f;
+  return frame;
+}
+
+dermis_result NullHost::record() {
+  const dermis_frame next = frame_at(last_frame + 1);
+  const dermis_result result = dermis_graph_record(graph, &next);
+  if (result == DERMIS_OK) ++last_frame;
+  return result;
+}
+
+dermis_result NullHost::record(dermis_view view, uint64_t index) const {
+  const dermis_frame next = frame_at(index);
+  return dermis_view_record(view, &next);
+}
+
+} // namespace dermis::abi_test

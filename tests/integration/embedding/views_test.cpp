@@ -1,0 +1,340 @@
+// Several views of one graph: each looks as if it were the only one, whatever happens to the graph and to the
+// others.
+
+#include "tests/integration/embedding/cameras.hpp"
+
+namespace dermis::abi_test {
+namespace {
+
+using Recorder = std::function<dermis_result(const dermis_frame*)>;
+
+Recorder recorder_of(dermis_graph graph) {
+  return [graph](const dermis_frame* frame) { return dermis_graph_record(graph, frame); };
+}
+Recorder recorder_of(dermis_view view) {
+  return [view](const dermis_frame* frame) { return dermis_view_record(view, frame); };
+}
+
+// Some cameras sit out some frames; the first sees all.
+bool takes_part(size_t camera, uint64_t index) {
+  return camera == 0 || (index * 5 + camera) % 4 != 0;
+}
+
+struct Views : CameraTest {
+  dermis_view make_view(dermis_graph graph, const dermis_view_desc* desc = nullptr) {
+    dermis_view view = nullptr;
+    EXPECT_EQ(dermis_view_create(graph, desc, &view, nullptr), DERMIS_OK) << dermis_last_error();
+    return view;
+  }
+
+  // What happens to a graph between frames.
+  using Change = std::function<void(dermis_graph, uint64_t)>;
+  static void nothing(dermis_graph, uint64_t) {}
+
+  void run(dermis_graph graph, const std::vector<Recorder>& recorders, const std::vector<Camera>& cameras,
+           const std::vector<size_t>& numbers, uint64_t count, const Change& change) {
+    wait();
+    for (uint64_t index = 1; index <= count; ++index) {
+      change(graph, index);
+      const auto record = [&](VkCommandBuffer into) {
+        for (size_t c = 0; c < cameras.size(); ++c) {
+          if (!takes_part(numbers[c], index)) continue;
+          dermis_frame frame = frame_of(cameras[c], index);
+          frame.command_buffer = into;
+          ASSERT_EQ(recorders[c](&frame), DERMIS_OK) << dermis_last_error();
+        }
+      };
+      submit_again(index, record);
+    }
+    wait();
+  }
+
+  // The light of `count` cameras after `last` frames, all of them views of one graph.
+  std::vector<std::vector<float>> together(size_t count, uint64_t last, const Change& change) {
+    const dermis_graph graph = make_accumulating();
+    std::vector<Recorder> recorders{recorder_of(graph)};
+    std::vector<Camera> cameras;
+    std::vector<size_t> numbers;
+    for (size_t c = 0; c < count; ++c) {
+      if (c > 0) recorders.push_back(recorder_of(make_view(graph)));
+      cameras.push_back(make_camera(graph, static_cast<uint32_t>(c + 1)));
+      numbers.push_back(c);
+    }
+    run(graph, recorders, cameras, numbers, last, change);
+    std::vector<std::vector<float>> light;
+    for (const Camera& camera : cameras)
+      light.push_back(light_of(camera));
+    return light;
+  }
+
+  // The same camera with a graph to itself.
+  std::vector<float> alone(size_t number, uint64_t last, const Change& change) {
+    const dermis_graph graph = make_accumulating();
+    std::vector<Camera> cameras;
+    cameras.push_back(make_camera(graph, static_cast<uint32_t>(number + 1)));
+    run(graph, {recorder_of(graph)}, cameras, {number}, last, change);
+    return light_of(cameras.front());
+  }
+
+  // Several runs with the same fences.
+  void submit_again(uint64_t index, const std::function<void(VkCommandBuffer)>& record) {
+    submit(submitted + 1, record);
+    ++submitted;
+    last_frame = index;
+  }
+  uint64_t submitted = 0;
+};
+
+TEST_F(Views, EachOfEightLooksAsIfItWereAloneWithThreeFramesInFlight) {
+  constexpr uint64_t last = 9;
+  const auto light = together(8, last, nothing);
+  for (size_t c = 0; c < light.size(); ++c)
+    EXPECT_TRUE(light[c] == alone(c, last, nothing)) << "camera " << c;
+  EXPECT_FALSE(light[0] == light[4]) << "they see different things";
+  EXPECT_FALSE(light[0] == alone(0, last - 1, nothing)) << "each frame changes the light";
+}
+
+TEST_F(Views, AReloadKeepsTheHistoryOfEach) {
+  constexpr uint64_t last = 7;
+  const std::string text = read_text("configs/graphs/burley.json");
+  const Change reload = [&](dermis_graph graph, uint64_t index) {
+    const dermis_source source = source_of(text, "graph.json");
+    if (index == 4) {
+      ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+    }
+  };
+  const auto light = together(3, last, reload);
+  for (size_t c = 0; c < light.size(); ++c)
+    EXPECT_TRUE(light[c] == alone(c, last, nothing)) << "camera " << c << " notices the reload";
+}
+
+TEST_F(Views, AResizeIsOneForAll) {
+  constexpr uint64_t last = 7;
+  const Change resize = [](dermis_graph graph, uint64_t index) {
+    if (index == 4) {
+      ASSERT_EQ(dermis_graph_resize(graph, side - 5, side - 3, nullptr), DERMIS_OK) << dermis_last_error();
+    }
+  };
+  const auto light = together(3, last, resize);
+  for (size_t c = 0; c < light.size(); ++c)
+    EXPECT_TRUE(light[c] == alone(c, last, resize)) << "camera " << c;
+}
+
+TEST_F(Views, ASettingThatChangesThePassesIsOneForAll) {
+  constexpr uint64_t last = 6;
+  const Change set = [](dermis_graph graph, uint64_t index) {
+    if (index == 3) {
+      ASSERT_EQ(dermis_graph_set_setting(graph, "accumulate_weight", "0.5", nullptr), DERMIS_OK);
+    }
+  };
+  const auto light = together(2, last, set);
+  EXPECT_TRUE(light[1] == alone(1, last, set));
+  EXPECT_FALSE(light[1] == alone(1, last, nothing)) << "the setting counts";
+}
+
+TEST_F(Views, AFrameThatOneTakesBackChangesNeitherItNorTheOthers) {
+  const dermis_graph graph = make_accumulating();
+  const dermis_view view = make_view(graph);
+  std::vector<Camera> cameras;
+  for (uint32_t seed : {1u, 2u})
+    cameras.push_back(make_camera(graph, seed));
+  for (uint64_t index = 1; index <= 6; ++index) {
+    dermis_frame first = frame_of(cameras[0], index), second = frame_of(cameras[1], index);
+    if (index == 4) { // recorded, and thrown away
+      const auto begin =
+          demo::vulkan_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+      VkCommandBuffer thrown = commands[index % frames];
+      wait();
+      ASSERT_EQ(host->vk.vkBeginCommandBuffer(thrown, &begin), VK_SUCCESS);
+      second.command_buffer = thrown;
+      ASSERT_EQ(dermis_view_record(view, &second), DERMIS_OK) << dermis_last_error();
+      ASSERT_EQ(host->vk.vkEndCommandBuffer(thrown), VK_SUCCESS);
+      EXPECT_EQ(dermis_frame_discard(graph, index), DERMIS_ERROR_ARGUMENT) << "that is another view";
+      ASSERT_EQ(dermis_view_discard(view, index), DERMIS_OK) << dermis_last_error();
+    }
+    submit(index, [&](VkCommandBuffer into) {
+      first.command_buffer = second.command_buffer = into;
+      ASSERT_EQ(dermis_graph_record(graph, &first), DERMIS_OK) << dermis_last_error();
+      if (takes_part(1, index)) {
+        ASSERT_EQ(dermis_view_record(view, &second), DERMIS_OK) << dermis_last_error();
+      }
+    });
+  }
+  submitted = 6;
+  EXPECT_TRUE(light_of(cameras[0]) == alone(0, 6, nothing));
+  EXPECT_TRUE(light_of(cameras[1]) == alone(1, 6, nothing));
+}
+
+TEST_F(Views, OneMayComeAndGoWhileOthersRun) {
+  const dermis_graph graph = make_accumulating();
+  std::vector<Camera> cameras;
+  for (uint32_t seed : {1u, 2u})
+    cameras.push_back(make_camera(graph, seed));
+  dermis_view view = nullptr;
+  for (uint64_t index = 1; index <= 9; ++index) {
+    if (index == 3) view = make_view(graph);
+    if (index == 7) {
+      wait();
+      dermis_view_destroy(view);
+      view = nullptr;
+    }
+    submit(index, [&](VkCommandBuffer into) {
+      for (size_t c = 0; c < 2; ++c) {
+        dermis_frame frame = frame_of(cameras[c], index);
+        frame.command_buffer = into;
+        if (c == 1 && view == nullptr) continue;
+        const dermis_result result =
+            c == 0 ? dermis_graph_record(graph, &frame) : dermis_view_record(view, &frame);
+        ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();
+      }
+    });
+  }
+  submitted = 9;
+  EXPECT_TRUE(light_of(cameras[0]) == alone(0, 9, nothing));
+  dermis_view_destroy(nullptr);
+}
+
+TEST_F(Views, ShareOneImageALayerEach) {
+  constexpr uint64_t last = 4;
+  const dermis_graph graph = make_accumulating();
+  const dermis_view right = make_view(graph);
+  Camera camera = make_camera(graph, 1), apart = make_camera(graph, 2);
+  const demo::Image& flat = camera.images.at("lighting");
+  demo::ImageDesc desc;
+  desc.format = flat.format;
+  desc.width = desc.height = side;
+  desc.layers = 2;
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+               VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  auto made = demo::create_image(*host, desc);
+  ASSERT_TRUE(made) << made.error().text;
+  demo::Image both = made.take();
+  // Layer 0 gets the camera's light. Layer 1 waits in a layout of its own: whoever touched it would be told.
+  std::vector<float> light = light_of(camera);
+  const dermis_image_state rests = camera.bound.front().before;
+  const demo::ImageState state{rests.layout, rests.stages, rests.access};
+  const auto uploaded = demo::upload_image(*host, both, light, 4, state);
+  ASSERT_TRUE(uploaded) << uploaded.error().text;
+  std::vector<dermis_image_binding> left_bound = camera.bound, right_bound = apart.bound;
+  uint32_t lighting = 0;
+  for (const dermis_slot& slot : slots_of(graph))
+    if (std::string_view(slot.name) == "lighting") lighting = slot.id;
+  for (auto* bound : {&left_bound, &right_bound})
+    for (dermis_image_binding& binding : *bound)
+      if (binding.slot == lighting) {
+        binding.image = both.image;
+        binding.layer = bound == &left_bound ? 0 : 1;
+        binding.view = both.layer_views[binding.layer];
+        binding.layer_count = 1;
+        binding.after.layout =
+            bound == &left_bound ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+      }
+  for (uint64_t index = 1; index <= last; ++index)
+    submit(index, [&](VkCommandBuffer into) {
+      dermis_frame frame = frame_of(camera, index);
+      frame.command_buffer = into;
+      frame.bindings = left_bound.data();
+      ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+      frame.bindings = right_bound.data();
+      ASSERT_EQ(dermis_view_record(right, &frame), DERMIS_OK) << dermis_last_error();
+      for (dermis_image_binding& binding : right_bound)
+        if (binding.slot == lighting) binding.before.layout = binding.after.layout;
+    });
+  submitted = last;
+  wait();
+  // read_image() wants all layers in one layout.
+  const auto settled = demo::run_commands(*host, [&](VkCommandBuffer into) -> demo::Result<> {
+    auto barrier = demo::vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
+    barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.srcAccessMask = barrier.dstAccessMask =
+        VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.oldLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+    barrier.image = both.image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 1, 1};
+    auto dependency = demo::vulkan_struct<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    host->vk.vkCmdPipelineBarrier2(into, &dependency);
+    return demo::success();
+  });
+  ASSERT_TRUE(settled);
+  const auto left_light = demo::read_image(*host, both, state, 0),
+             right_light = demo::read_image(*host, both, state, 1);
+  ASSERT_TRUE(left_light && right_light);
+  EXPECT_TRUE(*left_light == alone(0, last, nothing));
+  // Both layers were uploaded with the left eye's light, or the right one's is what scattering makes of
+  // nothing known.
+  EXPECT_FALSE(*left_light == *right_light);
+}
+
+TEST_F(Views, MakeTheMemoryOfAGraphGrowByTheSameAmountEach) {
+  const dermis_graph graph = make_accumulating();
+  const auto memory = [&] {
+    dermis_memory bytes = DERMIS_MEMORY_INIT;
+    EXPECT_EQ(dermis_graph_memory(graph, &bytes), DERMIS_OK);
+    return bytes;
+  };
+  const dermis_memory one = memory();
+  const dermis_view view = make_view(graph);
+  const dermis_memory two = memory();
+  EXPECT_EQ(two.history_bytes, 2 * one.history_bytes);
+  EXPECT_EQ(two.transient_bytes, 2 * one.transient_bytes);
+  dermis_view_destroy(view);
+  EXPECT_EQ(memory().history_bytes, one.history_bytes);
+}
+
+TEST_F(Views, EachTellsItsOwnTimesAndChoices) {
+  const dermis_graph graph = make_accumulating();
+  const dermis_view view = make_view(graph);
+  const Camera camera = make_camera(graph, 1);
+  submit(1, [&](VkCommandBuffer into) {
+    dermis_frame frame = frame_of(camera, 1);
+    frame.command_buffer = into;
+    ASSERT_EQ(dermis_view_record(view, &frame), DERMIS_OK) << dermis_last_error();
+  });
+  wait();
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  EXPECT_EQ(dermis_graph_choice(graph, 0, &choice), DERMIS_NOT_READY) << "the graph's own view ran no frame";
+  EXPECT_EQ(dermis_view_choice(view, 1, &choice), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(choice.frame_index, 1u);
+  uint32_t count = 0;
+  ASSERT_EQ(dermis_view_timings(view, 1, &count, nullptr), DERMIS_OK);
+  std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
+  ASSERT_EQ(dermis_view_timings(view, 1, &count, times.data()), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(times[0].frame_index, 1u);
+  EXPECT_EQ(dermis_graph_timings(graph, 0, &count, times.data()), DERMIS_NOT_READY);
+}
+
+TEST_F(Views, WrongArgumentsAreNamed) {
+  const dermis_graph graph = make_accumulating();
+  const auto expect = [](dermis_result result, const char* named) {
+    EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
+    EXPECT_THAT(dermis_last_error(), testing::HasSubstr(named));
+  };
+  dermis_view view = nullptr;
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  uint32_t count = 0;
+  expect(dermis_view_create(nullptr, nullptr, &view, nullptr), "graph is NULL");
+  expect(dermis_view_create(graph, nullptr, nullptr, nullptr), "view is NULL");
+  expect(dermis_view_record(nullptr, &frame), "view is NULL");
+  expect(dermis_view_discard(nullptr, 1), "view is NULL");
+  expect(dermis_view_choice(nullptr, 0, &choice), "view is NULL");
+  expect(dermis_view_timings(nullptr, 0, &count, nullptr), "view is NULL");
+  dermis_view_desc desc = DERMIS_VIEW_DESC_INIT;
+  desc.struct_size = 0;
+  expect(dermis_view_create(graph, &desc, &view, nullptr), "struct_size");
+  view = make_view(graph);
+  expect(dermis_view_record(view, nullptr), "dermis_view_record: frame is NULL");
+  expect(dermis_view_choice(view, 0, nullptr), "choice is NULL");
+  expect(dermis_view_timings(view, 0, nullptr, nullptr), "count is NULL");
+  Camera camera = make_camera(graph, 1);
+  camera.bound[0].layer = 1;
+  frame = frame_of(camera, 1);
+  frame.command_buffer = commands[0];
+  expect(dermis_view_record(view, &frame), "layer_count");
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,136 @@
+// The thread contract of dermis.h. The laws here are the thread sanitizer's: the preset `tsan` runs them.
+
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <thread>
+
+namespace dermis::abi_test {
+namespace {
+
+constexpr uint64_t frames = 300;
+constexpr int changes = 40;
+
+struct Threads : ::testing::Test {
+  NullHost host;
+  void SetUp() override {
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+  }
+  // All at the same time.
+  static void run(const std::vector<std::function<void()>>& jobs) {
+    std::vector<std::thread> threads;
+    for (const auto& job : jobs)
+      threads.emplace_back(job);
+    for (std::thread& thread : threads)
+      thread.join();
+  }
+  void change(int number) const {
+    switch (number % 6) {
+    case 0:
+      EXPECT_EQ(host.reload(), DERMIS_OK);
+      break;
+    case 1:
+      EXPECT_EQ(host.reload("{ \"dermis\": 1"), DERMIS_ERROR_CONFIG);
+      break;
+    case 2:
+      EXPECT_EQ(dermis_graph_resize(host.graph, 33 + static_cast<uint32_t>(number) % 20, 40, nullptr),
+                DERMIS_OK);
+      break;
+    case 3:
+      EXPECT_EQ(dermis_graph_set_setting(host.graph, "accumulate_weight", "0.25", nullptr), DERMIS_OK);
+      break;
+    case 4: {
+      dermis_budget budget = DERMIS_BUDGET_INIT;
+      budget.milliseconds = static_cast<float>(number % 3);
+      EXPECT_EQ(dermis_graph_set_budget(host.graph, &budget, nullptr), DERMIS_OK);
+      break;
+    }
+    default: {
+      dermis_memory memory = DERMIS_MEMORY_INIT;
+      EXPECT_EQ(dermis_graph_memory(host.graph, &memory), DERMIS_OK);
+      uint32_t count = 0;
+      EXPECT_EQ(dermis_graph_slots(host.graph, &count, nullptr), DERMIS_OK);
+      EXPECT_EQ(dermis_graph_heaps(host.graph, &count, nullptr), DERMIS_OK);
+      size_t size = 0;
+      EXPECT_EQ(dermis_graph_describe(host.graph, DERMIS_DESCRIBE_TEXT, &size, nullptr), DERMIS_OK);
+      EXPECT_EQ(dermis_graph_calibration(host.graph, &size, nullptr), DERMIS_OK);
+      break;
+    }
+    }
+  }
+};
+
+TEST_F(Threads, TwoMayRecordTwoGraphsOfOneContext) {
+  NullHost other; // borrows the context
+  other.context = host.context;
+  ASSERT_EQ(other.make_graph(48), DERMIS_OK) << dermis_last_error();
+  other.make_bindings();
+  const auto record = [](NullHost& one) {
+    for (uint64_t i = 0; i < frames; ++i)
+      ASSERT_EQ(one.record(), DERMIS_OK) << dermis_last_error();
+  };
+  run({[&] { record(host); }, [&] { record(other); }});
+  dermis_graph_destroy(other.graph);
+  other.graph = nullptr;
+  other.context = nullptr;
+}
+
+TEST_F(Threads, OneMayChangeAGraphWhileAnotherRecordsIt) {
+  std::atomic<bool> changing = true;
+  run({[&] {
+         uint64_t recorded = 0;
+         while (changing || recorded < frames) {
+           ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+           ++recorded;
+         }
+       },
+       [&] {
+         for (int i = 0; i < changes; ++i)
+           change(i);
+         changing = false;
+       }});
+  EXPECT_EQ(host.record(), DERMIS_OK);
+}
+
+TEST_F(Threads, ViewsMayBeRecordedEachByItsThreadWhileTwoChangeTheGraph) {
+  dermis_view views[2] = {nullptr, nullptr};
+  for (dermis_view& view : views)
+    ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  const auto record = [&](dermis_view view) {
+    for (uint64_t index = 1; index <= frames; ++index) {
+      ASSERT_EQ(host.record(view, index), DERMIS_OK) << dermis_last_error();
+      dermis_choice choice = DERMIS_CHOICE_INIT;
+      ASSERT_GE(dermis_view_choice(view, index - 1, &choice), DERMIS_OK) << dermis_last_error();
+    }
+  };
+  const auto change_some = [&] {
+    for (int i = 0; i < changes / 2; ++i)
+      change(i);
+  };
+  run({[&] { record(views[0]); }, [&] { record(views[1]); }, change_some, change_some});
+  dermis_view_destroy(views[0]); // the other goes with its graph
+}
+
+TEST_F(Threads, GraphsMayComeAndGoOnAllOfThem) {
+  const auto live = [&] {
+    for (int i = 0; i < 4; ++i) {
+      NullHost other;
+      other.context = host.context;
+      ASSERT_EQ(other.make_graph(32), DERMIS_OK) << dermis_last_error();
+      other.make_bindings();
+      ASSERT_EQ(other.record(), DERMIS_OK) << dermis_last_error();
+      dermis_graph_destroy(other.graph);
+      other.graph = nullptr;
+      other.context = nullptr;
+    }
+  };
+  run({live, live, live});
+}
+
+} // namespace
+} // namespace dermis::abi_test
