@@ -60,40 +60,61 @@ uint find_subsurface(ivec2 first, out uint ids[run]) {
   return mask;
 }
 
-uint look_at(ivec2 pixel, uint id) {
+uint look_at(ivec2 pixel) {
   ivec2 texel = texel_of(pixel);
+  uint id = texelFetch(material_image, texel, 0).r; // once more: an index into what was read would cost every pixel
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   float d_px = depth > 0.0 ? projected_d(profiles[min(id, 255u)].d_mm.w * scale, depth) : 0.0;
   return d_px >= copy_below_d_px ? floatBitsToUint(d_px) : below_a_pixel;
 }
 
+// d over the nearest depth is the widest of pixels of one profile. 0: no depth is there.
+float find_nearest(ivec2 first, uint mask) {
+  float nearest = largest_depth_mm;
+  ivec2 last = texel_of(frame.rect.zw - 1);
+  [[unroll]] for (int i = 0; i < run; ++i) {
+    float depth = view_depth(texelFetch(depth_image, min(texel_of(run_pixel(first, i)), last), 0).r);
+    nearest = depth > 0.0 && (mask >> uint(i) & 1u) != 0u ? min(nearest, depth) : nearest;
+  }
+  return nearest < largest_depth_mm ? nearest : 0.0;
+}
+
 // The widest d of the run's pixels, as widest_of.
 uint find_widest(ivec2 first, uint mask, uint ids[run]) {
-  uint widest = 0u;
-  if (mask != 0u)
-    do {
-      int i = findLSB(mask);
-      mask &= mask - 1u;
-      widest = max(widest, look_at(run_pixel(first, i), ids[i]));
-    } while (mask != 0u);
+  uint widest = 0u, others = 0u, id = 0u;
+  [[unroll]] for (int i = 0; i < run; ++i)
+    id = max(id, (mask >> uint(i) & 1u) != 0u ? ids[i] : 0u);
+  [[unroll]] for (int i = 0; i < run; ++i)
+    others |= ids[i] != id ? 1u << uint(i) : 0u;
+  bool alike = (mask & others) == 0u && !has_scatter_scale();
+  // A loop that runs once or not at all: some drivers run both sides of a branch.
+  for (uint left = alike && mask != 0u ? 1u : 0u; left != 0u; --left) {
+    float depth = find_nearest(first, mask);
+    float d_px = depth > 0.0 ? projected_d(profiles[min(id, 255u)].d_mm.w, depth) : 0.0;
+    widest = d_px >= copy_below_d_px ? floatBitsToUint(d_px) : below_a_pixel;
+    mask = 0u;
+  }
+  while (mask != 0u) {
+    ivec2 pixel = run_pixel(first, findLSB(mask));
+    mask &= mask - 1u;
+    widest = max(widest, look_at(pixel));
+  }
   return widest;
 }
 
 void gather_light(ivec2 first, uint mask, uint tile) {
   vec3 low = vec3(largest_half), high = vec3(0.0);
-  if (mask != 0u) {
-    uint left = mask;
-    do {
-      vec3 light = light_of(texel_of(run_pixel(first, findLSB(left))));
-      left &= left - 1u;
-      low = min(low, light);
-      high = max(high, light);
-    } while (left != 0u);
-    [[unroll]] for (int c = 0; c < 3; ++c) {
-      atomicMin(low_of[tile][c], floatBitsToUint(low[c]));
-      atomicMax(high_of[tile][c], floatBitsToUint(high[c]));
-    }
+  bool any = mask != 0u;
+  while (mask != 0u) {
+    vec3 light = light_of(texel_of(run_pixel(first, findLSB(mask))));
+    mask &= mask - 1u;
+    low = min(low, light);
+    high = max(high, light);
+  }
+  for (uint left = any ? 3u : 0u; left != 0u; --left) {
+    atomicMin(low_of[tile][left - 1u], floatBitsToUint(low[left - 1u]));
+    atomicMax(high_of[tile][left - 1u], floatBitsToUint(high[left - 1u]));
   }
 }
 

@@ -16,10 +16,21 @@ void main() {
   ivec2 texel = texel_of(pixel);
   if (texelFetch(material_image, texel, 0).r == 0u)
     return;
-  vec3 color = texelFetch(scattered_image, texel, 0).rgb;
-  if (settings.result == RESULT_COLOR && settings.texturing != TEXTURING_PRE && has_albedo()) {
-    vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-    color *= settings.texturing == TEXTURING_POST ? albedo : sqrt(albedo);
+  vec3 albedo = vec3(1.0);
+  if (has_albedo() && (settings.result == RESULT_COLOR || settings.texturing != TEXTURING_POST))
+    albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
+  if (settings.texturing == TEXTURING_PRE_POST)
+    albedo = sqrt(albedo);
+  vec3 color = vec3(0.0);
+  bool copies = has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
+  // Loops that run once or not at all: some drivers run both sides of a branch.
+  for (uint left = copies ? 1u : 0u; left != 0u; --left) {
+    color = clean_light(texelFetch(unscattered_image, texel, 0).rgb);
+    color = round_to_half(settings.texturing != TEXTURING_POST ? color * albedo : color); // as it comes through
   }
+  for (uint left = copies ? 0u : 1u; left != 0u; --left)
+    color = texelFetch(scattered_image, texel, 0).rgb;
+  if (settings.result == RESULT_COLOR && settings.texturing != TEXTURING_PRE)
+    color *= albedo;
   imageStore(lighting_image, texel, vec4(round_to_half(color), 1.0));
 }

@@ -6,6 +6,7 @@
 #include "environment.glsl"
 #include "radius.glsl"
 #include "sanitise.glsl"
+#include "tile_packing.glsl"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
@@ -22,6 +23,8 @@ void main() {
       d *= clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r);
     float depth = view_depth(texelFetch(depth_image, texel, 0).r);
     bool scatters = has_scattered() && depth > 0.0 && projected_d(d.w, depth) >= copy_below_d_px;
+    if (has_classes())
+      scatters = scatters && classes_data[(pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3)] == class_scatter;
     vec3 through = light;
     if (settings.texturing != TEXTURING_POST && has_albedo()) {
       vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);

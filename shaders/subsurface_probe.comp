@@ -81,7 +81,8 @@ vec3 kernel(scatter_profile profile, vec3 p, ivec2 pixel, ivec2 q, float depth, 
 }
 
 // The exposed luminance's squared error at a pixel, by all invocations together; x < 0: the pixel does not count.
-float squared_error(ivec2 pixel, uint lane) {
+// `copied`: the pixel shows its own light.
+float squared_error(ivec2 pixel, uint lane, bool copied) {
   ivec2 texel = texel_of(pixel);
   bool inside = inside_rect(pixel) && inside_bounds(pixel);
   uint id = inside ? texelFetch(material_image, texel, 0).r : 0u;
@@ -122,7 +123,8 @@ float squared_error(ivec2 pixel, uint lane) {
   vec3 own = light_of(texel), direct = profile_direct(id);
   vec3 truth = mix(sums[0] / max(weights[0], vec3(1e-30)), own, direct);
   truth = mix(own, truth, vec3(greaterThan(profile.d.rgb, vec3(0.0))));
-  float off = dot(texelFetch(scattered_image, texel, 0).rgb - truth, luminance) * frame.exposure;
+  vec3 shown = has_scattered() && !copied ? texelFetch(scattered_image, texel, 0).rgb : own;
+  float off = dot(shown - truth, luminance) * frame.exposure;
   return off * off;
 }
 
@@ -152,7 +154,7 @@ void main() {
   for (uint quarter = 0u; quarter < quarters; ++quarter) {
     uvec3 place = pcg3d(uvec3(frame.frame_index, chosen, 2u + quarter));
     ivec2 pixel = first + 4 * ivec2(quarter % 2u, quarter / 2u) + ivec2(place.xy >> 30);
-    float squared = squared_error(pixel, lane);
+    float squared = squared_error(pixel, lane, classes_data[chosen] != class_scatter);
     barrier();
     if (squared >= 0.0) {
       errors += squared;

@@ -49,7 +49,8 @@ void main() {
     if (classes_data[i] == class_scatter)
       atomicOr(scatters, 1u);
   barrier();
-  for (int level = 0; level < sap_levels; ++level) {
+  bool builds = scatters != 0u || !has_copy_arguments(); // else light is copied, and the levels' lists are empty
+  for (int level = 0; level < (builds ? sap_levels : 1); ++level) {
     ivec2 tiles = sap_level_tiles(level);
     if (level > 0 && fits(tiles)) {
       for (int word = int(lane); word < (tiles.x * tiles.y + 31) >> 5; word += int(lanes)) {
@@ -82,10 +83,13 @@ void main() {
         continue;
       uint place = uint(tile.x) | uint(tile.y) << 15;
       uint copy = level == 0 && classes_data[i] != class_scatter ? tile_copy_bit : 0u;
-      uint children = level > 0 ? flags_from(level - 1, 2 * tile - 1) : 0u;
       if (level == 0)
         tiles_data[1u + at - next] = place | copy;
-      level_tiles_data[at++] = uvec2(place | copy, children | flags_from(level, tile - 1) << 9);
+      if (builds) {
+        uint children = level > 0 ? flags_from(level - 1, 2 * tile - 1) : 0u;
+        level_tiles_data[at] = uvec2(place | copy, children | flags_from(level, tile - 1) << 9);
+      }
+      ++at;
     }
     uint listed = counts[lanes - 1u];
     if (lane == 0u && level == 0 && has_copy_arguments()) {
@@ -99,11 +103,9 @@ void main() {
       arguments_data[1] = (listed + tile_groups_per_row - 1u) / tile_groups_per_row;
       arguments_data[2] = 1u;
     }
-    if (lane == 0u) {
+    if (lane == 0u && builds) {
       uint per_group = level == 0 ? sap_tiles_per_group_first : sap_tiles_per_group;
       uint groups = (listed + per_group - 1u) / per_group;
-      if (scatters == 0u && has_copy_arguments())
-        groups = 0u; // light is copied
       level_tiles_data[level] = uvec2(next, listed);
       level_arguments_data[4 * level] = min(groups, tile_groups_per_row);
       level_arguments_data[4 * level + 1] = (groups + tile_groups_per_row - 1u) / tile_groups_per_row;
@@ -113,5 +115,11 @@ void main() {
     }
     next += listed;
     barrier();
+  }
+  if (!builds && lane < uint(sap_levels)) {
+    level_tiles_data[lane] = uvec2(0u);
+    for (uint i = 0u; i < 4u; ++i)
+      level_arguments_data[4u * lane + i] = i == 2u ? 1u : 0u;
+    counters.level_groups[lane] = 0u;
   }
 }

@@ -47,6 +47,7 @@ dermis_result read_tables(const Log& log, const dermis_budget& budget, Tables& o
 // `running` meanwhile.
 struct ViewTables {
   choice::ErrorModel errors;
+  choice::ErrorCorrection found;
   choice::Calibration calibration;
   choice::CostModel costs;
   struct Described {
@@ -60,6 +61,7 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   ViewTables out;
   const Chooser& now = view.chooser;
   out.errors = given.errors ? *given.errors : now.errors;
+  out.found = given.errors ? choice::make_error_correction(out.errors.techniques.size()) : now.found;
   out.calibration = given.calibration ? *given.calibration : now.calibration;
   out.costs = given.calibration ? choice::CostModel(out.calibration.costs) : now.costs;
   out.programs[0].program = view.running;
@@ -72,6 +74,7 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
 
 void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
   std::swap(view.chooser.errors, tables.errors);
+  std::swap(view.chooser.found, tables.found);
   std::swap(view.chooser.calibration, tables.calibration);
   std::swap(view.chooser.costs, tables.costs);
   for (auto& [program, outcomes] : tables.programs)

@@ -3,6 +3,7 @@
 #include "framegraph/text/document.hpp"
 #include "integration/abi/program.hpp"
 #include "passes/choice/defaults.hpp"
+#include "passes/subsurface/probe.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -71,6 +72,16 @@ void learn(Chooser& chooser, const choice::Outcome& outcome, FrameChoice& frame)
   }
 }
 
+// What the error probe found beside what the table says of what was counted.
+void learn_error(Chooser& chooser, const choice::Outcome& outcome,
+                 const subsurface::FrameCounters& counters) {
+  const subsurface::ProbedError probed = subsurface::probed_error(counters);
+  if (probed.tiles == 0 || counters.scattering_tiles == 0) return;
+  const double expected = expected_rmse(chooser.errors, outcome, mean_d_px(counters), counters.sample_units,
+                                        counters.wanted_units);
+  observe_error(chooser.found, outcome.technique, probed.rmse, expected);
+}
+
 void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   const choice::Outcome& outcome = program.outcomes[frame.outcome];
   vulkan::Executor& executor = *program.variants[outcome.plan].executor;
@@ -86,10 +97,13 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
     frame.metered_ms =
         metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles, frame.view_blocks)).ms;
   if (counted && frame.timed) learn(chooser, outcome, frame);
+  if (counted) learn_error(chooser, outcome, frame.counters);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
   if (!counted || frame.left_out) return; // nothing was looked at
+  if (outcome.takes_samples && frame.counters.scattering_tiles > 0)
+    chooser.wanted_per_tile = double(frame.counters.wanted_units) / frame.counters.scattering_tiles;
   chooser.counted = true;
   chooser.counters = frame.counters;
 }
@@ -99,6 +113,7 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
 Chooser make_chooser() {
   Chooser chooser;
   chooser.errors = default_errors();
+  chooser.found = choice::make_error_correction(chooser.errors.techniques.size());
   chooser.calibration = default_calibration();
   chooser.costs = choice::CostModel(chooser.calibration.costs);
   return chooser;
@@ -136,20 +151,27 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view
   choice::FrameLoad load{view_tiles, view_tiles, 0, 0,
                          view_blocks}; // nothing counted yet: all of the view may scatter
   double d_px = assumed_d_px;
+  uint64_t scattering = view_tiles;
   if (chooser.counted) {
     load = load_of(chooser.counters, view_tiles, view_blocks);
-    if (chooser.counters.scattering_tiles > 0) d_px = subsurface::mean_d_px(chooser.counters);
+    scattering = chooser.counters.scattering_tiles;
+    if (scattering > 0) d_px = subsurface::mean_d_px(chooser.counters);
   }
+  const auto wanted = static_cast<uint32_t>(chooser.wanted_per_tile * double(scattering));
+  const double filled_ms = chooser.budget_ms / choice::entry_margin;
   for (size_t i = 0; i < program.outcomes.size(); ++i) {
     const choice::Outcome& outcome = program.outcomes[i];
-    load.sample_units =
-        chooser.budget_ms > 0
-            ? std::min(chooser.counters.wanted_units,
-                       units_within(outcome, chooser.costs, load, chooser.budget_ms, chooser.metered))
-            : chooser.counters.wanted_units;
+    load.sample_units = 0;
+    if (outcome.takes_samples)
+      load.sample_units =
+          chooser.budget_ms > 0
+              ? std::min(wanted, units_within(outcome, chooser.costs, load, filled_ms, chooser.metered))
+              : wanted;
     const choice::Estimate cost =
         chooser.metered ? metered(outcome, chooser.costs, load) : estimate(outcome, chooser.costs, load);
-    forecasts[i] = {cost.ms, cost.spread_ms, expected_rmse(chooser.errors, outcome.technique, d_px)};
+    const double rmse =
+        expected_rmse(chooser.errors, outcome, d_px, static_cast<uint32_t>(load.sample_units), wanted);
+    forecasts[i] = {cost.ms, cost.spread_ms, rmse * error_factor(chooser.found, outcome.technique)};
   }
   FrameChoice frame;
   frame.program = program.serial;
@@ -163,8 +185,8 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view
     frame.decision = {0, choice::Why::no_budget};
   frame.outcome = frame.decision.outcome;
   if (chooser.budget_ms > 0)
-    frame.sample_units = units_within(program.outcomes[frame.outcome], chooser.costs, load, chooser.budget_ms,
-                                      chooser.metered);
+    frame.sample_units =
+        units_within(program.outcomes[frame.outcome], chooser.costs, load, filled_ms, chooser.metered);
   frame.switches = state.switches;
   frame.forecast = forecasts[frame.outcome];
   return frame;

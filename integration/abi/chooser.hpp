@@ -4,8 +4,10 @@
 
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
+#include "passes/choice/allotment.hpp"
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/decide.hpp"
+#include "passes/choice/error_correction.hpp"
 #include "passes/choice/outcomes.hpp"
 #include "passes/subsurface/environment.hpp"
 
@@ -46,12 +48,15 @@ struct Chooser {
   choice::ErrorModel errors;
   choice::Calibration calibration; // costs start from it
   choice::CostModel costs;
-  double budget_ms = 0; // 0: choices keep their defaults
-  bool metered = false; // DERMIS_BUDGET_METER
+  choice::ErrorCorrection found; // by the error probe, beside `errors`
+  double budget_ms = 0;          // 0: choices keep their defaults
+  bool metered = false;          // DERMIS_BUDGET_METER
   choice::DecisionState state;
   uint64_t decided_for = 0;           // Program::serial that `state` is about
   subsurface::FrameCounters counters; // of the newest observed frame
   bool counted = false;
+  double wanted_per_tile =
+      choice::most_units; // of scattering tiles in the newest frame that was given samples
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
   uint64_t programs = 0;                                            // built so far

@@ -18,6 +18,7 @@ inline constexpr uint32_t no_bin = 0xffffffffu;
 // taken as half of the pyramid's at 8 samples: errors 1, .75, .654, .595 at 0, 8, 16, 32 samples, which cost
 // 0, 1, 2 and 4 units.
 inline constexpr std::array<float, allot_steps> allot_gain = {0.25f, 0.096f, 0.0295f};
+inline constexpr double most_units = 4;   // of a tile: the cost of all steps
 inline constexpr float allot_stay = 1.2f; // factor on what a tile had in the frame before
 // Exponent and three bits of the least priority that has a bin of its own, 2^-12: a single pixel's least
 // doubt.

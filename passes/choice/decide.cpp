@@ -7,7 +7,6 @@ namespace {
 
 constexpr double margin = 1.0;          // typical deviations that must fit beside the prediction
 constexpr double stay_tolerance = 1.03; // of the budget: what runs is not left for less
-constexpr double entry_margin = 1.05;   // room that an outcome needs before it is switched to
 constexpr double worth_a_switch = 0.9;  // of the error that runs now: less is no reason to switch
 constexpr uint32_t cool_down =
     60; // frames between switches that no budget forces: with those back, 2 a second

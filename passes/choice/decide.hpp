@@ -24,6 +24,10 @@ enum class Why : uint8_t {
 };
 const char* why_text(Why why); // static, for people
 
+// Room that an outcome needs in a budget before it is switched to. What fills a budget with samples leaves as
+// much, so that it is neither kept out nor pushed out by its own samples.
+inline constexpr double entry_margin = 1.05;
+
 struct Decision {
   uint32_t outcome = 0;
   Why why = Why::first_frame;

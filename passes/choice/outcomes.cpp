@@ -57,6 +57,11 @@ uint64_t tiles_along(uint64_t pixels) {
   return (pixels + tile_side - 1) / tile_side;
 }
 
+// Does it run over the tiles that subsurface.allot lists?
+bool samples_by_tile(const PassKind& kind) {
+  return kind.name == "subsurface.mend" || kind.name == "subsurface.afis_tiles";
+}
+
 PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
   PassLoad load;
   switch (kind.dispatch) {
@@ -64,7 +69,7 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
     load.groups = PassLoad::Groups::view_tiles;
     break;
   case DispatchShape::over_tiles:
-    load.groups = kind.name == "subsurface.mend"   ? PassLoad::Groups::sample_units
+    load.groups = samples_by_tile(kind)            ? PassLoad::Groups::sample_units
                   : kind.name == "subsurface.copy" ? PassLoad::Groups::copied_tiles
                                                    : PassLoad::Groups::listed_tiles;
     break;
@@ -103,8 +108,9 @@ RunningPass running(const PassKind& kind, const std::vector<SettingValue>& value
 
 void describe(const KindRegistry& kinds, const Plan& plan, const ErrorModel& errors, CostModel& costs,
               Outcome& outcome) {
-  std::vector<RunningPass> passes;
+  std::vector<RunningPass> passes, without_samples;
   outcome.passes.clear();
+  outcome.takes_samples = false;
   for (const PlanPass& pass : plan.passes) {
     const PassKind& kind = kinds[pass.kind];
     const std::vector<SettingValue> values = values_of(plan, pass, kind, outcome.settings);
@@ -113,8 +119,12 @@ void describe(const KindRegistry& kinds, const Plan& plan, const ErrorModel& err
     load.level = level_of(kind, values);
     outcome.passes.push_back(load);
     passes.push_back(running(kind, values));
+    const bool samples = load.groups == PassLoad::Groups::sample_units;
+    outcome.takes_samples = outcome.takes_samples || samples;
+    if (!samples) without_samples.push_back(passes.back());
   }
   outcome.technique = find_technique(errors, passes);
+  outcome.without_samples = find_technique(errors, without_samples);
 }
 
 bool same_work(const Outcome& a, const Outcome& b) {
@@ -292,8 +302,7 @@ Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoa
 uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
                       bool meter) {
   constexpr uint64_t many = 1u << 16; // far apart, so that rounding does not matter
-  const auto takes_units = [](const PassLoad& pass) { return pass.groups == PassLoad::Groups::sample_units; };
-  if (std::none_of(outcome.passes.begin(), outcome.passes.end(), takes_units)) return UINT32_MAX;
+  if (!outcome.takes_samples) return UINT32_MAX;
   const auto expected = [&](uint64_t units) {
     load.sample_units = units;
     return meter ? metered(outcome, costs, load) : estimate(outcome, costs, load);
@@ -301,8 +310,21 @@ uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad 
   const Estimate without = expected(0);
   const double unit_ms = (expected(many).ms - without.ms) / double(many);
   if (!(unit_ms > 0)) return UINT32_MAX;
-  const double units = (budget_ms - without.ms - without.spread_ms) / unit_ms;
-  return static_cast<uint32_t>(std::clamp(units, 0.0, double(UINT32_MAX)));
+  const auto units_beside = [&](double spread_ms) {
+    return static_cast<uint32_t>(
+        std::clamp((budget_ms - without.ms - spread_ms) / unit_ms, 0.0, double(UINT32_MAX)));
+  };
+  // Units deviate, too: fewer of them by no more than the most would.
+  return units_beside(expected(std::min<uint64_t>(units_beside(without.spread_ms), many)).spread_ms);
+}
+
+double expected_rmse(const ErrorModel& errors, const Outcome& outcome, double d_px, uint32_t given,
+                     uint32_t wanted) {
+  const double all = expected_rmse(errors, outcome.technique, d_px);
+  if (!outcome.takes_samples) return all;
+  const double none = expected_rmse(errors, outcome.without_samples, d_px);
+  const double share = wanted > 0 ? std::min(1.0, double(given) / double(wanted)) : 0.0;
+  return std::sqrt(none * none + share * (all * all - none * none));
 }
 
 } // namespace dermis::choice

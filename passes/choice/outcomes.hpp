@@ -38,7 +38,9 @@ struct Outcome {
   std::vector<SettingValue> settings; // one per Graph::settings
   uint32_t plan = 0;                  // into OutcomePlans::plans
   int32_t technique = -1;             // into ErrorModel::techniques; -1: none runs
-  std::vector<PassLoad> passes;       // in plan order
+  int32_t without_samples = -1; // the same where no tile is given samples; as technique where none can be
+  bool takes_samples = false;   // by tile, as many as the budget leaves
+  std::vector<PassLoad> passes; // in plan order
 };
 
 // Compiles one combination: dermis::compile, or from a cache.
@@ -78,9 +80,13 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
 // By the calibration alone, as on any other machine; no spread.
 Estimate metered(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
 Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
-// Units of samples that fit into `budget_ms` beside everything else; UINT32_MAX where the outcome takes no
-// samples by tile, or a unit costs nothing.
+// Units of samples that fit into `budget_ms` beside everything else, with the deviation of both; UINT32_MAX
+// where the outcome takes no samples by tile, or a unit costs nothing.
 uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
                       bool meter);
+// Where `given` of the `wanted` units are taken: between the mean squares without samples and with all. Units
+// that take off most come first, so that this is no less than what is measured.
+double expected_rmse(const ErrorModel& errors, const Outcome& outcome, double d_px, uint32_t given,
+                     uint32_t wanted);
 
 } // namespace dermis::choice

@@ -129,6 +129,17 @@ ImageReads afis(const PassKind& kind, const ReadsQuestion& question) {
   return reads;
 }
 
+// In tiles that were given samples, twice as many as the first step gives: material, depth, light of both
+// techniques; a sample as in afis.
+ImageReads afis_tiles(const PassKind& kind, const ReadsQuestion& question) {
+  ImageReads reads = afis(kind, question);
+  constexpr double steps = 2;
+  const double each = reads.per_invocation - 3 - scale_read(kind, question);
+  reads.per_invocation = 4 + scale_read(kind, question) + steps * each * question.sampled_share;
+  reads.samples *= steps;
+  return reads;
+}
+
 // Material, light, depth, slope; what history keeps at four places; a sample reads six texels as in afis.
 ImageReads guided(const PassKind& kind, const ReadsQuestion& question) {
   const double samples = question.sampled_share * static_cast<double>(setting(kind, question, "most"));
@@ -212,6 +223,11 @@ ImageReads doubt(const PassKind& kind, const ReadsQuestion& question) {
   return {2 + one_if(kind, question, "importance", PortSide::read)};
 }
 
+// Light, material, importance.
+ImageReads contrast(const PassKind& kind, const ReadsQuestion& question) {
+  return {2 + one_if(kind, question, "importance", PortSide::read)};
+}
+
 // In tiles that were given 16 samples: light twice, surface, and for each sample its surface, and the level's
 // surface and light.
 ImageReads mend(const PassKind&, const ReadsQuestion& question) {
@@ -266,6 +282,8 @@ constexpr Entry entries[] = {
     {"subsurface.doubt", doubt},
     {"subsurface.allot", none},
     {"subsurface.mend", mend},
+    {"subsurface.contrast", contrast},
+    {"subsurface.afis_tiles", afis_tiles},
     {"clear", none},
 };
 

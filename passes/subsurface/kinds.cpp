@@ -16,7 +16,8 @@ KindRegistry make_kinds() {
         &sap_up_kind,         &sap_gather_kind,   &fixed_kind,     &pyramid_setup_kind, &pyramid_down_kind,
         &pyramid_gather_kind, &transmission_kind, &afis_kind,      &blend_kind,         &residual_kind,
         &guided_kind,         &flat_kind,         &copy_kind,      &doubt_kind,         &allot_kind,
-        &mend_kind,           &accumulate_kind,   &skips_kind,     &probe_kind,         &clear_kind})
+        &mend_kind,           &accumulate_kind,   &skips_kind,     &probe_kind,         &clear_kind,
+        &contrast_kind,       &afis_tiles_kind})
     registry.add(*kind);
   return registry;
 }

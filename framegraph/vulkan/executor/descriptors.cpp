@@ -19,8 +19,8 @@ void list_ports(State& state, const KindRegistry& kinds) {
       write.pass = p;
       write.port = port;
       if ((pass.port_mask >> port & 1u) == 0) {
-        write.stand_in = stand_in_for(state, kernel.ports[port]);
         const bool writes = usage_info(kinds[kernel.kind].ports[port].usage).writes;
+        write.stand_in = stand_in_for(state, kernel.ports[port], writes);
         if (writes && std::find(pass.writable_stand_ins.begin(), pass.writable_stand_ins.end(),
                                 write.stand_in) == pass.writable_stand_ins.end())
           pass.writable_stand_ins.push_back(write.stand_in);

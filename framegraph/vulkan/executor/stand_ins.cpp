@@ -61,10 +61,11 @@ Error create_buffer(const Device& device, StandIn& stand_in) {
 
 } // namespace
 
-uint32_t stand_in_for(State& state, const KernelPort& port) {
+uint32_t stand_in_for(State& state, const KernelPort& port, bool writes) {
   const bool buffer = *port.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   const VkFormat format = buffer ? VK_FORMAT_UNDEFINED : port.stand_in;
-  const bool storage = *port.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  // What is read is never written: no order between them is needed.
+  const bool storage = buffer ? writes : *port.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   for (uint32_t i = 0; i < state.stand_ins.size(); ++i)
     if (state.stand_ins[i].format == format && state.stand_ins[i].storage == storage) return i;
   StandIn& added = state.stand_ins.emplace_back();

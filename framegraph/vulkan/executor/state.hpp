@@ -34,7 +34,7 @@ struct PartView { // of a range of mips and layers of one instance
 
 struct StandIn {                         // what an unbound optional port sees: zero
   VkFormat format = VK_FORMAT_UNDEFINED; // undefined: the buffer
-  bool storage = false;
+  bool storage = false;                  // image: of that use; buffer: a shader may write it
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
@@ -190,7 +190,7 @@ Error create_memory(State& state, const Graph& graph); // heaps, images, buffers
 void destroy_memory(State& state);
 
 // ---- stand_ins.cpp
-uint32_t stand_in_for(State& state, const KernelPort& port); // index; declares it if it is new
+uint32_t stand_in_for(State& state, const KernelPort& port, bool writes); // index; declares it if it is new
 Error create_stand_ins(State& state);
 void destroy_stand_ins(State& state);
 

@@ -8,8 +8,8 @@
 
 namespace dermis::tools {
 
-void ChoiceReport::add(uint32_t frame, const demo::FrameChoice& choice) {
-  frames_.push_back({frame, choice});
+void ChoiceReport::add(uint32_t frame, const demo::FrameChoice& choice, TileCosts costs) {
+  frames_.push_back({frame, choice, std::move(costs)});
 }
 
 std::string describe_choice(const demo::FrameChoice& choice) {
@@ -18,7 +18,7 @@ std::string describe_choice(const demo::FrameChoice& choice) {
   if (choice.mean_d_px > 0) text += fmt::format(" (d {:.1f} px)", choice.mean_d_px);
   for (size_t k = 0; k < choice.sampled_tiles.size(); ++k)
     if (choice.sampled_tiles[k] > 0)
-      text += fmt::format(", {} of them with {} samples", choice.sampled_tiles[k], 8u << k);
+      text += fmt::format(", {} of them sampled x{}", choice.sampled_tiles[k], 1u << k);
   if (choice.flat_tiles > 0) text += fmt::format(", flat {}", choice.flat_tiles);
   text += fmt::format(", copied {}, skipped {}: {:.2f} ms predicted", choice.copied_tiles,
                       choice.view_tiles - std::min(choice.view_tiles, listed), choice.predicted_ms);
@@ -54,7 +54,8 @@ std::string ChoiceReport::text() const {
       text += fmt::format("{} of {} frames ran {}\n", count, frames_.size(), outcome);
     }
   }
-  return text + fmt::format("frame {}: {}\n", frames_.back().frame, describe_choice(newest));
+  return text + fmt::format("frame {}: {}\n", frames_.back().frame, describe_choice(newest)) +
+         describe_tile_costs(frames_.back().costs);
 }
 
 void ChoiceReport::write(JsonWriter& writer) const {
@@ -85,6 +86,17 @@ void ChoiceReport::write(JsonWriter& writer) const {
     if (choice.probed_tiles > 1)
       writer.member("probed_rmse_low", choice.probed_rmse_low)
           .member("probed_rmse_high", choice.probed_rmse_high);
+    if (!frame.costs.classes.empty()) {
+      writer.key("tile_classes").open_array();
+      for (const TileClass& one : frame.costs.classes)
+        writer.open_object(true)
+            .member("samples", one.samples)
+            .member("tiles", one.tiles)
+            .member("reads_per_pixel", one.reads)
+            .close();
+      writer.close().member("reads_per_sample", frame.costs.reads_per_sample);
+      writer.member("reads_beside", frame.costs.reads_beside).member("reads", frame.costs.total());
+    }
     writer.member("miss", std::string_view(choice.miss));
     writer.member("next_better", std::string_view(choice.next_better));
     writer.member("next_better_missing_ms", choice.next_better_missing_ms).close();

@@ -2,6 +2,7 @@
 // What the library chose over a run of frames, for people and for programs.
 
 #include "framegraph/text/json_writer.hpp"
+#include "integration/command/run/tile_costs.hpp"
 #include "integration/demo_engine/engine.hpp"
 
 #include <string>
@@ -11,7 +12,7 @@ namespace dermis::tools {
 
 class ChoiceReport {
 public:
-  void add(uint32_t frame, const demo::FrameChoice& choice);
+  void add(uint32_t frame, const demo::FrameChoice& choice, TileCosts costs = {});
   bool empty() const { return frames_.empty(); }
 
   // "technique=sap: 412 tiles, copied 3, skipped 3,185: 2.10 ms predicted, 2.20 measured, budget 2.50; ...":
@@ -24,6 +25,7 @@ private:
   struct Frame {
     uint32_t frame = 0;
     demo::FrameChoice choice;
+    TileCosts costs;
   };
   std::vector<Frame> frames_;
 };

@@ -76,6 +76,29 @@ constexpr KindSetting afis_settings[] = {
                     "levels between two, rounded to one, or the pixel under the sample alone"),
 };
 
+constexpr Format replaced_formats[] = {Format::rgba16f}; // that a shader may load
+constexpr Port afis_tiles_ports[] = {
+    afis_ports[0],
+    afis_ports[1],
+    port::level_port("level_1"),
+    port::level_port("level_2"),
+    port::level_port("level_3"),
+    port::level_port("level_4"),
+    port::level_port("level_5"),
+    port::level_port("level_6"),
+    port::level_port("level_7"),
+    port::level_port("level_8"),
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::classes,
+    port::shares,
+    port::tiles,
+    port::arguments,
+    {"scattered", Usage::storage_image_update, false, "image2D",
+     "light of another technique, replaced in place", replaced_formats},
+};
+
 constexpr Format guide_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::r16f};
 constexpr Format control_formats[] = {Format::rgba16f, Format::rgba32f};
@@ -159,6 +182,17 @@ constexpr KindSetting guided_settings[] = {
 };
 
 } // namespace
+
+const PassKind afis_tiles_kind{
+    .name = "subsurface.afis_tiles",
+    .shader = "subsurface_afis_tiles",
+    .doc = "Filtered importance sampling where a tile was given samples: `samples` for its first step, twice "
+           "as many for each further one.",
+    .ports = afis_tiles_ports,
+    .settings = afis_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
 
 const PassKind guided_kind{
     .name = "subsurface.guided",

@@ -14,8 +14,6 @@ constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format:
 constexpr std::string_view light_doc = "as subsurface.sap_down writes it";
 constexpr std::string_view doubts_doc =
     "by tile of the render rectangle: how far off it is expected to be, 0 = not at all";
-constexpr std::string_view shares_doc =
-    "by tile of the render rectangle: steps of samples it was given, 0 to 3";
 
 constexpr Port light_port(std::string_view name) {
   return {name, Usage::sampled_image, false, "texture2D", light_doc, light_formats};
@@ -23,9 +21,6 @@ constexpr Port light_port(std::string_view name) {
 constexpr Port surface_port(std::string_view name) {
   return {name, Usage::sampled_image, false, "utexture2D", light_doc, surface_formats};
 }
-constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
-                       "uint",    "as subsurface.classify writes them", {}};
-
 constexpr KindSetting below =
     setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel may be sampled");
 
@@ -41,11 +36,26 @@ constexpr Port doubt_ports[] = {
 };
 constexpr KindSetting doubt_settings[] = {below};
 
+constexpr Port contrast_ports[] = {
+    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}},
+    port::material,
+    {"importance", Usage::sampled_image, true, "texture2D",
+     "how much an error matters to the host, 0 to 1; unbound: 1 everywhere", importance_formats},
+    port::tiles,
+    port::arguments,
+    {"doubts", Usage::storage_buffer_write, false, "uint", doubts_doc, {}},
+};
+constexpr KindSetting contrast_settings[] = {
+    setting::real(
+        "least", 0.01, 0, 4, "",
+        "mean distance from the tile's mean, of exposed luminance, below which light counts as even"),
+};
+
 constexpr Port allot_ports[] = {
-    classes,
+    port::classes,
     {"doubts", Usage::storage_buffer_read, false, "uint", doubts_doc, {}},
     {"before", Usage::storage_buffer_read, true, "uint", "the shares of the frame before", {}},
-    {"shares", Usage::storage_buffer_write, false, "uint", shares_doc, {}},
+    {"shares", Usage::storage_buffer_write, false, "uint", port::shares.doc, {}},
     {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
     {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
 };
@@ -63,8 +73,8 @@ constexpr Port mend_ports[] = {
     surface_port("surface_3"),
     surface_port("surface_4"),
     surface_port("surface_5"),
-    classes,
-    {"shares", Usage::storage_buffer_read, false, "uint", shares_doc, {}},
+    port::classes,
+    port::shares,
     port::tiles,
     port::arguments,
     {"scattered", Usage::storage_image_update, false, "image2D",
@@ -86,6 +96,16 @@ const PassKind doubt_kind{
            "importance.",
     .ports = doubt_ports,
     .settings = doubt_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind contrast_kind{
+    .name = "subsurface.contrast",
+    .shader = "subsurface_contrast",
+    .doc = "How much light varies inside each tile, times importance.",
+    .ports = contrast_ports,
+    .settings = contrast_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
 };

@@ -30,8 +30,22 @@ constexpr Port setup_ports[] = {
 };
 constexpr KindSetting setup_settings[] = {setting::texturing};
 
+constexpr std::string_view copied_options[] = {"unscattered", "scattered"};
 constexpr Port combine_ports[] = {
-    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light", {}},
+    {"scattered",
+     Usage::sampled_image,
+     true,
+     "texture2D",
+     "scattered light; unbound: none scatters, all is as unscattered",
+     {}},
+    {"unscattered",
+     Usage::sampled_image,
+     true,
+     "texture2D",
+     "diffuse irradiance before albedo: what tiles show that are only copied. May be the image that is "
+     "written; one of both is bound",
+     {},
+     true},
     port::material,
     port::albedo,
     port::tiles,
@@ -48,6 +62,9 @@ constexpr KindSetting combine_settings[] = {
     setting::choice(
         "result", result_options,
         "color: scattered light times albedo; light: scattered light alone, for hosts that texture later"),
+    setting::choice("copied", copied_options,
+                    "where the light of tiles comes from that are only copied: of unscattered, where it is "
+                    "bound, or of scattered"),
 };
 
 constexpr Format scattered_formats[] = {Format::rgba16f}; // that a shader may load
@@ -68,6 +85,13 @@ constexpr Port light_ports[] = {
     port::depth,
     port::scatter_scale,
     port::albedo,
+    {"classes",
+     Usage::storage_buffer_read,
+     true,
+     "uint",
+     "as subsurface.classify writes them: tiles that do not scatter keep their light. Unbound: their light "
+     "is in scattered",
+     {}},
     {"light",
      Usage::storage_image_write,
      false,
@@ -134,7 +158,9 @@ const PassKind combine_kind{
 const PassKind copy_kind{
     .name = "subsurface.copy",
     .shader = "subsurface_copy",
-    .doc = "Passes light on as it is, where no tile of the screen scatters.",
+    .doc =
+        "Passes light on as it is, where no tile of the screen scatters, for passes that want all tiles in "
+        "one picture.",
     .ports = copy_ports,
     .settings = copy_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -10,15 +10,15 @@ extern const PassKind classify_kind, flat_kind, tile_list_kind, skips_kind; // t
 extern const PassKind setup_kind, combine_kind, light_kind, copy_kind,
     transmission_kind;                                                            // light_signatures.cpp
 extern const PassKind burley_kind, fixed_kind, separable_kind;                    // scatter_signatures.cpp
-extern const PassKind afis_kind, guided_kind;                                     // afis_signatures.cpp
+extern const PassKind afis_kind, guided_kind, afis_tiles_kind;                    // afis_signatures.cpp
 extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind; // pyramid_signatures.cpp
 extern const PassKind sap_tiles_kind, sap_setup_kind, sap_down_kind, sap_up_kind,
-    sap_gather_kind;                                     // sap_signatures.cpp
-extern const PassKind blend_kind, residual_kind;         // residual_signatures.cpp
-extern const PassKind doubt_kind, allot_kind, mend_kind; // allot_signatures.cpp
-extern const PassKind probe_kind;                        // probe_signature.cpp
-extern const PassKind accumulate_kind;                   // accumulate_signature.cpp
-extern const PassKind clear_kind;                        // clear_signature.cpp
+    sap_gather_kind;                                                    // sap_signatures.cpp
+extern const PassKind blend_kind, residual_kind;                        // residual_signatures.cpp
+extern const PassKind doubt_kind, contrast_kind, allot_kind, mend_kind; // allot_signatures.cpp
+extern const PassKind probe_kind;                                       // probe_signature.cpp
+extern const PassKind accumulate_kind;                                  // accumulate_signature.cpp
+extern const PassKind clear_kind;                                       // clear_signature.cpp
 
 // Ports that several kinds declare with the same meaning.
 namespace port {
@@ -72,6 +72,14 @@ inline constexpr Port velocity{
     "now - before: pixels to the right and down, jitter taken out; in a third channel view depth that the "
     "camera does not explain, world units. Unbound: what is seen stands still",
     {}};
+inline constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
+                              "uint",    "as subsurface.classify writes them", {}};
+inline constexpr Port shares{"shares",
+                             Usage::storage_buffer_read,
+                             false,
+                             "uint",
+                             "by tile of the render rectangle: steps of samples it was given, 0 to 3",
+                             {}};
 // Of an image that was cleared in the same frame and is written where there is subsurface: what was not
 // written reads 0 in the next frame.
 inline constexpr std::string_view part_of_cleared = "writeonly image2D";

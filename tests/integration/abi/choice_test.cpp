@@ -57,7 +57,8 @@ TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
   EXPECT_STREQ(choice.outcome, "technique=sap, variant=smooth");
   EXPECT_STREQ(choice.technique, "sap smooth");
   EXPECT_EQ(choice.budget_ms, 0);
-  EXPECT_EQ(choice.outcome_count, 6u); // sap with two variants, separable with three numbers of taps, off
+  EXPECT_EQ(choice.outcome_count,
+            8u); // sap and hybrid with two variants, separable with three numbers of taps, off
 }
 
 TEST_F(Choice, EachBudgetGetsTheLeastErrorThatFits) {
@@ -290,12 +291,12 @@ TEST_F(Choice, ChoicesByBudgetShareTheMemoryOfTheLargest) {
   dermis_memory all = DERMIS_MEMORY_INIT, one = DERMIS_MEMORY_INIT;
   ASSERT_EQ(dermis_graph_memory(graph, &all), DERMIS_OK);
   GraphOptions options;
-  options.text = read_text("configs/graphs/sap.json");
-  options.unbound = {"albedo", "scatter_scale", "scattered_light", "thickness", "back_lighting"};
-  const dermis_graph sap = make_graph(options);
-  ASSERT_NE(sap, nullptr);
-  ASSERT_EQ(dermis_graph_memory(sap, &one), DERMIS_OK);
-  // The pyramid's is the largest; the arguments of copying lie beside it.
+  options.text = read_text("configs/graphs/hybrid.json");
+  options.unbound = {"albedo", "scatter_scale", "scattered_light", "importance"};
+  const dermis_graph hybrid = make_graph(options);
+  ASSERT_NE(hybrid, nullptr);
+  ASSERT_EQ(dermis_graph_memory(hybrid, &one), DERMIS_OK);
+  // That of the pyramid with samples is the largest.
   EXPECT_GE(all.transient_bytes, one.transient_bytes);
   EXPECT_LT(all.transient_bytes, one.transient_bytes + one.transient_bytes / 100);
 }

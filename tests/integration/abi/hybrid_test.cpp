@@ -1,6 +1,7 @@
 // Samples by tile: the device gives them as the rule on the CPU does, and where they matter to the host.
 
 #include "passes/choice/allotment.hpp"
+#include "passes/choice/decide.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <algorithm>
@@ -41,26 +42,28 @@ struct Hybrid : DermisTest {
   dermis_choice run_frame() { return DermisTest::run_frame(graph); }
 
   void set_units(uint32_t units) {
-    const std::string text = unit_times;
-    const dermis_source calibration = source_of(text, "invented");
+    const dermis_source calibration = source_of(times, "invented");
     dermis_budget budget = DERMIS_BUDGET_INIT;
-    budget.milliseconds = (static_cast<float>(units) + 0.5f) / 1000;
+    budget.milliseconds = (static_cast<float>(units) + 0.5f) / 1000 * float(choice::entry_margin);
     budget.flags = DERMIS_BUDGET_METER;
     budget.calibration = &calibration;
     ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
   }
 
+  const char* file = "configs/graphs/hybrid.json";
+  std::string times = unit_times;
+
   // A surface in steps, which the pyramid is unsure of.
   void make_hybrid() {
     GraphOptions options;
-    options.text = read_text("configs/graphs/hybrid.json");
+    options.text = read_text(file);
     graph = make_graph(options);
     ASSERT_NE(graph, nullptr);
     make_images(graph);
     paint();
     fill("importance", [](uint32_t, uint32_t) { return 1.0f; });
   }
-  void paint() {
+  virtual void paint() {
     fill("depth", [](uint32_t x, uint32_t y) { return 0.5f + 0.002f * float((x / 3 * 7 + y / 5 * 3) % 4); });
     fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
   }
@@ -184,11 +187,9 @@ double energy(const std::vector<float>& a, const std::vector<float>& b, uint32_t
   return sum;
 }
 
-TEST_F(Hybrid, TilesLeaveNoSeams) {
-  const auto none = picture(0);
-  const auto all = picture(100000);
-  const dermis_choice choice = told;
-  const auto half = picture(choice.wanted_units / 3);
+// Between pictures with no samples and with all that are wanted, one with a third of them.
+void expect_no_seams(const std::vector<float>& none, const std::vector<float>& all,
+                     const std::vector<float>& half) {
   for (const auto* pure : {&none, &all})
     for (const uint32_t harmonic : {8u, 16u, 24u}) {
       std::vector<double> beside;
@@ -197,6 +198,93 @@ TEST_F(Hybrid, TilesLeaveNoSeams) {
       std::sort(beside.begin(), beside.end());
       EXPECT_LE(energy(half, *pure, harmonic), 2 * 0.5 * (beside[2] + beside[3])) << harmonic;
     }
+}
+
+TEST_F(Hybrid, TilesLeaveNoSeams) {
+  const auto none = picture(0), all = picture(100000);
+  const dermis_choice choice = told;
+  expect_no_seams(none, all, picture(choice.wanted_units / 3));
+}
+
+TEST_F(Hybrid, ABudgetBetweenBuysSomeOfTheSamplesAndSaysWhatErrorIsLeft) {
+  file = "configs/graphs/skin.json";
+  const auto run = [&](uint32_t units) {
+    picture(units);
+    return told;
+  };
+  const dermis_choice all = run(100000);
+  EXPECT_THAT(all.outcome, testing::HasSubstr("technique=hybrid"));
+  ASSERT_GT(all.wanted_units, 100u);
+  const dermis_choice some = run(all.wanted_units / 2);
+  EXPECT_THAT(some.outcome, testing::HasSubstr("technique=hybrid"));
+  EXPECT_EQ(some.sample_units, all.wanted_units / 2);
+  const dermis_choice few = run(all.wanted_units / 8);
+  EXPECT_GT(few.predicted_rmse, some.predicted_rmse);
+  EXPECT_GT(some.predicted_rmse, all.predicted_rmse);
+}
+
+// The papers' pair: filtered importance sampling where light varies, separable elsewhere.
+struct Pair : Hybrid {
+  Pair() {
+    file = "configs/graphs/hybrid_afis_separable.json";
+    times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
+      { "work": "subsurface.allot", "base_us": 0, "group_us": 0, "spread": 0 },
+      { "work": "subsurface.afis_tiles samples=16", "base_us": 0, "group_us": 1, "spread": 0 } ] })";
+    for (const char* kind : {"classify", "tile_list", "setup", "separable", "contrast", "pyramid_setup",
+                             "pyramid_down", "light", "combine"})
+      times.insert(times.rfind("] }"), std::string(", { \"work\": \"subsurface.") + kind +
+                                           "\", \"base_us\": 0, \"group_us\": 0, \"spread\": 0 } ");
+  }
+};
+
+// Light without a period of its own, which varies more in some places than in others.
+struct UnevenPair : Pair {
+  void paint() override {
+    Pair::paint();
+    fill("lighting", [](uint32_t x, uint32_t y) {
+      uint32_t h = (x * 0x9e3779b9u) ^ (y * 0x85ebca6bu);
+      h = (h ^ h >> 15) * 0x2c1b3c6du;
+      h = (h ^ h >> 12) * 0x297a2d39u;
+      const float unit = float(h >> 16 & 255) / 256; // a half holds it
+      return 0.5f + (unit - 0.5f) * std::abs(std::sin(0.09f * float(x) + 0.07f * float(y)));
+    });
+  }
+};
+
+TEST_F(Pair, WithoutUnitsThePictureIsSeparablesAndWithAllItIsNot) {
+  const auto none = picture(0);
+  EXPECT_EQ(told.sample_units, 0u);
+  const auto all = picture(100000);
+  EXPECT_NE(none, all);
+  EXPECT_EQ(told.sample_units, told.wanted_units);
+  GraphOptions options;
+  options.text = read_text("configs/graphs/separable.json");
+  options.unbound = {"albedo", "scatter_scale", "scattered_light"};
+  graph = make_graph(options);
+  ASSERT_NE(graph, nullptr);
+  ASSERT_EQ(dermis_graph_set_setting(graph, "taps", "\"25\"", nullptr), DERMIS_OK);
+  make_images(graph);
+  paint();
+  DermisTest::run_frame(graph);
+  EXPECT_EQ(texels("lighting"), none);
+}
+
+TEST_F(Pair, TilesWithEvenLightGetNoSamples) {
+  make_hybrid();
+  fill("lighting",
+       [](uint32_t x, uint32_t y) { return x < 32 ? 0.5f : float((x * 37 + y * 61) % 97) / 64.0f; });
+  const dermis_choice choice = run_frame();
+  EXPECT_EQ(choice.sampled_tiles[0] + choice.sampled_tiles[1] + choice.sampled_tiles[2], 32u);
+  EXPECT_EQ(choice.wanted_units, 4 * 32u);
+}
+
+TEST_F(UnevenPair, TilesLeaveNoSeams) {
+  const auto none = picture(0), all = picture(100000);
+  const dermis_choice choice = told;
+  const auto some = picture(choice.wanted_units / 6); // enough for two thirds of the tiles
+  ASSERT_GT(told.sampled_tiles[0], 16u);
+  ASSERT_LT(told.sampled_tiles[0] + told.sampled_tiles[1] + told.sampled_tiles[2], 60u);
+  expect_no_seams(none, all, some);
 }
 
 } // namespace

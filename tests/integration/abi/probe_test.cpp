@@ -5,6 +5,7 @@
 #include "passes/subsurface/truth/truth.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dermis::abi_test {
@@ -110,6 +111,21 @@ TEST_F(Probe, OverFramesItsMeanIsThePicturesError) {
   const double mean = sum / frames, deviation = std::sqrt((squares / frames - mean * mean) / (frames - 1));
   EXPECT_NEAR(mean, exact, 4 * deviation);
   EXPECT_LT(deviation, 0.2 * exact); // so that this says something
+}
+
+TEST_F(Probe, WhatIsFoundCorrectsWhatIsExpected) {
+  make("\"off\"", false);
+  run_frame(checks);
+  const float before = run_frame(checks).predicted_rmse; // the table's, once tiles were counted
+  make("\"off\"");
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  for (int i = 0; i < 60; ++i)
+    choice = run_frame(checks);
+  EXPECT_GT(std::abs(before - choice.probed_rmse),
+            0.3f * choice.probed_rmse); // another light than the table's
+  // 4 of 27 frames are the table's word; the factor is at most 4.
+  const double found = std::sqrt((23 * std::pow(choice.probed_rmse, 2) + 4 * std::pow(before, 2)) / 27);
+  EXPECT_NEAR(choice.predicted_rmse, std::clamp(found, before / 4.0, before * 4.0), 0.05 * found);
 }
 
 TEST_F(Probe, ThePyramidIsNearerToTheReferenceThanLightThatIsNotScattered) {

@@ -163,6 +163,45 @@ TEST_F(Skip, FlatLightIsCopiedAndThePictureStaysWithinTheTolerance) {
     ASSERT_NEAR(skipped[i], unskipped[i], i % 4 == 3 ? 0 : bound) << i;
 }
 
+TEST_F(Skip, FlatLightIsHandedOutAsItIs) {
+  handed_out = true;
+  make();
+  fill("lighting", [](uint32_t, uint32_t) { return 0.75f; });
+  EXPECT_EQ(run_frame().flat_tiles, 64u);
+  const auto out = texels("scattered_light");
+  for (size_t i = 0; i < out.size(); ++i)
+    if (i % 4 != 3) {
+      ASSERT_EQ(out[i], 0.75f) << i;
+    }
+}
+
+TEST_F(Skip, LightThatIsOnlyCopiedComesOutTheSameWhereverAlbedoIsApplied) {
+  // Once taken from the lighting on the way back, once through scattered, as passes of overlays want it.
+  for (const char* texturing : {"\"post\"", "\"pre_post\"", "\"pre\""}) {
+    const auto picture = [&](bool through) {
+      GraphOptions options;
+      options.text = read_text("configs/graphs/skin.json");
+      if (through)
+        options.overlays = {R"({ "dermis_overlay": 1, "edits": [
+          { "set": "/settings/copied_too", "to": { "bool": true } },
+          { "set": "/passes/combine/set/copied", "to": "scattered" } ] })"};
+      options.unbound = {"scatter_scale", "scattered_light"};
+      graph = make_graph(options);
+      EXPECT_NE(graph, nullptr);
+      EXPECT_EQ(dermis_graph_set_setting(graph, "texturing", texturing, nullptr), DERMIS_OK);
+      make_images(graph);
+      fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
+      fill("albedo", [](uint32_t x, uint32_t y) { return float((x * 13 + y * 7) % 32) / 32.0f; });
+      const auto bound = bindings(graph);
+      dermis_frame one = frame(bound);
+      one.metres_per_unit = 100; // all of it below a pixel
+      EXPECT_EQ(record(graph, one), DERMIS_OK);
+      return texels("lighting");
+    };
+    EXPECT_EQ(picture(false), picture(true)) << texturing;
+  }
+}
+
 TEST_F(Skip, LightThatOneFarTileBreaksIsNotFlatAsFarAsItReaches) {
   make();
   fill("lighting", [](uint32_t x, uint32_t y) { return x < 8 && y < 8 ? 1.0f : 0.5f; });
@@ -244,6 +283,7 @@ TEST_F(Skip, ScatteringBelowAPixelIsCopiedExactly) {
   ASSERT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK);
   EXPECT_EQ(choice.copied_tiles, 64u);
   EXPECT_EQ(choice.skips, DERMIS_SKIP_SUBPIXEL);
+  EXPECT_EQ(choice.groups, 4u + 1 + 1 + 64); // classes, flat light, the list, and once over the listed tiles
   const auto after = texels("lighting");
   for (size_t i = 0; i < after.size(); ++i)
     if (i % 4 != 3) {

@@ -108,6 +108,22 @@ TEST_F(Outcomes, ErrorsRunStraightOnLogarithmicAxes) {
   EXPECT_NEAR(expected_rmse(errors, -1, 2), std::sqrt(0.02 * 0.04), 1e-12);
 }
 
+TEST_F(Outcomes, SamplesThatAreGivenInPartTakeOffPartOfTheSquare) {
+  Outcome outcome;
+  outcome.technique = 0;
+  outcome.without_samples = -1;
+  outcome.takes_samples = true;
+  const double all = expected_rmse(errors, 0, 4), none = expected_rmse(errors, -1, 4);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 0, 100), none, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 100, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 25, 100), std::sqrt(0.75 * none * none + 0.25 * all * all),
+              1e-12);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 200, 100), all, 1e-12); // more than is wanted is not taken
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 5, 0), none, 1e-12);    // no tile is in doubt
+  outcome.takes_samples = false;
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 0, 100), all, 1e-12);
+}
+
 TEST_F(Outcomes, CostsGrowWithTheTilesThatAreListed) {
   const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
   ASSERT_TRUE(all);

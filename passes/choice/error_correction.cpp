@@ -1,0 +1,50 @@
+#include "passes/choice/error_correction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::choice {
+namespace {
+
+constexpr double keep = 0.96;      // of what is known, a probed frame: a memory of 25, as that of times
+constexpr double prior_frames = 4; // that the table counts as
+constexpr double most_factor = 4;  // either way: a table that is further off is of other content
+constexpr double wild = 3;         // times what is known so far: a frame counts as no more than that
+
+ErrorCorrection::Line& line_of(ErrorCorrection& correction, int32_t technique) {
+  return correction.lines[static_cast<size_t>(technique + 1)];
+}
+
+double factor_of(const ErrorCorrection::Line& line) {
+  if (line.newest <= 0) return 1;
+  const double prior = prior_frames * line.newest; // the table's word
+  return std::clamp(std::sqrt((line.probed + prior) / (line.expected + prior)), 1 / most_factor, most_factor);
+}
+
+} // namespace
+
+ErrorCorrection make_error_correction(size_t techniques) {
+  return {std::vector<ErrorCorrection::Line>(techniques + 1)};
+}
+
+void observe_error(ErrorCorrection& correction, int32_t technique, double probed, double expected) {
+  const bool known = technique >= -1 && static_cast<size_t>(technique + 1) < correction.lines.size();
+  if (!known || !std::isfinite(probed) || !std::isfinite(expected) || probed < 0 || expected <= 0) return;
+  ErrorCorrection::Line& line = line_of(correction, technique);
+  const double most = wild * factor_of(line) * expected;
+  const double found = std::min(probed, most);
+  for (ErrorCorrection::Line& other : correction.lines) {
+    other.probed *= keep;
+    other.expected *= keep;
+  }
+  line.probed += found * found;
+  line.expected += expected * expected;
+  line.newest = expected * expected;
+}
+
+double error_factor(const ErrorCorrection& correction, int32_t technique) {
+  const auto index = static_cast<size_t>(technique + 1);
+  return technique >= -1 && index < correction.lines.size() ? factor_of(correction.lines[index]) : 1.0;
+}
+
+} // namespace dermis::choice
