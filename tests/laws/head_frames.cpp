@@ -144,7 +144,8 @@ HeadErrors HeadTest::errors_of(const std::vector<float>& light, const std::vecto
   return errors;
 }
 
-std::vector<float> HeadTest::scatter(const std::string& graph, const std::vector<NamedValue>& set) {
+std::vector<float> HeadTest::scatter(const std::string& graph, const std::vector<NamedValue>& set,
+                                     uint32_t frames, double* samples) {
   if (host_ == nullptr) {
     auto made = demo::create_vulkan_host({.validation = true, .device = ""});
     EXPECT_TRUE(made) << made.error().text;
@@ -154,9 +155,27 @@ std::vector<float> HeadTest::scatter(const std::string& graph, const std::vector
   auto run = TechniqueRun::create(*host_, request_of(graph, set), frame_.description.profiles, {});
   EXPECT_TRUE(run) << run.error().text;
   if (!run) return {};
-  auto light = (*run)->scatter(frame_);
-  EXPECT_TRUE(light) << light.error().text;
-  return light ? light.take() : std::vector<float>();
+  CapturedFrame frame = frame_;
+  frame.description.previous_clip_from_view = frame.description.clip_from_view;
+  frame.description.previous_view_from_world = frame.description.view_from_world;
+  std::vector<float> found;
+  double taken = 0, pixels = 0;
+  for (uint32_t t = 0; t < frames; ++t) {
+    auto light = (*run)->scatter(frame, t > 0);
+    EXPECT_TRUE(light) << light.error().text;
+    if (!light) return {};
+    found = light.take();
+  }
+  if (samples == nullptr) return found;
+  const auto sampling = (*run)->sampling();
+  EXPECT_TRUE(sampling) << sampling.error().text;
+  for (size_t i = 0; sampling && !sampling->empty() && i < frame.profile.size(); ++i)
+    if (frame.profile[i] != 0) {
+      taken += double((*sampling)[3 * i]);
+      pixels += 1;
+    }
+  *samples = pixels > 0 ? taken / pixels : 0;
+  return found;
 }
 
 subsurface::SapResult<float> HeadTest::twin(const CapturedFrame& frame, subsurface::SapVariant variant) {

@@ -38,9 +38,10 @@ protected:
   void show(const HeadFraming& framing, uint32_t width, uint32_t height, uint32_t most);
   HeadErrors errors_of(const std::vector<float>& light, const std::vector<float>* confidence = nullptr) const;
   double luminance_at(const std::vector<float>& light, size_t pixel) const;
-  // Runs a shipped graph on the device, under validation.
-  std::vector<float> scatter(const std::string& graph,
-                             const std::vector<dermis::tools::NamedValue>& set = {});
+  // Runs a shipped graph on the device, under validation: the last of so many frames of a head that rests.
+  // `samples`: those of that frame, a subsurface pixel.
+  std::vector<float> scatter(const std::string& graph, const std::vector<dermis::tools::NamedValue>& set = {},
+                             uint32_t frames = 1, double* samples = nullptr);
   // The pyramid's CPU twin.
   static dermis::subsurface::SapResult<float> twin(const dermis::tools::CapturedFrame& frame,
                                                    dermis::subsurface::SapVariant variant);

@@ -127,6 +127,18 @@ TEST_P(OnAHead, ConfidenceSaysWhereThePyramidIsExact) {
   }
 }
 
+TEST_P(OnAHead, SamplesMendItWhereNothingMoves) {
+  show(sizes().front());
+  if (IsSkipped() || HasFatalFailure()) return;
+  double samples = 0;
+  const double sap = errors_of(scatter("sap")).rmse;
+  const double mended = errors_of(scatter("sap_residual", {}, 48, &samples)).rmse; // a multiple of 16
+  const double gain_db = 20 * std::log10(sap / mended);
+  RecordProperty("gain_db", std::to_string(gain_db));
+  RecordProperty("samples", std::to_string(samples));
+  EXPECT_GE(gain_db, 2.5);
+}
+
 TEST_P(OnAHead, MovingByWholePixelsHardlyChangesThePicture) {
   show(sizes().front(), 1); // no truth is asked for
   if (IsSkipped() || HasFatalFailure()) return;
