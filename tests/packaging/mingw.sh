@@ -39,7 +39,7 @@ cmake -G Ninja -S "$source" -B "$work/build" -DCMAKE_TOOLCHAIN_FILE="$work/toolc
   "$source/integration/examples/minimal.c" | sort -u; } > "$work/vulkan.def"
 $triple-dlltool -d "$work/vulkan.def" -l "$work/libvulkan-1.dll.a"
 
-cmake --build "$work/build" -j "$(nproc)" --target dermis_library >/dev/null || { cmake --build "$work/build" --target dermis_library; exit 1; }
+cmake --build "$work/build" -j "${JOBS:-$(nproc)}" --target dermis_library >/dev/null || { cmake --build "$work/build" --target dermis_library; exit 1; }
 dll=$(find "$work/build" -name 'libdermis*.dll' | head -1)
 $triple-objdump -p "$dll" > "$work/headers.txt"
 sed -n 's/^\s*\[ *[0-9]*\]\s*\(+base\[ *[0-9]*\]\s*[0-9a-f]*\s*\)\?\(dermis_\w*\)$/\2/p' "$work/headers.txt" | sort > "$work/exported.txt"
