@@ -63,6 +63,14 @@ TEST(ReportFiles, BaselinesAreGreyAndOwnTechniquesAreNot) {
   EXPECT_THAT(report_as_html(report), HasSubstr("<g class='s0 base'>"));
 }
 
+TEST(ReportFiles, PlotsHaveTheTitleOfTheBenchOrThatOfTimeAgainstError) {
+  Report report = small_report();
+  EXPECT_THAT(report_as_html(report), HasSubstr("<h2>Time against error</h2><p>Filled points"));
+  report.plots_title = "Over passes";
+  report.plots_text = "Point at a graph.";
+  EXPECT_THAT(report_as_html(report), HasSubstr("<h2>Over passes</h2><p>Point at a graph.</p>"));
+}
+
 TEST(ReportFiles, Base64IsThatOfTheStandard) { // RFC 4648, section 10
   const auto coded = [](std::string_view text) {
     return base64({reinterpret_cast<const uint8_t*>(text.data()), text.size()});

@@ -96,10 +96,10 @@ void add_plots(std::string& page, const Report& report) {
         baseline.push_back(series.baseline);
       }
   const bool frames = plots.front().over_frames;
-  const std::string_view title = !report.plots_title.empty() ? report.plots_title
-                                 : frames                    ? "Frame by frame"
-                                                             : "Time against error";
-  const std::string_view text =
+  const std::string title = !report.plots_title.empty() ? report.plots_title
+                            : frames                    ? "Frame by frame"
+                                                        : "Time against error";
+  const std::string text =
       !report.plots_text.empty() ? report.plots_text
       : frames                   ? "Point at a frame to see its value. Baselines are grey."
                : "Filled points are on the Pareto front: nothing else is both faster and more exact. "
