@@ -25,8 +25,7 @@ if can_fuzz; then
   fuzz=yes
   packages+=("${fuzz_packages[@]}")
 fi
-may_install && packages+=("${interface_packages[@]}")
-viewer_packages+=(chromium) # opens the page in a test, which is skipped without
+optional_packages+=("${interface_packages[@]}" chromium) # chromium opens the viewer's page in a test
 install_packages
 for preset in "${presets[@]}"; do
   build_preset "$preset"

@@ -9,14 +9,15 @@ packages=(
 )
 
 # What the viewer's page is built with, where Node comes from nowhere else; without them it is left out.
-viewer_packages=()
-command -v node >/dev/null || viewer_packages+=(nodejs)
-command -v npm >/dev/null || viewer_packages+=(npm)
+optional_packages=()
+command -v node >/dev/null || optional_packages+=(nodejs)
+command -v npm >/dev/null || optional_packages+=(npm)
 
 # What the fuzz targets need beside them.
 fuzz_packages=(clang libclang-rt-14-dev)
 
 # What compares the interface with its baseline, and a foreign renderer to run between; without them these tests are skipped.
+# shellcheck disable=SC2034
 interface_packages=(abigail-tools libplacebo-dev)
 
 say() { printf '%s\n' "$*"; }
@@ -45,28 +46,37 @@ can_fuzz() {
   fi
 }
 
-# Installs `packages`, and `viewer_packages` where this user may.
+# Installs `packages`; then `optional_packages` where this user may and where they are to be had.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
     say "This is no Debian: taking it that what these packages hold is installed: ${packages[*]}"
     return
   fi
-  local missing become=()
-  if may_install; then packages+=("${viewer_packages[@]}"); fi
+  local missing wanted=() become=()
   mapfile -t missing < <(missing_packages "${packages[@]}")
-  [[ ${#missing[@]} -gt 0 ]] || return 0
-  if [[ $EUID -ne 0 ]]; then
-    if may_install; then
-      become=(sudo)
-    else
-      fail 3 "missing packages; as root: apt-get install --no-install-recommends ${missing[*]}"
-    fi
+  if may_install; then
+    mapfile -t wanted < <(missing_packages "${optional_packages[@]}")
+    [[ $EUID -eq 0 ]] || become=(sudo)
+  elif [[ ${#missing[@]} -gt 0 ]]; then
+    fail 3 "missing packages; as root: apt-get install --no-install-recommends ${missing[*]}"
   fi
-  say "Installing ${#missing[@]} packages: ${missing[*]}"
+  [[ $((${#missing[@]} + ${#wanted[@]})) -gt 0 ]] || return 0
   local apt=("${become[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq)
-  "${apt[@]}" update || fail 3 "apt-get update failed: is there a network?"
-  "${apt[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null ||
-    fail 3 "apt-get install failed for: ${missing[*]}"
+  local failed=no
+  "${apt[@]}" update || failed=yes
+  if [[ ${#missing[@]} -gt 0 ]]; then
+    [[ $failed == no ]] || fail 3 "apt-get update failed: is there a network?"
+    say "Installing ${#missing[@]} packages: ${missing[*]}"
+    "${apt[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null ||
+      fail 3 "apt-get install failed for: ${missing[*]}"
+  fi
+  local package
+  for package in "${wanted[@]}"; do
+    say "Installing $package"
+    if [[ $failed == yes ]] || ! "${apt[@]}" install -y --no-install-recommends "$package" >/dev/null; then
+      say "It cannot be installed: what needs it is left out."
+    fi
+  done
 }
 
 # Configures and builds one preset; further arguments go to the build.
