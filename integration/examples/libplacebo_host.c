@@ -162,6 +162,9 @@ static void submit(pl_vulkan device, VkCommandBuffer commands, slot_image* image
   vkGetDeviceQueue(device->device, device->queue_graphics.index, 0, &queue);
   device->lock_queue(device, (int)device->queue_graphics.index, 0);
   check_vk(vkQueueSubmit2(queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit2");
+  /* The semaphores order everything, and an engine leaves it at that. Older validation layers do not follow
+   * semaphores that count from one submit to the next, but they do see that the queue is empty. */
+  check_vk(vkQueueWaitIdle(queue), "vkQueueWaitIdle");
   device->unlock_queue(device, (int)device->queue_graphics.index, 0);
 }
 
