@@ -68,7 +68,8 @@ private:
   std::vector<Block> blocks_; // by position / block_passes
   std::vector<Range> gathered_;
   std::vector<uint64_t> sizes_;
-  std::vector<double> weights_; // by item
+  std::vector<uint32_t> size_class_; // by item: into sizes_
+  std::vector<double> weights_;      // by item
   std::vector<uint64_t> offsets_;
   std::vector<uint32_t> by_size_, order_, best_order_;
   Fit best_fit_ = Fit::tightest;

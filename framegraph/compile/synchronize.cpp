@@ -93,19 +93,7 @@ void Synchronizer::transfer(const PassTouch& touch, const ObjectState& state, co
   need(position, state.last_pass);
 }
 
-void Synchronizer::run_pass(uint32_t position) {
-  PlanPass& pass = plan.passes[position];
-  const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
-  collect(first_use, end);
-  current = position;
-  if (emit) add_accesses(pass, first_use, end);
-  waiting_parts.clear();
-  for (uint32_t i = 0; i < touch_count; ++i)
-    run_touch(c.touches[i], position);
-  batch_parts(position);
-}
-
-void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
+inline void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
   ObjectState& state = c.states[touch.object];
   const UsageSet& set = sets[touch.usages];
   const Layout layout = touch.layout;
@@ -162,6 +150,18 @@ void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
   state.queue = queue_at(position);
   state.layout = layout;
   state.last_pass = position;
+}
+
+void Synchronizer::run_pass(uint32_t position) {
+  PlanPass& pass = plan.passes[position];
+  const uint32_t first_use = c.first_use[pass.declared.value], end = c.first_use[pass.declared.value + 1];
+  collect(first_use, end);
+  current = position;
+  if (emit) add_accesses(pass, first_use, end);
+  waiting_parts.clear();
+  for (uint32_t i = 0; i < touch_count; ++i)
+    run_touch(c.touches[i], position);
+  batch_parts(position);
 }
 
 void Synchronizer::dependency(const ObjectState& state, const UsageSet& set, Layout layout, bool must_see,

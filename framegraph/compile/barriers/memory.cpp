@@ -6,6 +6,35 @@
 
 namespace dermis {
 
+uint32_t Synchronizer::inherit_parts(const SyncFacts& of, const ObjectState* state, uint32_t barrier,
+                                     bool frame_before) {
+  uint32_t last = 0;
+  for (uint32_t part = 0; part < of.parts; ++part, ++state) {
+    inherit(*state, barrier, frame_before);
+    if (state->touched) last = std::max(last, state->last_pass + 1);
+  }
+  return last;
+}
+
+inline uint32_t Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barrier,
+                                      bool frame_before) {
+  const SyncFacts& of = facts(from.resource);
+  const ObjectState* state = c.states.data() + of.first_object + from.frames_back * of.parts;
+  PlanBarrier& draft = c.drafts[barrier];
+  uint32_t last = 0;
+  if (of.parts == 1 && !two_queues()) {
+    wait_for(draft, tail(*state));
+    last = state->touched ? state->last_pass + 1 : 0;
+  } else {
+    last = inherit_parts(of, state, barrier, frame_before);
+  }
+  const bool own = from.resource == resource;
+  if (!own && roles(resource) == 1) draft.why = PlanBarrier::Why::alias;
+  because(barrier, own ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from.resource,
+          frame_before ? 1 : 0);
+  return last;
+}
+
 uint32_t Synchronizer::take_over(uint32_t resource, uint32_t barrier) {
   const SyncFacts& own = facts(resource);
   std::vector<Segment>& segments = c.memory[own.memory];
@@ -81,27 +110,6 @@ void Synchronizer::wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint3
                                   bool frame_before) {
   barrier.source_stages |= barrier.destination_stages;
   frame_before ? need_frame_before(position, earlier) : need(position, earlier);
-}
-
-uint32_t Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before) {
-  const SyncFacts& of = facts(from.resource);
-  const ObjectState* state = c.states.data() + of.first_object + from.frames_back * of.parts;
-  PlanBarrier& draft = c.drafts[barrier];
-  uint32_t last = 0;
-  if (of.parts == 1 && !two_queues()) {
-    wait_for(draft, tail(*state));
-    last = state->touched ? state->last_pass + 1 : 0;
-  } else {
-    for (uint32_t part = 0; part < of.parts; ++part, ++state) {
-      inherit(*state, barrier, frame_before);
-      if (state->touched) last = std::max(last, state->last_pass + 1);
-    }
-  }
-  const bool own = from.resource == resource;
-  if (!own && roles(resource) == 1) draft.why = PlanBarrier::Why::alias;
-  because(barrier, own ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from.resource,
-          frame_before ? 1 : 0);
-  return last;
 }
 
 void Synchronizer::find_memory() {

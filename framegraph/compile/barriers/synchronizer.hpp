@@ -148,6 +148,9 @@ struct Synchronizer {
   // Behind the wait for a point, which ends where the barrier begins.
   void wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier, bool frame_before);
 
+  // What `inherit` does of an object with parts, or where there are two queues.
+  uint32_t inherit_parts(const SyncFacts& of, const ObjectState* state, uint32_t barrier, bool frame_before);
+
   // Returns the position behind the last pass that touched it.
   uint32_t inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before);
 

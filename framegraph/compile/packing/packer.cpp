@@ -5,8 +5,8 @@
 #include "framegraph/model/splitmix.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <functional>
 #include <numeric>
 
 namespace dermis {
@@ -239,29 +239,40 @@ bool Packer::try_order(std::span<const uint32_t> order, Fit fit, Packing& out) {
 // Largest first, equal ones as in `given`. Graphs have few different sizes: those are counted instead of
 // sorted.
 void Packer::sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32_t>& sorted) {
-  constexpr size_t few_sizes = 32;
+  constexpr uint32_t few_sizes = 32;
   sizes_.clear();
-  for (size_t i = 0; i < given.size() && sizes_.size() <= few_sizes; ++i) {
-    bool known = false;
-    for (const uint64_t size : sizes_) // to the end: where it is found is as good as random
-      known |= size == items_[i].size;
-    if (!known) sizes_.push_back(items_[i].size);
+  size_class_.resize(items_.size());
+  for (const uint32_t i : given) {
+    const uint64_t size = items_[i].size;
+    const auto known = static_cast<uint32_t>(sizes_.size());
+    uint32_t same = known;
+    for (uint32_t k = 0; k < known; ++k) // to the end: where it is found is as good as random
+      same = pick(sizes_[k] == size, k, same);
+    if (same == known) {
+      if (known == few_sizes) break;
+      sizes_.push_back(size);
+    }
+    size_class_[i] = same;
   }
-  if (sizes_.size() > few_sizes) {
+  const auto count = static_cast<uint32_t>(sizes_.size());
+  if (count == few_sizes) {
     sorted = given;
     std::stable_sort(sorted.begin(), sorted.end(),
                      [&](uint32_t a, uint32_t b) { return items_[a].size > items_[b].size; });
     return;
   }
-  std::sort(sizes_.begin(), sizes_.end(), std::greater<>());
-  sorted.resize(given.size() + 1); // one more, to be written in vain
-  size_t filled = 0;
-  for (const uint64_t size : sizes_)
-    for (const uint32_t i : given) { // every one is written, those of the size stay
-      sorted[filled] = i;
-      filled += items_[i].size == size ? 1 : 0;
-    }
-  sorted.pop_back();
+  std::array<uint32_t, few_sizes> rank{}; // by class: how many sizes are larger
+  for (uint32_t k = 0; k < count; ++k)
+    for (uint32_t other = 0; other < count; ++other)
+      rank[k] += static_cast<uint32_t>(sizes_[other] > sizes_[k]);
+  std::array<uint32_t, few_sizes + 1> starts{}; // by rank
+  for (const uint32_t i : given)
+    ++starts[rank[size_class_[i]] + 1];
+  for (uint32_t k = 0; k < count; ++k)
+    starts[k + 1] += starts[k];
+  sorted.resize(given.size());
+  for (const uint32_t i : given)
+    sorted[starts[rank[size_class_[i]]]++] = i;
 }
 
 void Packer::try_orders(Packing& out) {
