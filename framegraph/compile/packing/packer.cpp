@@ -354,24 +354,28 @@ void Packer::search(uint64_t steps, Packing& out) {
 // Where the first placement left much to gain: what ends last goes first among equals; then by size and
 // time together, where now the one and now the other counts more.
 void Packer::try_again(Packing& out) {
-  // A part in this many of the bound: less would not pay for the time. In large graphs more is left to gain.
+  // A part in this many of the bound: less would not pay for the time. In large graphs more is left to gain,
+  // but not by what helps small ones.
   constexpr size_t many_items = 4096;
-  const uint64_t much = items_.size() < many_items ? 11 : 16;
+  const bool large = items_.size() >= many_items;
+  const uint64_t much = large ? 16 : 11;
   const auto worth_it = [&] { return out.size - out.lower_bound > out.lower_bound / much; };
   if (!worth_it()) return;
-  const auto count = static_cast<uint32_t>(items_.size());
-  const auto positions = static_cast<uint32_t>(change_.size());
-  counting_sort(count, positions, last_at_, by_last_, [&](uint32_t i) { return items_[i].last; });
-  std::reverse(by_last_.begin(), by_last_.end());
-  sort_by_size(by_last_, order_);
-  try_order(order_, Fit::tightest, out);
+  if (!large) {
+    const auto count = static_cast<uint32_t>(items_.size());
+    const auto positions = static_cast<uint32_t>(change_.size());
+    counting_sort(count, positions, last_at_, by_last_, [&](uint32_t i) { return items_[i].last; });
+    std::reverse(by_last_.begin(), by_last_.end());
+    sort_by_size(by_last_, order_);
+    try_order(order_, Fit::tightest, out);
+  }
   // Of means by powers of the two, those that did best on drawn fans and random graphs of 100 to 10,000
   // passes (`dermis bench compile`).
   struct Powers {
     uint32_t size, time;
   };
-  constexpr Powers powers[] = {{2, 1}, {1, 2}, {2, 3}};
-  for (const Powers power : powers) {
+  constexpr std::array<Powers, 3> powers = {{{2, 1}, {1, 2}, {2, 3}}};
+  for (const Powers power : std::span(powers).subspan(large ? 1 : 0)) {
     if (!worth_it()) return;
     by_weight(power.size, power.time, order_);
     try_order(order_, Fit::tightest, out);
