@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 namespace dermis::test {
 namespace {
@@ -13,15 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-class BenchAll : public CommandTest {
-protected:
-  std::string read(const std::string& name) const {
-    std::ifstream file(path(name), std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
-};
+class BenchAll : public CommandTest {};
 
 TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
   const std::vector<std::string> arguments = {"bench", "all", "--out", path("out"), "--suites", "record"};

@@ -86,6 +86,13 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments, const RunOpt
   return outcome;
 }
 
+std::string CommandTest::read(const std::string& name) const {
+  std::ifstream file(path(name), std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
 std::string CommandTest::write(const std::string& name, const std::string& text) const {
   fs::create_directories((folder_ / name).parent_path());
   std::ofstream(folder_ / name, std::ios::binary) << text;

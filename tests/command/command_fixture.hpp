@@ -31,6 +31,7 @@ protected:
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   std::string write(const std::string& name, const std::string& text) const; // returns its path
+  std::string read(const std::string& name) const; // all of it; "" where there is no such file
   // Files and folders inside, relative, sorted; also what is hidden or temporary.
   std::vector<std::string> files(const std::string& below = "") const;
 

@@ -4,9 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 namespace dermis::test {
 namespace {
@@ -15,15 +13,7 @@ using nlohmann::json;
 using testing::Contains;
 using testing::HasSubstr;
 
-class Keep : public CommandTest {
-protected:
-  std::string read(const std::string& name) const {
-    std::ifstream file(path(name), std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
-};
+class Keep : public CommandTest {};
 
 TEST_F(Keep, ACapturedSceneIsValidAndCanBeApplied) {
   const Outcome outcome = run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size",
