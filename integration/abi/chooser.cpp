@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace dermis::abi {
 namespace {
@@ -82,6 +83,10 @@ void learn_error(Chooser& chooser, const choice::Outcome& outcome,
   observe_error(chooser.found, outcome.technique, probed.rmse, expected);
 }
 
+uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
+  return uint64_t{counters.scattering_tiles} + counters.copied_tiles + counters.flat_tiles;
+}
+
 void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   const choice::Outcome& outcome = program.outcomes[frame.outcome];
   vulkan::Executor& executor = *program.variants[outcome.plan].executor;
@@ -104,6 +109,7 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   if (!counted || frame.left_out) return; // nothing was looked at
   if (outcome.takes_samples && frame.counters.scattering_tiles > 0)
     chooser.wanted_per_tile = double(frame.counters.wanted_units) / frame.counters.scattering_tiles;
+  follow(chooser.trend, frame.frame_index, listed_tiles(frame.counters));
   chooser.counted = true;
   chooser.counters = frame.counters;
 }
@@ -146,15 +152,22 @@ void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index)
       observe_frame(chooser, program, frame);
 }
 
-FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles, uint64_t view_blocks,
-                   std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept {
+FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, uint64_t view_tiles,
+                   uint64_t view_blocks, std::span<choice::Forecast> forecasts,
+                   choice::DecisionState& state) noexcept {
   choice::FrameLoad load{view_tiles, view_tiles, 0, 0,
                          view_blocks}; // nothing counted yet: all of the view may scatter
   double d_px = assumed_d_px;
   uint64_t scattering = view_tiles;
   if (chooser.counted) {
     load = load_of(chooser.counters, view_tiles, view_blocks);
-    scattering = chooser.counters.scattering_tiles;
+    const double growth = growth_until(chooser.trend, frame_index);
+    const auto grown = [&](uint64_t tiles) {
+      return std::min(view_tiles, static_cast<uint64_t>(std::lround(growth * double(tiles))));
+    };
+    load.listed_tiles = grown(load.listed_tiles);
+    load.copied_tiles = grown(load.copied_tiles);
+    scattering = grown(chooser.counters.scattering_tiles);
     if (scattering > 0) d_px = subsurface::mean_d_px(chooser.counters);
   }
   const auto wanted = static_cast<uint32_t>(chooser.wanted_per_tile * double(scattering));

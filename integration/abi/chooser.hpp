@@ -9,6 +9,7 @@
 #include "passes/choice/decide.hpp"
 #include "passes/choice/error_correction.hpp"
 #include "passes/choice/outcomes.hpp"
+#include "passes/choice/trend.hpp"
 #include "passes/subsurface/environment.hpp"
 
 #include <array>
@@ -55,6 +56,7 @@ struct Chooser {
   uint64_t decided_for = 0;           // Program::serial that `state` is about
   subsurface::FrameCounters counters; // of the newest observed frame
   bool counted = false;
+  choice::TileTrend trend; // of tiles with subsurface
   double wanted_per_tile =
       choice::most_units; // of scattering tiles in the newest frame that was given samples
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
@@ -81,11 +83,12 @@ std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program&
 // Learns from frames of `program` that the device has finished. Allocates nothing.
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;
 
-// The outcome for a frame whose render rectangle has `view_tiles` tiles and `view_blocks` of 4x4, with what
-// is expected of it; remembered by remember() once the frame is recorded. Allocates nothing. Changes
-// `chooser` only through remember().
-FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t view_tiles, uint64_t view_blocks,
-                   std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
+// The outcome for frame `frame_index`, whose render rectangle has `view_tiles` tiles and `view_blocks` of
+// 4x4, with what is expected of it; remembered by remember() once the frame is recorded. Allocates nothing.
+// Changes `chooser` only through remember().
+FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, uint64_t view_tiles,
+                   uint64_t view_blocks, std::span<choice::Forecast> forecasts,
+                   choice::DecisionState& state) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
 // The frame was never submitted: nothing will be learned from it.
 void forget(Chooser& chooser, uint64_t frame_index) noexcept;

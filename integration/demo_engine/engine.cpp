@@ -229,6 +229,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   if (!scene) return scene.error();
   if (options.camera) move_camera(*scene, *options.camera);
   zoom_in(scene->camera, options.zoom);
+  if (options.frames_per_second > 0) scene->frames_per_second = options.frames_per_second;
   Model model;
   if (!options.model.mesh.empty()) {
     auto loaded = load_model(options.model);

@@ -40,6 +40,7 @@ struct RenderOptions {
   std::string profile; // file that takes the place of each of the scene's profiles; "" = as the scene says
   uint32_t width = 640, height = 360; // pixels, 1..16384
   uint32_t first_frame = 0, frames = 1;
+  double frames_per_second = 0; // 0: the scene's
   bool reversed_depth = false; // far plane at depth 0
   bool jitter = false;         // sub-pixel camera jitter (Halton 2, 3; period 8)
   bool taa = false;            // temporal anti-aliasing of `color`, with jitter

@@ -22,6 +22,7 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
   engine.width = request.size.width;
   engine.height = request.size.height;
   engine.frames = request.frames;
+  engine.frames_per_second = request.frames_per_second;
   engine.settings = request.set;
   engine.budget_ms = request.budget_ms;
   engine.metered = request.metered;

@@ -16,6 +16,7 @@ struct SceneRunRequest {
   std::string scene, graph; // files
   Size size;
   uint32_t frames = 0;
+  double frames_per_second = 0; // 0: the scene's
   uint32_t error_every = 0; // frames; 0: errors are not measured
   uint32_t subset = 1024;   // pixels of a frame that are compared with the truth
   double budget_ms = 0;     // 0: the defaults, with `set`
