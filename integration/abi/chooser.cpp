@@ -108,7 +108,8 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   chooser.newest = frame;
   if (!counted || frame.left_out) return; // nothing was looked at
   if (outcome.takes_samples && frame.counters.scattering_tiles > 0)
-    chooser.wanted_per_tile = double(frame.counters.wanted_units) / frame.counters.scattering_tiles;
+    found_units(chooser.wanted, subsurface::mean_d_px(frame.counters),
+                double(frame.counters.wanted_units) / frame.counters.scattering_tiles);
   follow(chooser.trend, frame.frame_index, listed_tiles(frame.counters));
   chooser.counted = true;
   chooser.counters = frame.counters;
@@ -152,8 +153,8 @@ void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index)
       observe_frame(chooser, program, frame);
 }
 
-FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, uint64_t view_tiles,
-                   uint64_t view_blocks, std::span<choice::Forecast> forecasts,
+FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, double delta_seconds,
+                   uint64_t view_tiles, uint64_t view_blocks, std::span<choice::Forecast> forecasts,
                    choice::DecisionState& state) noexcept {
   choice::FrameLoad load{view_tiles, view_tiles, 0, 0,
                          view_blocks}; // nothing counted yet: all of the view may scatter
@@ -170,7 +171,7 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
     scattering = grown(chooser.counters.scattering_tiles);
     if (scattering > 0) d_px = subsurface::mean_d_px(chooser.counters);
   }
-  const auto wanted = static_cast<uint32_t>(chooser.wanted_per_tile * double(scattering));
+  const auto wanted = static_cast<uint32_t>(expected_units(chooser.wanted, d_px) * double(scattering));
   const double filled_ms = chooser.budget_ms / choice::entry_margin;
   for (size_t i = 0; i < program.outcomes.size(); ++i) {
     const choice::Outcome& outcome = program.outcomes[i];
@@ -193,7 +194,8 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
   frame.expected_tiles = load.listed_tiles;
   frame.budget_ms = chooser.budget_ms;
   if (chooser.budget_ms > 0)
-    frame.decision = decide(forecasts.first(program.outcomes.size()), chooser.budget_ms, state);
+    frame.decision =
+        decide(forecasts.first(program.outcomes.size()), chooser.budget_ms, delta_seconds, state);
   else
     frame.decision = {0, choice::Why::no_budget};
   frame.outcome = frame.decision.outcome;

@@ -10,6 +10,7 @@
 #include "passes/choice/error_correction.hpp"
 #include "passes/choice/outcomes.hpp"
 #include "passes/choice/trend.hpp"
+#include "passes/choice/wanted.hpp"
 #include "passes/subsurface/environment.hpp"
 
 #include <array>
@@ -56,9 +57,8 @@ struct Chooser {
   uint64_t decided_for = 0;           // Program::serial that `state` is about
   subsurface::FrameCounters counters; // of the newest observed frame
   bool counted = false;
-  choice::TileTrend trend; // of tiles with subsurface
-  double wanted_per_tile =
-      choice::most_units; // of scattering tiles in the newest frame that was given samples
+  choice::TileTrend trend;    // of tiles with subsurface
+  choice::WantedUnits wanted; // of tiles where samples are given by tile
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
   uint64_t programs = 0;                                            // built so far
@@ -84,10 +84,10 @@ std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program&
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;
 
 // The outcome for frame `frame_index`, whose render rectangle has `view_tiles` tiles and `view_blocks` of
-// 4x4, with what is expected of it; remembered by remember() once the frame is recorded. Allocates nothing.
-// Changes `chooser` only through remember().
-FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, uint64_t view_tiles,
-                   uint64_t view_blocks, std::span<choice::Forecast> forecasts,
+// 4x4, with what is expected of it; `delta_seconds` after the frame before, 0: unknown. Remembered by
+// remember() once the frame is recorded. Allocates nothing. Changes `chooser` only through remember().
+FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, double delta_seconds,
+                   uint64_t view_tiles, uint64_t view_blocks, std::span<choice::Forecast> forecasts,
                    choice::DecisionState& state) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
 // The frame was never submitted: nothing will be learned from it.

@@ -104,8 +104,9 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   choice::DecisionState state =
       program.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
   const vulkan::Rectangle& seen = checked.input.rectangle;
-  FrameChoice chosen = choose(chooser, program, frame.frame_index, squares_of(seen, tile_side),
-                              squares_of(seen, block_side), chooser.forecasts, state);
+  FrameChoice chosen =
+      choose(chooser, program, frame.frame_index, double(frame.delta_seconds), squares_of(seen, tile_side),
+             squares_of(seen, block_side), chooser.forecasts, state);
   if (!chooser.counted) state = {}; // decided for a view full of subsurface: no reason to stay
   chosen.frame_index = frame.frame_index;
   const uint32_t variant = program.outcomes[chosen.outcome].plan;

@@ -7,9 +7,9 @@ namespace {
 
 constexpr double margin = 1.0;          // typical deviations that must fit beside the prediction
 constexpr double stay_tolerance = 1.03; // of the budget: what runs is not left for less
-constexpr double worth_a_switch = 0.9;  // of the error that runs now: less is no reason to switch
-constexpr uint32_t cool_down =
-    60; // frames between switches that no budget forces: with those back, 2 a second
+constexpr double worth_a_switch = 0.97; // of the error that runs now: less is no reason to switch
+constexpr double cool_down = 1; // seconds between switches that no budget forces: with those back, 2 a second
+constexpr double usual_frame = 1.0 / 60; // seconds, where the host does not tell
 
 double bound_ms(const Forecast& forecast) {
   return forecast.ms + margin * forecast.spread_ms;
@@ -57,7 +57,7 @@ Decision choose(std::span<const Forecast> forecasts, double budget_ms, const Dec
   if (better == UINT32_MAX || better == now || !less_error(forecasts[better], forecasts[now]))
     return {now, best == now ? Why::fits_best : Why::held};
   const bool worth = forecasts[better].rmse <= worth_a_switch * forecasts[now].rmse;
-  if (!worth || state.frames_since_switch < cool_down) return {now, Why::held};
+  if (!worth || state.seconds_since_switch < cool_down) return {now, Why::held};
   return {better, Why::better_fits};
 }
 
@@ -83,12 +83,13 @@ const char* why_text(Why why) {
   return "";
 }
 
-Decision decide(std::span<const Forecast> forecasts, double budget_ms, DecisionState& state) {
+Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds, DecisionState& state) {
   Decision decision = choose(forecasts, budget_ms, state);
   find_next_better(forecasts, budget_ms, decision);
   const bool first = state.outcome == UINT32_MAX;
   const bool switched = !first && decision.outcome != state.outcome;
-  state.frames_since_switch = switched || first ? 0 : state.frames_since_switch + 1;
+  const double passed = seconds > 0 ? seconds : usual_frame;
+  state.seconds_since_switch = switched || first ? 0 : state.seconds_since_switch + passed;
   state.switches += switched ? 1 : 0;
   state.outcome = decision.outcome;
   return decision;

@@ -39,11 +39,12 @@ struct Decision {
 // What a decision remembers of earlier ones. Plain data: a copy is another history.
 struct DecisionState {
   uint32_t outcome = UINT32_MAX; // of the last frame; none yet: UINT32_MAX
-  uint32_t frames_since_switch = 0;
+  double seconds_since_switch = 0;
   uint32_t switches = 0;
 };
 
-// budget_ms > 0. The same forecasts and state give the same decision. Allocates nothing.
-Decision decide(std::span<const Forecast> forecasts, double budget_ms, DecisionState& state);
+// budget_ms > 0; `seconds` after the last frame, 0: a sixtieth. The same forecasts and state give the same
+// decision. Allocates nothing.
+Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds, DecisionState& state);
 
 } // namespace dermis::choice

@@ -8,31 +8,32 @@ namespace {
 
 using namespace dermis::choice;
 
+constexpr double frame_seconds = 1.0 / 60;
 const std::vector<Forecast> three{{1.0, 0.05, 9e-3}, {2.0, 0.1, 5e-3}, {4.0, 0.2, 2e-3}};
 
 TEST(Decide, TakesTheLeastErrorThatFits) {
   for (const auto& [budget, expected] : {std::pair{1.5, 0u}, {2.5, 1u}, {5.0, 2u}}) {
     DecisionState state;
-    EXPECT_EQ(decide(three, budget, state).outcome, expected) << budget;
+    EXPECT_EQ(decide(three, budget, frame_seconds, state).outcome, expected) << budget;
   }
 }
 
 TEST(Decide, TheTypicalDeviationMustFitAsWell) {
   DecisionState state;
-  EXPECT_EQ(decide(three, 2.05, state).outcome, 0u); // 2.0 alone would fit
+  EXPECT_EQ(decide(three, 2.05, frame_seconds, state).outcome, 0u); // 2.0 alone would fit
 }
 
 TEST(Decide, WhereNothingFitsTheFastestRuns) {
   DecisionState state;
-  const Decision decision = decide(three, 0.5, state);
+  const Decision decision = decide(three, 0.5, frame_seconds, state);
   EXPECT_EQ(decision.outcome, 0u);
   EXPECT_EQ(decision.why, Why::nothing_fits);
 }
 
 TEST(Decide, WhatNoLongerFitsIsLeftAtOnce) {
   DecisionState state;
-  EXPECT_EQ(decide(three, 5.0, state).outcome, 2u);
-  const Decision decision = decide(three, 3.0, state);
+  EXPECT_EQ(decide(three, 5.0, frame_seconds, state).outcome, 2u);
+  const Decision decision = decide(three, 3.0, frame_seconds, state);
   EXPECT_EQ(decision.outcome, 1u);
   EXPECT_EQ(decision.why, Why::over_budget);
   EXPECT_EQ(state.switches, 1u);
@@ -42,32 +43,45 @@ TEST(Decide, ABudgetThatSwingsAroundAPriceDoesNotSwitchMoreThanTwiceASecond) {
   DecisionState state;
   constexpr int frames = 600; // ten seconds at 60 Hz
   for (int frame = 0; frame < frames; ++frame)
-    decide(three, 4.4 + (frame % 2 == 0 ? 0.3 : -0.3), state);
+    decide(three, 4.4 + (frame % 2 == 0 ? 0.3 : -0.3), frame_seconds, state);
   EXPECT_LE(state.switches, 2 * frames / 60);
 }
 
 TEST(Decide, ASmallGainIsNoReasonToSwitch) {
-  const std::vector<Forecast> alike{{1.0, 0, 5.0e-3}, {1.5, 0, 4.8e-3}};
+  const std::vector<Forecast> alike{{1.0, 0, 5.0e-3}, {1.5, 0, 4.9e-3}};
   DecisionState state;
-  EXPECT_EQ(decide(alike, 1.2, state).outcome, 0u);
+  EXPECT_EQ(decide(alike, 1.2, frame_seconds, state).outcome, 0u);
   for (int frame = 0; frame < 100; ++frame)
-    EXPECT_EQ(decide(alike, 3.0, state).outcome, 0u);
+    EXPECT_EQ(decide(alike, 3.0, frame_seconds, state).outcome, 0u);
+}
+
+// Slow frames are as far apart in time as many fast ones.
+TEST(Decide, WhatIsBetterIsTakenASecondAfterTheLastSwitch) {
+  for (const double seconds : {1.0 / 60, 1.0 / 24, 0.0}) {
+    DecisionState state;
+    decide(three, 1.5, seconds, state);
+    double passed = 0;
+    while (decide(three, 9.0, seconds, state).outcome != 2u && passed < 10)
+      passed += seconds > 0 ? seconds : 1.0 / 60;
+    EXPECT_NEAR(passed, 1.0, 0.1) << seconds;
+  }
 }
 
 TEST(Decide, SaysWhatTheNextBetterOneWouldTake) {
   DecisionState state;
-  const Decision decision = decide(three, 2.5, state);
+  const Decision decision = decide(three, 2.5, frame_seconds, state);
   EXPECT_EQ(decision.next_better, 2u);
   EXPECT_NEAR(decision.missing_ms, 1.7, 1e-12); // 4.0 + 0.2 - 2.5
   DecisionState other;
-  EXPECT_EQ(decide(three, 9, other).next_better, UINT32_MAX);
+  EXPECT_EQ(decide(three, 9, frame_seconds, other).next_better, UINT32_MAX);
 }
 
 TEST(Decide, TheSameFramesGiveTheSameDecisions) {
   DecisionState a, b;
   for (int frame = 0; frame < 200; ++frame) {
     const double budget = 1.0 + (frame * 37 % 50) * 0.1;
-    EXPECT_EQ(decide(three, budget, a).outcome, decide(three, budget, b).outcome);
+    EXPECT_EQ(decide(three, budget, frame_seconds, a).outcome,
+              decide(three, budget, frame_seconds, b).outcome);
   }
   EXPECT_EQ(a.switches, b.switches);
 }
