@@ -168,6 +168,7 @@ struct HistoryState {
   bool valid = false;        // `@-1` holds what the frame before this one wrote
   uint32_t age = 0;          // number of consecutive frames it holds; `@-N` is valid when age >= N
   HistoryReason reason = HistoryReason::first_frame;
+  HistoryReason lost = HistoryReason::first_frame; // why it held nothing when it last did; never `valid`
 };
 
 struct PassTiming {

@@ -84,6 +84,10 @@ template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
     use(*view);
 }
 
+// Who recorded the frame before, where that was another plan than `variant`: of this program, or of the one
+// that it replaces. Under the view's mutex.
+const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant);
+
 // What both the functions of a graph and of a view do; `function` names the one that was called.
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);
 dermis_result capture_frame(dermis_view_t& view, const char* function, const dermis_frame* frame,
@@ -92,5 +96,7 @@ dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t 
 dermis_result get_choice(dermis_view_t& view, const char* function, uint64_t completed, dermis_choice* out);
 dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed, uint32_t* count,
                           dermis_pass_timing* out);
+dermis_result get_histories(const dermis_view_t& view, const char* function, uint32_t* count,
+                            dermis_history* out);
 
 } // namespace dermis::abi

@@ -59,17 +59,6 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   return DERMIS_OK;
 }
 
-// Who recorded the frame before, where that was another plan: of this program, or of the one that it
-// replaces.
-const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant) {
-  const bool first = program.last_frame == 0;
-  if (first && (!view.next || !view.running)) return nullptr;
-  const Program& other = first ? *view.running : program;
-  const uint32_t last = other.outcomes[other.outcome].plan;
-  if (other.last_frame == 0 || (!first && last == variant)) return nullptr;
-  return other.variants[last].executor.get();
-}
-
 // The jitter of the frame before, in pixels of the size that the view has now.
 std::array<double, 2> rescaled_jitter(const dermis_view_t& view, const vulkan::Executor& executor,
                                       const vulkan::Executor& before) {
@@ -158,6 +147,15 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
 }
 
 } // namespace
+
+const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant) {
+  const bool first = program.last_frame == 0;
+  if (first && (!view.next || !view.running)) return nullptr;
+  const Program& other = first ? *view.running : program;
+  const uint32_t last = other.outcomes[other.outcome].plan;
+  if (other.last_frame == 0 || (!first && last == variant)) return nullptr;
+  return other.variants[last].executor.get();
+}
 
 dermis_result check_loss(const dermis_view_t& view, const char* function) {
   if (view.running)

@@ -81,6 +81,10 @@ inline constexpr size_t first_version_size<dermis_memory_request> = offsetof(der
                                                                              preferred) +
                                                                     sizeof(VkMemoryPropertyFlags);
 
+template <>
+inline constexpr size_t first_version_size<dermis_history> = offsetof(dermis_history, text) +
+                                                             sizeof(const char*);
+
 inline size_t stated_size(const void* structure) {
   size_t size = 0;
   std::memcpy(&size, structure, sizeof size);

@@ -102,3 +102,11 @@ extern "C" dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint6
   return guarded(view->context->log, function,
                  [&] { return get_timings(*view, function, completed_frame_index, count, timings); });
 }
+
+extern "C" dermis_result DERMIS_CALL dermis_view_histories(dermis_view view, uint32_t* count,
+                                                           dermis_history* histories) {
+  constexpr const char* function = "dermis_view_histories";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function,
+                 [&] { return get_histories(*view, function, count, histories); });
+}

@@ -128,7 +128,7 @@ void make_histories(State& state, const ExecutorInput& input) {
   for (const PlanHistory& history : state.plan.histories) {
     HistoryRecord& record = state.histories.emplace_back();
     record.name = input.graph->resources[state.plan.resources[history.resource].declared.value].name;
-    record.reason = input.history == HistoryReason::valid ? HistoryReason::first_frame : input.history;
+    forget(record, input.history == HistoryReason::valid ? HistoryReason::first_frame : input.history);
     record.scales = can_scale(*state.device, state.plan.resources[history.resource]);
     for (const PlanPass& planned : state.plan.passes)
       for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {

@@ -2,6 +2,15 @@
 #include "framegraph/vulkan/executor/state.hpp"
 
 namespace dermis::vulkan {
+namespace {
+
+// Why nothing came along from another plan: where this one never ran, for what it was made.
+HistoryReason not_carried(const HistoryRecord& record) noexcept {
+  const bool replaced = record.reason == HistoryReason::reloaded || record.reason == HistoryReason::resized;
+  return replaced && record.age == 0 ? record.reason : HistoryReason::switched;
+}
+
+} // namespace
 
 const char* history_reason_text(HistoryReason reason) {
   switch (reason) {
@@ -29,10 +38,15 @@ uint32_t access_now(const State& state, const PortAccess& port) noexcept {
   return valid ? port.access : port.otherwise;
 }
 
+void forget(HistoryRecord& history, HistoryReason reason) noexcept {
+  history.age = 0;
+  history.reason = history.lost = reason;
+}
+
 void forget_histories(State& state, HistoryReason reason) noexcept {
   for (size_t h = 0; h < state.histories.size(); ++h) {
-    state.histories[h].age = 0;
-    state.histories[h].reason = reason;
+    HistoryRecord& history = state.histories[h];
+    forget(history, reason == HistoryReason::switched ? not_carried(history) : reason);
     const PlanResource& resource = state.plan.resources[state.plan.histories[h].resource];
     for (uint32_t i = 0; resource.first_instance != no_instance && i < resource.instance_count; ++i)
       state.instances[resource.first_instance + i].ready = false;
@@ -49,14 +63,15 @@ HistoryState Executor::history_state(uint32_t index, bool reset_history,
   const HistoryRecord& record = state_->histories[index];
   if (before != nullptr) {
     const CarriedHistory carried = carried_history(*state_, index, *before->state_, reset_history);
-    const bool replaced = record.reason == HistoryReason::reloaded || record.reason == HistoryReason::resized;
-    const HistoryReason lost = replaced && record.age == 0 ? record.reason : HistoryReason::switched;
-    return {record.name, carried.age > 0, carried.age, carried.age > 0 ? HistoryReason::valid : lost};
+    const HistoryReason lost = not_carried(record);
+    if (carried.age == 0) return {record.name, false, 0, lost, lost};
+    return {record.name, true, carried.age, HistoryReason::valid,
+            before->state_->histories[carried.history].lost};
   }
   const HistoryDeclaration& declaration = state_->plan.histories[index].declaration;
   if (reset_history && declaration.on_cut == HistoryDeclaration::OnCut::invalidate)
-    return {record.name, false, 0, HistoryReason::cut};
-  return {record.name, record.age > 0, record.age, record.reason};
+    return {record.name, false, 0, HistoryReason::cut, HistoryReason::cut};
+  return {record.name, record.age > 0, record.age, record.reason, record.lost};
 }
 
 Rectangle Executor::previous_rectangle(const Executor* before) const noexcept {
@@ -66,7 +81,7 @@ Rectangle Executor::previous_rectangle(const Executor* before) const noexcept {
 void remember_before_frame(State& state, uint32_t frame_slot) noexcept {
   BeforeFrame& before = state.before_frame;
   for (size_t h = 0; h < state.histories.size(); ++h)
-    before.histories[h] = {state.histories[h].age, state.histories[h].reason};
+    before.histories[h] = {state.histories[h].age, state.histories[h].reason, state.histories[h].lost};
   for (size_t i = 0; i < state.instances.size(); ++i)
     before.ready[i] = state.instances[i].ready;
   before.stand_ins_ready = state.stand_ins_ready;
@@ -84,6 +99,7 @@ bool Executor::discard_frame(uint64_t frame_index) noexcept {
   for (size_t h = 0; h < state.histories.size(); ++h) {
     state.histories[h].age = before.histories[h].age;
     state.histories[h].reason = before.histories[h].reason;
+    state.histories[h].lost = before.histories[h].lost;
   }
   for (size_t i = 0; i < state.instances.size(); ++i)
     state.instances[i].ready = before.ready[i] != 0;

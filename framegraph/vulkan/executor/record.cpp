@@ -52,8 +52,7 @@ void invalidate_for_cut(State& state) {
   for (size_t h = 0; h < state.histories.size(); ++h) {
     const PlanHistory& history = state.plan.histories[h];
     if (history.declaration.on_cut != HistoryDeclaration::OnCut::invalidate) continue;
-    state.histories[h].age = 0;
-    state.histories[h].reason = HistoryReason::cut;
+    forget(state.histories[h], HistoryReason::cut);
     const PlanResource& resource = state.plan.resources[history.resource];
     for (uint32_t i = 0; i < resource.instance_count; ++i)
       state.instances[resource.first_instance + i].ready = false;

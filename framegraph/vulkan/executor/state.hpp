@@ -118,6 +118,7 @@ struct HistoryRecord {
   bool scales = false;  // the device can resample it
   uint32_t age = 0;
   HistoryReason reason = HistoryReason::first_frame;
+  HistoryReason lost = HistoryReason::first_frame; // HistoryState::lost
 };
 
 struct Timestamps {
@@ -131,6 +132,7 @@ struct BeforeFrame { // what recording the last frame changed: see Executor::dis
   struct History {
     uint32_t age = 0;
     HistoryReason reason = HistoryReason::first_frame;
+    HistoryReason lost = HistoryReason::first_frame;
   };
   bool known = false;
   bool stand_ins_ready = false;
@@ -231,6 +233,8 @@ void record_acquires(State& state, const FrameInput& frame) noexcept; // queue f
 void record_releases(State& state, const FrameInput& frame) noexcept; // and from us
 
 // ---- history.cpp
+// The history starts anew.
+void forget(HistoryRecord& history, HistoryReason reason) noexcept;
 // Every history starts anew at the next record.
 void forget_histories(State& state, HistoryReason reason) noexcept;
 

@@ -398,6 +398,33 @@ typedef struct dermis_pass_timing {
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, uint64_t completed_frame_index,
                                                           uint32_t* count, dermis_pass_timing* timings);
 
+/* Why a history held nothing. */
+typedef enum dermis_history_reason {
+  DERMIS_HISTORY_NEVER_WRITTEN = 0, /* no frame has been recorded that writes it */
+  DERMIS_HISTORY_CUT = 1,           /* DERMIS_FRAME_RESET_HISTORY */
+  DERMIS_HISTORY_RESIZED = 2,       /* and it is not declared "on_resize": "rescale" */
+  DERMIS_HISTORY_RELOADED = 3,      /* and what the graph was before has none that agrees with it */
+  DERMIS_HISTORY_OTHER_PLAN = 4,    /* the frame before ran with a plan that has none that agrees with it */
+  DERMIS_HISTORY_LEFT_OUT = 5,      /* the frame before had nothing to scatter (dermis_choice.skips) */
+  DERMIS_HISTORY_REASON_FORCE_32BIT = 0x7fffffff
+} dermis_history_reason;
+
+typedef struct dermis_history {
+  size_t struct_size;
+  const char* name;             /* of the resource; lives until the next reload, resize, set_setting or destroy */
+  uint32_t valid;               /* 1: the next frame, if it is no cut, finds what the frame before it wrote */
+  uint32_t age;                 /* frames in a row that are in it; 0 where it is not valid */
+  dermis_history_reason reason; /* why it is not valid; where it is, why it was not when it last was not */
+  uint32_t reserved;            /* 0 */
+  const char* text;             /* the reason for people; static string */
+} dermis_history;
+#define DERMIS_HISTORY_INIT {sizeof(dermis_history), NULL, 0, 0, DERMIS_HISTORY_NEVER_WRITTEN, 0, NULL}
+
+/* Each history of the graph, also of plans that do not run now, as the plan that ran last would find it. Frames that are
+ * discarded do not count. Of the graph's own view. Two-call array. Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_histories(dermis_graph graph, uint32_t* count,
+                                                            dermis_history* histories);
+
 /* Sets a declared setting from JSON text ("16", "true", "\"post\""), effective at the next record. A value that
  * changes which passes run recompiles here. For all views. Thread: beside. Errors: ARGUMENT, CONFIG, and those of
  * creation. */
@@ -757,6 +784,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_choice(dermis_view view, uint64
 /* As dermis_graph_timings, for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint64_t completed_frame_index,
                                                          uint32_t* count, dermis_pass_timing* timings);
+/* As dermis_graph_histories, for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(dermis_view view, uint32_t* count, dermis_history* histories);
 
 #ifdef __cplusplus
 }

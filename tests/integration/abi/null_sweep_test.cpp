@@ -71,6 +71,8 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   expect_argument_error(dermis_graph_describe(nullptr, DERMIS_DESCRIBE_JSON, &size, nullptr), "graph");
   expect_argument_error(dermis_graph_memory(nullptr, &memory), "graph");
   expect_argument_error(dermis_graph_timings(nullptr, 0, &count, nullptr), "graph");
+  expect_argument_error(dermis_graph_histories(nullptr, &count, nullptr), "graph");
+  expect_argument_error(dermis_view_histories(nullptr, &count, nullptr), "view");
   expect_argument_error(dermis_graph_record(nullptr, &frame), "graph");
   expect_argument_error(dermis_frame_discard(nullptr, 1), "graph");
 }

@@ -322,6 +322,7 @@ TEST_F(Views, WrongArgumentsAreNamed) {
   expect(dermis_view_discard(nullptr, 1), "view is NULL");
   expect(dermis_view_choice(nullptr, 0, &choice), "view is NULL");
   expect(dermis_view_timings(nullptr, 0, &count, nullptr), "view is NULL");
+  expect(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
   dermis_view_desc desc = DERMIS_VIEW_DESC_INIT;
   desc.struct_size = 0;
   expect(dermis_view_create(graph, &desc, &view, nullptr), "struct_size");

@@ -185,6 +185,7 @@ void carry_ages(State& to, const State& from, bool reset) noexcept {
     if (carried.age == 0) continue;
     to.histories[h].age = carried.age;
     to.histories[h].reason = HistoryReason::valid;
+    to.histories[h].lost = from.histories[carried.history].lost;
   }
   to.previous_rectangle = carried_rectangle(to, from);
 }

@@ -1,0 +1,85 @@
+// What a view's histories hold, and why they held nothing.
+
+#include "integration/abi/graph.hpp"
+#include "integration/abi/two_call.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+namespace dermis::abi {
+namespace {
+
+dermis_history_reason reason_of(vulkan::HistoryReason reason) {
+  switch (reason) {
+  case vulkan::HistoryReason::cut:
+    return DERMIS_HISTORY_CUT;
+  case vulkan::HistoryReason::resized:
+    return DERMIS_HISTORY_RESIZED;
+  case vulkan::HistoryReason::reloaded:
+    return DERMIS_HISTORY_RELOADED;
+  case vulkan::HistoryReason::switched:
+    return DERMIS_HISTORY_OTHER_PLAN;
+  case vulkan::HistoryReason::left_out:
+    return DERMIS_HISTORY_LEFT_OUT;
+  case vulkan::HistoryReason::valid: // it is no reason
+  case vulkan::HistoryReason::first_frame:
+    break;
+  }
+  return DERMIS_HISTORY_NEVER_WRITTEN;
+}
+
+// Those of a plan that are not among `all` yet, as its next frame would find them.
+void add_histories(const Variant& variant, const vulkan::Executor* before,
+                   std::vector<vulkan::HistoryState>& all) {
+  for (uint32_t i = 0; i < variant.executor->history_count(); ++i) {
+    vulkan::HistoryState state = variant.executor->history_state(i, false, before);
+    const auto same = [&](const vulkan::HistoryState& one) { return one.resource == state.resource; };
+    if (std::any_of(all.begin(), all.end(), same)) continue;
+    const vulkan::HistoryState own = variant.executor->history_state(i);
+    if (!state.valid && !variant.recorded && own.lost == vulkan::HistoryReason::first_frame)
+      state.lost = own.lost; // no plan was in between: it never ran
+    all.push_back(state);
+  }
+}
+
+// The plan that ran last, or will run first, before the others.
+std::vector<vulkan::HistoryState> histories_of(const dermis_view_t& view, const Program& program) {
+  std::vector<vulkan::HistoryState> all;
+  const uint32_t last = program.outcomes[program.outcome].plan;
+  const vulkan::Executor* const before = recorded_before(view, program, last);
+  add_histories(program.variants[last], before, all);
+  for (uint32_t v = 0; v < program.variants.size(); ++v)
+    if (v != last) add_histories(program.variants[v], recorded_before(view, program, v), all);
+  return all;
+}
+
+} // namespace
+
+dermis_result get_histories(const dermis_view_t& view, const char* function, uint32_t* count,
+                            dermis_history* out) {
+  const std::lock_guard lock(view.mutex);
+  const auto all = histories_of(view, view.next ? *view.next : *view.running);
+  return fill_array(view.context->log, function, count, out, static_cast<uint32_t>(all.size()),
+                    [&](uint32_t i) {
+                      dermis_history history = DERMIS_HISTORY_INIT;
+                      history.name = all[i].resource.data(); // of a std::string of the executor
+                      history.valid = all[i].valid ? 1 : 0;
+                      history.age = all[i].age;
+                      history.reason = reason_of(all[i].lost);
+                      history.text = vulkan::history_reason_text(all[i].lost);
+                      return history;
+                    });
+}
+
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_histories(dermis_graph graph, uint32_t* count,
+                                                            dermis_history* histories) {
+  constexpr const char* function = "dermis_graph_histories";
+  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
+  return guarded(graph->context->log, function,
+                 [&] { return get_histories(graph->own, function, count, histories); });
+}

@@ -1,0 +1,225 @@
+// What a graph tells of its histories: whether they hold something, for how long, and why they last did not.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <cstring>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::HasSubstr;
+
+struct Histories : DermisTest {
+  dermis_graph graph = nullptr;
+
+  // `resize` and `when`: of the light over frames.
+  GraphOptions keeping(const std::string& graph_name, const std::string& resize = "rescale",
+                       const std::string& when = "") const {
+    std::string overlay = read_text("configs/overlays/accumulate.json");
+    for (size_t at = 0; (at = overlay.find("\"rescale\"", at)) != std::string::npos; at += resize.size())
+      overlay.replace(at, 9, '"' + resize + '"');
+    if (!when.empty()) {
+      const std::string pass = R"("pass": "accumulate",)", clear = R"("pass": "forget_past",)";
+      overlay.replace(overlay.find(pass), pass.size(),
+                      pass + R"("when": ")" + when + R"(", "otherwise": { "accumulated": "scattered" },)");
+      overlay.replace(overlay.find(clear), clear.size(), clear + R"("when": ")" + when + R"(",)");
+    }
+    GraphOptions options;
+    options.text = read_text("configs/graphs/" + graph_name + ".json");
+    options.overlays = {overlay};
+    options.unbound.emplace_back("velocity");
+    return options;
+  }
+  void make(const GraphOptions& options) {
+    graph = make_graph(options);
+    ASSERT_NE(graph, nullptr);
+    make_images(graph);
+  }
+  void run(int frames, uint32_t flags = 0) {
+    for (int i = 0; i < frames; ++i) {
+      const auto bound = bindings(graph);
+      dermis_frame one = frame(bound, images.at("depth").width, images.at("depth").height);
+      one.flags = flags;
+      ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    }
+  }
+  static std::vector<dermis_history> told(dermis_graph graph) {
+    uint32_t count = 0;
+    EXPECT_EQ(dermis_graph_histories(graph, &count, nullptr), DERMIS_OK) << dermis_last_error();
+    std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
+    EXPECT_EQ(dermis_graph_histories(graph, &count, all.data()), DERMIS_OK) << dermis_last_error();
+    return all;
+  }
+  void expect(uint32_t age, dermis_history_reason reason, const char* text) const {
+    std::vector<std::string> names;
+    for (const dermis_history& one : told(graph)) {
+      if (std::strncmp(one.name, "past", 4) != 0) continue; // the graph's own
+      names.emplace_back(one.name);
+      EXPECT_EQ(one.valid, age > 0 ? 1u : 0u);
+      EXPECT_EQ(one.age, age);
+      EXPECT_EQ(one.reason, reason);
+      EXPECT_THAT(one.text, HasSubstr(text));
+    }
+    EXPECT_THAT(names, testing::UnorderedElementsAre("past", "past_place"));
+  }
+};
+
+TEST_F(Histories, GrowOlderFrameByFrameAndRememberACut) {
+  make(keeping("burley"));
+  expect(0, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  run(3);
+  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  run(1, DERMIS_FRAME_RESET_HISTORY);
+  expect(1, DERMIS_HISTORY_CUT, "camera cut"); // what the cut's own frame wrote
+  run(2);
+  expect(3, DERMIS_HISTORY_CUT, "camera cut");
+}
+
+TEST_F(Histories, GoOnOverAReloadAndARescaledSizeButNotOverAnother) {
+  make(keeping("burley"));
+  run(2);
+  const std::string text = read_text("configs/graphs/burley.json");
+  const dermis_source source = source_of(text, "graph.json");
+  ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  run(1);
+  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  ASSERT_EQ(dermis_graph_resize(graph, 48, 40, nullptr), DERMIS_OK) << dermis_last_error();
+  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  make_images(graph);
+  run(1);
+  expect(4, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+
+  make(keeping("burley", "invalidate"));
+  run(2);
+  ASSERT_EQ(dermis_graph_resize(graph, 48, 40, nullptr), DERMIS_OK) << dermis_last_error();
+  expect(0, DERMIS_HISTORY_RESIZED, "resized");
+  make_images(graph);
+  run(1);
+  expect(1, DERMIS_HISTORY_RESIZED, "resized");
+}
+
+TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
+  const std::string text = read_text("configs/graphs/sap_residual.json");
+  GraphOptions options;
+  options.text = text;
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{R"("ratio": {)", R"("mending": {)"},
+                                 {R"("ratio@-1")", R"("mending@-1")"},
+                                 {R"("ratio_out": "ratio")", R"("ratio_out": "mending")"}})
+    options.text.replace(options.text.find(from), from.size(), to);
+  options.unbound = {"albedo",        "scatter_scale",   "velocity", "thickness",
+                     "back_lighting", "scattered_light", "sampling"};
+  make(options);
+  run(2);
+  const dermis_source source = source_of(text, "graph.json");
+  ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+  const auto before = told(graph);
+  ASSERT_EQ(before.size(), 2u);
+  EXPECT_STREQ(before[0].name, "ratio");
+  EXPECT_EQ(before[0].valid, 0u);
+  EXPECT_EQ(before[0].reason, DERMIS_HISTORY_RELOADED);
+  EXPECT_STREQ(before[1].name, "place");
+  EXPECT_EQ(before[1].age, 2u);
+  run(1);
+  const auto after = told(graph);
+  EXPECT_EQ(after[0].age, 1u);
+  EXPECT_EQ(after[0].reason, DERMIS_HISTORY_RELOADED);
+  EXPECT_EQ(after[1].age, 3u);
+  EXPECT_EQ(after[1].reason, DERMIS_HISTORY_NEVER_WRITTEN);
+}
+
+TEST_F(Histories, FramesWithNothingToScatterLeaveThemOut) {
+  make(keeping("burley"));
+  run(2);
+  run(1, DERMIS_FRAME_BOUNDS); // empty
+  expect(0, DERMIS_HISTORY_LEFT_OUT, "without the passes that write it");
+  run(1);
+  expect(1, DERMIS_HISTORY_LEFT_OUT, "without the passes that write it");
+}
+
+TEST_F(Histories, OfAPlanThatDidNotRunAreInvalid) {
+  make(keeping("skin", "rescale", "technique == 'sap'"));
+  expect(0, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  run(2);
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  budget.milliseconds = 1e-4f; // too little for anything: what is fastest, which keeps no light
+  budget.flags = DERMIS_BUDGET_METER;
+  ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  run(1);
+  expect(0, DERMIS_HISTORY_OTHER_PLAN, "another plan");
+  budget.milliseconds = 0;
+  ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  run(1);
+  expect(1, DERMIS_HISTORY_OTHER_PLAN, "another plan");
+}
+
+TEST_F(Histories, ADiscardedFrameNeverWas) {
+  make(keeping("burley"));
+  run(2);
+  const auto bound = bindings(graph);
+  dermis_frame one = frame(bound);
+  one.flags = DERMIS_FRAME_RESET_HISTORY;
+  const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+    one.command_buffer = commands;
+    EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+    return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
+  });
+  EXPECT_FALSE(ran);
+  expect(1, DERMIS_HISTORY_CUT, "camera cut");
+  ASSERT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_OK) << dermis_last_error();
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+}
+
+TEST_F(Histories, OfAViewAreItsOwn) {
+  make(keeping("burley"));
+  dermis_view view = nullptr;
+  ASSERT_EQ(dermis_view_create(graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  run(2);
+  uint32_t count = 1;
+  dermis_history first = DERMIS_HISTORY_INIT;
+  EXPECT_EQ(dermis_view_histories(view, &count, &first), DERMIS_INCOMPLETE);
+  EXPECT_EQ(count, 2u);
+  EXPECT_STREQ(first.name, "past");
+  EXPECT_EQ(first.age, 0u);
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+}
+
+TEST_F(Histories, AGraphWithoutAnyTellsNone) {
+  graph = make_graph();
+  EXPECT_TRUE(told(graph).empty());
+}
+
+TEST_F(Histories, WrongArgumentsAreNamed) {
+  make(keeping("burley"));
+  uint32_t count = 2;
+  const auto refused = [](dermis_result result, const char* named) {
+    EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
+    EXPECT_THAT(dermis_last_error(), HasSubstr(named));
+  };
+  refused(dermis_graph_histories(nullptr, &count, nullptr), "graph is NULL");
+  refused(dermis_graph_histories(graph, nullptr, nullptr), "count is NULL");
+  refused(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
+  // Every size below the first version's; larger ones are filled with zeros behind what is known.
+  for (size_t size = 0; size < sizeof(dermis_history); ++size) {
+    dermis_history small = DERMIS_HISTORY_INIT;
+    small.struct_size = size;
+    refused(dermis_graph_histories(graph, &count, &small), "struct_size");
+  }
+  struct Newer {
+    dermis_history known;
+    uint64_t later;
+  } newer[2];
+  std::memset(newer, 0xff, sizeof newer);
+  newer[0].known.struct_size = sizeof(Newer);
+  count = 2;
+  ASSERT_EQ(dermis_graph_histories(graph, &count, &newer[0].known), DERMIS_OK) << dermis_last_error();
+  for (const Newer& one : newer) {
+    EXPECT_EQ(one.known.struct_size, sizeof(Newer));
+    EXPECT_EQ(one.known.reserved, 0u);
+    EXPECT_EQ(one.later, 0u);
+  }
+}
+
+} // namespace
+} // namespace dermis::abi_test
