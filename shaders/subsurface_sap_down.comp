@@ -125,7 +125,7 @@ void main() {
         light = vec4(0.0);
       }
     }
-    imageStore(coarse_light_image, sap_address(at, level), round_to_half(light));
+    imageStore(coarse_light_image, sap_address(at, level), settings.storage == STORAGE_FULL ? light : round_to_half(light));
     imageStore(coarse_surface_image, sap_address(at, level), bits);
   }
 }

@@ -43,6 +43,6 @@ void main() {
     sap_texel own = sap_own(k);
     if (!block.copy_only && own.id != 0u)
       result = gather(k, own);
-    imageStore(scattered_image, texel_of(pixel), round_to_half(result));
+    imageStore(scattered_image, texel_of(pixel), settings.storage == STORAGE_FULL ? result : round_to_half(result));
   }
 }

@@ -66,7 +66,7 @@ void main() {
                                   round_to_half(reach), 1.0, id));
       }
     }
-    imageStore(light_image, texel, round_to_half(light));
+    imageStore(light_image, texel, settings.storage == STORAGE_FULL ? light : round_to_half(light));
     imageStore(surface_image, texel, bits);
   }
 }

@@ -39,8 +39,10 @@ void main() {
       rest.mass *= 1.0 - share;
       sap_sum blend = sap_blend(share * here.mass, here.light, vec3(0.0), here.light, rest);
       float widest = share[profiles[min(own.id, 255u)].widest];
-      bits = sap_pack_scattered(sap_scattered(round_to_half(blend.light), round_to_half(mix(confidence, here.mass.r, widest)),
-                                              round_to_half(blend.mass)));
+      float sure = mix(confidence, here.mass.r, widest);
+      bits = settings.storage == STORAGE_FULL
+                 ? sap_pack_scattered_full(sap_scattered(blend.light, sure, blend.mass))
+                 : sap_pack_scattered(sap_scattered(round_to_half(blend.light), round_to_half(sure), round_to_half(blend.mass)));
     }
     imageStore(scattered_image, sap_address(at, level), bits);
   }

@@ -53,6 +53,15 @@ sap_scattered sap_unpack_scattered(uvec4 bits) {
   return sap_scattered(vec3(unpackHalf2x16(bits.x), pair.x), pair.y, vec3(unpackHalf2x16(bits.z), unpackHalf2x16(bits.w).x));
 }
 
+// The same with light in floats and the others in a byte each: kernels with the setting `storage`.
+uvec4 sap_pack_scattered_full(sap_scattered t) {
+  return uvec4(floatBitsToUint(t.light), packUnorm4x8(vec4(t.mass, t.confidence)));
+}
+sap_scattered sap_unpack_scattered_full(uvec4 bits) {
+  vec4 shares = unpackUnorm4x8(bits.w);
+  return sap_scattered(uintBitsToFloat(bits.xyz), shares.a, shares.rgb);
+}
+
 // Geometric mean of a pixel's sides at a depth, mm.
 float sap_footprint(float depth) {
   return sqrt(abs(frame.ray_scale.x * frame.ray_scale.y)) * (is_perspective() ? depth : 1.0);

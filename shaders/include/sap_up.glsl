@@ -97,7 +97,8 @@ sap_sum sap_from_coarser(int k, int level, sap_texel own, vec3 fallback, out flo
                                      depth_step - sap_rise(tap.depth, tap.slope, offset)) * per_sigma_mm;
       float off = sap_nearer(from_planes, depth_step * per_sigma_mm);
       float kept = tap.id == own.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
-      sap_scattered theirs = sap_unpack_scattered(coarse_scattered[index]);
+      sap_scattered theirs = settings.storage == STORAGE_FULL ? sap_unpack_scattered_full(coarse_scattered[index])
+                                                              : sap_unpack_scattered(coarse_scattered[index]);
       vec3 tap_mass = bilinear * kept * theirs.mass;
       mass += tap_mass;
       sum += tap_mass * theirs.light;

@@ -152,7 +152,9 @@ std::vector<float> HeadTest::scatter(const std::string& graph, const std::vector
     if (!made) return {};
     host_ = made.take();
   }
-  auto run = TechniqueRun::create(*host_, request_of(graph, set), frame_.description.profiles, {});
+  TechniqueRequest request = request_of(graph, set);
+  if (!overlay_.empty()) request.overlays = {root() + "/configs/overlays/" + overlay_ + ".json"};
+  auto run = TechniqueRun::create(*host_, request, frame_.description.profiles, {});
   EXPECT_TRUE(run) << run.error().text;
   if (!run) return {};
   CapturedFrame frame = frame_;

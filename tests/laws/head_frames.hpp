@@ -51,6 +51,7 @@ protected:
   dermis::tools::CapturedFrame frame_;
   dermis::tools::Reference reference_;
   std::vector<bool> edge_; // by pixel
+  std::string overlay_;    // of configs/overlays/, without .json, for scatter(); "": none
 
 private:
   void close_host();

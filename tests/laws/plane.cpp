@@ -88,6 +88,9 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
   dermis::tools::DeviceGraphRequest request;
   request.graph_name = graph + ".json";
   request.graph_text = read_text(DERMIS_SOURCE_DIR "/configs/graphs/" + request.graph_name);
+  if (!plane.overlay.empty())
+    request.overlays = {{plane.overlay + ".json",
+                         read_text(DERMIS_SOURCE_DIR "/configs/overlays/" + plane.overlay + ".json")}};
   request.width = plane.width;
   request.height = plane.height;
   request.profiles = {{1, "one", profile_text(plane)}, {2, "two", profile_text(plane)}};

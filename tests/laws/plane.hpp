@@ -28,6 +28,7 @@ struct Plane {
   std::function<float(int x, int y)> scatter_scale; // empty: not bound
   std::array<uint32_t, 4> rectangle = {0, 0, 0, 0}; // of the allocated size; width 0: all of it
   std::function<float(int x, int y)> thickness_m;   // empty: not bound, nor light from behind, which is 1
+  std::string overlay;                              // of configs/overlays/, without .json; "": none
   std::string profile_file; // text of a profile for both ids, in place of d_px; "": Burley with d_px
 };
 

@@ -17,7 +17,8 @@ constexpr std::string_view surface_doc =
     "its own surface (halves); profile id, 0 = nothing here";
 constexpr std::string_view scattered_doc = "scattered light of this level and coarser ones (3 halves), "
                                            "confidence (half), share of the kernel that met the "
-                                           "surface (3 halves), 0";
+                                           "surface (3 halves), 0; in full storage light (bits of 3 floats), "
+                                           "the share and confidence (a byte each)";
 
 constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
 constexpr Format surface_formats[] = {Format::rgba32_uint};
@@ -36,6 +37,12 @@ constexpr KindSetting level_setting(double first, std::string_view doc) {
 constexpr KindSetting variant =
     setting::choice("variant", variant_options,
                     "base: tent at levels 0 and 1; smooth: at every level, which hides the grid", 1);
+
+constexpr std::string_view storage_options[] = {"half", "full"};
+constexpr KindSetting storage =
+    setting::choice("storage", storage_options,
+                    "of light that is written: half floats, or floats, whose images then need 32 bits a "
+                    "channel; the same in all passes of a pyramid");
 
 constexpr Port level_tiles{
     "level_tiles", Usage::storage_buffer_read, false, "uvec2", "as subsurface.sap_tiles writes them", {}};
@@ -83,7 +90,7 @@ constexpr Port setup_ports[] = {
     {"light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
-constexpr KindSetting setup_settings[] = {setting::texturing};
+constexpr KindSetting setup_settings[] = {setting::texturing, storage};
 
 constexpr Port down_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of the finer level", {}},
@@ -93,7 +100,7 @@ constexpr Port down_ports[] = {
     {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
-constexpr KindSetting down_settings[] = {level_setting(1, "that is written")};
+constexpr KindSetting down_settings[] = {level_setting(1, "that is written"), storage};
 
 constexpr Port up_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of this level", {}},
@@ -106,7 +113,7 @@ constexpr Port up_ports[] = {
     level_arguments,
     {"scattered", Usage::storage_image_write, false, "uimage2D", scattered_doc, surface_formats},
 };
-constexpr KindSetting up_settings[] = {level_setting(1, "that is written"), variant};
+constexpr KindSetting up_settings[] = {level_setting(1, "that is written"), variant, storage};
 
 constexpr Port gather_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of level 0", {}},
@@ -118,7 +125,7 @@ constexpr Port gather_ports[] = {
     {"scattered", Usage::storage_image_write, false, "image2D",
      "rgb scattered light where there is subsurface, undefined elsewhere; a = confidence", light_formats},
 };
-constexpr KindSetting gather_settings[] = {variant};
+constexpr KindSetting gather_settings[] = {variant, storage};
 
 } // namespace
 
