@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 
 packages=(
-  cmake ninja-build g++ ccache glslang-tools
+  cmake ninja-build g++ ccache glslang-tools glslang-dev
   libvulkan-dev libvulkan-volk-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev
   libtinygltf-dev libstb-dev libglm-dev libgtest-dev libgmock-dev libvalijson-dev
   mesa-vulkan-drivers vulkan-validationlayers libxml2-utils

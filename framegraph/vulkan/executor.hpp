@@ -21,6 +21,7 @@ inline constexpr uint32_t max_frames_in_flight = 8;
 struct KernelCode {
   std::string_view shader;
   std::span<const uint32_t> spirv;
+  uint64_t version = 0; // kernels of one name and version are the same: relatives lend their pipelines
 };
 
 // Descriptor set 1, common to all kernels: entry i is binding i. Binding 0, if it is a uniform buffer, holds

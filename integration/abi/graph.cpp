@@ -86,20 +86,6 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   return DERMIS_OK;
 }
 
-// Builds candidates from `input`; they take over at the next record. On failure nothing has changed. Under
-// graph.changing.
-dermis_result replace(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
-                      dermis_report* report) {
-  Diagnostics diagnostics;
-  Candidates candidates;
-  const dermis_result built = build_candidates(graph, input, reason, diagnostics, candidates);
-  const dermis_result result = conclude(graph.context->log, built, std::move(diagnostics), report);
-  if (result != DERMIS_OK) return result;
-  hand_over(graph, candidates);
-  graph.input = std::move(input);
-  return result;
-}
-
 // Does a new value change which passes run?
 bool changes_passes(const Program& program, const std::vector<SettingValue>& values) {
   for (const PassDeclaration& pass : program.graph.passes)
@@ -141,7 +127,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
     given->json = json;
   const auto index = static_cast<uint32_t>(at - declared.begin());
   if (at->by_budget || changes_passes(program, values))
-    return replace(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
+    return replace_programs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
   std::vector<std::vector<choice::Outcome>> outcomes; // by view
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
@@ -161,6 +147,19 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
 }
 
 } // namespace
+
+dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
+                               dermis_report* report) {
+  Diagnostics diagnostics;
+  Candidates candidates;
+  const dermis_result built = build_candidates(graph, input, reason, diagnostics, candidates);
+  const dermis_result result = conclude(graph.context->log, built, std::move(diagnostics), report);
+  if (result != DERMIS_OK) return result;
+  hand_over(graph, candidates);
+  graph.input = std::move(input);
+  return result;
+}
+
 } // namespace dermis::abi
 
 using namespace dermis::abi;
@@ -196,7 +195,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, con
             read_source(log, "dermis_graph_reload: source", *source, input.source_name, input.source_text);
         result != DERMIS_OK)
       return result;
-    return replace(*graph, std::move(input), dermis::vulkan::HistoryReason::reloaded, report);
+    return replace_programs(*graph, std::move(input), dermis::vulkan::HistoryReason::reloaded, report);
   });
 }
 
@@ -215,7 +214,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uin
     ProgramInput input = graph->input;
     input.width = width;
     input.height = height;
-    return replace(*graph, std::move(input), dermis::vulkan::HistoryReason::resized, report);
+    return replace_programs(*graph, std::move(input), dermis::vulkan::HistoryReason::resized, report);
   });
 }
 

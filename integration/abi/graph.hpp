@@ -88,6 +88,11 @@ template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
 // that it replaces. Under the view's mutex.
 const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant);
 
+// Builds candidates for all views from `input`; they take over at the next record. On failure nothing has
+// changed. Under graph.changing.
+dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
+                               dermis_report* report);
+
 // What both the functions of a graph and of a view do; `function` names the one that was called.
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);
 dermis_result capture_frame(dermis_view_t& view, const char* function, const dermis_frame* frame,

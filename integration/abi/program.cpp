@@ -2,9 +2,8 @@
 
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
-#include "framegraph/text/limits.hpp"
+#include "integration/abi/host_files.hpp"
 #include "integration/abi/slots.hpp"
-#include "passes/kernels.hpp"
 #include "passes/subsurface/kinds.hpp"
 
 #include <fmt/format.h>
@@ -66,21 +65,9 @@ void tell_lost_histories(const Program& program, vulkan::HistoryReason reason, D
 FileText open_file(ProgramInput& input, std::string_view name) {
   const auto known = input.included.find(name);
   if (known != input.included.end()) return {known->second.name, known->second.text, ""};
-  if (input.include == nullptr) return {"", "", "the host gives no include function"};
-  const std::string asked(name);
-  dermis_source source = DERMIS_SOURCE_INIT;
-  if (input.include(input.include_user, asked.c_str(), &source) != 1)
-    return {"", "", "the host has no such file"};
-  if (source.text == nullptr || source.length > limits::file_bytes)
-    return {"", "",
-            fmt::format("the host delivers {}", source.text == nullptr
-                                                    ? "no text"
-                                                    : fmt::format("{} bytes, at most {} are read",
-                                                                  source.length, limits::file_bytes))};
-  const SourceText text{source.name != nullptr ? source.name : asked,
-                        std::string(source.text, source.length)};
-  input.included.emplace(asked, text);
-  return {text.name, text.text, ""};
+  FileText file = ask_host(input.include, input.include_user, name);
+  if (file.problem.empty()) input.included.emplace(name, SourceText{file.name, file.text});
+  return file;
 }
 
 std::optional<Composition> compose_sources(ProgramInput& input, Diagnostics& diagnostics) {
@@ -102,9 +89,7 @@ template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& val
 // program of the graph, whose pipelines are used again; or null.
 vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
                              const Program* relative, Program& program) {
-  std::vector<vulkan::KernelCode> kernels;
-  for (const Kernel& kernel : embedded_kernels())
-    kernels.push_back({kernel.shader, kernel.spirv});
+  const std::vector<vulkan::KernelCode> kernels = kernel_codes(input.shaders);
   const subsurface::TableUse use = subsurface::table_use(program.graph, context.kinds);
   if (!input.tables || input.tables->use != use)
     input.tables =
@@ -260,6 +245,8 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   candidate->slots = slots_of(*candidate);
   candidate->images.resize(candidate->slots.size());
 
+  if (!compile_missing(input.shaders, candidate->graph, context.kinds, diagnostics))
+    return DERMIS_ERROR_SHADER;
   if (const vulkan::Error error = make_executors(context, input, history, relative, *candidate))
     return refused(context, error, diagnostics);
   tell_lost_histories(*candidate, history, diagnostics);

@@ -9,6 +9,7 @@
 #include "framegraph/vulkan/heap_pool.hpp"
 #include "integration/abi/chooser.hpp"
 #include "integration/abi/context.hpp"
+#include "integration/abi/shaders/runtime_shaders.hpp"
 #include "passes/subsurface/kernel_tables.hpp"
 
 #include <array>
@@ -46,6 +47,7 @@ struct ProgramInput {
   std::vector<std::string> unbound;
   std::vector<HostFormat> formats;
   std::vector<HostSetting> settings;
+  RuntimeShaders shaders;
   std::shared_ptr<const subsurface::KernelTables>
       tables; // of `profiles`, as the last program used them; or null
 };

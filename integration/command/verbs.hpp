@@ -136,6 +136,7 @@ struct RenderOptions {
     skips
   } debug = Debug::none; // also pictures of what the graph did
   std::string trace;     // file for a Chrome trace; "": none
+  std::string shaders;   // folder of shaders that take the place of the program's; "": none
 };
 ExitCode render(const Session& session, const RenderOptions& options);
 
@@ -154,7 +155,7 @@ struct WatchOptions {
   Size size{320, 180};
   uint32_t frames = 4, subset = 1024;
   std::string build;               // command that builds the program anew where a shader changed; "": none
-  std::string shaders = "shaders"; // folder of those
+  std::string shaders = "shaders"; // folder of those; without `build` renderings use what is in it
   uint32_t rounds = 0;             // renderings to make; 0: until it is stopped
 };
 ExitCode watch(const Session& session, const WatchOptions& options);

@@ -255,10 +255,10 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   desc.view = {options.width, options.height, options.reversed_depth, options.jitter || options.taa};
   DermisHandle dermis;
   if (!options.graph.empty()) {
-    auto made =
-        create_dermis_host(**host, {options.graph, info.profiles, options.settings, options.width,
-                                    options.height, options.overlays, options.include, options.budget_ms,
-                                    options.metered, options.calibration, options.sampling, options.skips});
+    auto made = create_dermis_host(**host, {options.graph, info.profiles, options.settings, options.width,
+                                            options.height, options.overlays, options.include,
+                                            options.shaders, options.budget_ms, options.metered,
+                                            options.calibration, options.sampling, options.skips});
     if (!made) return made.error();
     dermis = made.take();
     desc.more_usage = usage_for_graph(*dermis);

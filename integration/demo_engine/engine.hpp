@@ -36,6 +36,9 @@ struct RenderOptions {
   std::string graph; // graph file; "" = without Dermis: light times albedo, as an engine has it before
   std::vector<NamedText> overlays;                                          // of the graph, in order
   std::function<std::optional<NamedText>(const std::string& name)> include; // opens what the graph includes
+  // Opens shaders that take the place of the library's ("subsurface_sap_up.comp", "include/sap.glsl"); empty:
+  // none do.
+  std::function<std::optional<NamedText>(const std::string& name)> shaders = {};
   ModelOptions model;
   std::string profile; // file that takes the place of each of the scene's profiles; "" = as the scene says
   uint32_t width = 640, height = 360; // pixels, 1..16384

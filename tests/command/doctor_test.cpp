@@ -14,8 +14,8 @@ class DoctorVerb : public CommandTest {};
 TEST_F(DoctorVerb, NamesTheDeviceAndEverythingThatIsAskedOfIt) {
   const Outcome text = run({"doctor"});
   EXPECT_EQ(text.exit_code, 0) << text.err;
-  for (const char* what :
-       {"Vulkan loader", "synchronization2", "maintenance4", "timestamps", "render and apply use this one"})
+  for (const char* what : {"Vulkan loader", "shaders at run time", "synchronization2", "maintenance4",
+                           "timestamps", "render and apply use this one"})
     EXPECT_THAT(text.out, HasSubstr(what));
   EXPECT_LE(std::count(text.out.begin(), text.out.end(), '\n'), 40) << "one screen, also with two devices";
 }

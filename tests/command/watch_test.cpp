@@ -79,6 +79,38 @@ TEST_F(Watch, AShaderThatChangesIsBuiltByTheGivenLine) {
   EXPECT_THAT(outcome.out, HasSubstr("kernel.comp changed"));
 }
 
+// Rendered anew with the text of the folder: a broken one is told with its place, a good one is seen.
+TEST_F(Watch, AShaderThatChangesIsRenderedWith) {
+  const Outcome has = run({"doctor", "--json"});
+  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
+    GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  std::filesystem::create_directories(path("."));
+  std::filesystem::copy("shaders", path("shaders"), std::filesystem::copy_options::recursive);
+  const std::string kernel = "shaders/subsurface_combine.comp", store = "round_to_half(color)";
+  const auto change = [&](const std::string& to) {
+    std::ifstream file(kernel, std::ios::binary);
+    std::ostringstream read;
+    read << file.rdbuf();
+    std::string text = read.str();
+    text.replace(text.find(store), store.size(), to);
+    write(kernel, text);
+  };
+  std::thread editor = after_the_first([&] {
+    change("round_to_half(colour)");
+    std::this_thread::sleep_for(3s);
+    change("round_to_half(0.5 * color)");
+  });
+  std::vector<std::string> words = arguments("configs/graphs/burley.json", "3");
+  words.insert(words.end(), {"--shaders", path("shaders")});
+  const Outcome outcome = run(words);
+  editor.join();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("subsurface_combine.comp changed"));
+  EXPECT_THAT(outcome.err,
+              testing::ContainsRegex("subsurface_combine.comp:[0-9]+:[0-9]+: error.D0615 shader_error"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
+}
+
 TEST_F(Watch, CtrlCEndsIt) {
   RunOptions options;
   options.interrupt_after = path("out/color_0000.exr");

@@ -42,8 +42,8 @@ $triple-dlltool -d "$work/vulkan.def" -l "$work/libvulkan-1.dll.a"
 cmake --build "$work/build" -j "${JOBS:-$(nproc)}" --target dermis_library >/dev/null || { cmake --build "$work/build" --target dermis_library; exit 1; }
 dll=$(find "$work/build" -name 'libdermis*.dll' | head -1)
 $triple-objdump -p "$dll" > "$work/headers.txt"
-sed -n 's/^\s*\[ *[0-9]*\]\s*\(+base\[ *[0-9]*\]\s*[0-9a-f]*\s*\)\?\(dermis_\w*\)$/\2/p' "$work/headers.txt" | sort > "$work/exported.txt"
-sed -n '/Ordinal\/Name Pointer/,$p' "$work/headers.txt" | grep -oE '\] +[A-Za-z_][A-Za-z0-9_]*$' | sed 's/.* //' | sort > "$work/exported.txt"
+awk '/^\[Ordinal\/Name Pointer\] Table/ { on = 1; next } on && NF == 0 { exit } on { print $NF }' "$work/headers.txt" |
+  LC_ALL=C sort > "$work/exported.txt"
 diff "$source/integration/abi/symbols.txt" "$work/exported.txt" || { echo "symbols.txt (<) and the DLL (>) differ"; exit 1; }
 others=$(sed -n 's/.*DLL Name: //p' "$work/headers.txt" | grep -viE '^(kernel32|msvcrt|ucrtbase|api-ms-win-.*)\.dll$' || true)
 [[ -z $others ]] || { echo "the DLL needs more than the system's libraries:"; echo "$others"; exit 1; }

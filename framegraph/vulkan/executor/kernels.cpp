@@ -125,11 +125,14 @@ Error create_pipeline(State& state, const PassKind& kind, std::span<const uint32
   return {};
 }
 
+auto find_code(const ExecutorInput& input, const PassKind& kind) {
+  return std::find_if(input.kernels.begin(), input.kernels.end(),
+                      [&](const KernelCode& candidate) { return candidate.shader == kind.shader; });
+}
+
 Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel& kernel) {
   const PassKind& kind = (*input.kinds)[id];
-  const auto code =
-      std::find_if(input.kernels.begin(), input.kernels.end(),
-                   [&](const KernelCode& candidate) { return candidate.shader == kind.shader; });
+  const auto code = find_code(input, kind);
   if (code == input.kernels.end())
     return {ErrorKind::shader, VK_SUCCESS,
             fmt::format("kernel '{}' of kind '{}' is not among the {} given", kind.shader, kind.name,
@@ -142,6 +145,7 @@ Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel&
   const std::vector<std::string> mismatches = check_signature(kind, input.environment, *reflection);
   if (!mismatches.empty()) return {ErrorKind::shader, VK_SUCCESS, join_lines(mismatches)};
   kernel.kind = id;
+  kernel.version = code->version;
   kernel.dispatch = kind.dispatch;
   for (const ShaderBinding& binding : reflection->bindings)
     kernel.counts = kernel.counts || (binding.set == 1 && binding.binding < input.environment.size() &&
@@ -181,7 +185,9 @@ Error create_kernels(State& state, const ExecutorInput& input,
     const KindId kind = state.plan.passes[p].kind;
     const DispatchShape dispatch = (*input.kinds)[kind].dispatch;
     if (dispatch == DispatchShape::none || dispatch == DispatchShape::host) continue;
-    const auto runs = [&](const auto& kernel) { return kernel->kind == kind; };
+    const auto code = find_code(input, (*input.kinds)[kind]);
+    const uint64_t version = code != input.kernels.end() ? code->version : 0;
+    const auto runs = [&](const auto& kernel) { return kernel->kind == kind && kernel->version == version; };
     const auto existing = std::find_if(state.kernels.begin(), state.kernels.end(), runs);
     state.passes[p].kernel = static_cast<uint32_t>(existing - state.kernels.begin());
     if (existing != state.kernels.end()) continue;

@@ -49,6 +49,7 @@ struct KernelPort {
 struct Kernel { // one per pass kind that dispatches; shared by the executors that run it
   const Device* device = nullptr;
   KindId kind;
+  uint64_t version = 0; // KernelCode::version
   DispatchShape dispatch = DispatchShape::none;
   uint32_t indirect_port = no_index;
   uint32_t entry_setting = no_index; // of the kind: says which entry of the indirect arguments counts

@@ -74,6 +74,9 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
                         "Chrome trace of passes, phases of the host's thread and choices over frames, for "
                         "ui.perfetto.dev and chrome://tracing")
             ->type_name("FILE");
+        verb.add_option("--shaders", options.shaders,
+                        "Folder of shaders, laid out as this project's, that take the place of the program's")
+            ->type_name("DIR");
         verb.add_flag(
             "--taa", options.taa,
             "Temporal anti-aliasing in the engine, after the graph: sub-pixel jitter (Halton 2, 3)");
@@ -107,7 +110,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       });
   add_verb<WatchOptions>(
       app, invocation, "watch",
-      "Render again whenever a file changes, and say what changed in plan and error",
+      "Render again whenever a file or a shader changes, and say what changed in plan and error",
       "dermis watch configs/scenes/bust.json --graph configs/graphs/sap.json --out out/watch\n"
       "  dermis watch configs/scenes/bust.json -g configs/graphs/sap.json -o out/watch --build 'cmake "
       "--build "
@@ -124,10 +127,13 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->check(CLI::Range(1u, max_frames));
         verb.add_option("--subset", options.subset, "Pixels compared with the truth; 0: none [1024]")
             ->check(CLI::Range(0u, max_subset));
-        verb.add_option("--build", options.build,
-                        "Command that builds this program anew where a shader changes: it holds its shaders")
+        verb.add_option(
+                "--build", options.build,
+                "Command that builds this program anew where a shader changes, instead of compiling shaders "
+                "itself")
             ->type_name("LINE");
-        verb.add_option("--shaders", options.shaders, "Folder of the shaders [shaders]")->type_name("DIR");
+        verb.add_option("--shaders", options.shaders, "Folder of the shaders to render with [shaders]")
+            ->type_name("DIR");
         verb.add_option("--rounds", options.rounds, "Renderings to make; 0: until Ctrl-C [0]");
         add_settings(verb, options.settings);
         add_parts(verb, options.parts);

@@ -1,6 +1,7 @@
 // dermis doctor: what this machine has of what Dermis needs, what is used, and what is done without and why.
 
 #include "framegraph/text/json_writer.hpp"
+#include "integration/abi/shaders/compiler.hpp"
 #include "integration/command/inspect/survey.hpp"
 #include "integration/command/verbs.hpp"
 
@@ -45,6 +46,12 @@ std::string screen(const demo::DeviceSurvey& survey) {
                         survey.validation_layer
                             ? "every device test runs under it"
                             : "not installed (Debian: vulkan-validationlayers): tests need it"});
+  const std::string compiler = abi::shader_compiler();
+  table.rows.push_back({compiler.empty() ? "degraded" : "ok", "shaders at run time",
+                        compiler.empty()
+                            ? "built without glslang (Debian: glslang-dev): watch and render take no "
+                              "shaders of their own"
+                            : compiler + " compiles those of render --shaders and watch"});
   for (const demo::SurveyedDevice& device : survey.devices)
     add_device(device, table);
   return format_table(table);
@@ -61,7 +68,8 @@ std::string survey_as_json(const demo::DeviceSurvey& survey) {
   JsonWriter json;
   json.open_object().member("ok", any_fits(survey)).member("dermis", library_version());
   json.member("loader", version_text(survey.loader_version))
-      .member("validation_layer", survey.validation_layer);
+      .member("validation_layer", survey.validation_layer)
+      .member("shader_compiler", abi::shader_compiler()); // "": none
   json.key("devices").open_array();
   for (const demo::SurveyedDevice& device : survey.devices) {
     json.open_object()

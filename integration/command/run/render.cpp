@@ -14,6 +14,7 @@
 #include "integration/files/capture_truth.hpp"
 #include "integration/files/exr.hpp"
 #include "integration/files/png.hpp"
+#include "integration/files/roots.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -256,16 +257,19 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     engine.graph = options.graph;
     for (const auto& [name, text] : loaded->overlays)
       engine.overlays.push_back({name, text});
-    engine.include = [open = open_beside(options.graph, options.parts.roots)](
-                         const std::string& name) -> std::optional<demo::NamedText> {
-      const FileText file = open(name);
-      return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+    const auto files_of = [](OpenFile open) {
+      return [open = std::move(open)](const std::string& name) -> std::optional<demo::NamedText> {
+        const FileText file = open(name);
+        return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+      };
     };
+    engine.include = files_of(open_beside(options.graph, options.parts.roots));
+    if (!options.shaders.empty()) engine.shaders = files_of(open_below({options.shaders}));
     engine.settings = settings_as_json(loaded->graph, options.settings);
     textured = textured_before(loaded->graph, choices);
     transmission = transmits(loaded->graph, choices);
-  } else if (!options.settings.empty() || !options.parts.overlays.empty()) {
-    return fail(session, ExitCode::usage, "--set and --overlay need a graph");
+  } else if (!options.settings.empty() || !options.parts.overlays.empty() || !options.shaders.empty()) {
+    return fail(session, ExitCode::usage, "--set, --overlay and --shaders need a graph");
   }
 
   Run run{.session = session,

@@ -1,6 +1,7 @@
 // dermis watch: renders again whenever a file changes that the picture depends on, and says what changed in
 // the plan and in the error.
 #include "framegraph/explain/plan_diff.hpp"
+#include "integration/abi/shaders/compiler.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/plan/input.hpp"
 #include "integration/command/watch/changes.hpp"
@@ -67,6 +68,15 @@ std::optional<SavedPlan> look_at_files(Watch& watch) {
   return plan && plan->from_graph ? std::optional(std::move(plan->saved)) : std::nullopt;
 }
 
+std::vector<std::string> shader_files(const Watch& watch) {
+  return files_below(watch.options.shaders, {".glsl", ".comp"});
+}
+
+// Renderings compile the shaders themselves: nothing is built, and there is something to compile with.
+bool compiles_shaders(const Watch& watch) {
+  return watch.options.build.empty() && !abi::shader_compiler().empty() && !shader_files(watch).empty();
+}
+
 std::vector<std::string> render_line(const Watch& watch) {
   const WatchOptions& o = watch.options;
   std::vector<std::string> line = {watch.program,
@@ -88,6 +98,7 @@ std::vector<std::string> render_line(const Watch& watch) {
       line.insert(line.end(), {option, value});
   };
   add("--overlay", o.parts.overlays);
+  if (compiles_shaders(watch)) add("--shaders", {o.shaders});
   add("--root", o.parts.roots);
   for (const auto& [name, value] : o.settings)
     line.insert(line.end(), {"--set", name + "=" + value});
@@ -159,9 +170,14 @@ void render_once(Watch& watch) {
   watch.figures = figures;
 }
 
-void build(const Watch& watch, const std::vector<std::string>& shaders) {
+void take_shaders(const Watch& watch, const std::vector<std::string>& shaders) {
+  if (compiles_shaders(watch)) {
+    say(watch.session, fmt::format("\n{} changed\n", list_files(shaders)));
+    return;
+  }
   if (watch.options.build.empty()) {
-    spdlog::warn("{} changed: this program holds its shaders; --build LINE builds it anew",
+    spdlog::warn("{} changed: this program was built without a compiler of shaders; --build LINE builds it "
+                 "anew",
                  list_files(shaders));
     return;
   }
@@ -186,8 +202,7 @@ ExitCode watch(const Session& session, const WatchOptions& options) {
   state.files.insert(state.files.end(), options.parts.overlays.begin(), options.parts.overlays.end());
   state.changes.add(state.files);
   Changes shaders;
-  const auto all_shaders = [&] { return files_below(options.shaders, {".glsl", ".comp"}); };
-  shaders.add(all_shaders());
+  shaders.add(shader_files(state));
   uint32_t rounds = 0;
   render_once(state);
   while (!interrupted() && (options.rounds == 0 || ++rounds < options.rounds)) {
@@ -195,12 +210,12 @@ ExitCode watch(const Session& session, const WatchOptions& options) {
     while (!interrupted() && changed.empty() && of_shaders.empty()) {
       std::this_thread::sleep_for(between_looks);
       changed = state.changes.look(state.files);
-      of_shaders = shaders.look(all_shaders());
+      of_shaders = shaders.look(shader_files(state));
     }
     if (interrupted()) break;
     std::this_thread::sleep_for(settling);
     state.changes.look(state.files);
-    if (!of_shaders.empty()) build(state, of_shaders);
+    if (!of_shaders.empty()) take_shaders(state, of_shaders);
     if (!changed.empty()) say(session, fmt::format("\n{} changed\n", list_files(changed)));
     render_once(state);
   }

@@ -11,12 +11,19 @@
 
 namespace demo {
 
+// Keeps the texts that it delivers until the call that asks for them is over.
+struct Delivery {
+  std::function<std::optional<NamedText>(const std::string& name)> open;
+  std::deque<NamedText> delivered = {};
+};
+
 struct DermisHost {
   dermis_context context = nullptr;
   dermis_graph graph = nullptr;
   std::vector<dermis_slot> slots;
   std::vector<std::string> slot_names; // slots' own strings end with the graph that is replaced
   std::vector<std::string> warnings;
+  Delivery shaders; // asked as long as the graph lives
 };
 
 namespace {
@@ -31,6 +38,7 @@ struct Report {
 ErrorKind kind_of(dermis_result result) {
   switch (result) {
   case DERMIS_ERROR_CONFIG:
+  case DERMIS_ERROR_SHADER:
     return ErrorKind::input;
   case DERMIS_ERROR_UNSUPPORTED:
   case DERMIS_ERROR_MEMORY:
@@ -96,17 +104,11 @@ Result<> query_slots(DermisHost& host) {
   return success();
 }
 
-// Keeps the texts that it delivers until the call that asks for them is over.
-struct Includes {
-  const DermisDesc& desc;
-  std::deque<NamedText> delivered = {};
-};
-
-uint32_t DERMIS_CALL deliver_include(void* user, const char* name, dermis_source* source) {
-  auto& includes = *static_cast<Includes*>(user);
-  std::optional<NamedText> file = includes.desc.include(name);
+uint32_t DERMIS_CALL deliver(void* user, const char* name, dermis_source* source) {
+  auto& delivery = *static_cast<Delivery*>(user);
+  std::optional<NamedText> file = delivery.open(name);
   if (!file) return 0;
-  const NamedText& kept = includes.delivered.emplace_back(std::move(*file));
+  const NamedText& kept = delivery.delivered.emplace_back(std::move(*file));
   *source = source_of(kept.name, kept.text);
   return 1;
 }
@@ -148,8 +150,8 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
     overlays.push_back(source_of(overlay.name, overlay.text));
   info.overlays = overlays.data();
   info.overlay_count = static_cast<uint32_t>(overlays.size());
-  Includes includes{desc};
-  if (desc.include) info.include = deliver_include;
+  Delivery includes{desc.include};
+  if (desc.include) info.include = deliver;
   info.include_user = &includes; // never asked again: this engine reloads no graph that includes others
   Report report;
   dermis_graph graph = nullptr;
@@ -177,6 +179,17 @@ Result<> set_budget(DermisHost& host, const DermisDesc& desc) {
   Report report;
   const dermis_result result = dermis_graph_set_budget(host.graph, &budget, &report.handle);
   if (result != DERMIS_OK) return dermis_error("dermis_graph_set_budget", result, report.handle);
+  return success();
+}
+
+Result<> use_shaders(DermisHost& host, const DermisDesc& desc) {
+  if (!desc.shaders) return success();
+  host.shaders = {desc.shaders};
+  Report report;
+  const dermis_result result =
+      dermis_graph_reload_shaders(host.graph, deliver, &host.shaders, &report.handle);
+  host.shaders.delivered.clear();
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_reload_shaders", result, report.handle);
   return success();
 }
 
@@ -231,6 +244,7 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
     return error;
   }
   if (auto done = set_budget(*host, desc); !done) return done.error();
+  if (auto done = use_shaders(*host, desc); !done) return done.error();
   // A setting may change what the graph uses; slots and their names belong to the plan that was replaced.
   if (auto done = query_slots(*host); !done) return done.error();
   return host;

@@ -17,7 +17,7 @@ struct DermisDesc {
   std::vector<std::pair<std::string, std::string>> settings;
   uint32_t width = 1, height = 1;
   std::vector<NamedText> overlays = {};
-  std::function<std::optional<NamedText>(const std::string& name)> include = {};
+  std::function<std::optional<NamedText>(const std::string&name)> include = {}, shaders = {};
   double budget_ms = 0;
   bool metered = false;
   NamedText calibration = {};

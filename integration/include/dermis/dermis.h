@@ -292,7 +292,8 @@ typedef struct dermis_slot_format {
 
 /* Delivers a file that a graph, a fragment or an overlay includes: fills *source and returns 1, or returns 0 if there
  * is none. `name` is relative, with '/' between folders and without "..". What *source points into must last until the
- * Dermis call ends. Must not call Dermis. Called during dermis_graph_create and dermis_graph_reload only. */
+ * Dermis call ends. Must not call Dermis. Called during dermis_graph_create and the functions that
+ * reload only. */
 typedef uint32_t(DERMIS_CALL* dermis_include_fn)(void* user, const char* name, dermis_source* source);
 
 typedef struct dermis_graph_desc {
@@ -328,6 +329,14 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
  * Thread: beside. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_source* source,
                                                          dermis_report* report);
+/* Kernels from GLSL of the host's instead of those that the library was built with, so that shaders can be worked on
+ * while the program runs. `open` delivers "subsurface_combine.comp" and what it includes, "include/tiles.glsl"; bindings
+ * and constants come from the library. Kernels that it has none of stay the library's; NULL: all of them again. Callable
+ * until it is replaced or the graph is destroyed. As a reload else: errors have file and line, on failure nothing changes,
+ * histories and settings go on. What the compiler takes of memory is the C library's. Thread: beside. Errors: as
+ * dermis_graph_create; UNSUPPORTED also where the library was built without DERMIS_RUNTIME_SHADERS. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload_shaders(dermis_graph graph, dermis_include_fn open, void* user,
+                                                                 dermis_report* report);
 /* A new allocated size of all views. Histories become invalid, but for images declared "on_resize": "rescale".
  * Thread: beside. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width, uint32_t height,

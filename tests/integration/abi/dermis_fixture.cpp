@@ -149,10 +149,10 @@ std::vector<dermis_slot> slots_of(dermis_graph graph) {
   return slots;
 }
 
-void DermisTest::make_images(dermis_graph graph) {
+void DermisTest::make_images(dermis_graph graph, std::string_view but) {
   images.clear();
   for (const dermis_slot& slot : slots_of(graph)) {
-    if (slot.bound == 0) continue;
+    if (slot.bound == 0 || slot.name == but) continue;
     demo::ImageDesc desc;
     desc.format = slot.format;
     desc.width = slot.width;

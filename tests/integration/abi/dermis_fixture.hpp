@@ -54,7 +54,7 @@ struct DermisTest : testing::Test {
   make_graph(const GraphOptions& options = {}); // fails the test on an error; destroyed in TearDown
 
   // Images for every bound slot: light on the left half, profile 1 everywhere, half a metre away.
-  void make_images(dermis_graph graph);
+  void make_images(dermis_graph graph, std::string_view but = ""); // `but`: a slot that gets none
   std::vector<dermis_image_binding> bindings(dermis_graph graph);
   // A frame of an orthographic camera with pixels of `pitch_m` metres; frame_index follows the last frame's.
   dermis_frame frame(const std::vector<dermis_image_binding>& bound, uint32_t width = 64,

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The shared library exports what integration/abi/symbols.txt lists: every function of the header, nothing else.
+# The shared library exports what integration/abi/symbols.txt lists: every function of the header, nothing else. It asks
+# for the C and C++ run time alone: no Vulkan loader, no JSON or shader library.
 # usage: exported_symbols.sh LIBRARY SOURCE_DIR
 set -eu
 scratch=$(mktemp -d)
@@ -10,3 +11,6 @@ grep -o 'DERMIS_CALL dermis_[a-z_]*(' "$2/integration/include/dermis/dermis.h" |
   > "$scratch/declared"
 diff "$scratch/declared" "$scratch/listed" || { echo "the header (<) and symbols.txt (>) differ"; exit 1; }
 diff "$scratch/listed" "$scratch/exported" || { echo "symbols.txt (<) and the library (>) differ"; exit 1; }
+others=$(readelf -d "$1" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
+  grep -v -E '^(libc|libm|libstdc\+\+|libgcc_s|lib[a-z]*san|ld-linux.*)\.so' || true)
+[ -z "$others" ] || { echo "it needs more than the C and C++ run time: $others"; exit 1; }

@@ -310,6 +310,26 @@ TEST_F(GraphLife, AReloadTakesOverAtTheNextRecordAndKeepsSettings) {
   EXPECT_THAT(take(report).names, Contains("setting_not_carried")) << "64 is beyond the new range";
 }
 
+TEST_F(GraphLife, ALibraryWithoutACompilerOfShadersSaysSoAndRunsOn) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  dermis_report report = nullptr;
+  const dermis_include_fn never = [](void*, const char*, dermis_source*) -> uint32_t {
+    ADD_FAILURE() << "there is nothing to ask for";
+    return 0;
+  };
+  EXPECT_EQ(dermis_graph_reload_shaders(graph, never, nullptr, &report), DERMIS_ERROR_UNSUPPORTED);
+  const Said said = take(report);
+  EXPECT_THAT(said.names, testing::ElementsAre("no_shader_compiler"));
+  EXPECT_THAT(said.all, HasSubstr("DERMIS_RUNTIME_SHADERS"));
+  EXPECT_EQ(dermis_graph_reload_shaders(graph, nullptr, nullptr, nullptr), DERMIS_OK)
+      << "its own it always has";
+  make_images(graph);
+  const auto bound = bindings(graph);
+  dermis_frame one = frame(bound);
+  EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+}
+
 TEST_F(GraphLife, AResizeTakesOverAtTheNextRecord) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);

@@ -61,6 +61,7 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   EXPECT_EQ(graph, nullptr);
   dermis_source source = DERMIS_SOURCE_INIT;
   expect_argument_error(dermis_graph_reload(nullptr, &source, &report), "graph");
+  expect_argument_error(dermis_graph_reload_shaders(nullptr, nullptr, nullptr, &report), "graph");
   expect_argument_error(dermis_graph_resize(nullptr, 1, 1, &report), "graph");
   expect_argument_error(dermis_graph_set_setting(nullptr, "a", "1", &report), "graph");
   uint32_t count = 0;

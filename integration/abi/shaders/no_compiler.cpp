@@ -1,0 +1,16 @@
+// A library that links nothing for it.
+#include "integration/abi/shaders/compiler.hpp"
+
+namespace dermis::abi {
+
+std::string shader_compiler() {
+  return "";
+}
+
+bool compile_shaders(std::span<const std::string>, const OpenFile&, std::vector<std::vector<uint32_t>>&,
+                     Diagnostics& diagnostics) {
+  diagnostics.add(DiagnosticId::no_shader_compiler, {}, "this library compiles no shaders at run time");
+  return false;
+}
+
+} // namespace dermis::abi

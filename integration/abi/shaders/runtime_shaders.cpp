@@ -1,0 +1,80 @@
+#include "integration/abi/shaders/runtime_shaders.hpp"
+
+#include "integration/abi/host_files.hpp"
+#include "integration/abi/shaders/compiler.hpp"
+#include "passes/kernels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+namespace dermis::abi {
+namespace {
+
+// Words that have not changed keep their version, so that pipelines are used again.
+RuntimeShaders::Kernel versioned(RuntimeShaders& shaders, const std::string& shader,
+                                 std::vector<uint32_t>&& spirv) {
+  if (spirv.empty() || std::ranges::equal(spirv, find_kernel(shader))) return {};
+  const auto before = shaders.before.find(shader);
+  if (before != shaders.before.end() && before->second.spirv && *before->second.spirv == spirv)
+    return before->second;
+  return {std::make_shared<const std::vector<uint32_t>>(std::move(spirv)), ++shaders.versions};
+}
+
+std::string list_files(const std::vector<std::string>& shaders) {
+  std::string list;
+  for (const std::string& shader : shaders)
+    list += fmt::format("{}'{}.comp'", list.empty() ? "" : ", ", shader);
+  return list;
+}
+
+} // namespace
+
+void use_shaders(RuntimeShaders& shaders, dermis_include_fn open, void* user) {
+  shaders.open = open;
+  shaders.user = user;
+  shaders.before = std::move(shaders.kernels);
+  shaders.kernels.clear();
+}
+
+bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const KindRegistry& kinds,
+                     Diagnostics& diagnostics) {
+  if (shaders.open == nullptr) return true;
+  std::vector<std::string> missing;
+  for (const PassDeclaration& pass : graph.passes) {
+    const PassKind& kind = kinds[pass.kind];
+    const std::string shader(kind.shader);
+    if (kind.dispatch == DispatchShape::none || kind.dispatch == DispatchShape::host) continue;
+    if (shaders.kernels.contains(shader) || std::ranges::find(missing, shader) != missing.end()) continue;
+    missing.push_back(shader);
+  }
+  if (missing.empty()) return true;
+  const OpenFile open = [&](std::string_view name) { return ask_host(shaders.open, shaders.user, name); };
+  std::vector<std::vector<uint32_t>> spirv;
+  if (!compile_shaders(missing, open, spirv, diagnostics)) return false;
+  const auto is_empty = [](const std::vector<uint32_t>& words) { return words.empty(); };
+  if (shaders.kernels.empty() && std::ranges::all_of(spirv, is_empty)) {
+    diagnostics.add(DiagnosticId::shader_error, {},
+                    fmt::format("the host has none of the graph's kernels: {}", list_files(missing)));
+    return false;
+  }
+  for (size_t i = 0; i < missing.size(); ++i)
+    shaders.kernels.emplace(missing[i], versioned(shaders, missing[i], std::move(spirv[i])));
+  shaders.before.clear();
+  return true;
+}
+
+std::vector<vulkan::KernelCode> kernel_codes(const RuntimeShaders& shaders) {
+  std::vector<vulkan::KernelCode> codes;
+  for (const Kernel& kernel : embedded_kernels()) {
+    const auto own = shaders.kernels.find(kernel.shader);
+    if (own != shaders.kernels.end() && own->second.spirv)
+      codes.push_back({kernel.shader, *own->second.spirv, own->second.version});
+    else
+      codes.push_back({kernel.shader, kernel.spirv, 0});
+  }
+  return codes;
+}
+
+} // namespace dermis::abi

@@ -1,0 +1,182 @@
+// What engines hand over differs in form, not in meaning: depth in any format and either direction, light
+// that is exposed already.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::abi_test {
+namespace {
+
+constexpr float near_m = 0.1f, far_m = 10.0f; // of the projections
+constexpr float slope = 0.032f;               // half the picture's height at 1 m: 64 pixels of 1 mm there
+const demo::ImageState resting{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                               VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
+
+enum class Direction : uint8_t { forward, reversed_infinite };
+
+struct Inputs : DermisTest {
+  // A perspective camera that looks at a wall.
+  dermis_frame wall_frame(const std::vector<dermis_image_binding>& bound, Direction direction) {
+    dermis_frame one = frame(bound);
+    std::ranges::fill(one.clip_from_view, 0.0f);
+    one.clip_from_view[0] = 1 / slope;
+    one.clip_from_view[5] = -1 / slope;
+    one.clip_from_view[14] = -1;
+    const bool forward = direction == Direction::forward; // depth = (a * -z + b) / -z
+    one.clip_from_view[10] = forward ? -far_m / (far_m - near_m) : 0;
+    one.clip_from_view[11] = forward ? -far_m * near_m / (far_m - near_m) : near_m;
+    return one;
+  }
+  static float stored(float metres, Direction direction) {
+    return direction == Direction::forward ? far_m / (far_m - near_m) * (1 - near_m / metres)
+                                           : near_m / metres;
+  }
+  bool can_be(VkFormat format) const {
+    VkFormatProperties properties{};
+    vkGetPhysicalDeviceFormatProperties(host->physical_device, format, &properties);
+    return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0;
+  }
+  // A depth buffer that holds one value, as a cleared one does; the view is of the depth alone.
+  demo::Image depth_buffer(VkFormat format, VkImageUsageFlags usage, float value) {
+    const bool stencil = format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+    demo::Image image;
+    image.host = host.get();
+    image.format = format;
+    image.aspect =
+        VK_IMAGE_ASPECT_DEPTH_BIT | (stencil ? VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT} : 0u);
+    image.width = image.height = 64;
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent = {64, 64, 1};
+    info.mipLevels = info.arrayLayers = 1;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    EXPECT_EQ(host->vk.vkCreateImage(host->device, &info, nullptr, &image.image), VK_SUCCESS);
+    VkMemoryRequirements needs{};
+    host->vk.vkGetImageMemoryRequirements(host->device, image.image, &needs);
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.allocationSize = needs.size;
+    allocate.memoryTypeIndex = demo::find_memory_type(*host, needs.memoryTypeBits, 0, 0);
+    EXPECT_EQ(host->vk.vkAllocateMemory(host->device, &allocate, nullptr, &image.memory), VK_SUCCESS);
+    EXPECT_EQ(host->vk.vkBindImageMemory(host->device, image.image, image.memory, 0), VK_SUCCESS);
+    VkImageViewCreateInfo view{};
+    view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+    view.image = image.image;
+    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    view.format = format;
+    view.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+    EXPECT_EQ(host->vk.vkCreateImageView(host->device, &view, nullptr, &image.view), VK_SUCCESS);
+    const auto cleared = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+      demo::transition(*host, commands, image, {}, resting);
+      const VkClearDepthStencilValue to{value, 0};
+      const VkImageSubresourceRange all{image.aspect, 0, 1, 0, 1};
+      host->vk.vkCmdClearDepthStencilImage(commands, image.image, VK_IMAGE_LAYOUT_GENERAL, &to, 1, &all);
+      return demo::success();
+    });
+    EXPECT_TRUE(cleared) << cleared.error().text;
+    return image;
+  }
+  // The light on a wall `metres` away whose depth is stored like this.
+  std::vector<float> wall(VkFormat format, Direction direction, float metres) {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/separable.json"); // without samples: pictures can be compared
+    options.formats = {{"depth", format}};
+    const dermis_graph graph = make_graph(options);
+    if (graph == nullptr) return {};
+    VkImageUsageFlags usage = 0;
+    for (const dermis_slot& slot : slots_of(graph))
+      if (std::string(slot.name) == "depth") usage = slot.usage;
+    make_images(graph, "depth");
+    images.emplace("depth", depth_buffer(format, usage, stored(metres, direction)));
+    const auto bound = bindings(graph);
+    dermis_frame one = wall_frame(bound, direction);
+    one.depth_kind = DERMIS_DEPTH_DEVICE;
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    return texels("lighting");
+  }
+  // The same from view distances in a float image.
+  std::vector<float> wall_in_units(float metres) {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/separable.json");
+    const dermis_graph graph = make_graph(options);
+    if (graph == nullptr) return {};
+    make_images(graph);
+    fill("depth", [&](uint32_t, uint32_t) { return metres; });
+    const auto bound = bindings(graph);
+    dermis_frame one = wall_frame(bound, Direction::forward);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    return texels("lighting");
+  }
+};
+
+double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double largest = a.size() == b.size() && !a.empty() ? 0 : HUGE_VAL;
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    largest = std::max(largest, std::abs(double(a[i]) - double(b[i])));
+  return largest;
+}
+
+TEST_F(Inputs, DepthMeansTheSameInEachFormatAndDirection) {
+  constexpr float metres = 0.5f;
+  const auto expected = wall_in_units(metres);
+  EXPECT_GT(largest_difference(expected, wall_in_units(2 * metres)), 0.02) << "the distance matters";
+  uint32_t tried = 0;
+  for (const VkFormat format : {VK_FORMAT_D32_SFLOAT, VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D16_UNORM,
+                                VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT}) {
+    if (!can_be(format)) continue;
+    ++tried;
+    for (const Direction direction : {Direction::forward, Direction::reversed_infinite})
+      // A step of d16 is 2^-16 of near * far / (far - near) / metres^2 = .4 a metre: 4e-5 m, 8e-5 of the
+      // distance and of a kernel's width; light changes by less. What is left is one rounding to half floats
+      // after each of three passes, 2^-12 each where light is 1.
+      EXPECT_LT(largest_difference(wall(format, direction, metres), expected), 8e-5 + 3.0 / 4096)
+          << "VkFormat " << format << (direction == Direction::forward ? ", forward" : ", reversed");
+  }
+  EXPECT_GE(tried, 3u) << "the software driver has at least d32f, d24 and d16";
+}
+
+// Whether the host multiplies light with its exposure before or after scattering, the picture is the same,
+// also where samples follow what earlier frames looked like.
+TEST_F(Inputs, LightThatIsExposedAlreadyScattersAlike) {
+  constexpr float factor = 8; // a power of two: nothing rounds otherwise
+  for (const char* name : {"separable", "sap_residual", "afis_guided"}) {
+    const auto frames = [&](float light, float exposure) {
+      GraphOptions options;
+      options.text = read_text(std::string("configs/graphs/") + name + ".json");
+      for (const char* unbound : {"velocity", "thickness", "back_lighting"})
+        options.unbound.emplace_back(unbound);
+      const dermis_graph graph = make_graph(options);
+      std::vector<float> last;
+      if (graph == nullptr) return last;
+      make_images(graph);
+      last_frame = 0;
+      for (int i = 0; i < 4; ++i) {
+        // Dim enough that no sample nor sum is clamped, bright enough that half floats stay normal.
+        fill("lighting", [&](uint32_t x, uint32_t y) {
+          return light * (0.125f + 0.25f * float((x / 8 + y / 8 + uint32_t(i)) % 2));
+        });
+        const auto bound = bindings(graph);
+        dermis_frame one = frame(bound);
+        one.exposure = exposure;
+        EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+      }
+      return texels("lighting");
+    };
+    const auto after = frames(1, 1);
+    const auto before = frames(factor, 1 / factor);
+    ASSERT_EQ(after.size(), before.size());
+    ASSERT_FALSE(after.empty()) << name;
+    double largest = 0;
+    for (size_t i = 0; i < after.size(); ++i)
+      if (i % 4 != 3) largest = std::max(largest, std::abs(double(before[i]) / factor - double(after[i])));
+    EXPECT_EQ(largest, 0) << name;
+  }
+}
+
+} // namespace
+} // namespace dermis::abi_test
