@@ -54,6 +54,14 @@ enum class DispatchShape : uint8_t {
   host              // the host records it
 };
 
+// What a kernel reads or writes at one of its ports, however many passes stand before it: an image of at
+// least a texel for each square of `square` pixels of the view, or a buffer of `bytes` for each of them and
+// `more`.
+struct PortNeed {
+  std::string_view port;
+  uint32_t square = 0, bytes = 0, more = 0; // square 0: `more` alone
+};
+
 struct PassKind {
   std::string_view name;   // "subsurface.burley"
   std::string_view shader; // file stem in shaders/, "" for kinds without one
@@ -65,6 +73,7 @@ struct PassKind {
   // over_tiles: the integer setting that says which entry of the arguments counts, 16 bytes each; "": the
   // first.
   std::string_view arguments_entry = "";
+  std::span<const PortNeed> needs = {}; // also of ports that the kind does not have; without one: any size
 };
 
 // The kinds a graph may use. Order of registration is the order of KindId; names are unique.

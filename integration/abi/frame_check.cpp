@@ -312,8 +312,11 @@ dermis_result fill_frame(const dermis_view_t& view, const Program& program, uint
     return bad_argument(
         log,
         "{}: clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic "
-        "projection with finite elements",
-        function);
+        "projection with finite elements{}",
+        function,
+        frame.clip_from_view[11] == -1.0f && frame.clip_from_view[14] != -1.0f
+            ? ": it is stored column by column; element [r * 4 + c] is row r, column c"
+            : "");
   checked.constants.sample_units = sample_units;
   checked.input.command_buffer = frame.command_buffer;
   checked.input.images = program.images;

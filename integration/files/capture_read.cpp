@@ -77,8 +77,10 @@ void read_projection(const Document& document, ObjectReader& reader, FrameDescri
     return refuse(
         "clip_from_view",
         fmt::format("'clip_from_view' is no axis-aligned {} projection (row-major, clip = M * view, looking "
-                    "down -z, Vulkan clip space)",
-                    frame.perspective ? "perspective" : "orthographic"));
+                    "down -z, Vulkan clip space){}",
+                    frame.perspective ? "perspective" : "orthographic",
+                    subsurface::stored_by_columns(frame.clip_from_view) ? ": it is stored column by column"
+                                                                        : ""));
   frame.previous_clip_from_view = frame.clip_from_view;
   reader.numbers("previous_clip_from_view", frame.previous_clip_from_view, -largest_number, largest_number,
                  Need::optional);

@@ -5,6 +5,12 @@
 
 namespace dermis::subsurface {
 
+// A perspective divides by -z, which is row 3: 0 0 -1 0. Where that stands in the last column, the matrix is
+// on its side.
+bool stored_by_columns(const Matrix4& m) {
+  return m[11] == -1 && m[14] != -1;
+}
+
 std::optional<PixelRays> pixel_rays(const Matrix4& m, uint32_t width, uint32_t height, double metres_per_unit,
                                     std::array<double, 2> jitter_px) {
   const bool finite = std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); }) &&
@@ -17,6 +23,7 @@ std::optional<PixelRays> pixel_rays(const Matrix4& m, uint32_t width, uint32_t h
   const bool perspective = m[14] < 0 && m[15] == 0 && m[3] == 0 && m[7] == 0;
   const bool orthographic = m[14] == 0 && m[15] > 0 && m[2] == 0 && m[6] == 0;
   if (!perspective && !orthographic) return std::nullopt;
+  if (perspective && stored_by_columns(m)) return std::nullopt;
 
   // With z = -depth, w = -m[14] depth (perspective) or m[15]: ndc * w = m[0] x - m[2] depth + m[3], solved
   // for x. Orthographic lengths are in host units; a perspective's slopes have no unit.

@@ -31,6 +31,10 @@ struct DepthDecode {
   double a = 0, b = 0, c = 0, e = 1;
 };
 
+// Is this a perspective that was stored column by column, as GLM and shaders store matrices? pixel_rays() has
+// no answer for it.
+bool stored_by_columns(const Matrix4& clip_from_view);
+
 // Rays of a w x h rectangle onto which clip space [-1, 1]^2 maps (Vulkan: y down, so m[1][1] < 0 for a camera
 // that is not flipped). `clip_from_view` excludes the jitter; `jitter_px` is how far the picture was shifted
 // by it (+x right, +y down). The matrix works in host units, `metres_per_unit` turns them into metres. Empty

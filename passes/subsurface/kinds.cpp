@@ -1,5 +1,6 @@
 #include "passes/subsurface/kinds.hpp"
 
+#include "passes/subsurface/signatures/needs.hpp"
 #include "passes/subsurface/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -17,8 +18,11 @@ KindRegistry make_kinds() {
         &pyramid_gather_kind, &transmission_kind, &afis_kind,      &blend_kind,         &residual_kind,
         &guided_kind,         &flat_kind,         &copy_kind,      &doubt_kind,         &allot_kind,
         &mend_kind,           &accumulate_kind,   &skips_kind,     &probe_kind,         &clear_kind,
-        &contrast_kind,       &afis_tiles_kind})
-    registry.add(*kind);
+        &contrast_kind,       &afis_tiles_kind}) {
+    PassKind known = *kind;
+    known.needs = needs_of(known.name);
+    registry.add(known);
+  }
   return registry;
 }
 

@@ -36,7 +36,10 @@ inline const KindRegistry& kinds() {
   static const KindRegistry registry = [] {
     KindRegistry out;
     out.add({"test.blur", "blur", "blurs", blur_ports, blur_settings});
-    out.add({"test.list", "list", "lists tiles", list_ports, {}});
+    static constexpr PortNeed list_needs[] = {{"tiles", 8, 4, 4}, {"mask", 1}, {"no_port", 1, 1000}};
+    PassKind list{"test.list", "list", "lists tiles", list_ports, {}};
+    list.needs = list_needs;
+    out.add(list);
     out.add({"test.mix", "mix", "adds", mix_ports, {}});
     return out;
   }();

@@ -69,6 +69,20 @@ TEST(Camera, RowsGoDownWhileYGoesUp) {
   EXPECT_EQ(ortho.scale_y, -0.5);
 }
 
+// Half of all engines store matrices so, and a perspective on its side looks like one of another field of
+// view.
+TEST(Camera, APerspectiveThatIsStoredColumnByColumnIsRefused) {
+  const Matrix4 m{2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1, 0, 0, -1, 0};
+  Matrix4 transposed{};
+  for (size_t r = 0; r < 4; ++r)
+    for (size_t c = 0; c < 4; ++c)
+      transposed[4 * c + r] = m[4 * r + c];
+  EXPECT_TRUE(pixel_rays(m, 64, 64, 1, {0, 0}));
+  EXPECT_FALSE(stored_by_columns(m));
+  EXPECT_FALSE(pixel_rays(transposed, 64, 64, 1, {0, 0}));
+  EXPECT_TRUE(stored_by_columns(transposed));
+}
+
 TEST(Camera, WhatIsNoAxisAlignedProjectionIsRefused) {
   const Matrix4 good = perspective(1, 1, 0, 0.1);
   Matrix4 m = good;

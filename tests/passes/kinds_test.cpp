@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 
@@ -72,6 +73,20 @@ TEST_F(Kinds, KindsThatRunOverTilesReadTheListAndItsArguments) {
       EXPECT_GE(find_port(kind, levels ? "level_tiles" : "tiles"), 0) << kind.name;
       EXPECT_GE(find_port(kind, levels ? "level_arguments" : "arguments"), 0) << kind.name;
       EXPECT_TRUE(kind.arguments_entry.empty() || find_setting(kind, kind.arguments_entry) >= 0) << kind.name;
+    }
+  }
+}
+
+// A kernel that wrote past the end of a buffer would write into what lies behind it.
+TEST_F(Kinds, EveryBufferOfEveryKindHasASizeThatIsChecked) {
+  for (uint32_t i = 0; i < kinds.size(); ++i) {
+    const PassKind& kind = kinds[KindId{i}];
+    for (const Port& port : kind.ports) {
+      if (usage_info(port.usage).image) continue;
+      const auto need = std::find_if(kind.needs.begin(), kind.needs.end(),
+                                     [&](const PortNeed& one) { return one.port == port.name; });
+      ASSERT_NE(need, kind.needs.end()) << kind.name << "." << port.name;
+      EXPECT_GT(uint64_t{need->square} * need->bytes + need->more, 0u) << kind.name << "." << port.name;
     }
   }
 }

@@ -54,6 +54,7 @@ void read_exports(GraphReader& reader, NodeId exports);
 void declare_passes(GraphReader& reader, NodeId passes);
 void read_passes(GraphReader& reader);
 void check_producers(GraphReader& reader);
+void check_needs(const GraphReader& reader); // of a graph without errors
 
 // Parts of passes. `pass` is the object at /passes/N; `what` names it in messages.
 // read_bindings: false when something that the pass writes is not known.

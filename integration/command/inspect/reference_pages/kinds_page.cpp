@@ -59,13 +59,28 @@ std::string cell(std::string_view text) {
   return out;
 }
 
+// "; at least ..." of a port, "" where any size will do.
+std::string need_text(const PassKind& kind, const Port& port) {
+  for (const PortNeed& need : kind.needs) {
+    if (need.port != port.name) continue;
+    const std::string square =
+        need.square == 1 ? "each pixel" : fmt::format("each {0}x{0} pixels", need.square);
+    if (need.bytes == 0 && need.more == 0) return fmt::format("; a texel for {}", square);
+    if (need.square == 0) return fmt::format("; {} bytes", need.more);
+    return fmt::format("; {} bytes for {}{}", need.bytes, square,
+                       need.more > 0 ? fmt::format(" and {} more", need.more) : "");
+  }
+  return "";
+}
+
 } // namespace
 
 std::string kinds_page(const KindRegistry& kinds) {
   std::string out =
       "# Pass kinds\n\nMade by `dermis docs` from the signatures in `passes/`. `read` and `write` name the "
       "side of a pass on which a port stands; what it does with the\nresource decides stages, accesses and "
-      "layouts. [techniques.md](techniques.md) tells what the kinds are for.\n";
+      "layouts. How large the resource has to be at least stands behind it (D0229). "
+      "[techniques.md](techniques.md) tells what the kinds are for.\n";
   for (uint32_t k = 0; k < kinds.size(); ++k) {
     const PassKind& kind = kinds[KindId{k}];
     out += fmt::format("\n## {}\n\n{} Runs {}{}.\n", kind.name, kind.doc, dispatch_text(kind.dispatch),
@@ -75,9 +90,10 @@ std::string kinds_page(const KindRegistry& kinds) {
       std::string formats;
       for (const Format format : port.formats)
         formats += fmt::format("{}{}", formats.empty() ? "; " : ", ", format_info(format).name);
-      out += fmt::format(
-          "| `{}` | {}{} | {}{} | {} |\n", port.name, side_of(port) == PortSide::read ? "read" : "write",
-          port.optional ? ", optional" : "", usage_info(port.usage).name, formats, cell(port.doc));
+      out +=
+          fmt::format("| `{}` | {}{} | {}{}{} | {} |\n", port.name,
+                      side_of(port) == PortSide::read ? "read" : "write", port.optional ? ", optional" : "",
+                      usage_info(port.usage).name, formats, need_text(kind, port), cell(port.doc));
     }
     if (kind.settings.empty()) continue;
     out += "\n| setting | default | | |\n|---|---|---|---|\n";

@@ -1,0 +1,109 @@
+// What kernels need of images and buffers, beside what these are declared to have. Sizes follow the view, so
+// some views are tried.
+
+#include "framegraph/model/read/graph_reader.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+struct Size {
+  uint64_t width = 0, height = 0; // 0: not known
+};
+
+constexpr uint64_t largest = uint64_t{1} << 32; // beyond it the compiler refuses
+constexpr Size tried_views[] = {{1, 1}, {127, 65}, {1919, 1079}, {3840, 2160}};
+
+uint64_t ceil_div(uint64_t value, uint64_t by) {
+  return (value + by - 1) / by;
+}
+
+uint64_t side_of(uint64_t base, const Rational& factor, const SizeExpression& size) {
+  const uint64_t product = base * static_cast<uint64_t>(std::max<int64_t>(factor.numerator, 0));
+  const auto denominator = static_cast<uint64_t>(std::max<int64_t>(factor.denominator, 1));
+  const uint64_t rounded =
+      size.rounding == Rounding::ceil ? ceil_div(product, denominator) : product / denominator;
+  const uint64_t step = std::max<uint32_t>(size.align, 1);
+  const uint64_t aligned = ceil_div(std::max<uint64_t>(rounded, 1), step) * step;
+  return std::min(aligned + 2 * uint64_t{size.border}, largest);
+}
+
+// Sizes of all resources for one view; those whose sizes go in a circle, which the compiler refuses, stay
+// unknown.
+std::vector<Size> sizes_for(const Graph& graph, const Size& view) {
+  std::vector<Size> known(graph.resources.size());
+  std::vector<uint32_t> chain;
+  for (uint32_t r = 0; r < graph.resources.size(); ++r) {
+    chain.assign(1, r);
+    const auto expression = [&] { return graph.resources[chain.back()].size; };
+    while (known[chain.back()].width == 0 && expression().base == SizeExpression::Base::resource &&
+           chain.size() <= graph.resources.size())
+      chain.push_back(expression().resource.value);
+    if (chain.size() > graph.resources.size()) continue;
+    for (; !chain.empty(); chain.pop_back()) {
+      Size& size = known[chain.back()];
+      if (size.width != 0) continue;
+      const SizeExpression& from = graph.resources[chain.back()].size;
+      const Size base = from.base == SizeExpression::Base::view       ? view
+                        : from.base == SizeExpression::Base::resource ? known[from.resource.value]
+                                                                      : Size{1, 1};
+      size = {side_of(base.width, from.x, from), side_of(base.height, from.y, from)};
+    }
+  }
+  return known;
+}
+
+const PortNeed* need_of(const PassKind& kind, uint32_t port) {
+  for (const PortNeed& need : kind.needs)
+    if (need.port == kind.ports[port].name) return &need;
+  return nullptr;
+}
+
+// What is missing, "" where it is large enough.
+std::string lacks(const ResourceDeclaration& resource, const PortNeed& need, const Size& size,
+                  const Size& view) {
+  const uint64_t columns = need.square > 0 ? ceil_div(view.width, need.square) : 0;
+  const uint64_t rows = need.square > 0 ? ceil_div(view.height, need.square) : 0;
+  if (resource.type == ResourceType::image)
+    return size.width >= columns && size.height >= rows
+               ? ""
+               : fmt::format("{}x{} texels for a view of {}x{}; '{}' has {}x{}", columns, rows, view.width,
+                             view.height, resource.name, size.width, size.height);
+  const uint64_t wanted = columns * rows * need.bytes + need.more;
+  const uint64_t elements = std::min(size.width * size.height, largest) + resource.extra_elements;
+  const uint64_t bytes = elements * std::max<uint32_t>(resource.stride, 1);
+  return bytes >= wanted ? ""
+                         : fmt::format("{} bytes for a view of {}x{}; '{}' has {}", wanted, view.width,
+                                       view.height, resource.name, bytes);
+}
+
+} // namespace
+
+void check_needs(const GraphReader& reader) {
+  const Graph& graph = reader.graph;
+  std::vector<bool> told(graph.resources.size());
+  for (const Size& view : tried_views) {
+    const std::vector<Size> sizes = sizes_for(graph, view);
+    for (const PassDeclaration& pass : graph.passes) {
+      const PassKind& kind = reader.kinds[pass.kind];
+      if (kind.needs.empty()) continue;
+      for (const PortBinding& binding : graph.bindings_of(pass)) {
+        const uint32_t r = binding.resource.value;
+        const PortNeed* need = need_of(kind, binding.port);
+        if (need == nullptr || told[r] || binding.part.first_mip > 0 || sizes[r].width == 0) continue;
+        const std::string missing = lacks(graph.resources[r], *need, sizes[r], view);
+        if (missing.empty()) continue;
+        told[r] = true;
+        reader.diagnostics
+            .add(DiagnosticId::resource_too_small, graph.resources[r].where,
+                 fmt::format("the port '{}' of pass '{}' needs {}", need->port, pass.name, missing))
+            .related.emplace_back(graph.place_of(binding), "it is bound here");
+      }
+    }
+  }
+}
+
+} // namespace dermis
