@@ -262,7 +262,7 @@ void sphere(Asked& asked) {
   const std::pair<int, Light> harmonics[] = {{1, [](double c, double) { return c; }},
                                              {2, [](double c, double) { return 1.5 * c * c - 0.5; }}};
   for (const auto& [degree, harmonic] : harmonics) {
-    const Light light = [&](double c, double) { return 0.5 + 0.5 * harmonic(c, 0); };
+    const Light light = [&of = harmonic](double c, double) { return 0.5 + 0.5 * of(c, 0); };
     paint(
         frame,
         [&](double x, double y) {
