@@ -6,10 +6,7 @@
 #include "subsurface_sap_up.bindings.glsl"
 #include "environment.glsl"
 #include "half.glsl"
-const int block_width = 2, block_height = 2, coarse_width = 2, coarse_height = 2, odd_first = 1;
-#include "sap_up.glsl"
-
-const float least_share = 0.004; // below it the tent is not worth its time
+#include "sap_climb.glsl"
 
 void main() {
   int level = settings.level;
@@ -21,29 +18,14 @@ void main() {
   read_ring(block, first, level, smooth_level);
   if (!last)
     read_coarser(first, level);
-  [[unroll]] for (int k = 0; k < block_texels; ++k) {
+  [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
     ivec2 at = first + ivec2(k % block_width, k / block_width);
     if (!sap_inside(at, level))
       continue;
-    sap_texel own = sap_own(k);
     uvec4 bits = uvec4(0u);
-    if (own.id != 0u) {
-      vec3 share = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
-      sap_sum here = sap_sum(sap_own_light(k), vec3(own.mass));
-      if (smooth_level && max(share.r, max(share.g, share.b)) >= least_share)
-        here = sap_tent(k, level, own);
-      float confidence = 0.0;
-      sap_sum rest = sap_sum(here.light, vec3(0.0));
-      if (!last)
-        rest = sap_from_coarser(k, level, own, here.light, confidence);
-      rest.mass *= 1.0 - share;
-      sap_sum blend = sap_blend(share * here.mass, here.light, vec3(0.0), here.light, rest);
-      float widest = share[profiles[min(own.id, 255u)].widest];
-      float sure = mix(confidence, here.mass.r, widest);
-      bits = settings.storage == STORAGE_FULL
-                 ? sap_pack_scattered_full(sap_scattered(blend.light, sure, blend.mass))
-                 : sap_pack_scattered(sap_scattered(round_to_half(blend.light), round_to_half(sure), round_to_half(blend.mass)));
-    }
+    sap_texel own = sap_own(k);
+    if (own.id != 0u)
+      bits = climb(k, level, own, sap_own_light(k), smooth_level, last);
     imageStore(scattered_image, sap_address(at, level), bits);
   }
 }

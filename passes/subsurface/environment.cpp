@@ -150,7 +150,9 @@ PyramidUse pyramid_use(const Graph& graph, const KindRegistry& kinds) {
     return std::any_of(graph.passes.begin(), graph.passes.end(),
                        [id = kinds.find(kind)](const PassDeclaration& pass) { return pass.kind == id; });
   };
-  return {has("subsurface.sap_gather") || has("subsurface.sap_up"), has("subsurface.pyramid_gather")};
+  const bool surface = has("subsurface.sap_gather") || has("subsurface.sap_up") ||
+                       has("subsurface.sap_gather_layered") || has("subsurface.sap_up_layered");
+  return {surface, has("subsurface.pyramid_gather")};
 }
 
 std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfile> profiles) {

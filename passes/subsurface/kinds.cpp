@@ -11,18 +11,42 @@ bool serves_scattering(std::string_view kind) {
 
 KindRegistry make_kinds() {
   KindRegistry registry;
-  for (const PassKind* kind :
-       {&classify_kind,       &tile_list_kind,    &setup_kind,     &burley_kind,        &separable_kind,
-        &combine_kind,        &light_kind,        &sap_tiles_kind, &sap_setup_kind,     &sap_down_kind,
-        &sap_up_kind,         &sap_gather_kind,   &fixed_kind,     &pyramid_setup_kind, &pyramid_down_kind,
-        &pyramid_gather_kind, &transmission_kind, &afis_kind,      &blend_kind,         &residual_kind,
-        &guided_kind,         &flat_kind,         &copy_kind,      &doubt_kind,         &allot_kind,
-        &mend_kind,           &accumulate_kind,   &skips_kind,     &probe_kind,         &clear_kind,
-        &contrast_kind,       &afis_tiles_kind}) {
-    PassKind known = *kind;
-    known.needs = needs_of(known.name);
-    registry.add(known);
-  }
+  for (const PassKind* kind : {&classify_kind,
+                               &tile_list_kind,
+                               &setup_kind,
+                               &burley_kind,
+                               &separable_kind,
+                               &combine_kind,
+                               &light_kind,
+                               &sap_tiles_kind,
+                               &sap_setup_kind,
+                               &sap_down_kind,
+                               &sap_up_kind,
+                               &sap_gather_kind,
+                               &fixed_kind,
+                               &pyramid_setup_kind,
+                               &pyramid_down_kind,
+                               &pyramid_gather_kind,
+                               &transmission_kind,
+                               &afis_kind,
+                               &blend_kind,
+                               &residual_kind,
+                               &guided_kind,
+                               &flat_kind,
+                               &copy_kind,
+                               &doubt_kind,
+                               &allot_kind,
+                               &mend_kind,
+                               &accumulate_kind,
+                               &skips_kind,
+                               &probe_kind,
+                               &clear_kind,
+                               &contrast_kind,
+                               &afis_tiles_kind,
+                               &sap_down_layered_kind,
+                               &sap_up_layered_kind,
+                               &sap_gather_layered_kind})
+    registry.add(*kind);
   return registry;
 }
 

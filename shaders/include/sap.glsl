@@ -12,7 +12,7 @@ const float sap_sigma = 0.8660254; // of [1 3 3 1] in its own spacings: sqrt(3)/
 const float sap_depth_width = 2.0;      // distance from the tangent plane: stops at depth steps
 const float sap_tilt_width_down = 1.0;  // depth along the tangent plane: narrows the kernel on slopes
 const float sap_tilt_width_tent = 1.25;
-const float sap_confidence_strictness = 20.0;  // of the squared distance from the planes
+const float sap_confidence_width = 0.87; // distance from the further plane
 const float sap_negligible = 1e-12;
 
 // exp(-x^2 / (2 width^2)) = exp2(factor * x^2)
@@ -69,6 +69,15 @@ float sap_footprint(float depth) {
 // Rise of a texel's tangent plane at an offset in pixels, mm.
 float sap_rise(float depth, vec2 slope, vec2 offset) { return dot(slope, offset) * sap_footprint(depth); }
 
+// How far a texel is off another one's surface, by the nearer of its distances from the tangent plane and in depth, mm; and
+// off the planes of both.
+float sap_off_plane(sap_texel own, sap_texel tap, vec2 offset) {
+  float depth_step = tap.depth - own.depth;
+  return sap_nearer(depth_step - sap_rise(own.depth, own.slope, offset), depth_step);
+}
+float sap_off_planes(sap_texel own, sap_texel tap, vec2 offset) {
+  return sap_nearer(sap_off_plane(own, tap, offset), tap.depth - own.depth - sap_rise(tap.depth, tap.slope, offset));
+}
 ivec2 sap_level_size(int level) { return (frame.rect.zw + (1 << level) - 1) >> level; }
 // Levels from 1 on have a border of one texel; level 0 lies as the view does.
 bool sap_inside(ivec2 at, int level) {

@@ -180,10 +180,11 @@ std::vector<float> HeadTest::scatter(const std::string& graph, const std::vector
   return found;
 }
 
-subsurface::SapResult<float> HeadTest::twin(const CapturedFrame& frame, subsurface::SapVariant variant) {
+subsurface::SapResult<float> HeadTest::twin(const CapturedFrame& frame, subsurface::SapVariant variant,
+                                            uint32_t layers) {
   const std::vector<float> table = subsurface::make_sap_table(subsurface::fit_sap_weights(variant));
   const TruthFrame truth = make_truth_frame(frame);
-  return subsurface::sap_scatter<float>(truth.input(), table, {.variant = variant});
+  return subsurface::sap_scatter<float>(truth.input(), table, {.variant = variant, .layers = layers});
 }
 
 } // namespace laws

@@ -44,7 +44,8 @@ protected:
                              uint32_t frames = 1, double* samples = nullptr);
   // The pyramid's CPU twin.
   static dermis::subsurface::SapResult<float> twin(const dermis::tools::CapturedFrame& frame,
-                                                   dermis::subsurface::SapVariant variant);
+                                                   dermis::subsurface::SapVariant variant,
+                                                   uint32_t layers = 1);
 
   void TearDown() override; // fails on validation messages
 

@@ -34,12 +34,15 @@ struct Bounds {
 constexpr Bounds stated[] = {{{8.1, 9.6}, {8.5, 10.3}, 17, 95, 7.0, 0.58, 0.92, 0.60, 0.55, 0.75},
                              {{8.3, 7.9}, {8.3, 8.0}, 23, 100, 3.5, 0.55, 0.85, 0.25, 0.25, 0.35},
                              {{7.9, 6.6}, {7.3, 5.6}, 10, 40, 6.5, 0.85, 0.95, 0.85, 0.05, 0.18}};
-// Measured on the bust, which has no stated numbers, and 15 % more (99 % of edges: 20 %). From the side it
-// shows a knot of folds, close it errs by curvature, which no lost kernel tells (docs/limits.md).
-constexpr Bounds of_the_bust[] = {{{2.95, 3.1}, {3.3, 3.5}, 5.9, 22, 2.85, 0.51, 0.54, 0.80, 0.3, 0.5},
+// Measured on the bust, which has no stated numbers, and 15 % more (99 % of edges: 20 %); what sure pixels
+// have is stated for both. From the side it shows a knot of folds (docs/limits.md).
+constexpr Bounds of_the_bust[] = {{{2.95, 3.1}, {3.3, 3.5}, 5.9, 22, 2.85, 0.51, 0.54, 0.60, 0.3, 0.5},
                                   {{7.2, 7.3}, {7.5, 7.6}, 20.4, 75, 4.6, 0.36, 1.07, 0.17, 0.15, 0.3},
                                   {{1.85, 1.88}, {1.85, 1.92}, 3.1, 14, 1.1, 0.21, 0.93, 0.5, 0.1, 0.25}};
 
+// Of two layers to one: the whole picture's error where nothing is gained, and that of edges where it is
+// (measured 1.01 and .76, and 5 % more).
+constexpr double worst_of_two_layers = 1.06, edge_of_two_layers = 0.87;
 constexpr double to_seed = 1.05; // stated: to 32 samples of afis as published
 
 class OnAHead : public laws::HeadTest, public ::testing::WithParamInterface<size_t> {
@@ -89,6 +92,28 @@ TEST_P(OnAHead, ErrsLittleAndLessThanOthersAndAsItsCpuTwin) {
     EXPECT_LE(plain, bounds().to_plain);
     EXPECT_LE(separable, bounds().to_separable);
     EXPECT_LE(seed, to_seed);
+  }
+}
+
+TEST_P(OnAHead, TwoLayersErrLessAtEdgesAndAsTheirCpuTwin) {
+  for (size_t i = 0; i < sizes().size(); ++i) {
+    show(sizes()[i]);
+    if (IsSkipped() || HasFatalFailure()) return;
+    const std::vector<float> device = scatter("sap_layered"), cpu = twin(frame_, SapVariant::smooth, 2).light;
+    const laws::HeadErrors two = errors_of(device), one = errors_of(scatter("sap"));
+    double squares = 0;
+    for (const uint32_t pixel : reference_.pixels)
+      squares += std::pow(luminance_at(device, pixel) - luminance_at(cpu, pixel), 2);
+    EXPECT_LE(std::sqrt(squares / double(reference_.pixels.size())), 3e-3); // as of one layer
+    RecordProperty("rmse_" + std::to_string(sizes()[i].width), std::to_string(two.rmse * 1e3));
+    RecordProperty("edge_" + std::to_string(sizes()[i].width), std::to_string(two.edge * 1e3));
+    EXPECT_LE(two.rmse, one.rmse * worst_of_two_layers);
+    if (GetParam() % 3 != 1) continue; // surfaces one behind the other are what heads show from the side
+    EXPECT_LE(two.edge, one.edge * edge_of_two_layers);
+    if (i > 0) continue;
+    const double separable = two.rmse / errors_of(scatter("separable", {{"taps", "25"}})).rmse;
+    RecordProperty("to_separable", std::to_string(separable));
+    EXPECT_LE(separable, stated[1].to_separable);
   }
 }
 

@@ -18,9 +18,9 @@ inline constexpr double sap_depth_width = 2; // distance from the tangent plane:
 // space; on the way up nothing is narrowed.
 inline constexpr double sap_tilt_width_down = 1;
 inline constexpr double sap_tilt_width_tent = 1.25;
-// Of the squared distance from the tangent planes, where confidence is counted: what parts exact pixels from
-// others on the scanned head's three framings.
-inline constexpr double sap_confidence_strictness = 20;
+// Width of the distance from the further of two tangent planes, where confidence is counted: what parts exact
+// pixels from others on the scanned head's and the bust's framings.
+inline constexpr double sap_confidence_width = 0.87;
 // Powers of the cosine to the viewer. A texel counts with its area's fourth root: a surface that turns away
 // has more area and is as much further off, which tangent planes see in part. d shrinks with the eighth root,
 // and with the fourth where level 0's own shares are concerned, since a tilted pixel keeps more of its light.
@@ -54,16 +54,19 @@ template <class Real> struct SapTexel {
 template <class Real> struct SapLevel {
   int width = 0, height = 0, border = 0; // texels
   Real spacing = 1;                      // pixels
-  std::vector<SapTexel<Real>> texels{};
+  // The surface that most of what a texel stands for lies on and, of levels from 1 on with two layers, what
+  // lies off it: empty with one layer.
+  std::array<std::vector<SapTexel<Real>>, 2> layers{};
 
   size_t index(int x, int y) const {
     return static_cast<size_t>(y + border) * static_cast<size_t>(width + 2 * border) +
            static_cast<size_t>(x + border);
   }
-  // The texel if it is inside and of profile `id`, else null.
-  const SapTexel<Real>* find(int x, int y, uint8_t id) const {
+  // The texel of a layer if it is inside and of profile `id`, else null.
+  const SapTexel<Real>* find(size_t layer, int x, int y, uint8_t id) const {
     if (x < -border || y < -border || x >= width + border || y >= height + border) return nullptr;
-    const SapTexel<Real>& texel = texels[index(x, y)];
+    if (layers[layer].empty()) return nullptr;
+    const SapTexel<Real>& texel = layers[layer][index(x, y)];
     return texel.id == id && id != 0 ? &texel : nullptr;
   }
 };
@@ -82,7 +85,8 @@ template <class Real> struct SapPyramid {
   }
 };
 
-// All levels. Deterministic for any number of threads. Real: float or double.
-template <class Real> SapPyramid<Real> build_sap_pyramid(const TruthInput& input, unsigned threads);
+// All levels, with one or two layers a texel. Deterministic for any number of threads. Real: float or double.
+template <class Real>
+SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t layers, unsigned threads);
 
 } // namespace dermis::subsurface

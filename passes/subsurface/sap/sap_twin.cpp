@@ -28,7 +28,24 @@ template <class Real> struct SapClimb {
   std::span<const float> table;
   SapVariant variant;
   SapPyramid<Real> pyramid;
-  std::vector<std::vector<Scattered<Real>>> scattered{};
+  std::array<std::vector<std::vector<Scattered<Real>>>, 2> scattered{}; // by layer and level
+
+  // Off a surface by the nearer of its distances from the tangent plane and in depth, metres.
+  Real off_plane(const SapTexel<Real>& own, const SapTexel<Real>& tap, Real x, Real y) const {
+    const Real step = tap.depth - own.depth;
+    return sap_nearer(step - pyramid.rise(own, x, y), step);
+  }
+  // The same of two planes.
+  Real off_planes(const SapTexel<Real>& own, const SapTexel<Real>& tap, Real x, Real y) const {
+    return sap_nearer(off_plane(own, tap, x, y), tap.depth - own.depth - pyramid.rise(tap, x, y));
+  }
+  // Of a texel's layers the one that is less off; the first of equals. 2: none is of the profile.
+  template <class Off>
+  static size_t nearer_layer(const SapLevel<Real>& level, int x, int y, uint8_t id, Off off) {
+    const SapTexel<Real>*first = level.find(0, x, y, id), *second = level.find(1, x, y, id);
+    if (!first) return second ? 1 : 2;
+    return second && off(*second) < off(*first) ? 1 : 0;
+  }
 
   Scattered<Real> tent(const SapLevel<Real>& level, int x, int y, const SapTexel<Real>& own) const {
     const Real per_sigma = 1 / (Real(sap_sigma) * level.spacing),
@@ -41,11 +58,11 @@ template <class Real> struct SapClimb {
         const Real tilt = own.slope(ox, oy) * per_sigma;
         Real weight = Real((2 - std::abs(i)) * (2 - std::abs(j))) * sap_falloff(tilt, sap_tilt_width_tent);
         all_weight += weight;
-        const SapTexel<Real>* tap = level.find(x + i, y + j, own.id);
-        if (!tap) continue;
-        const Real step = tap->depth - own.depth;
-        const Real off = sap_nearer(step - pyramid.rise(own, ox, oy), step);
-        weight *= sap_falloff(off * per_metre, sap_depth_width) * tap->mass;
+        const auto off = [&](const SapTexel<Real>& tap) { return off_plane(own, tap, ox, oy); };
+        const size_t layer = nearer_layer(level, x + i, y + j, own.id, off);
+        if (layer == 2) continue;
+        const SapTexel<Real>* tap = level.find(layer, x + i, y + j, own.id);
+        weight *= sap_falloff(off(*tap) * per_metre, sap_depth_width) * tap->mass;
         mass += weight;
         total += weight * tap->area;
         for (size_t c = 0; c < 3; ++c)
@@ -71,20 +88,21 @@ template <class Real> struct SapClimb {
         const Real ox = (Real(2 * qx - x) + Real(.5)) * spacing, oy = (Real(2 * qy - y) + Real(.5)) * spacing;
         const Real bilinear =
             Real(std::abs(ox) < spacing ? .75 : .25) * Real(std::abs(oy) < spacing ? .75 : .25);
-        const SapTexel<Real>* tap = coarse.find(qx, qy, own.id);
-        if (!tap) continue;
+        const auto off = [&](const SapTexel<Real>& tap) { return off_planes(own, tap, ox, oy); };
+        const size_t layer = nearer_layer(coarse, qx, qy, own.id, off);
+        if (layer == 2) continue;
+        const SapTexel<Real>* tap = coarse.find(layer, qx, qy, own.id);
         const Real step = tap->depth - own.depth;
-        const Real from_planes =
-            sap_nearer(step - pyramid.rise(own, ox, oy), step - pyramid.rise(*tap, ox, oy));
-        const Real kept = sap_falloff(sap_nearer(from_planes, step) * per_metre, sap_depth_width);
-        const Scattered<Real>& theirs = scattered[fine + 1][coarse.index(qx, qy)];
+        const Real kept = sap_falloff(off(*tap) * per_metre, sap_depth_width);
+        const Real further =
+            std::max(std::abs(step - pyramid.rise(own, ox, oy)), std::abs(step - pyramid.rise(*tap, ox, oy)));
+        const Scattered<Real>& theirs = scattered[layer][fine + 1][coarse.index(qx, qy)];
         for (size_t c = 0; c < 3; ++c) {
           const Real mass = bilinear * kept * theirs.mass[c];
           result.mass[c] += mass;
           sum[c] += mass * theirs.light[c];
         }
-        const Real strictly =
-            sap_falloff(from_planes * per_metre, sap_depth_width / std::sqrt(sap_confidence_strictness));
+        const Real strictly = sap_falloff(further * per_metre, sap_confidence_width);
         result.confidence += bilinear * strictly * theirs.confidence;
       }
     for (size_t c = 0; c < 3; ++c) {
@@ -131,31 +149,35 @@ template <class Real> struct SapClimb {
 template <class Real>
 SapResult<Real> sap_scatter(const TruthInput& input, std::span<const float> table,
                             const SapOptions& options) {
-  SapClimb<Real> climb{input, table, options.variant, build_sap_pyramid<Real>(input, options.threads)};
-  climb.scattered.resize(sap_level_count);
+  SapClimb<Real> climb{input, table, options.variant,
+                       build_sap_pyramid<Real>(input, options.layers, options.threads)};
+  for (auto& levels : climb.scattered)
+    levels.resize(sap_level_count);
   for (size_t l = sap_level_count; l-- > 0;) {
     const SapLevel<Real>& level = climb.pyramid.levels[l];
-    climb.scattered[l].resize(level.texels.size());
+    for (size_t layer = 0; layer < level.layers.size(); ++layer)
+      climb.scattered[layer][l].resize(level.layers[layer].size());
     parallel_for(static_cast<size_t>(level.height + 2 * level.border), 4, options.threads, [&](size_t row) {
       const int y = static_cast<int>(row) - level.border;
-      for (int x = -level.border; x < level.width + level.border; ++x) {
-        const SapTexel<Real>& own = level.texels[level.index(x, y)];
-        if (own.id != 0) climb.scattered[l][level.index(x, y)] = climb.climb(l, x, y, own);
-      }
+      for (int x = -level.border; x < level.width + level.border; ++x)
+        for (size_t layer = 0; layer < level.layers.size() && !level.layers[layer].empty(); ++layer) {
+          const SapTexel<Real>& own = level.layers[layer][level.index(x, y)];
+          if (own.id != 0) climb.scattered[layer][l][level.index(x, y)] = climb.climb(l, x, y, own);
+        }
     });
   }
   SapResult<Real> result{{input.light.begin(), input.light.end()},
                          std::vector<Real>(size_t{input.width} * input.height, 1)};
   for (size_t i = 0; i < result.confidence.size(); ++i) {
-    const SapTexel<Real>& own = climb.pyramid.levels[0].texels[i];
+    const SapTexel<Real>& own = climb.pyramid.levels[0].layers[0][i];
     if (own.id == 0) continue;
     const PerChannel& d = input.d_m[own.id];
     const double widest = *std::max_element(d.begin(), d.end());
     const double scale = input.scatter_scale.empty() ? 1.0 : double(std::max(0.0f, input.scatter_scale[i]));
     if (widest * scale < copy_below_d_px * double(climb.pyramid.smallest_side(own.depth))) continue;
     for (size_t c = 0; c < 3; ++c)
-      if (d[c] > 0) result.light[3 * i + c] = climb.scattered[0][i].light[c];
-    result.confidence[i] = climb.scattered[0][i].confidence;
+      if (d[c] > 0) result.light[3 * i + c] = climb.scattered[0][0][i].light[c];
+    result.confidence[i] = climb.scattered[0][0][i].confidence;
   }
   return result;
 }

@@ -9,6 +9,7 @@ namespace dermis::subsurface {
 
 struct SapOptions {
   SapVariant variant = SapVariant::smooth;
+  uint32_t layers = 1;  // surfaces a texel of levels from 1 on can have: 1 (sap.json) or 2 (sap_layered.json)
   unsigned threads = 0; // 0: one a hardware thread; the result does not depend on it
 };
 
@@ -16,7 +17,7 @@ template <class Real> struct SapResult {
   std::vector<Real> light; // 3 per pixel; pixels without profile return their light
   std::vector<Real>
       confidence; // in [0, 1]: the share of the widest channel's kernel that met the pixel's
-                  // own tangent plane under weights twenty times as strict; 1 where nothing scatters
+                  // own tangent plane, and saw it on theirs, under stricter weights; 1 where nothing scatters
 };
 
 // Scatters the whole input. `table` comes from make_sap_table for the same variant. Each pixel's result is a

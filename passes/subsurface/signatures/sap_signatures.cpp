@@ -127,6 +127,50 @@ constexpr Port gather_ports[] = {
 };
 constexpr KindSetting gather_settings[] = {variant, storage};
 
+// With two layers a texel of levels from 1 on: ports of the second one beside those of the first.
+constexpr std::string_view second_doc = "the same of the second layer, what lies off the first; id 0 = none";
+
+constexpr Port layered_down_ports[] = {
+    down_ports[0],
+    down_ports[1],
+    {"second_light", Usage::sampled_image, true, "texture2D", "of the second layer; level 0 has none", {}},
+    {"second_surface", Usage::sampled_image, true, "utexture2D", "of the second layer; level 0 has none",
+     surface_formats},
+    level_tiles,
+    level_arguments,
+    down_ports[4],
+    down_ports[5],
+    {"second_coarse_light", Usage::storage_image_write, false, "image2D", second_doc, light_formats},
+    {"second_coarse_surface", Usage::storage_image_write, false, "uimage2D", second_doc, surface_formats},
+};
+
+constexpr Port layered_up_ports[] = {
+    up_ports[0],
+    up_ports[1],
+    {"second_light", Usage::sampled_image, false, "texture2D", second_doc, {}},
+    {"second_surface", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
+    up_ports[2],
+    up_ports[3],
+    {"second_coarse_surface", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats},
+    {"second_coarse_scattered", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats},
+    level_tiles,
+    level_arguments,
+    up_ports[6],
+    {"second_scattered", Usage::storage_image_write, false, "uimage2D", second_doc, surface_formats},
+};
+
+constexpr Port layered_gather_ports[] = {
+    gather_ports[0],
+    gather_ports[1],
+    gather_ports[2],
+    gather_ports[3],
+    {"second_coarse_surface", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
+    {"second_coarse_scattered", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
+    level_tiles,
+    level_arguments,
+    gather_ports[6],
+};
+
 } // namespace
 
 const PassKind sap_tiles_kind{
@@ -178,6 +222,38 @@ const PassKind sap_gather_kind{
     .shader = "subsurface_sap_gather",
     .doc = "Level 0 of the way up: the scattered light of every listed pixel.",
     .ports = gather_ports,
+    .settings = gather_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind sap_down_layered_kind{
+    .name = "subsurface.sap_down_layered",
+    .shader = "subsurface_sap_down_layered",
+    .doc = "As subsurface.sap_down, with a second surface a texel: what lies off the first.",
+    .ports = layered_down_ports,
+    .settings = down_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .arguments_entry = "level",
+};
+
+const PassKind sap_up_layered_kind{
+    .name = "subsurface.sap_up_layered",
+    .shader = "subsurface_sap_up_layered",
+    .doc = "As subsurface.sap_up, of both layers: each takes of another texel the layer nearer to it.",
+    .ports = layered_up_ports,
+    .settings = up_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .arguments_entry = "level",
+};
+
+const PassKind sap_gather_layered_kind{
+    .name = "subsurface.sap_gather_layered",
+    .shader = "subsurface_sap_gather_layered",
+    .doc = "As subsurface.sap_gather, from two layers.",
+    .ports = layered_gather_ports,
     .settings = gather_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,

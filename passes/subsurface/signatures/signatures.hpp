@@ -12,8 +12,9 @@ extern const PassKind setup_kind, combine_kind, light_kind, copy_kind,
 extern const PassKind burley_kind, fixed_kind, separable_kind;                    // scatter_signatures.cpp
 extern const PassKind afis_kind, guided_kind, afis_tiles_kind;                    // afis_signatures.cpp
 extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind; // pyramid_signatures.cpp
-extern const PassKind sap_tiles_kind, sap_setup_kind, sap_down_kind, sap_up_kind,
-    sap_gather_kind;                                                    // sap_signatures.cpp
+extern const PassKind sap_tiles_kind, sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind,
+    sap_down_layered_kind, sap_up_layered_kind,
+    sap_gather_layered_kind;                                            // sap_signatures.cpp
 extern const PassKind blend_kind, residual_kind;                        // residual_signatures.cpp
 extern const PassKind doubt_kind, contrast_kind, allot_kind, mend_kind; // allot_signatures.cpp
 extern const PassKind probe_kind;                                       // probe_signature.cpp

@@ -13,16 +13,16 @@ using testing::HasSubstr;
 // Times that no device has, so that what is chosen is known: 1 ms a dispatch of the pyramid, less for the
 // rest.
 constexpr const char* invented_times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
-  { "work": "subsurface.sap_up level=1 variant=smooth", "base_us": 1000, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_up level=1 variant=base", "base_us": 500, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_up level=1 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_up level=1 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },
   { "work": "subsurface.separable axis=horizontal taps=25 kernel=fitted", "base_us": 1000, "group_us": 0, "spread": 0 },
   { "work": "subsurface.separable axis=horizontal taps=11 kernel=fitted", "base_us": 400, "group_us": 0, "spread": 0 },
   { "work": "subsurface.classify", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.tile_list", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.setup texturing=post", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_setup texturing=post", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_down level=1", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_gather variant=smooth", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_setup texturing=post storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_down level=1 storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_gather variant=smooth storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.combine texturing=post result=color", "base_us": 100, "group_us": 0, "spread": 0 } ] })";
 
 struct Choice : DermisTest {
@@ -279,7 +279,7 @@ TEST_F(Choice, LearnsTheDevicesTimesAndHandsThemOut) {
   EXPECT_EQ(dermis_graph_calibration(graph, &small, text.data()), DERMIS_INCOMPLETE);
   ASSERT_EQ(dermis_graph_calibration(graph, &size, text.data()), DERMIS_OK);
   text.resize(size - 1);
-  EXPECT_THAT(text, HasSubstr("subsurface.sap_gather variant=smooth"));
+  EXPECT_THAT(text, HasSubstr("subsurface.sap_gather variant=smooth storage=half"));
   const dermis_source calibration = source_of(text, "learned");
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.calibration = &calibration;

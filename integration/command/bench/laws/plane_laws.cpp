@@ -4,8 +4,10 @@
 #include "integration/command/bench/laws/laws.hpp"
 
 #include "integration/command/bench/subject.hpp"
+#include "passes/subsurface/burley_profile.hpp"
 #include "passes/subsurface/truth/analytic.hpp"
 #include "passes/subsurface/truth/planar.hpp"
+#include "passes/subsurface/truth/surface.hpp"
 
 #include <fmt/format.h>
 
@@ -228,6 +230,51 @@ void tilted_edge(Asked& asked) {
   }
 }
 
+// A sphere's pole, which sees half of it: chords up to sqrt(2) R carry the light of their ends, Simpson's
+// rule.
+double sphere_pole(const Light& of_cosine, double radius, double d_px) {
+  constexpr int steps = 4000; // even
+  double light = 0, all = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const double r = std::sqrt(2.0) * radius * i / steps, cosine = 1 - r * r / (2 * radius * radius);
+    const double weight = (i == 0 || i == steps ? 1
+                           : i % 2 == 1         ? 4
+                                                : 2) *
+                          subsurface::burley_pdf(r, d_px) *
+                          std::min(1.0, cosine / subsurface::min_patch_cosine);
+    light += weight * of_cosine(cosine, 0);
+    all += weight;
+  }
+  return light / all;
+}
+
+void sphere(Asked& asked) {
+  constexpr double wide = 4 * d, radius = 5 * wide; // pixels
+  CapturedFrame frame = plane(wide);
+  const double pitch = *frame.description.pixel_pitch_m;
+  for (uint32_t y = 0; y < law_height; ++y)
+    for (uint32_t x = 0; x < law_width; ++x) {
+      const double rho = std::hypot(x - middle_x, y - middle_y);
+      frame.profile[size_t{y} * law_width + x] = rho < radius ? 1 : 0;
+      frame.depth.at(x, y, 0) =
+          static_cast<float>(1 + pitch * (radius - std::sqrt(std::max(0.0, radius * radius - rho * rho))));
+    }
+  const std::pair<int, Light> harmonics[] = {{1, [](double c, double) { return c; }},
+                                             {2, [](double c, double) { return 1.5 * c * c - 0.5; }}};
+  for (const auto& [degree, harmonic] : harmonics) {
+    const Light light = [&of = harmonic](double c, double) { return 0.5 + 0.5 * of(c, 0); };
+    paint(
+        frame,
+        [&](double x, double y) {
+          return light(std::sqrt(std::max(0.0, 1 - (x * x + y * y) / (radius * radius))), 0);
+        },
+        1);
+    if (!asked.scatter(frame)) return;
+    asked.add("sphere", fmt::format("pole of a sphere of radius 5 d, harmonic {}", degree),
+              sphere_pole(light, radius, wide), asked.at(0, 0));
+  }
+}
+
 double leak(const Asked& asked) {
   double worst = 0;
   for (uint32_t y = 0; y < law_height; ++y)
@@ -296,7 +343,8 @@ constexpr Law laws[] = {{"white_furnace", white_furnace},
                         {"ramp", polynomial},
                         {"tilted_edge", tilted_edge},
                         {"two_materials", borders},
-                        {"scale_invariance", scale_invariance}};
+                        {"scale_invariance", scale_invariance},
+                        {"sphere", sphere}};
 
 } // namespace
 
@@ -313,9 +361,9 @@ std::vector<CaptureProfile> law_profiles() {
 }
 
 std::vector<std::string_view> plane_law_names() {
-  return {"white_furnace",  "edge",          "slanted_edge", "sinusoid",        "sinusoid_45",
-          "disc",           "gaussian",      "ramp",         "parabola",        "tilted_edge_30",
-          "tilted_edge_60", "two_materials", "depth_step",   "scale_invariance"};
+  return {"white_furnace",  "edge",     "slanted_edge",  "sinusoid",   "sinusoid_45",
+          "disc",           "gaussian", "ramp",          "parabola",   "tilted_edge_30",
+          "tilted_edge_60", "sphere",   "two_materials", "depth_step", "scale_invariance"};
 }
 
 demo::Result<std::vector<LawRow>> plane_laws(const LawSubject& subject) {
