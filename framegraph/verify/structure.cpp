@@ -12,6 +12,8 @@ namespace {
 
 constexpr uint32_t most_mips = 32;     // of an image whose sides are 32-bit numbers
 constexpr size_t most_objections = 32; // the first ones tell; a hostile plan could cause one for each pair
+// A hostile plan could lay all that it has into the same bytes.
+constexpr uint64_t most_shared_pairs = 1u << 25;
 
 struct Checker {
   const Plan& plan;
@@ -93,10 +95,12 @@ struct Checker {
       const Placement &left = plan.placements[a], &right = plan.placements[b];
       return std::tie(left.heap, left.offset, a) < std::tie(right.heap, right.offset, b);
     });
+    uint64_t pairs = 0;
     for (size_t i = 0; i < sorted.size(); ++i)
       for (size_t k = i + 1; k < sorted.size() && objections.size() < most_objections; ++k) {
         const Placement &lower = plan.placements[sorted[i]], &upper = plan.placements[sorted[k]];
         if (upper.heap != lower.heap || upper.offset - lower.offset >= lower.size) break;
+        if (++pairs > most_shared_pairs) return expect(false, "too many placements share memory to go on", i);
         // What a history lends while it holds nothing, only a run over several frames can tell.
         const bool lent = lower.persistent != upper.persistent;
         const bool together = (lower.persistent && upper.persistent) ||

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdlib>
 #include <map>
 
 namespace dermis::test {
@@ -92,6 +93,18 @@ TEST_F(Keep, ABugReportTakesTheLastFrameOfAnEnginesCaptureAndFilesThatAGraphIncl
   EXPECT_THAT(files("bug"), Contains("parts/back.json"));
   EXPECT_THAT(files("bug/capture"), testing::Not(Contains("frame_0001")));
   EXPECT_EQ(run({"validate", path("bug/main.json"), path("bug/capture")}).exit_code, 0);
+}
+
+TEST_F(Keep, ABugReportMayBeOneArchive) {
+  const Outcome outcome = run({"report-bug", "configs/graphs/burley.json", "--size", "32x18", "--count", "1",
+                               "--out", path("bug.tar.gz")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(files(), testing::ElementsAre("bug.tar.gz"));
+  EXPECT_EQ(run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")}).exit_code, 3);
+  ASSERT_EQ(std::system(("tar -xzf " + path("bug.tar.gz") + " -C " + path(".")).c_str()), 0);
+  const Outcome again = run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
+                             "--out", path("replay")});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
 }
 
 TEST_F(Keep, ABugReportNeitherWritesOverAFolderNorLeavesHalfOfOne) {

@@ -60,6 +60,27 @@ TEST(Verify, RefusesMemoryThatIsSharedWhileBothAreAlive) {
       "alive at the same time share memory");
 }
 
+// Each alive in one pass alone, all in the same bytes: a file could hold so many that looking at all pairs
+// never ends.
+TEST(Verify, GivesUpOnPlacementsThatShareMemoryWithoutEnd) {
+  const auto b = everything();
+  Plan plan = compiled(b).plan;
+  const auto transient = std::find_if(plan.placements.begin(), plan.placements.end(),
+                                      [](const Placement& placement) { return !placement.persistent; });
+  ASSERT_NE(transient, plan.placements.end());
+  const PlanResource like = plan.resources[transient->resource];
+  Placement placement = *transient;
+  for (uint32_t i = 0; i < 9000; ++i) {
+    placement.resource = static_cast<uint32_t>(plan.resources.size());
+    placement.first_use = placement.last_use = static_cast<uint32_t>(plan.passes.size());
+    plan.resources.push_back(like);
+    plan.resources.back().first_instance = static_cast<uint32_t>(plan.placements.size());
+    plan.placements.push_back(placement);
+    plan.passes.push_back({});
+  }
+  EXPECT_THAT(verify(plan), Contains(HasSubstr("too many placements share memory")));
+}
+
 TEST(Verify, RefusesPlacementsOutsideTheirHeapOrMisaligned) {
   expect_refused([](Plan& plan) { plan.heaps[0].size = 1; }, "reaches beyond its heap");
   expect_refused([](Plan& plan) { plan.placements[0].offset = 1; }, "misaligned");

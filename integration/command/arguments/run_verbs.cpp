@@ -142,12 +142,13 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
   add_verb<ReportBugOptions>(
       app, invocation, "report-bug",
       "Put together what somebody else needs to see the same: graph, settings, device, plan and a frame",
-      "dermis report-bug configs/graphs/sap.json --set variant=base --out bug/", report_bug,
+      "dermis report-bug configs/graphs/sap.json --set variant=base --out bug.tar.gz", report_bug,
       [](CLI::App& verb, ReportBugOptions& options) {
         verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
-        verb.add_option("--out,-o", options.out, "Folder to make; it must not be there")
+        verb.add_option("--out,-o", options.out,
+                        "Folder, or archive (.tar.gz, .tgz) with one, to make; it must not be there")
             ->required()
-            ->type_name("DIR");
+            ->type_name("PATH");
         CLI::Option* frames =
             verb.add_option("--frames", options.frames, "Capture of an engine, whose last frame is taken")
                 ->type_name("DIR");

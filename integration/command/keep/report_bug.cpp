@@ -1,8 +1,10 @@
-// dermis report-bug: a folder with what somebody else needs to see the same, and the line that shows it.
+// dermis report-bug: a folder, or an archive of one, with what somebody else needs to see the same, and the
+// line that shows it.
 #include "framegraph/explain/plan_json.hpp"
 #include "framegraph/serial/plan_file.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/limits.hpp"
+#include "integration/command/child.hpp"
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/inspect/survey.hpp"
 #include "integration/command/interrupt.hpp"
@@ -23,27 +25,48 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder while it is made; it gets its name at the end, or goes away.
+// The folder while it is made; it gets its name at the end or goes into an archive of that name, or goes
+// away.
 struct Parcel {
   fs::path target, part;
+  std::string archived{}; // the folder's name in the archive; "": there is none
   std::string problem{};
 
   ~Parcel() {
     std::error_code ignored;
     fs::remove_all(part, ignored);
   }
+  fs::path folder() const { return part / archived; }
   bool add(const fs::path& name, std::string_view text) {
     std::error_code error;
-    fs::create_directories((part / name).parent_path(), error);
-    return problem.empty() && write_text(part / name, text, problem);
+    fs::create_directories((folder() / name).parent_path(), error);
+    return problem.empty() && write_text(folder() / name, text, problem);
   }
   bool finish() {
     std::error_code error;
-    fs::rename(part, target, error);
+    fs::path made = part;
+    if (!archived.empty()) {
+      made = part / "archive";
+      const auto tar = run_child({"tar", "--create", "--gzip", "--file", made.string(), "--directory",
+                                  part.string(), "--owner=0", "--group=0", "--sort=name", "--", archived},
+                                 problem);
+      if (tar && tar->exit_code != 0) problem = fmt::format("'tar' ended with {}", tar->exit_code);
+      if (!problem.empty()) return false;
+    }
+    fs::rename(made, target, error);
     if (error) problem = fmt::format("cannot make '{}': {}", target.string(), error.message());
     return !error;
   }
 };
+
+// What the folder in an archive is called, "": the name is a folder's.
+std::string folder_in(const fs::path& target) {
+  const std::string name = target.filename().string();
+  for (const std::string_view ending : {".tar.gz", ".tgz"})
+    if (name.size() > ending.size() && name.ends_with(ending))
+      return name.substr(0, name.size() - ending.size());
+  return "";
+}
 
 // A word of a line for a shell.
 std::string word(const std::string& text) {
@@ -101,7 +124,7 @@ std::string device_json() {
 
 // The last frame of the capture that was given, or one of the scene.
 demo::Result<> add_frame(const Session& session, const ReportBugOptions& options, Parcel& parcel) {
-  const std::string folder = (parcel.part / "capture").string();
+  const std::string folder = (parcel.folder() / "capture").string();
   if (options.frames.empty()) {
     Session quiet = session;
     quiet.quiet = true; // one frame
@@ -149,8 +172,10 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   std::error_code error;
   const fs::path target = fs::absolute(options.out, error).lexically_normal();
   const fs::path named = target.has_filename() ? target : target.parent_path();
-  if (fs::exists(named, error) && !fs::is_empty(named, error))
-    return fail(session, ExitCode::environment, fmt::format("'{}' is there and not empty", options.out));
+  const std::string archived = folder_in(named);
+  if (fs::exists(named, error) && (!archived.empty() || !fs::is_empty(named, error)))
+    return fail(session, ExitCode::environment,
+                fmt::format("'{}' is there{}", options.out, archived.empty() ? " and not empty" : ""));
 
   Diagnostics diagnostics;
   GraphFiles files;
@@ -173,7 +198,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   const DeviceProfile generic = generic_profile();
   const SavedPlan saved = saved_plan(compile_input(*loaded, generic, options.size, choices), compiled->plan);
 
-  Parcel parcel{named, temporary_beside(named)};
+  Parcel parcel{named, temporary_beside(named), archived};
   bool good = add_graph(parcel, options, diagnostics, files) &&
               parcel.add("settings.json", settings_json(*loaded, choices, saved)) &&
               parcel.add("plan.json", plan_json(loaded->graph, loaded->kinds, *compiled,
@@ -184,7 +209,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   const auto captured = add_frame(session, options, parcel);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!captured) return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
-  fs::remove(named, error); // an empty folder may be there
+  if (archived.empty()) fs::remove(named, error); // an empty folder may be there
   if (!parcel.finish()) return fail(session, ExitCode::environment, parcel.problem);
   say(session, fmt::format("{}: send it as it is; README.txt in it has the line that shows the same:\n  {}\n",
                            options.out, replay_line(options, files)));

@@ -50,10 +50,15 @@ std::vector<std::string> pictures_below(const fs::path& folder) {
 // Every picture of both folders has its like in the other one; else `problem` says which has not.
 std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::string& problem) {
   std::error_code ignored;
+  for (const std::string& path : {a, b})
+    if (!fs::exists(path, ignored)) {
+      problem = fmt::format("'{}' does not exist", path);
+      return {};
+    }
   const bool folder = fs::is_directory(a, ignored);
   if (folder != fs::is_directory(b, ignored)) {
-    problem = fmt::format("'{}' is a {}, '{}' is not: name two pictures, or two folders", folder ? a : b,
-                          "folder", folder ? b : a);
+    problem = fmt::format("'{}' is a folder, '{}' is a file: name two pictures, or two folders",
+                          folder ? a : b, folder ? b : a);
     return {};
   }
   if (!folder) return {{fs::path(a).filename().string(), a, b}};

@@ -5,7 +5,7 @@
 #include "integration/command/interrupt.hpp"
 #include "integration/command/plan/input.hpp"
 #include "integration/command/watch/changes.hpp"
-#include "integration/command/watch/child.hpp"
+#include "integration/command/child.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
 
 #include <fmt/format.h>

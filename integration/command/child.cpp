@@ -1,4 +1,4 @@
-#include "integration/command/watch/child.hpp"
+#include "integration/command/child.hpp"
 
 #include "integration/command/interrupt.hpp"
 
