@@ -14,7 +14,7 @@ presets=(release)
 fuzz_seconds=10
 for argument in "$@"; do
   case "$argument" in
-    --full) presets+=(asan); fuzz_seconds=60; export DERMIS_TESTS_FULL=1 ;;
+    --full) presets+=(asan); fuzz_seconds=60; export DERMIS_TESTS_FULL=1; optional_packages+=("${windows_packages[@]}") ;;
     -h | --help) say "$usage"; exit 0 ;;
     *) fail 2 "unknown option '$argument'"$'\n'"$usage" ;;
   esac

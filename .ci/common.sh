@@ -2,14 +2,15 @@
 # shellcheck shell=bash
 
 packages=(
-  cmake ninja-build g++ ccache glslang-tools glslang-dev
+  cmake ninja-build g++ ccache glslang-tools
   libvulkan-dev libvulkan-volk-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev
   libtinygltf-dev libstb-dev libglm-dev libgtest-dev libgmock-dev libvalijson-dev
   mesa-vulkan-drivers vulkan-validationlayers libxml2-utils
 )
 
-# What the viewer's page is built with, where Node comes from nowhere else; without them it is left out.
-optional_packages=()
+# What the command compiles shaders with while it runs, and what the viewer's page is built with, where Node comes from
+# nowhere else; without them these are left out.
+optional_packages=(glslang-dev)
 command -v node >/dev/null || optional_packages+=(nodejs)
 command -v npm >/dev/null || optional_packages+=(npm)
 
@@ -19,6 +20,10 @@ fuzz_packages=(clang libclang-rt-14-dev)
 # What compares the interface with its baseline, and a foreign renderer to run between; without them these tests are skipped.
 # shellcheck disable=SC2034
 interface_packages=(abigail-tools libplacebo-dev)
+
+# What the full tests build the library for Windows with.
+# shellcheck disable=SC2034
+windows_packages=(g++-mingw-w64-x86-64-posix)
 
 say() { printf '%s\n' "$*"; }
 fail() { # exit code, message

@@ -136,6 +136,7 @@ std::vector<Complaint> complaints_in(std::string_view log, const std::string& ke
     std::string text(end, line.data() + line.size());
     text.erase(0, std::min(text.find_first_not_of(": "), text.size()));
     if (text.find("compilation terminated") != std::string::npos && !found.empty()) continue;
+    text.erase(text.find_last_not_of(' ') + 1);
     const uint32_t column = column_of(line_of(file->second.text, number), text);
     constexpr std::string_view nothing_quoted = "'' :";
     if (text.starts_with(nothing_quoted))

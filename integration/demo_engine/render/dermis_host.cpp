@@ -251,7 +251,8 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
 }
 
 Result<bool> reload_graph(DermisHost& host, const std::string& text) {
-  const dermis_source source = source_of("reloaded graph", text);
+  const std::string name = "reloaded graph";
+  const dermis_source source = source_of(name, text);
   Report report;
   const dermis_result result = dermis_graph_reload(host.graph, &source, &report.handle);
   if (result == DERMIS_ERROR_CONFIG) return false;

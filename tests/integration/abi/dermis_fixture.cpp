@@ -1,8 +1,5 @@
 #include "tests/integration/abi/dermis_fixture.hpp"
 
-#include <fstream>
-#include <sstream>
-
 namespace dermis::abi_test {
 namespace {
 
@@ -29,21 +26,6 @@ std::vector<float> contents(const std::string& slot, uint32_t width, uint32_t he
 } // namespace
 
 std::unique_ptr<demo::VulkanHost> DermisTest::host;
-
-std::string read_text(const std::string& path) {
-  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/" + path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-dermis_source source_of(const std::string& text, const char* name) {
-  dermis_source source = DERMIS_SOURCE_INIT;
-  source.name = name;
-  source.text = text.data();
-  source.length = text.size();
-  return source;
-}
 
 Said take(dermis_report report) {
   Said said;
@@ -139,14 +121,6 @@ dermis_graph DermisTest::make_graph(const GraphOptions& options) {
   EXPECT_EQ(create_graph(options, &graph), DERMIS_OK) << dermis_last_error();
   if (graph != nullptr) graphs.push_back(graph);
   return graph;
-}
-
-std::vector<dermis_slot> slots_of(dermis_graph graph) {
-  uint32_t count = 0;
-  EXPECT_EQ(dermis_graph_slots(graph, &count, nullptr), DERMIS_OK);
-  std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
-  EXPECT_EQ(dermis_graph_slots(graph, &count, slots.data()), DERMIS_OK);
-  return slots;
 }
 
 void DermisTest::make_images(dermis_graph graph, std::string_view but) {

@@ -3,6 +3,7 @@
 // any message of the validation layer.
 
 #include "integration/demo_engine/vulkan_image.hpp"
+#include "tests/integration/abi/sources.hpp"
 
 #include <dermis/dermis.h>
 #include <gmock/gmock.h>
@@ -17,9 +18,6 @@
 
 namespace dermis::abi_test {
 
-std::string read_text(const std::string& path); // from the root of the sources
-dermis_source source_of(const std::string& text, const char* name);
-
 // Owns what a report said, so that tests need not destroy it.
 struct Said {
   std::vector<std::string> names, texts;
@@ -27,8 +25,6 @@ struct Said {
   std::string all;
 };
 Said take(dermis_report report);
-
-std::vector<dermis_slot> slots_of(dermis_graph graph);
 
 struct GraphOptions {
   std::string text; // empty: configs/graphs/burley.json

@@ -19,6 +19,9 @@ struct Arena {
   uint64_t alive = 0, taken = 0;
   std::map<dermis_memory_purpose, uint64_t> alive_bytes;
   uint64_t refused = 0; // number of the call, from 1; 0: none
+  // Transient heaps of one view: those of further views lie over them. 0: each has its own.
+  size_t overlaid = 0, transients = 0;
+  std::vector<dermis_memory_block> first_view = {};
 
   explicit Arena(demo::VulkanHost& owner) : host(owner) {}
   ~Arena() {
@@ -42,6 +45,14 @@ struct Arena {
                                    dermis_memory_block* out) {
     Arena& arena = *static_cast<Arena*>(user);
     if (++arena.taken == arena.refused) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    const bool shares = arena.overlaid > 0 && request->purpose == DERMIS_MEMORY_TRANSIENT;
+    const size_t number = shares ? arena.transients++ : 0;
+    if (shares && number >= arena.overlaid) {
+      *out = arena.first_view[number % arena.overlaid];
+      EXPECT_EQ(reinterpret_cast<uintptr_t>(out->user), request->bytes) << "views ask for the same";
+      ++arena.alive;
+      return VK_SUCCESS;
+    }
     const uint32_t type = arena.type_for(*request);
     Block& block = arena.blocks[type];
     if (block.memory == VK_NULL_HANDLE) {
@@ -65,6 +76,7 @@ struct Arena {
     if (block.used > bytes) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     ++arena.alive;
     arena.alive_bytes[request->purpose] += request->bytes;
+    if (shares) arena.first_view.push_back(*out);
     return VK_SUCCESS;
   }
   static void DERMIS_CALL give_back(void* user, const dermis_memory_block* block) {
@@ -133,6 +145,60 @@ TEST_F(DeviceMemory, FromTheHostsHeapsGivesTheSamePictures) {
   EXPECT_EQ(arena->alive_bytes[DERMIS_MEMORY_TRANSIENT], memory.transient_bytes);
   EXPECT_GE(arena->alive_bytes[DERMIS_MEMORY_HISTORY], memory.history_bytes);
   EXPECT_GE(arena->alive_bytes[DERMIS_MEMORY_CONSTANTS], memory.constant_bytes);
+}
+
+// One view's scratch is nothing to the next one, if a barrier stands between them.
+TEST_F(DeviceMemory, OfTheTransientsOfManyViewsMayBeTheSame) {
+  constexpr uint64_t last = 6;
+  constexpr size_t cameras = 3;
+  const auto barrier = [&](VkCommandBuffer into) {
+    auto memory = demo::vulkan_struct<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
+    memory.srcStageMask = memory.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    memory.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    memory.dstAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_MEMORY_READ_BIT;
+    auto dependency = demo::vulkan_struct<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &memory;
+    host->vk.vkCmdPipelineBarrier2(into, &dependency);
+  };
+  const auto lights = [&] {
+    const dermis_graph graph = make_accumulating();
+    std::vector<dermis_view> views(cameras);
+    std::vector<Camera> seen;
+    for (uint32_t c = 0; c < cameras; ++c) {
+      EXPECT_EQ(dermis_view_create(graph, nullptr, &views[c], nullptr), DERMIS_OK) << dermis_last_error();
+      seen.push_back(make_camera(graph, 11 + c));
+    }
+    wait();
+    for (uint64_t index = 1; index <= last; ++index)
+      submit(++submitted, [&](VkCommandBuffer into) {
+        for (size_t c = 0; c < cameras; ++c) {
+          dermis_frame frame = frame_of(seen[c], index);
+          frame.command_buffer = into;
+          barrier(into);
+          ASSERT_EQ(dermis_view_record(views[c], &frame), DERMIS_OK) << dermis_last_error();
+        }
+      });
+    std::vector<std::vector<float>> out;
+    for (const Camera& camera : seen)
+      out.push_back(light_of(camera));
+    return out;
+  };
+  const auto apart = lights();
+  dermis_memory memory = DERMIS_MEMORY_INIT;
+  ASSERT_EQ(dermis_graph_memory(graphs.front(), &memory), DERMIS_OK);
+  uint32_t count = 0;
+  ASSERT_EQ(dermis_graph_heaps(graphs.front(), &count, nullptr), DERMIS_OK);
+  std::vector<dermis_memory_request> heaps(count, dermis_memory_request DERMIS_MEMORY_REQUEST_INIT);
+  ASSERT_EQ(dermis_graph_heaps(graphs.front(), &count, heaps.data()), DERMIS_OK);
+  drop_graphs();
+  use_arena();
+  for (const dermis_memory_request& heap : heaps)
+    arena->overlaid += heap.purpose == DERMIS_MEMORY_TRANSIENT ? 1 : 0;
+  ASSERT_GT(arena->overlaid, 0u);
+  EXPECT_TRUE(apart == lights());
+  EXPECT_EQ(arena->transients, (1 + cameras) * arena->overlaid) << "the graph's own view has some, too";
+  EXPECT_EQ(arena->alive_bytes[DERMIS_MEMORY_TRANSIENT] * (1 + cameras), memory.transient_bytes);
 }
 
 TEST_F(DeviceMemory, OfTransientsAndHistoriesIsToldBlockByBlock) {

@@ -1,28 +1,12 @@
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <fstream>
-#include <sstream>
+#include "tests/integration/abi/sources.hpp"
 
 namespace dermis::abi_test {
 namespace {
 
-std::string text_of(const std::string& path) { // from the root of the sources
-  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/" + path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-dermis_source source_from(const std::string& text, const char* name) {
-  dermis_source source = DERMIS_SOURCE_INIT;
-  source.name = name;
-  source.text = text.data();
-  source.length = text.size();
-  return source;
-}
-
 const std::string& own_graph() { // read when the first graph is made
-  static const std::string text = text_of("configs/graphs/burley.json");
+  static const std::string text = read_text("configs/graphs/burley.json");
   return text;
 }
 
@@ -54,14 +38,14 @@ dermis_result NullHost::make_context(const dermis_context_desc& desc) {
 }
 
 dermis_result NullHost::make_graph(uint32_t side) {
-  static const std::string overlay_text = text_of("configs/overlays/accumulate.json"),
-                           skin = text_of("configs/profiles/skin.json");
+  static const std::string overlay_text = read_text("configs/overlays/accumulate.json"),
+                           skin = read_text("configs/profiles/skin.json");
   dermis_profile profile = DERMIS_PROFILE_INIT;
   profile.id = 1;
-  profile.source = source_from(skin, "skin.json");
-  const dermis_source overlay = source_from(overlay_text, "accumulate.json");
+  profile.source = source_of(skin, "skin.json");
+  const dermis_source overlay = source_of(overlay_text, "accumulate.json");
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-  desc.source = source_from(own_graph(), "burley.json");
+  desc.source = source_of(own_graph(), "burley.json");
   desc.width = desc.height = side;
   desc.profiles = &profile;
   desc.profile_count = 1;
@@ -72,11 +56,7 @@ dermis_result NullHost::make_graph(uint32_t side) {
 
 void NullHost::make_bindings() {
   bindings_.clear();
-  uint32_t count = 0;
-  if (dermis_graph_slots(graph, &count, nullptr) != DERMIS_OK) return;
-  std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
-  if (dermis_graph_slots(graph, &count, slots.data()) != DERMIS_OK) return;
-  for (const dermis_slot& slot : slots) {
+  for (const dermis_slot& slot : slots_of(graph)) {
     dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
     binding.slot = slot.id;
     binding.format = slot.format;
@@ -99,7 +79,7 @@ void NullHost::give_up_views() {
 }
 
 dermis_result NullHost::reload(const std::string& text) const { // allocates nothing itself: tests count
-  const dermis_source source = source_from(text.empty() ? own_graph() : text, "burley.json");
+  const dermis_source source = source_of(text.empty() ? own_graph() : text, "burley.json");
   return dermis_graph_reload(graph, &source, nullptr);
 }
 

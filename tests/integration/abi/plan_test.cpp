@@ -1,0 +1,77 @@
+// docs/integration.md says which test holds what of the interface: tests that exist.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+
+namespace dermis::abi_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The word at `at`, and `at` behind it.
+std::string word(const std::string& text, size_t& at) {
+  const size_t begin = at;
+  while (at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_'))
+    ++at;
+  return text.substr(begin, at - begin);
+}
+
+// Adds "First.Second" wherever `mark` and two words with `between` stand.
+void add_names(const std::string& text, const std::string& mark, const std::string& between,
+               std::set<std::string>& found) {
+  for (size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) {
+    at += mark.size();
+    const std::string suite = word(text, at);
+    if (text.compare(at, between.size(), between) != 0) continue;
+    at += between.size();
+    while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at])) != 0)
+      ++at; // the formatter breaks lines
+    found.insert(suite + "." + word(text, at));
+  }
+}
+
+// Of all tests below tests/, whether of a program or of the build.
+std::set<std::string> all_tests() {
+  std::set<std::string> found;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(DERMIS_SOURCE_DIR) / "tests")) {
+    const bool build = entry.path().filename() == "CMakeLists.txt";
+    if (!build && entry.path().extension() != ".cpp") continue;
+    const std::string text = read_text(fs::relative(entry.path(), DERMIS_SOURCE_DIR).string());
+    if (build) {
+      add_names(text, "NAME ", ".", found);
+      add_names(text, "TEST_PREFIX ", ".", found);
+    } else {
+      for (const char* mark : {"\nTEST(", "\nTEST_F(", "\nTEST_P("})
+        add_names(text, mark, ",", found);
+    }
+  }
+  return found;
+}
+
+TEST(InterfacePlan, NamesTestsThatExist) {
+  const std::set<std::string> tests = all_tests();
+  const std::string text = read_text("docs/integration.md");
+  size_t at = text.find("## How the interface is tested");
+  ASSERT_NE(at, std::string::npos);
+  const std::string cut = "\xE2\x80\xA6`"; // `Suite.Begi…`
+  uint32_t count = 0;
+  for (at = text.find('`', at); at != std::string::npos; at = text.find('`', at)) {
+    const std::string suite = word(text, ++at);
+    if (suite.empty() || std::isupper(static_cast<unsigned char>(suite[0])) == 0 || text[at] != '.') continue;
+    const std::string name = suite + "." + word(text, ++at);
+    const bool begins = text.compare(at, cut.size(), cut) == 0;
+    if (!begins && text[at] != '`') continue;
+    ++count;
+    EXPECT_TRUE(std::ranges::any_of(tests, [&](const std::string& test) {
+      return begins ? test.starts_with(name) : test == name;
+    })) << name;
+  }
+  EXPECT_GE(count, 25u) << "the table names that many";
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,36 @@
+#pragma once
+// Texts of the sources' tree, as the C interface takes them; and what a graph wants to be bound.
+
+#include <dermis/dermis.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace dermis::abi_test {
+
+inline std::string read_text(const std::string& path) { // from the root of the sources
+  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/" + path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+inline dermis_source source_of(const std::string& text, const char* name) { // points into both
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = name;
+  source.text = text.data();
+  source.length = text.size();
+  return source;
+}
+
+inline std::vector<dermis_slot> slots_of(dermis_graph graph) { // none where that fails
+  uint32_t count = 0;
+  if (dermis_graph_slots(graph, &count, nullptr) != DERMIS_OK) return {};
+  std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
+  if (dermis_graph_slots(graph, &count, slots.data()) != DERMIS_OK) return {};
+  return slots;
+}
+
+} // namespace dermis::abi_test
