@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Builds the project, renders the default scene with two graphs and prints what it cost and how exact it is. On Debian
-# as root (or with sudo) it installs the packages that are missing.
+# Builds the library and the command, renders a bust with three graphs, and with one more setting, and prints what it
+# cost and how exact it is; then one sheet of all techniques. On Debian as root (or with sudo) it installs the packages
+# that are missing.
 set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 cd "$root"
@@ -8,6 +9,9 @@ cd "$root"
 source .ci/common.sh
 
 usage="usage: ./demo.sh [--head FOLDER]
+Builds the library and the dermis command into build/release, renders a bust with three graphs into out/ and prints
+device times and errors, then a sheet of every technique and material. On Debian, as root or with sudo, it first
+installs the packages that are missing; elsewhere it takes them as there. Minutes the first time.
   --head FOLDER   also renders the head scan of that folder: LeePerrySmith.glb, Map-COL.jpg, Map-SPEC.jpg and
                   Infinite-Level_02_Tangent_SmoothUV.jpg"
 
@@ -25,7 +29,8 @@ while [[ $# -gt 0 ]]; do
 done
 
 install_packages
-build_preset release --target dermis_command
+# All that cmake --install puts in place; the tests are left out.
+build_preset release --target dermis_command dermis_library integration/packaging/all
 
 render() { # scene, graph, folder, more options
   say

@@ -28,13 +28,14 @@ typedef struct headless {
 } headless;
 
 static void headless_die(const char* what, const char* which) {
-  fprintf(stderr, "%s%s\n", what, which);
+  const int more = which != NULL && which[0] != 0;
+  fprintf(stderr, "%s%s%s\n", what, more ? ": " : "", more ? which : "");
   exit(1);
 }
 
 #define HEADLESS_CHECK(call)                                                                                 \
   do {                                                                                                       \
-    if ((call) != VK_SUCCESS) headless_die("failed: ", #call);                                               \
+    if ((call) != VK_SUCCESS) headless_die("failed", #call);                                                 \
   } while (0)
 /* A Vulkan struct of zeros but for its type; C and C++ agree on no shorter way. */
 #define HEADLESS_STRUCT(type, name, s_type)                                                                  \
@@ -137,7 +138,7 @@ static VkImage headless_image(headless* host, VkFormat format, uint32_t width, u
 static size_t headless_read_file(const char* path, char* text, size_t room) {
   FILE* file = fopen(path, "rb");
   size_t length;
-  if (file == NULL) headless_die("cannot read ", path);
+  if (file == NULL) headless_die("cannot read", path);
   length = fread(text, 1, room, file);
   fclose(file);
   return length;

@@ -8,16 +8,19 @@
 
 #include <dermis/dermis.h>
 
-enum { SIDE = 64, MOST = 16, TILE = 8, FILE_ROOM = 65536 };
+enum { SIDE = 64, MOST = 64, TILE = 8, FILE_ROOM = 65536 };
 
 static void check(dermis_result result, const char* call) {
-  if (result != DERMIS_OK) fprintf(stderr, "%s: %s\n", call, dermis_result_name(result));
-  if (result != DERMIS_OK) headless_die("  ", dermis_last_error());
+  if (result >= 0) return; /* above 0 are no errors */
+  fprintf(stderr, "%s: ", call);
+  headless_die(dermis_result_name(result), dermis_last_error());
 }
 
 static void DERMIS_CALL say(void* user, const dermis_message* message) {
+  static const char* const severity[] = {"note", "warning", "error"};
   (void)user;
-  fprintf(stderr, "%s:%u:%u: %s\n", message->file, message->line, message->column, message->text);
+  if (message->line != 0) fprintf(stderr, "%s:%u:%u: ", message->file, message->line, message->column);
+  fprintf(stderr, "%s: %s\n", severity[message->severity], message->text);
 }
 
 /* ---- the pass: a pipeline, and a set that points to what stands at its two ports ---- */
@@ -173,7 +176,7 @@ int main(int argc, char** argv) {
   uint32_t i, slot_count = MOST;
   tone pass;
   headless host = headless_create();
-  if (argc != 4) headless_die("usage: host_pass GRAPH.json PROFILE.json OVERLAY.json", "");
+  if (argc != 4) headless_die("usage", "host_pass GRAPH.json PROFILE.json OVERLAY.json");
   pass = make_tone(&host);
   context_desc.instance = host.instance;
   context_desc.physical_device = host.gpu;

@@ -3,22 +3,22 @@
 
 #include <dermis/dermis.h>
 
-enum { SIDE = 64, MOST = 16 };
+enum { SIDE = 64, MOST = 64 };
 
-static void check(dermis_result result, const char* call) {
-  if (result != DERMIS_OK) fprintf(stderr, "%s: %s\n", call, dermis_result_name(result));
-  if (result != DERMIS_OK) headless_die("  ", dermis_last_error());
+static void check(dermis_result result) {
+  if (result < 0) headless_die(dermis_result_name(result), dermis_last_error()); /* above 0: none */
 }
 
 static void DERMIS_CALL say(void* user, const dermis_message* message) {
+  static const char* const severity[] = {"note", "warning", "error"};
   (void)user;
-  fprintf(stderr, "%s:%u:%u: %s\n", message->file, message->line, message->column, message->text);
+  if (message->line != 0) fprintf(stderr, "%s:%u:%u: ", message->file, message->line, message->column);
+  fprintf(stderr, "%s: %s\n", severity[message->severity], message->text);
 }
 
 /* The G-buffer of the example: light 1 everywhere, half a metre away, profile 1. */
 static VkClearColorValue contents_of(const char* slot) {
-  VkClearColorValue value;
-  memset(&value, 0, sizeof value);
+  VkClearColorValue value = {{0.0f}};
   if (strcmp(slot, "material") == 0) value.uint32[0] = 1;
   if (strcmp(slot, "depth") == 0) value.float32[0] = 0.5f;
   if (strcmp(slot, "lighting") == 0) value.float32[0] = value.float32[1] = value.float32[2] = 1.0f;
@@ -42,14 +42,14 @@ int main(int argc, char** argv) {
   dermis_graph graph;
   uint32_t i, slot_count = MOST, pass_count = MOST;
   headless host = headless_create();
-  if (argc != 3) headless_die("usage: minimal GRAPH.json PROFILE.json", "");
+  if (argc != 3) headless_die("usage", "minimal GRAPH.json PROFILE.json");
   context_desc.flags = DERMIS_CONTEXT_TIMINGS;
   context_desc.instance = host.instance;
   context_desc.physical_device = host.gpu;
   context_desc.device = host.device;
   context_desc.get_instance_proc_addr = vkGetInstanceProcAddr;
   context_desc.log = say;
-  check(dermis_context_create(&context_desc, &context), "dermis_context_create");
+  check(dermis_context_create(&context_desc, &context));
 
   skin.id = 1;
   skin.source.name = argv[2];
@@ -66,9 +66,9 @@ int main(int argc, char** argv) {
   graph_desc.profile_count = graph_desc.format_count = 1;
   graph_desc.unbound = unbound;
   graph_desc.unbound_count = 3;
-  check(dermis_graph_create(context, &graph_desc, &graph, NULL), "dermis_graph_create");
+  check(dermis_graph_create(context, &graph_desc, &graph, NULL));
 
-  check(dermis_graph_slots(graph, &slot_count, slots), "dermis_graph_slots");
+  check(dermis_graph_slots(graph, &slot_count, slots));
   for (i = 0; i < slot_count; ++i) {
     dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
     if (!slots[i].bound) continue;
@@ -88,10 +88,10 @@ int main(int argc, char** argv) {
   frame.clip_from_view[5] = -2.0f;
   frame.clip_from_view[10] = frame.clip_from_view[14] = -1.0f;
   frame.clip_from_view[11] = -0.1f;
-  check(dermis_graph_record(graph, &frame), "dermis_graph_record");
+  check(dermis_graph_record(graph, &frame));
   headless_submit_and_wait(&host);
-  check(dermis_graph_timings(graph, 1, &pass_count, timings), "dermis_graph_timings");
-  for (i = 0; i < pass_count; ++i)
+  check(dermis_graph_timings(graph, 1, &pass_count, timings));
+  for (i = 0; i < pass_count && timings[i].pass != NULL; ++i)
     printf("%-12s %8.3f ms\n", timings[i].pass, (double)timings[i].nanoseconds * 1e-6);
   dermis_graph_destroy(graph);
   dermis_context_destroy(context);

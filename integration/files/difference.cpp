@@ -91,23 +91,28 @@ Image exposed_luminance(const Image& light, double exposure) {
   return out;
 }
 
-double exposure_of(const Image& light) {
+double exposure_of(const Image& light, const Image* mask) {
   const Image plain = exposed_luminance(light, 1);
   ExposureMeter meter;
-  for (const float value : plain.values)
-    if (std::isfinite(value) && value > 0) meter.luminance.push_back(value);
+  for (size_t i = 0; i < plain.values.size(); ++i)
+    if (std::isfinite(plain.values[i]) && plain.values[i] > 0 && (mask == nullptr || mask->values[i] != 0))
+      meter.luminance.push_back(plain.values[i]);
   return meter.result();
 }
 
-Difference compare_pictures(const Image& a, const Image& b, const PixelRectangle& where) {
+Difference compare_pictures(const Image& a, const Image& b, const PixelRectangle& where, const Image* mask) {
   Difference difference;
-  difference.pixels = uint64_t{where.width} * where.height;
+  const auto left_out = [&](uint32_t x, uint32_t y) {
+    return mask != nullptr && mask->at(where.x + x, where.y + y, 0) == 0;
+  };
   double squares = 0, ssim = 0;
-  std::vector<bool> counted(static_cast<size_t>(difference.pixels), false);
+  std::vector<bool> counted(size_t{where.width} * where.height, false);
   for (uint32_t c = 0; c < a.channels; ++c) {
     Plane pa, pb;
     for (uint32_t y = 0; y < where.height; ++y)
       for (uint32_t x = 0; x < where.width; ++x) {
+        if (left_out(x, y)) continue;
+        if (c == 0) ++difference.pixels;
         double va = double(a.at(where.x + x, where.y + y, c)), vb = double(b.at(where.x + x, where.y + y, c));
         const size_t pixel = size_t{y} * where.width + x;
         if (!std::isfinite(va) || !std::isfinite(vb)) {
@@ -126,12 +131,12 @@ Difference compare_pictures(const Image& a, const Image& b, const PixelRectangle
         pa.push_back(va);
         pb.push_back(vb);
       }
-    ssim += mean_ssim(pa, pb, where.width, where.height) / a.channels;
+    if (mask == nullptr) ssim += mean_ssim(pa, pb, where.width, where.height) / a.channels;
   }
-  const double mse = squares / (static_cast<double>(difference.pixels) * a.channels);
+  const double mse = squares / std::max(1.0, static_cast<double>(difference.pixels) * a.channels);
   difference.rmse = std::sqrt(mse);
   difference.psnr_db = psnr_from_mse(mse);
-  difference.ssim = ssim;
+  if (mask == nullptr) difference.ssim = ssim;
   return difference;
 }
 

@@ -4,6 +4,7 @@
 #include "integration/files/image.hpp"
 
 #include <cstdint>
+#include <optional>
 
 namespace dermis::tools {
 
@@ -14,11 +15,13 @@ struct PixelRectangle {
 // Values with peak 1: encoded ones of a PNG; of linear light, Rec.709 luminance times an exposure.
 struct Difference {
   double psnr_db = 0, rmse = 0; // PSNR capped at max_psnr_db of metrics.hpp
-  double ssim = 1; // structural similarity (Wang and others 2004), 11x11 Gaussian window, sigma 1.5; -1..1
+  // Structural similarity (Wang and others 2004), 11x11 Gaussian window, sigma 1.5; -1..1. None where pixels
+  // are left out: its windows would have holes.
+  std::optional<double> ssim;
   double max_error = 0;
   uint32_t worst_x = 0, worst_y = 0; // where, in the pictures
   uint64_t nonfinite = 0; // pixels with a value that is not finite in either; they count as an error of 1
-  uint64_t pixels = 0;
+  uint64_t pixels = 0;    // that were compared
 };
 
 // Encodes linear channels as a PNG would, so that differences are those that are seen.
@@ -27,9 +30,12 @@ Image encoded(const Image& linear);
 // The luminance of 3 channels, or the one channel there is, times `exposure`.
 Image exposed_luminance(const Image& light, double exposure);
 // The factor that puts the 99.9th percentile of a picture's luminance at 1; 1 where there is no light.
-double exposure_of(const Image& light);
+// `mask`, if there is one, as below.
+double exposure_of(const Image& light, const Image* mask = nullptr);
 
-// Inside `where`, which must lie in both; the pictures have one size and number of channels.
-Difference compare_pictures(const Image& a, const Image& b, const PixelRectangle& where);
+// Inside `where`, which must lie in both; the pictures have one size and number of channels. Of `mask`, of
+// their size and with one channel, pixels that are 0 are left out; none where it is null.
+Difference compare_pictures(const Image& a, const Image& b, const PixelRectangle& where,
+                            const Image* mask = nullptr);
 
 } // namespace dermis::tools

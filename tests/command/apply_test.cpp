@@ -100,6 +100,29 @@ TEST_F(Captures, TheReferenceOfEvenLightIsThatLight) {
     EXPECT_NEAR(value, 0.5f, 1e-6f);
 }
 
+TEST_F(Captures, WhatWasAppliedIsComparedWithItsReferenceFrameByFrame) {
+  Plane plane;
+  plane.light = filled(plane.width, plane.height, 3, 0.25f);
+  for (uint32_t y = 0; y < plane.height; ++y) // an edge, which scatters
+    for (uint32_t x = 0; x < plane.width / 2; ++x)
+      plane.light.at(x, y, 0) = plane.light.at(x, y, 1) = plane.light.at(x, y, 2) = 1.0f;
+  write_plane(path("capture/frame_0000"), plane);
+  write_plane(path("capture/frame_0001"), plane);
+  ASSERT_EQ(apply({"--set", "samples=512"}).exit_code, 0);
+  for (const std::string subset : {"0", "100"}) {
+    ASSERT_EQ(
+        run({"reference", "--frames", path("capture"), "--out", path("truth" + subset), "--subset", subset})
+            .exit_code,
+        0);
+    const Outcome outcome = run({"compare", path("out"), path("truth" + subset), "--least-psnr", "35"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("frame_0000/scattered.exr"), HasSubstr("\nall "),
+                                   HasSubstr(subset == "0" ? "1024" : "100")));
+  }
+  std::filesystem::remove_all(path("out/frame_0001"));
+  EXPECT_THAT(run({"compare", path("out"), path("truth0")}).err, HasSubstr("frame_0001"));
+}
+
 TEST_F(Captures, ASubsetComesWithAMaskOfItsPixels) {
   write_plane(path("capture"));
   const Outcome outcome = reference({"--subset", "100"});

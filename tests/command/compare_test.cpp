@@ -87,6 +87,57 @@ TEST_F(Compare, GoesThroughFoldersAndNamesWhatIsInOneAlone) {
   EXPECT_THAT(alone.err, HasSubstr("three.png"));
 }
 
+TEST_F(Compare, ComparesOnlyWhatTheMaskBesideAReferenceSaysWasComputed) {
+  // A quarter was computed and is right; the rest is the light as it came, and says nothing.
+  std::filesystem::create_directories(path("truth"));
+  std::filesystem::create_directories(path("ours"));
+  const tools::Image ours = [] {
+    tools::Image image = tools::Image::sized(16, 16, 3);
+    std::fill(image.values.begin(), image.values.end(), 0.5f);
+    return image;
+  }();
+  tools::Image truth = ours, mask = tools::Image::sized(16, 16, 1);
+  for (uint32_t y = 0; y < 16; ++y)
+    for (uint32_t x = 0; x < 16; ++x) {
+      mask.at(x, y, 0) = x < 4 ? 1.0f : 0.0f;
+      for (uint32_t c = 0; c < 3; ++c)
+        truth.at(x, y, c) = x < 4 ? 0.5f : 8.0f;
+    }
+  std::string error;
+  const std::vector<std::string> rgb{"R", "G", "B"};
+  ASSERT_TRUE(tools::write_exr(path("truth/reference.exr"), truth, rgb, error)) << error;
+  ASSERT_TRUE(tools::write_exr(path("truth/mask.exr"), mask, {"Y"}, error)) << error;
+  ASSERT_TRUE(tools::write_exr(path("ours/scattered.exr"), ours, rgb, error)) << error;
+  for (const auto& [a, b] : {std::pair(path("ours"), path("truth")), std::pair(path("truth"), path("ours")),
+                             std::pair(path("ours/scattered.exr"), path("truth/reference.exr"))}) {
+    const Outcome outcome = run({"compare", a, b, "--json", "--region", "0,0,2x2"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const nlohmann::json rows = nlohmann::json::parse(outcome.out)["rows"];
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0]["rmse"], 0);
+    EXPECT_EQ(rows[0]["pixels"], 64);
+    EXPECT_FALSE(rows[0].contains("ssim")); // its windows would reach over pixels that say nothing
+    EXPECT_EQ(rows[1]["pixels"], 4);
+  }
+  EXPECT_THAT(run({"compare", path("ours"), path("truth"), "--flip"}).err, HasSubstr("--subset"));
+  EXPECT_EQ(run({"compare", path("ours"), path("truth"), "--heat", path("heat.png")}).exit_code, 0);
+}
+
+TEST_F(Compare, SumsAFolderUpAndSaysWhatAMapShows) {
+  png("a/one.png", 10, 10);
+  png("b/one.png", 10, 61);
+  png("a/two.png", 10, 10);
+  png("b/two.png", 10, 10);
+  const Outcome outcome = run({"compare", path("a"), path("b"), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json answer = nlohmann::json::parse(outcome.out);
+  EXPECT_NEAR(answer["all"]["rmse"], 0.2 / std::sqrt(1024.0), 1e-6); // one of 1,024 pixels by 51/255
+  EXPECT_EQ(answer["all"]["pixels"], 1024);
+  EXPECT_THAT(run({"compare", path("a"), path("b")}).out, HasSubstr("\nall "));
+  const Outcome drawn = run({"compare", path("a/one.png"), path("b/one.png"), "--heat", path("heat.png")});
+  EXPECT_THAT(drawn.out, testing::AllOf(HasSubstr(path("heat.png")), HasSubstr("1e-4")));
+}
+
 TEST_F(Compare, RefusesWhatCannotBeCompared) {
   const std::string a = png("a.png", 100, 100), light = exr("light.exr", 1);
   EXPECT_THAT(run({"compare", a, light}).err, HasSubstr("16x16"));

@@ -40,11 +40,22 @@ else
   echo "== pkg-config: skipped, not installed"
 fi
 
-cmake -G Ninja -S "$source/tests/packaging/find_package" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$prefix" \
-  -DEXAMPLES="$source/integration/examples" -DCMAKE_BUILD_TYPE=Release >/dev/null
-cmake --build "$scratch/build" >/dev/null
-run "$scratch/build/host_dermis"
-run "$scratch/build/host_dermis_static"
+for languages in C "C;CXX"; do # a project of C alone has to find the run time of C++, too
+  cmake -G Ninja -S "$source/tests/packaging/find_package" -B "$scratch/build_${languages/;/_}" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DLANGUAGES="$languages" -DEXAMPLES="$source/integration/examples" -DCMAKE_BUILD_TYPE=Release >/dev/null
+  cmake --build "$scratch/build_${languages/;/_}" >/dev/null
+  run "$scratch/build_${languages/;/_}/host_dermis"
+  run "$scratch/build_${languages/;/_}/host_dermis_static"
+done
+
+# The lines that README.md gives, as they stand but for the folders.
+if command -v pkg-config >/dev/null; then
+  sed -n '/^```console$/,/^```$/s/^\$ //p' "$source/README.md" | grep -v '^cmake --build' |
+    sed -e "s#\$PWD/out#out#g" -e "s#out/#$scratch/readme/#g" -e "s#build/release#$build#g" >"$scratch/lines"
+  [[ $(wc -l <"$scratch/lines") -eq 4 ]] || { echo "README.md has other lines than this test knows"; exit 1; }
+  echo "== README.md"
+  (cd "$source" && unset LD_LIBRARY_PATH && set -x && . "$scratch/lines") | grep -E '^scatter +[0-9.]+ ms$'
+fi
 
 # What is installed works alone: the command finds its library, and graphs validate.
 unset LD_LIBRARY_PATH

@@ -122,7 +122,7 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
       plan, invocation, "diff",
       "What differs between the plans of two graphs, of one graph, or two saved plans",
       "dermis plan diff configs/graphs/burley.json configs/graphs/sap.json\n"
-      "  dermis plan diff configs/graphs/burley.json --b-size 960x540 --b-unbound velocity\n"
+      "  dermis plan diff configs/graphs/burley.json --b-size 960x540 --b-unbound albedo\n"
       "  dermis plan diff before.plan configs/graphs/burley.json --exit-code",
       plan_diff, [](CLI::App& verb, PlanDiffOptions& options) {
         verb.add_option(

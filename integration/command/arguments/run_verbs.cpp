@@ -182,8 +182,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       });
   add_verb<CalibrateOptions>(
       app, invocation, "calibrate", "Measure what a graph's passes cost on this device",
-      "dermis calibrate --out build/calibration.json", calibrate,
-      [](CLI::App& verb, CalibrateOptions& options) {
+      "dermis calibrate --out calibration.json", calibrate, [](CLI::App& verb, CalibrateOptions& options) {
         verb.add_option("graph", options.graph, "Graph file [configs/graphs/skin.json]")->type_name("FILE");
         verb.add_option("--scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
         verb.add_option("--out,-o", options.out, "File, or - for standard output [-]")->type_name("FILE");
