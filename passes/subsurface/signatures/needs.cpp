@@ -59,6 +59,8 @@ constexpr PortNeed needs[] = {
     {"level_0", pixel},
     {"coarse_surface", 2},
     {"coarse_scattered", 2},
+    {"second_coarse_surface", 2},
+    {"second_coarse_scattered", 2},
     {"level_1", 2},
     {"level_2", 4},
     {"level_3", 8},
