@@ -17,7 +17,7 @@ KindRegistry make_kinds() {
         &pyramid_gather_kind, &transmission_kind, &afis_kind,      &blend_kind,         &residual_kind,
         &guided_kind,         &flat_kind,         &copy_kind,      &doubt_kind,         &allot_kind,
         &mend_kind,           &accumulate_kind,   &skips_kind,     &probe_kind,         &clear_kind,
-        &contrast_kind,       &afis_tiles_kind})
+        &contrast_kind,       &afis_tiles_kind,   &brightness_kind})
     registry.add(*kind);
   return registry;
 }
