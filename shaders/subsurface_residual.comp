@@ -13,22 +13,27 @@ bool near_written(ivec2 at) { return classes_data[sap_tile(at)] != class_none; }
 vec2 surface_before(ivec2 pixel);
 #include "reproject.glsl"
 #include "sap_samples.glsl"
+#include "residual.glsl"
 
-const float mm_per_metre = 1000.0;
 const float largest_kept = 8.0;  // of a sampled ratio
 const float largest_ratio = 4.0; // that light is multiplied by
 const float doubt = 16.0;        // samples that weigh as much as the pyramid
-const float least_light = 1e-6;  // of the pyramid; a ratio to less says nothing
 const float memory = 1.9;        // samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha
 
-// Depth is kept in metres: half floats hold it within .05 % from a tenth of a millimetre to 65 km.
-vec2 surface_before(ivec2 pixel) {
-  vec2 kept = texelFetch(place_image, previous_texel(pixel), 0).rg;
-  return vec2(kept.r * mm_per_metre, kept.g);
+vec2 surface_before(ivec2 pixel) { return residual_surface_before(texelFetch(place_image, previous_texel(pixel), 0)); }
+
+// Share of the samples behind a ratio that says something about light of another pattern than they were taken in. A
+// pixel's pattern is its brightness less what all that is seen gained since: a flash leaves it alone; a shadow, or light from
+// another side, does not.
+float trust(float pattern, float learned) {
+  float off = (pattern - learned) / settings.tolerance;
+  return exp(-off * off);
 }
 
-// rgb = ratio, a = samples behind it; a = -1 where the surface was not to be seen in the frame before.
-vec4 ratio_before(ivec2 pixel, sap_texel own) {
+// rgb = ratio, a = samples behind it; a = -1 where the surface was not to be seen in the frame before. `kept`: pattern of
+// the light that they were taken in, brightness when it was last lit.
+vec4 ratio_before(ivec2 pixel, sap_texel own, out vec2 kept) {
+  kept = vec2(0.0);
   previous_place place = has_velocity()
                              ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
                              : place_before(vec2(pixel), own.depth);
@@ -36,8 +41,11 @@ vec4 ratio_before(ivec2 pixel, sap_texel own) {
   history_taps taps = find_history(place, own.id, depth_tolerance(place.depth, rise));
   vec4 sum = vec4(0.0);
   for (int i = 0; i < 4; ++i)
-    if (taps.weight[i] > 0.0)
-      sum += taps.weight[i] * texelFetch(ratio_image, previous_texel(taps.first + ivec2(i & 1, i >> 1)), 0);
+    if (taps.weight[i] > 0.0) {
+      ivec2 texel = previous_texel(taps.first + ivec2(i & 1, i >> 1));
+      sum += taps.weight[i] * texelFetch(ratio_image, texel, 0);
+      kept += taps.weight[i] * texelFetch(place_image, texel, 0).ba;
+    }
   return taps.weight == vec4(0.0) ? vec4(1.0, 1.0, 1.0, -1.0) : sum;
 }
 
@@ -59,16 +67,22 @@ void main() {
   vec4 ratio = vec4(1.0, 1.0, 1.0, 0.0);
   int count = 0;
   bool lost = false;
+  vec2 kept = vec2(0.0, 2.0 * never_lit); // pattern that was learned, brightness when it was last lit
   if (own.id != 0u && !copy_only) {
+    float pattern = brightness(light.rgb) - texelFetch(brightness_image, ivec2(0), 0).r;
     if (history_usable()) {
-      ratio = ratio_before(pixel, own);
+      ratio = ratio_before(pixel, own, kept);
       lost = ratio.a < 0.0;
       ratio.a = max(ratio.a, 0.0);
     }
+    if (ratio.a == 0.0)
+      kept.x = pattern;
+    kept.y = is_lit(light.rgb) ? brightness(light.rgb) : lost || !history_usable() ? 2.0 * never_lit : kept.y;
     float n = float(settings.samples);
     if (light.a >= settings.below) {
       ratio.a *= 1.0 - 0.25 * settings.alpha; // nothing new is learned here
-    } else if (is_turn(pixel >> 3, light.a) || ratio.a < float(settings.eager) * n) {
+    } else if (any(greaterThan(light.rgb, vec3(least_light))) && // nor in the dark
+               (is_turn(pixel >> 3, light.a) || ratio.a < float(settings.eager) * n)) {
       count = ratio.a < float(settings.eager) * n ? 2 * settings.samples : settings.samples;
       // Frames in which it is a tile's turn follow each other in the sequence; the others stand far from them.
       uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
@@ -76,14 +90,17 @@ void main() {
       vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count, settings.lod_bias);
       vec3 found = clamp(sampled / max(light.rgb, vec3(least_light)), vec3(0.0), vec3(largest_kept));
       found = mix(vec3(1.0), found, greaterThan(light.rgb, vec3(least_light)));
-      ratio.rgb = mix(ratio.rgb, found, max(settings.alpha, float(count) / (ratio.a + float(count))));
+      float weight = max(settings.alpha, float(count) / (ratio.a + float(count)));
+      ratio.rgb = mix(ratio.rgb, found, weight);
+      kept.x = mix(kept.x, pattern, weight);
       ratio.a = min(ratio.a + float(count), memory * n / settings.alpha);
     }
-    light.rgb *= 1.0 + ratio.a / (ratio.a + doubt) * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
+    float trusted = ratio.a * trust(pattern, kept.x);
+    light.rgb *= 1.0 + trusted / (trusted + doubt) * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
   }
   imageStore(mended_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));
-  imageStore(place_out_image, texel, round_to_half(vec4(own.depth / mm_per_metre, float(own.id), 0.0, 0.0)));
+  imageStore(place_out_image, texel, round_to_half(vec4(own.depth / mm_per_metre, float(own.id), kept)));
   if (has_sampling())
     imageStore(sampling_image, texel, vec4(float(count), ratio.a, light.a, lost ? 1.0 : 0.0));
 }

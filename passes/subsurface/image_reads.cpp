@@ -178,10 +178,15 @@ ImageReads blend(const PassKind& kind, const ReadsQuestion& question) {
   return {1 + 2 * question.sampled_share + 3 * samples, samples};
 }
 
-// As blend; and the velocity, four kept places and ratios.
+// One pixel of 64: surface, light, the velocity, four kept places twice.
+ImageReads brightness(const PassKind& kind, const ReadsQuestion& question) {
+  return {(2 + one_if(kind, question, "velocity", PortSide::read) + 4 * 2) / 64.0};
+}
+
+// As blend; and the velocity, four kept places, ratios and patterns, how bright all is.
 ImageReads residual(const PassKind& kind, const ReadsQuestion& question) {
   ImageReads reads = blend(kind, question);
-  reads.per_invocation += 1 + one_if(kind, question, "velocity", PortSide::read) + 4 * 2;
+  reads.per_invocation += 1 + one_if(kind, question, "velocity", PortSide::read) + 4 * 3 + 1;
   return reads;
 }
 
@@ -300,6 +305,7 @@ constexpr Entry entries[] = {
     {"subsurface.afis", afis},
     {"subsurface.guided", guided},
     {"subsurface.blend", blend},
+    {"subsurface.brightness", brightness},
     {"subsurface.residual", residual},
     {"subsurface.accumulate", accumulate},
     {"subsurface.doubt", doubt},

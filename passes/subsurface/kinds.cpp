@@ -45,8 +45,12 @@ KindRegistry make_kinds() {
                                &afis_tiles_kind,
                                &sap_down_layered_kind,
                                &sap_up_layered_kind,
-                               &sap_gather_layered_kind})
-    registry.add(*kind);
+                               &sap_gather_layered_kind,
+                               &brightness_kind}) {
+    PassKind known = *kind;
+    known.needs = needs_of(known.name);
+    registry.add(known);
+  }
   return registry;
 }
 

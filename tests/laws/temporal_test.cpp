@@ -1,5 +1,6 @@
 // What history must and must not do: the running ratio mends the pyramid where nothing changes, does not lag
-// behind light, follows cameras and things, and leaves no ghost. On the sculpted bust.
+// behind light, keeps out of light of another pattern, follows cameras and things, and leaves no ghost. On
+// the sculpted bust.
 #include "tests/laws/sequences.hpp"
 
 #include <algorithm>
@@ -41,10 +42,9 @@ TEST_F(Temporal, TheRatioMendsThePyramidOnASceneThatStandsStill) {
   EXPECT_LE(residual.samples.back(), 4.1); // 16 every fourth frame, where it is unsure
   EXPECT_EQ(sap.history_bytes, 0u);
   EXPECT_EQ(blend.history_bytes, 0u);
-  // Two frames of eight bytes for the ratio, four for the place, one word a tile, and the allocations'
-  // rounding.
-  EXPECT_LE(residual.history_bytes,
-            2 * (8 + 4) * size_t{width} * height + 2 * size_t{width} * height / 16 + (1 << 16));
+  // One RGBA16F for the ratio, one to know surfaces and patterns of light again, two frames of each, and the
+  // allocations' rounding.
+  EXPECT_LE(residual.history_bytes, 2 * (8 + 8) * size_t{width} * height + (1 << 16));
 }
 
 TEST_F(Temporal, TheRatioDoesNotLagBehindLightThatFlashes) {
@@ -93,18 +93,58 @@ TEST_F(Temporal, AThingThatMovesBeforeACameraThatRestsKeepsItsHistory) {
   EXPECT_GT(residual.mean_psnr_db, untold.mean_psnr_db + 0.5);
 }
 
-TEST_F(Temporal, ShadowsThatMoveAcrossSkinCostNoMoreThanTheyGainInTheMean) {
+// The same graph whose ratio is trusted whatever the light's pattern.
+constexpr const char* trusting = "100";
+
+TEST_F(Temporal, ShadowsThatMoveAcrossSkinNeverCostADecibelAndGainInTheMean) {
   const Sequence sequence = frames_of("dynamic", 88, 36); // boids cross the face from 88 to 140
   Judge judge{sequence};
   const Frames judged = range(24, 36);
-  const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged);
+  const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),
+                    blind = run(judge, "sap_residual", judged, {{"tolerance", trusting}});
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
-  // Ratios were learned in another pattern of light. Measured .3 dB better in the mean, 1.7 worse in the
-  // worst frame (docs/limits.md).
-  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db);
+  RecordProperty("blind", std::to_string(blind.mean_psnr_db));
+  // Measured: 2.1 dB better in the mean, .9 in the worst frame; blind .3 better and 1.7 worse.
+  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1);
+  EXPECT_GT(residual.mean_psnr_db, blind.mean_psnr_db + 1);
   for (const uint32_t t : judged)
-    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 2) << t;
+    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 1) << t;
+}
+
+TEST_F(Temporal, AFlashFromAnotherSideCostsLittleAndLeavesTheRatioAsItWas) {
+  const Sequence sequence = frames_of("strobe", 10, 34); // shots at 30 .. 32 and 38 .. 39
+  Judge judge{sequence};
+  const Frames judged = range(18, 34), lit = {20, 21}, between = {18, 19, 24, 25, 26, 27};
+  const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),
+                    blind = run(judge, "sap_residual", judged, {{"tolerance", trusting}});
+  RecordProperty("sap", std::to_string(sap.mean_psnr_db));
+  RecordProperty("residual", std::to_string(residual.mean_psnr_db));
+  RecordProperty("blind", std::to_string(blind.mean_psnr_db));
+  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db - 2.3); // measured -1.8; blind -6.9 (docs/limits.md)
+  for (const uint32_t t : lit) {
+    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 2.3) << t;
+    EXPECT_LT(blind.psnr_db.at(t), sap.psnr_db.at(t) - 3) << t;
+  }
+  for (const uint32_t t : between) {
+    RecordProperty("gain_" + std::to_string(t), std::to_string(residual.psnr_db.at(t) - sap.psnr_db.at(t)));
+    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 2) << t;
+  }
+}
+
+TEST_F(Temporal, ALightThatIsSwitchedOffCostsLittle) {
+  const Sequence sequence = frames_of("regular", 155, 40); // off from 180 on, a candle stays
+  Judge judge{sequence};
+  const Frames judged = range(20, 40);
+  const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged);
+  double gain = 0;
+  for (const uint32_t t : judged) {
+    const double one = residual.psnr_db.at(t) - sap.psnr_db.at(t);
+    RecordProperty("gain_" + std::to_string(t), std::to_string(one));
+    EXPECT_GT(one, -2.3) << t; // measured -1.9 in the first frame; blind -9.9
+    gain += one / double(judged.size());
+  }
+  EXPECT_GT(gain, 0); // measured .5 while most of a history is of the other light
 }
 
 TEST_F(Temporal, AfterACutTheErrorIsBackWithinThreeFrames) {

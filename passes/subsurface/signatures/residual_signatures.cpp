@@ -50,10 +50,26 @@ constexpr Port blend_ports[] = {
 };
 
 constexpr Format ratio_formats[] = {Format::rgba16f};
-constexpr Format place_formats[] = {Format::rg16f};
+constexpr Format place_formats[] = {Format::rgba16f};
 constexpr std::string_view ratio_doc =
     "rgb running ratio of sampled light to the pyramid's, a = samples behind it";
-constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
+constexpr std::string_view place_doc =
+    "view depth in metres, profile id, pattern of the light that the ratio was learned in, brightness when "
+    "last lit (logarithms); 0 where nothing was written";
+
+constexpr Format brightness_formats[] = {Format::r32f};
+constexpr std::string_view brightness_doc =
+    "logarithm of how much brighter all that is seen has become since history began";
+
+constexpr Port brightness_ports[] = {
+    surface_port("surface"),
+    sure_light,
+    port::velocity,
+    classes,
+    {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
+    {"brightness", Usage::sampled_image, false, "texture2D", "of the frame before", brightness_formats},
+    {"brightness_out", Usage::storage_image_write, false, "image2D", brightness_doc, brightness_formats},
+};
 
 constexpr Port residual_ports[] = {
     light_port("light"),
@@ -69,6 +85,7 @@ constexpr Port residual_ports[] = {
     surface_port("surface_4"),
     surface_port("surface_5"),
     sure_light,
+    {"brightness", Usage::sampled_image, false, "texture2D", brightness_doc, brightness_formats},
     port::velocity,
     classes,
     {"ratio", Usage::sampled_image, false, "texture2D", ratio_doc, ratio_formats},
@@ -103,10 +120,13 @@ constexpr KindSetting blend_settings[] = {
 constexpr KindSetting residual_settings[] = {
     samples,
     lod_bias,
-    setting::real("below", 0.99, 0, 2, "", "confidence below which a pixel is sampled"),
+    setting::real("below", 0.988, 0, 2, "", "confidence below which a pixel is sampled"),
     setting::real("often_below", 0.85, 0, 2, "",
                   "confidence below which it is in one frame of four, not of sixteen"),
     setting::real("alpha", 0.2, 0.01, 1, "", "weight of what is new in the running ratio, at least"),
+    setting::real("tolerance", 0.12, 0.001, 100, "",
+                  "change of the logarithm of a pixel's light, beside that of all light, that leaves 1/e of "
+                  "the samples' weight"),
     {.name = "eager",
      .type = SettingType::integer,
      .default_value = integer_value(6),
@@ -126,6 +146,17 @@ const PassKind blend_kind{
     .ports = blend_ports,
     .settings = blend_settings,
     .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind brightness_kind{
+    .name = "subsurface.brightness",
+    .shader = "subsurface_brightness",
+    .doc =
+        "Follows how bright all that is seen is, so that light that flashes can be told from another light.",
+    .ports = brightness_ports,
+    .settings = {},
+    .dispatch = DispatchShape::single_group,
     .side_effects = false,
 };
 

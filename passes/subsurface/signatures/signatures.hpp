@@ -15,7 +15,7 @@ extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind
 extern const PassKind sap_tiles_kind, sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind,
     sap_down_layered_kind, sap_up_layered_kind,
     sap_gather_layered_kind;                                            // sap_signatures.cpp
-extern const PassKind blend_kind, residual_kind;                        // residual_signatures.cpp
+extern const PassKind blend_kind, brightness_kind, residual_kind;       // residual_signatures.cpp
 extern const PassKind doubt_kind, contrast_kind, allot_kind, mend_kind; // allot_signatures.cpp
 extern const PassKind probe_kind;                                       // probe_signature.cpp
 extern const PassKind accumulate_kind;                                  // accumulate_signature.cpp
