@@ -253,6 +253,15 @@ bool NodeBuilder::parse_error(size_t position, const std::string&,
     const size_t end = what.rfind("'; expected ");
     if (end != std::string_view::npos && end > begin) reason += what.substr(end + 1);
   }
+  // The two slips that are made most, by their name. An empty object or array is well-formed.
+  const bool in_array = !open_.empty() && document_[open_.back().node].kind == NodeKind::array;
+  if ((where_in_grammar == "object key" && reason.starts_with("unexpected '}'")) ||
+      (where_in_grammar == "value" && in_array && reason.starts_with("unexpected ']'")))
+    reason += "; the comma before it is one too many";
+  else if ((where_in_grammar == "object" && reason.starts_with("unexpected string literal")) ||
+           (where_in_grammar == "array" && !reason.starts_with("unexpected '}'") &&
+            !reason.starts_with("unexpected ':'") && !reason.starts_with("unexpected end of input")))
+    reason += "; a comma is missing before it";
   const bool unexpected = reason.rfind("unexpected", 0) == 0;
   const size_t last = position == 0 ? 0 : position - 1;
   TextPosition place = locate(text_, last);

@@ -144,10 +144,12 @@ std::vector<NodeId> children(const Document& document, NodeId node) {
 
 namespace {
 
-// The key by which a file of another kind says what it is; invalid: there is none.
+// The key by which a file of another kind says what it is ("dermis": a graph); invalid: there is none.
 NodeId find_other_kind(const Document& document) {
   for (const NodeId node : children(document, document.root()))
-    if (document.key(node).starts_with("dermis_") && document[node].kind == NodeKind::integer) return node;
+    if ((document.key(node) == "dermis" || document.key(node).starts_with("dermis_")) &&
+        document[node].kind == NodeKind::integer)
+      return node;
   return {};
 }
 

@@ -103,6 +103,11 @@ std::string format_decibels(double decibels) {
   return fmt::format("{:.2f} dB", decibels);
 }
 
+std::string format_count(uint64_t count, std::string_view unit, bool being) {
+  const bool one = count == 1;
+  return fmt::format("{} {}{}{}", count, unit, one ? "" : "s", !being ? "" : one ? " is" : " are");
+}
+
 ProgressStyle progress_style(bool quiet, bool json) {
   if (quiet || json) return ProgressStyle::none;
   return isatty(STDERR_FILENO) != 0 ? ProgressStyle::bar : ProgressStyle::lines;

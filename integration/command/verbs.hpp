@@ -2,6 +2,7 @@
 // The verbs of the command, one a file, each a function of its options. arguments.cpp fills the options.
 
 #include "integration/command/session.hpp"
+#include "integration/command/shipped.hpp"
 
 #include <cstdint>
 #include <string>
@@ -46,7 +47,7 @@ struct ExplainOptions {
   std::vector<std::string> unbound; // optional imports and exports that the host leaves out
   bool two_queues = false;          // passes declared async get a queue of their own where they can
   bool frame = false;               // what was chosen for a frame of `scene`, instead of the plan
-  std::string scene = "configs/scenes/bust.json";
+  std::string scene = shipped("configs/scenes/bust.json");
   double budget_ms = 0; // of that frame; 0: none
   bool metered = false;
   std::string out = "-";
@@ -162,7 +163,7 @@ ExitCode watch(const Session& session, const WatchOptions& options);
 
 struct ReportBugOptions {
   std::string graph, out;
-  std::string scene = "configs/scenes/bust.json";
+  std::string scene = shipped("configs/scenes/bust.json");
   std::string frames; // capture to take instead of the scene; "": none
   GraphParts parts;
   std::vector<NamedValue> settings;
@@ -172,7 +173,8 @@ struct ReportBugOptions {
 ExitCode report_bug(const Session& session, const ReportBugOptions& options);
 
 struct CalibrateOptions {
-  std::string graph = "configs/graphs/skin.json", scene = "configs/scenes/bust.json", out = "-";
+  std::string graph = shipped("configs/graphs/skin.json"), scene = shipped("configs/scenes/bust.json"),
+              out = "-";
   std::string calibration; // file that it begins from; "": the library's own
   GraphParts parts;
   Size size{640, 360};
@@ -181,7 +183,7 @@ struct CalibrateOptions {
 ExitCode calibrate(const Session& session, const CalibrateOptions& options);
 
 struct SheetOptions {
-  std::string scene = "configs/scenes/bust.json", out;
+  std::string scene = shipped("configs/scenes/bust.json"), out;
   std::vector<std::string> graphs, profiles; // files; empty: those that ship
   Size size{320, 180};                       // of one picture
 };
@@ -227,7 +229,7 @@ struct BenchCompileOptions {
 ExitCode bench_compile(const Session& session, const BenchCompileOptions& options);
 
 struct BenchRecordOptions {
-  std::string graphs = "configs/graphs", profile = "configs/profiles/skin.json";
+  std::string graphs = shipped("configs/graphs"), profile = shipped("configs/profiles/skin.json");
   std::string json, html; // files to write; "": none
   Size size{1280, 720};
 };
@@ -288,7 +290,7 @@ struct BenchStabilityOptions {
 ExitCode bench_stability(const Session& session, const BenchStabilityOptions& options);
 
 struct BenchBudgetOptions {
-  std::string graph = "configs/graphs/skin.json";
+  std::string graph = shipped("configs/graphs/skin.json");
   std::string calibration; // file of dermis calibrate; "": the library's own
   std::vector<std::string> scenes{"flashing", "regular", "dynamic", "dolly", "cut"}; // in configs/scenes
   Size size{480, 270};
@@ -299,7 +301,7 @@ struct BenchBudgetOptions {
 ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options);
 
 struct BenchSkipOptions {
-  std::string graph = "configs/graphs/skin.json", profile = "configs/profiles/skin.json";
+  std::string graph = shipped("configs/graphs/skin.json"), profile = shipped("configs/profiles/skin.json");
   Size size{480, 270};
   uint32_t repetitions = 15;
   std::string json, html; // files to write; "": none

@@ -126,6 +126,12 @@ TEST_F(GraphFiles, ExplainSaysWhatACodeMeans) {
   const Outcome outcome = run({"explain", "D0103"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.out, StartsWith("D0103 unknown_key (error)\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("The nearest known key is suggested")); // of docs/diagnostics.md
+  for (const char* code : {"d0103", "103", "0103"})
+    EXPECT_EQ(run({"explain", code}).out, outcome.out) << code;
+  const Outcome unknown = run({"explain", "D0999"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("there is no message D0999"));
   EXPECT_TRUE(is_json(run({"explain", "D0103", "--json"}).out));
 }
 

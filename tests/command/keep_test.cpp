@@ -49,7 +49,7 @@ TEST_F(Keep, ABugReportIsCompleteAndItsLineShowsTheSame) {
   for (const char* file : {"burley.json", "overlays/0_full_precision.json", "settings.json", "plan.json",
                            "graph.plan", "device.json", "README.txt", "capture/frame_0000/frame.json"})
     EXPECT_THAT(files("bug"), Contains(file));
-  EXPECT_EQ(json::parse(read("bug/settings.json"))["samples"], "8");
+  EXPECT_EQ(json::parse(read("bug/settings.json"))["samples"], 8);
   EXPECT_TRUE(json::parse(read("bug/plan.json")).contains("reasons"));
   EXPECT_TRUE(json::parse(read("bug/device.json")).contains("ok"));
   EXPECT_EQ(run({"plan", "verify", path("bug/graph.plan")}).exit_code, 0);
@@ -100,7 +100,12 @@ TEST_F(Keep, ABugReportMayBeOneArchive) {
                                "--out", path("bug.tar.gz")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(files(), testing::ElementsAre("bug.tar.gz"));
-  EXPECT_EQ(run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")}).exit_code, 3);
+  const Outcome there = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")});
+  EXPECT_EQ(there.exit_code, 3);
+  EXPECT_THAT(there.err, HasSubstr("is there: choose another name"));
+  const Outcome zip = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.zip")});
+  EXPECT_EQ(zip.exit_code, 2);
+  EXPECT_THAT(zip.err, HasSubstr(".tar.gz or .tgz"));
   ASSERT_EQ(std::system(("tar -xzf " + path("bug.tar.gz") + " -C " + path(".")).c_str()), 0);
   const Outcome again = run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
                              "--out", path("replay")});

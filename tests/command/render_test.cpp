@@ -63,6 +63,33 @@ TEST_F(Render, DebugPicturesShowWhatWasSkippedOnTopOfAnyGraph) {
   }
 }
 
+TEST_F(Render, DebugPicturesOfSamplesAreRefusedOfAGraphThatDoesNotHandThemOut) {
+  const Outcome outcome = render(bust, burley, {"--frames", "1", "--debug", "samples"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("afis_guided.json, sap_blend.json and sap_residual.json do"));
+  for (const char* graph : {"afis_guided", "sap_blend", "sap_residual"}) {
+    const Outcome drawn = render(bust, std::string("configs/graphs/") + graph + ".json",
+                                 {"--frames", "1", "--subset", "0", "--debug", "samples"});
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    EXPECT_THAT(files("out"), Contains("debug_0000.png")) << graph;
+    std::filesystem::remove_all(path("out"));
+  }
+}
+
+TEST_F(Render, TheOverlayOfSkipsIsTakenOnce) {
+  const Outcome outcome = render(
+      bust, burley,
+      {"--frames", "1", "--subset", "0", "--debug", "skips", "--overlay", "configs/overlays/skips.json"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+TEST_F(Render, OneFrameIsSaidToBeTheFirstAndNoErrorIsExpectedWithoutABudget) {
+  const Outcome outcome = render(bust, burley, {"--frames", "1", "--subset", "0"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("(first frame, cold)"), HasSubstr("\n1 frame is in "),
+                                 Not(HasSubstr("expected"))));
+}
+
 TEST_F(Render, ADebugPictureThatIsNotKnownIsAUsageError) {
   const Outcome outcome = render(bust, burley, {"--debug", "colours"});
   EXPECT_EQ(outcome.exit_code, 2);

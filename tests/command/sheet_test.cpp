@@ -22,8 +22,8 @@ protected:
 };
 
 TEST_F(Sheet, HasARowWithoutAGraphAndOneForEachAndAColumnForEachMaterial) {
-  const Outcome outcome = sheet({"--graphs", "configs/graphs/sap.json", "--profiles",
-                                 "configs/profiles/skin.json,configs/profiles/milk.json"});
+  const Outcome outcome =
+      sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "skin,configs/profiles/milk.json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("none, sap"), HasSubstr("skin, milk")));
   std::string problem;

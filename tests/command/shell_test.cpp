@@ -40,6 +40,7 @@ TEST_F(Shell, BashCompletesVerbsOptionsAndValues) {
   EXPECT_EQ(offered("dermis graph --htm", 2), "--html\n");
   EXPECT_EQ(offered("dermis bench all --agai", 3), "--again\n");
   EXPECT_EQ(offered("dermis graph --color n", 3), "never\n");
+  EXPECT_EQ(offered("dermis completion z", 2), "zsh\n");
   EXPECT_THAT(offered("dermis graph configs/gra", 2), HasSubstr("configs/graphs"));
   EXPECT_THAT(offered("dermis render configs/scenes/bust.json --graph configs/graphs/sap.", 4),
               HasSubstr("configs/graphs/sap.json"));

@@ -19,6 +19,7 @@ TEST_F(Usage, HelpOfEveryVerbShowsAnExampleAndSucceeds) {
     const Outcome outcome = run({verb, "--help"});
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_THAT(outcome.out, HasSubstr("Example:\n  dermis " + verb)) << verb;
+    EXPECT_THAT(outcome.out, HasSubstr("Usage: dermis " + verb)) << verb;
     EXPECT_THAT(outcome.err, IsEmpty()) << verb;
   }
 }
@@ -27,6 +28,7 @@ TEST_F(Usage, HelpNamesTheExitCodes) {
   const Outcome outcome = run({"--help"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.out, HasSubstr("Exit codes: 0"));
+  EXPECT_THAT(outcome.out, HasSubstr("130 stopped by Ctrl-C"));
 }
 
 TEST_F(Usage, NoVerbIsAUsageError) {

@@ -1,6 +1,8 @@
 #include "framegraph/text/document.hpp"
+
 #include "framegraph/text/limits.hpp"
 #include "tests/framegraph/text_support.hpp"
+#include <gmock/gmock.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -60,6 +62,24 @@ TEST(Document, ValuesAreReadExactly) {
   EXPECT_EQ(d.text({6}), "\xc3\xa9\n\"");
   EXPECT_EQ(d[{7}].kind, NodeKind::boolean);
   EXPECT_EQ(d[{7}].integer, 0);
+}
+
+TEST(Document, ACommaTooManyAndOneThatIsMissingAreCalledSo) {
+  for (const char* text : {"{ \"a\": 1, }", "[1, ]", "[[1], ]"}) {
+    const Parsed parsed = parse(text);
+    ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text;
+    EXPECT_THAT(parsed.diagnostics.list[0].text, ::testing::HasSubstr("the comma before it is one too many"));
+  }
+  for (const char* text : {"{ \"a\": 1 \"b\": 2 }", "[1 2]", "[\"a\" \"b\"]", "[{} {}]"}) {
+    const Parsed parsed = parse(text);
+    ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text;
+    EXPECT_THAT(parsed.diagnostics.list[0].text, ::testing::HasSubstr("a comma is missing before it"));
+  }
+  for (const char* text : {"{ \"a\": ] }", "{ \"a\" 1 }", "[1", "{", "[1}", "{ 1 }", "[}"}) {
+    const Parsed parsed = parse(text);
+    ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text;
+    EXPECT_THAT(parsed.diagnostics.list[0].text, ::testing::Not(::testing::HasSubstr("comma"))) << text;
+  }
 }
 
 TEST(Document, AByteOrderMarkIsNoPartOfTheFirstLine) {

@@ -49,7 +49,8 @@ public:
     const std::string_view key = side == PortSide::read ? "read" : "write";
     const NodeId list = object_.object(key, Need::optional);
     if (!list.valid()) {
-      const bool mistyped = object_.has(key); // reported; nothing is known about its ports
+      // Reported, or will be as an unknown key; nothing is known about its ports.
+      const bool mistyped = object_.has(key) || find_misspelt(reader_.document, object_.node(), key).valid();
       complete_ &= !mistyped;
       if (side == PortSide::write) writes_known_ &= !mistyped;
       return;

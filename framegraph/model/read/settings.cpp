@@ -41,7 +41,8 @@ bool check_range(GraphReader& reader, const ObjectReader& object, std::string_vi
       .error(DiagnosticId::setting_range, where(key),
              fmt::format("the default of {} is {}, outside its own range {} .. {}", object.what(), value,
                          least, greatest))
-      .related.emplace_back(where(value < least ? "min" : "max"), "the range ends here");
+      .related.emplace_back(where(value < least ? "min" : "max"),
+                            value < least ? "the range begins here" : "the range ends here");
   return false;
 }
 

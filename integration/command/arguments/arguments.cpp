@@ -65,7 +65,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
                                                 DERMIS_VERSION_PATCH));
   app.footer("Exit codes: 0 done; 1 the input has problems; 2 bad option or value; 3 no driver, unwritable "
              "output or\n"
-             "missing package; 4 a defect of the program.");
+             "missing package; 4 a defect of the program; 130 stopped by Ctrl-C.");
   add_text_verbs(app, invocation);
   add_plan_verbs(app, invocation);
   add_schema_verb(app, invocation);
@@ -85,10 +85,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    const CLI::App* chosen = &app;
-    while (!chosen->get_subcommands().empty())
-      chosen = chosen->get_subcommands().front();
-    invocation.help = chosen->help();
+    invocation.help = app.help(); // of the verb that was chosen, with the whole of its name
   } catch (const CLI::CallForVersion& version) {
     invocation.help = std::string(version.what()) + "\n";
   } catch (const CLI::ParseError& error) {

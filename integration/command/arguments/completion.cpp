@@ -45,7 +45,10 @@ std::string bash(const std::vector<DeclaredVerb>& verbs) {
     }
     std::vector<std::string> offered = verb.verbs;
     for (const DeclaredOption& option : verb.options) {
-      if (option.positional) continue;
+      if (option.positional) { // of which one word is taken: before what begins with a dash
+        offered.insert(offered.begin(), option.values.begin(), option.values.end());
+        continue;
+      }
       offered.insert(offered.end(), option.names.begin(), option.names.end());
       std::string patterns;
       for (const std::string& name : option.names)

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace dermis::tools {
 namespace {
 
@@ -39,7 +41,8 @@ void add_option(std::string& page, const DeclaredOption& option) {
   page += fmt::format(".TP\n{}{}\n{}\n", names,
                       option.type.empty() ? "" : fmt::format(" \\fI{}\\fR", roff(option.type)),
                       roff(option.text));
-  if (option.values.empty()) return;
+  const auto told = [&](const std::string& value) { return option.text.find(value) != std::string::npos; };
+  if (std::all_of(option.values.begin(), option.values.end(), told)) return;
   page += "One of";
   for (const std::string& value : option.values)
     page += " " + roff(value);
@@ -68,7 +71,8 @@ std::string manual_page(const std::vector<DeclaredVerb>& verbs, std::string_view
       ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nThe input has problems: a file, the graph, the data.\n.TP\n2\n"
       "A bad option or value.\n.TP\n3\nNo driver, output that cannot be written, or a missing "
       "package.\n.TP\n4\n"
-      "A defect of the program.\n.SH ENVIRONMENT\n.TP\n\\fBNO_COLOR\\fR\nNo colour, unless it is asked "
+      "A defect of the program.\n.TP\n130\nStopped by Ctrl-C.\n.SH ENVIRONMENT\n.TP\n\\fBNO_COLOR\\fR\nNo "
+      "colour, unless it is asked "
       "for.\n";
   return page;
 }

@@ -90,9 +90,19 @@ std::string survey_as_json(const demo::DeviceSurvey& survey) {
   return std::move(json).finish();
 }
 
+// What is known where there is no loader or no driver.
+std::string screen_without_devices() {
+  const char* why = "validate, explain, plan, test, graph and compare work without";
+  return format_table(
+      {{{""}, {"what"}, {"for"}}, {{"ok", "Dermis", library_version()}, {"missing", "Vulkan device", why}}});
+}
+
 ExitCode doctor(const Session& session, const DoctorOptions&) {
   const demo::Result<demo::DeviceSurvey> survey = demo::survey_devices();
-  if (!survey) return fail(session, static_cast<ExitCode>(survey.error().kind), survey.error().text);
+  if (!survey) {
+    say(session, screen_without_devices());
+    return fail(session, static_cast<ExitCode>(survey.error().kind), survey.error().text);
+  }
   const bool fits = any_fits(*survey);
   if (session.json) print(survey_as_json(*survey));
   say(session, screen(*survey));

@@ -3,6 +3,7 @@
 #include "framegraph/explain/plan_json.hpp"
 #include "framegraph/explain/plan_text.hpp"
 #include "framegraph/text/json_writer.hpp"
+#include "integration/command/inspect/diagnostics_page.hpp"
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
@@ -15,6 +16,15 @@
 
 namespace dermis::tools {
 namespace {
+
+// "d0103" and "103" -> "D0103"; "" for what can be no code.
+std::string code_in(std::string_view text) {
+  constexpr size_t digits = 4; // also of the format below
+  if (text.starts_with('D') || text.starts_with('d')) text.remove_prefix(1);
+  if (text.empty() || text.size() > digits || text.find_first_not_of("0123456789") != std::string_view::npos)
+    return "";
+  return fmt::format("D{:0>4}", text);
+}
 
 const DiagnosticInfo* find_code(std::string_view code) {
   const auto all = all_diagnostic_infos();
@@ -31,11 +41,12 @@ std::string describe_code(const DiagnosticInfo& info, bool json) {
   if (json) {
     JsonWriter answer;
     answer.open_object().member("id", info.code).member("name", info.name);
-    answer.member("severity", severity_word(info.severity)).member("hint", info.hint).close();
+    answer.member("severity", severity_word(info.severity)).member("hint", info.hint);
+    answer.member("text", diagnostic_paragraph(info.code)).close();
     return std::move(answer).finish();
   }
-  return fmt::format("{} {} ({})\n{}\nMore: docs/diagnostics.md\n", info.code, info.name,
-                     severity_word(info.severity), info.hint);
+  return fmt::format("{} {} ({})\n{}\n\n{}\n", info.code, info.name, severity_word(info.severity),
+                     diagnostic_paragraph(info.code), info.hint);
 }
 
 ExitCode deliver(const Session& session, const std::string& path, std::string_view text) {
@@ -83,8 +94,12 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
 } // namespace
 
 ExitCode explain(const Session& session, const ExplainOptions& options) {
-  if (const DiagnosticInfo* info = find_code(options.graph))
-    return deliver(session, options.out, describe_code(*info, session.json));
+  if (const std::string code = code_in(options.graph); !code.empty()) {
+    const DiagnosticInfo* info = find_code(code);
+    return info != nullptr ? deliver(session, options.out, describe_code(*info, session.json))
+                           : fail(session, ExitCode::usage,
+                                  fmt::format("there is no message {}; docs/diagnostics.md lists all", code));
+  }
 
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);

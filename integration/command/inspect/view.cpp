@@ -220,7 +220,10 @@ struct View {
 
 ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diagnostics& diagnostics) {
   const ViewerPage page = viewer_page();
-  if (!page.missing.empty()) return {"", fmt::format("this program has no viewer: {}", page.missing)};
+  if (!page.missing.empty())
+    return {"", fmt::format("this program has no viewer: {}; with nodejs and npm installed and a "
+                            "network, configure and build it again, or use --dot",
+                            page.missing)};
 
   std::optional<Document> report;
   const size_t files = diagnostics.files.size(); // the report is none of the graph's

@@ -55,7 +55,7 @@ ExitCode capture(const Session& session, const CaptureOptions& options) {
   const auto captured = capture_scene(session, options);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!captured) return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
-  say(session, fmt::format("{} frames are in {}\n", options.frames, options.out));
+  say(session, fmt::format("{} in {}\n", format_count(options.frames, "frame", true), options.out));
   if (session.json) {
     JsonWriter answer;
     answer.open_object()

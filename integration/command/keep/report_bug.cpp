@@ -109,7 +109,7 @@ std::string settings_json(const LoadedGraph& loaded, const CompileChoices& choic
   JsonWriter out;
   out.open_object();
   for (size_t i = 0; i < loaded.graph.settings.size() && i < choices.settings.size(); ++i)
-    out.member(saved.names.settings[i].name, saved.names.settings[i].text);
+    out.key(saved.names.settings[i].name).json(saved.names.settings[i].text);
   out.close();
   return std::move(out).finish();
 }
@@ -173,9 +173,17 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   const fs::path target = fs::absolute(options.out, error).lexically_normal();
   const fs::path named = target.has_filename() ? target : target.parent_path();
   const std::string archived = folder_in(named);
+  for (const std::string_view ending : {".zip", ".tar", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar"})
+    if (archived.empty() && named.extension() == ending)
+      return fail(
+          session, ExitCode::usage,
+          fmt::format("'{}': archives are written as .tar.gz or .tgz; a name without such an ending is "
+                      "a folder's",
+                      options.out));
   if (fs::exists(named, error) && (!archived.empty() || !fs::is_empty(named, error)))
     return fail(session, ExitCode::environment,
-                fmt::format("'{}' is there{}", options.out, archived.empty() ? " and not empty" : ""));
+                fmt::format("'{}' is there{}: choose another name", options.out,
+                            archived.empty() ? " and not empty" : ""));
 
   Diagnostics diagnostics;
   GraphFiles files;

@@ -1,6 +1,7 @@
 #include "integration/command/run/captured.hpp"
 
 #include "framegraph/text/json_writer.hpp"
+#include "integration/command/shipped.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +9,6 @@
 
 namespace dermis::tools {
 namespace {
-
-constexpr const char* shipped_profiles = "configs/profiles"; // from the repository's root
 
 // Moves the picture by `sign` times the frame's jitter: clip x and y, in units of half the rectangle, times
 // w.
@@ -29,7 +28,7 @@ void copy(const subsurface::Matrix4& from, float* to) {
 } // namespace
 
 std::filesystem::path profiles_folder(const std::string& option) {
-  return option.empty() ? shipped_profiles : option;
+  return option.empty() ? shipped("configs/profiles") : option;
 }
 
 std::optional<CapturedSequence> check_sequence(const Session& session, const std::string& folder,

@@ -24,7 +24,9 @@ std::string describe_choice(const demo::FrameChoice& choice) {
                       choice.view_tiles - std::min(choice.view_tiles, listed), choice.predicted_ms);
   text += choice.measured_ms < 0 ? ", not timed" : fmt::format(", {:.2f} measured", choice.measured_ms);
   if (choice.budget_ms > 0) text += fmt::format(", budget {:.2f}", choice.budget_ms);
-  text += fmt::format("; error {:.1e} expected ({})", choice.predicted_rmse, choice.why);
+  if (choice.budget_ms > 0)
+    text +=
+        fmt::format("; RMSE {:.1e} of the scattered light expected ({})", choice.predicted_rmse, choice.why);
   if (choice.probed_tiles > 0)
     text += choice.probed_tiles > 1 ? fmt::format(", {:.1e} probed ({:.1e} to {:.1e})", choice.probed_rmse,
                                                   choice.probed_rmse_low, choice.probed_rmse_high)

@@ -31,6 +31,9 @@ private:
   std::vector<Samples> samples_;
 };
 
+// For titles of tables: nothing has warmed caches and clocks up.
+inline constexpr const char* first_frame = " (first frame, cold)";
+
 // Pass, device time and share, with a sum. `title` heads the first column, with how many frames were
 // measured.
 std::string format_times(const PassTimes& times, const std::string& title);

@@ -91,8 +91,9 @@ ExitCode reference(const Session& session, const ReferenceOptions& options) {
     pixels += made->pixels;
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say(session, fmt::format("{} frames, {} pixels in {}; they are in {}\n", sequence->folders.size(), pixels,
-                           format_duration(seconds), options.out));
+  say(session, fmt::format("{}, {} pixels in {}; the answer is in {}\n",
+                           format_count(sequence->folders.size(), "frame"), pixels, format_duration(seconds),
+                           options.out));
   if (session.json) {
     JsonWriter answer;
     answer.open_object().member("ok", true).member("frames", static_cast<uint64_t>(sequence->folders.size()));

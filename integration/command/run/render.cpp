@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 namespace dermis::tools {
 namespace {
@@ -160,6 +161,11 @@ bool textured_before(const Graph& graph, const CompileChoices& choices) {
   return false;
 }
 
+bool hands_out_samples(const Graph& graph) {
+  return std::any_of(graph.resources.begin(), graph.resources.end(),
+                     [](const ResourceDeclaration& one) { return one.name == "sampling"; });
+}
+
 bool transmits(const Graph& graph, const CompileChoices& choices) {
   for (size_t i = 0; i < graph.settings.size(); ++i)
     if (graph.settings[i].name == "transmission" && graph.settings[i].type == SettingType::boolean)
@@ -179,8 +185,9 @@ std::string why_no_error(const Run& run) {
 
 ExitCode report(Run& run) {
   std::string text, error_json = "null";
-  if (!run.graph_times.empty()) text += format_times(run.graph_times, "pass of the graph") + '\n';
-  if (!run.host_times.empty()) text += format_times(run.host_times, "pass of the engine") + '\n';
+  const std::string cold = run.options.frames == 1 ? first_frame : "";
+  if (!run.graph_times.empty()) text += format_times(run.graph_times, "pass of the graph" + cold) + '\n';
+  if (!run.host_times.empty()) text += format_times(run.host_times, "pass of the engine" + cold) + '\n';
   if (!run.choices.empty()) text += run.choices.text() + '\n';
   const std::string no_error = why_no_error(run);
   if (no_error.empty()) {
@@ -199,7 +206,8 @@ ExitCode report(Run& run) {
   } else {
     text += fmt::format("error of the scattered light: not measured, {}\n", no_error);
   }
-  say(run.session, text + fmt::format("\n{} frames are in {}\n", run.frames, run.options.out));
+  say(run.session,
+      text + fmt::format("\n{} in {}\n", format_count(run.frames, "frame", true), run.options.out));
   if (run.session.json) {
     JsonWriter answer;
     answer.open_object()
@@ -237,7 +245,11 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.sampling = options.debug == RenderOptions::Debug::samples;
   engine.skips = options.debug == RenderOptions::Debug::skips;
   GraphParts parts = options.parts;
-  if (engine.skips) parts.overlays.emplace_back("configs/overlays/skips.json");
+  constexpr const char* skips = "skips.json"; // given as well: it is in already
+  if (engine.skips && std::none_of(parts.overlays.begin(), parts.overlays.end(), [&](const std::string& one) {
+        return std::filesystem::path(one).filename() == skips;
+      }))
+    parts.overlays.push_back(shipped(std::string("configs/overlays/") + skips));
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
@@ -252,6 +264,12 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     if (!loaded) return fail_graph(session, options.graph, diagnostics);
     const CompileChoices choices = read_choices(loaded->graph, options.settings);
     if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+    if (engine.sampling && !hands_out_samples(loaded->graph))
+      return fail(
+          session, ExitCode::usage,
+          fmt::format("--debug samples: '{}' exports no 'sampling', which would say where it sampled; "
+                      "afis_guided.json, sap_blend.json and sap_residual.json do",
+                      options.graph));
     if (!compile_generic(*loaded, options.size, choices, diagnostics))
       return fail_graph(session, options.graph, diagnostics);
     engine.graph = options.graph;

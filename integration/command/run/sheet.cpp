@@ -20,10 +20,18 @@ namespace {
 constexpr uint32_t gap = 4;              // pixels between pictures
 constexpr uint32_t longest_side = 16384; // of the sheet, pixels
 
-std::vector<std::string> shipped(std::string_view folder, std::initializer_list<std::string_view> names) {
+std::vector<std::string> all_shipped(std::string_view folder, std::initializer_list<std::string_view> names) {
   std::vector<std::string> files;
   for (const std::string_view name : names)
-    files.push_back(fmt::format("configs/{}/{}.json", folder, name));
+    files.push_back(shipped(fmt::format("configs/{}/{}.json", folder, name)));
+  return files;
+}
+
+// Plain words are names of those that ship.
+std::vector<std::string> named(std::string_view folder, std::vector<std::string> files) {
+  for (std::string& file : files)
+    if (file.find_first_of("./") == std::string::npos)
+      file = shipped(fmt::format("configs/{}/{}.json", folder, file));
   return files;
 }
 
@@ -57,12 +65,12 @@ struct Sheet {
 
 ExitCode sheet(const Session& session, const SheetOptions& options) {
   const std::vector<std::string> profiles =
-      options.profiles.empty() ? shipped("profiles", {"skin", "jade", "marble", "wax", "ketchup", "milk"})
-                               : options.profiles;
+      options.profiles.empty() ? all_shipped("profiles", {"skin", "jade", "marble", "wax", "ketchup", "milk"})
+                               : named("profiles", options.profiles);
   const std::vector<std::string> graphs =
       options.graphs.empty()
-          ? shipped("graphs", {"separable_jimenez", "separable", "pyramid", "fixed", "burley", "sap"})
-          : options.graphs;
+          ? all_shipped("graphs", {"separable_jimenez", "separable", "pyramid", "fixed", "burley", "sap"})
+          : named("graphs", options.graphs);
   const size_t rows = graphs.size() + 1, columns = profiles.size();
   if (columns * (options.size.width + gap) > longest_side ||
       rows * (options.size.height + gap) > longest_side)
@@ -72,8 +80,13 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
   Sheet sheet(options.size, rows, columns);
   Progress progress(progress_style(session.quiet, session.json), "sheet", "picture",
                     static_cast<uint32_t>(rows * columns));
+  std::vector<uint8_t> without; // a technique: the same for every material
   for (size_t row = 0; row < rows; ++row)
     for (size_t column = 0; column < columns; ++column) {
+      if (row == 0 && column > 0) {
+        sheet.put(row, column, without);
+        continue;
+      }
       demo::RenderOptions engine;
       engine.scene = options.scene;
       engine.width = options.size.width;
@@ -83,6 +96,7 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
       demo::RenderCallbacks callbacks;
       callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
         sheet.put(row, column, frame.display);
+        if (row == 0) without = frame.display;
         return demo::success();
       };
       const auto summary = demo::render(engine, callbacks);

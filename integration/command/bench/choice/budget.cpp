@@ -250,7 +250,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options)
       options.frames, warm_up, measured_tolerance, meter_tolerance);
   report.table.columns = columns;
   for (const std::string& scene : options.scenes) {
-    bench.request.scene = fmt::format("configs/scenes/{}.json", scene);
+    bench.request.scene = shipped(fmt::format("configs/scenes/{}.json", scene));
     const Stretch stretch = stretch_of(scene);
     const uint32_t judged = stretch.times * options.frames;
     bench.request.frames = warm_up + judged;

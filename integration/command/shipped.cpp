@@ -1,0 +1,20 @@
+#include "integration/command/shipped.hpp"
+
+#include <filesystem>
+#include <string_view>
+
+namespace dermis::tools {
+
+std::string shipped(const std::string& path) {
+  namespace fs = std::filesystem;
+  constexpr std::string_view sources = "configs/";
+  std::error_code error;
+  if (fs::exists(path, error) || !path.starts_with(sources)) return path;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error); // Linux; elsewhere sources alone
+  if (error) return path;
+  const fs::path installed =
+      program.parent_path().parent_path() / "share" / "dermis" / path.substr(sources.size());
+  return fs::exists(installed, error) ? installed.string() : path;
+}
+
+} // namespace dermis::tools
