@@ -38,7 +38,7 @@ TEST_F(Choice, IsASentenceForPeople) {
                                "--subset", "0", "--budget", "0.001", "--meter", "--out", path("out")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("frame 1: technique=off"));
-  EXPECT_THAT(outcome.out, HasSubstr("budget 0.00; error"));
+  EXPECT_THAT(outcome.out, HasSubstr("budget 0.00; RMSE"));
   EXPECT_THAT(outcome.out, HasSubstr("(nothing fits: the fastest); next better technique="));
 }
 

@@ -239,7 +239,7 @@ TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", wrong}}), Id::unknown_resource,
              "parts/tiles.json:3:", {"'vieww'"});
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", "{ \"dermis\": 1 }"}}),
-             Id::missing_key, "parts/tiles.json:1:1", {"dermis_fragment"});
+             Id::other_kind_of_file, "parts/tiles.json:1:3", {"dermis_fragment"});
 }
 
 TEST(Include, TwoFilesMayDeclareANameAlikeButNotDifferently) {

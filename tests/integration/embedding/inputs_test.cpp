@@ -179,7 +179,9 @@ TEST_F(Inputs, LightThatIsExposedAlreadyScattersAlike) {
     double largest = 0;
     for (size_t i = 0; i < after.size(); ++i)
       if (i % 4 != 3) largest = std::max(largest, std::abs(double(before[i]) / factor - double(after[i])));
-    EXPECT_EQ(largest, 0) << name;
+    // The ratio compares logarithms of light, which round another way at another level: a step of a half
+    // float between .25 and .5, no more.
+    EXPECT_LE(largest, std::string_view(name) == "sap_residual" ? 1.0 / 4096 : 0) << name;
     told_apart += frames(factor, 1) != before ? 1 : 0;
   }
   EXPECT_GT(told_apart, 0u) << "no graph looks at exposure: this test says nothing";
