@@ -20,6 +20,7 @@ TEST_F(Docs, APageThatIsOldOrNotThereIsNamed) {
   EXPECT_EQ(run({"docs", "--check", "--out", path("pages")}).exit_code, 1);
   ASSERT_EQ(run({"docs", "--out", path("pages")}).exit_code, 0);
   EXPECT_EQ(run({"docs", "--check", "--out", path("pages")}).exit_code, 0);
+  EXPECT_TRUE(is_json(run({"docs", "--check", "--json", "--out", path("pages")}).out));
   write("pages/pass_kinds.md", "old");
   const Outcome outcome = run({"docs", "--check", "--out", path("pages")});
   EXPECT_EQ(outcome.exit_code, 1);

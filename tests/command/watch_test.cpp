@@ -66,6 +66,11 @@ TEST_F(Watch, GoesOnBehindAFileWithErrors) {
   EXPECT_THAT(outcome.out, HasSubstr("plan: the same"));
 }
 
+TEST_F(Watch, TellsByItsExitCodeWhetherTheLastRoundRendered) {
+  write("graph.json", "{ \"dermis\": 1, ");
+  EXPECT_EQ(run(arguments(path("graph.json"), "1")).exit_code, 1);
+}
+
 TEST_F(Watch, AShaderThatChangesIsBuiltByTheGivenLine) {
   write("shaders/kernel.comp", "before");
   std::thread editor = after_the_first([&] { write("shaders/kernel.comp", "behind it"); });

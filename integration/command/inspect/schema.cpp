@@ -1,6 +1,7 @@
 // dermis schema: the JSON Schemas of all file formats.
 
 #include "framegraph/schema/graph_schema.hpp"
+#include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
 #include "integration/command/inspect/reference_pages/pages.hpp"
@@ -90,6 +91,14 @@ ExitCode docs(const Session& session, const DocsOptions& options) {
     problem = deliver_text(file, text);
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
     say(session, fmt::format("{}\n", file));
+  }
+  if (session.json) {
+    JsonWriter answer;
+    answer.open_object().member("ok", true).key("pages").open_array();
+    for (const auto& [name, text] : pages)
+      answer.value(folder.path_of(name));
+    answer.close().close();
+    print(std::move(answer).finish());
   }
   return ExitCode::ok;
 }

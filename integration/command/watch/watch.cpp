@@ -2,10 +2,10 @@
 // the plan and in the error.
 #include "framegraph/explain/plan_diff.hpp"
 #include "integration/abi/shaders/compiler.hpp"
+#include "integration/command/child.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/plan/input.hpp"
 #include "integration/command/watch/changes.hpp"
-#include "integration/command/child.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
 
 #include <fmt/format.h>
@@ -144,11 +144,12 @@ std::string figures_text(const Figures& now, const Figures& before) {
                             change(now.device_ms, before.device_ms, 2));
 }
 
-// One rendering. A file with errors is no reason to stop: the next change may mend it.
-void render_once(Watch& watch) {
+// One rendering; false if there is none. A file with errors is no reason to stop: the next change may mend
+// it.
+bool render_once(Watch& watch) {
   const std::optional<SavedPlan> plan = look_at_files(watch);
   watch.changes.add(watch.files); // what changes from now on is for the next rendering
-  if (!plan) return;
+  if (!plan) return false;
   if (watch.plan) {
     const PlanDiff diff = diff_plans(*watch.plan, *plan);
     say(watch.session, diff.same ? "plan: the same\n" : plan_diff_text(diff, "before", "now"));
@@ -159,15 +160,16 @@ void render_once(Watch& watch) {
   watch.plan = plan;
   std::string problem;
   const auto answer = run_child(render_line(watch), problem);
-  if (interrupted()) return;
+  if (interrupted()) return false;
   if (!answer) {
     spdlog::error("{}", problem);
-    return;
+    return false;
   }
   const auto figures = figures_of(answer->out);
-  if (!figures) return;
+  if (!figures) return false;
   say(watch.session, figures_text(*figures, watch.figures.value_or(Figures{})));
   watch.figures = figures;
+  return true;
 }
 
 void take_shaders(const Watch& watch, const std::vector<std::string>& shaders) {
@@ -204,7 +206,7 @@ ExitCode watch(const Session& session, const WatchOptions& options) {
   Changes shaders;
   shaders.add(shader_files(state));
   uint32_t rounds = 0;
-  render_once(state);
+  bool rendered = render_once(state);
   while (!interrupted() && (options.rounds == 0 || ++rounds < options.rounds)) {
     std::vector<std::string> changed, of_shaders;
     while (!interrupted() && changed.empty() && of_shaders.empty()) {
@@ -217,9 +219,10 @@ ExitCode watch(const Session& session, const WatchOptions& options) {
     state.changes.look(state.files);
     if (!of_shaders.empty()) take_shaders(state, of_shaders);
     if (!changed.empty()) say(session, fmt::format("\n{} changed\n", list_files(changed)));
-    render_once(state);
+    rendered = render_once(state);
   }
-  return interrupted() ? fail(session, ExitCode::interrupted, "stopped") : ExitCode::ok;
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  return rendered ? ExitCode::ok : ExitCode::problems; // of the last round
 }
 
 } // namespace dermis::tools
