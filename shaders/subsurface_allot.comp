@@ -18,7 +18,7 @@ shared uint counts[lanes];
 shared int last_bin;    // bins above it are paid in full; below it nothing is
 shared uint last_units; // for the tiles of this bin
 
-uint doubt_of(uint tile) { return classes_data[tile] == class_scatter ? doubts_data[tile] : 0u; }
+uint doubt_of(uint tile) { return class_of_tile(classes_data[tile]) == class_scatter ? doubts_data[tile] : 0u; }
 uint steps_before(uint tile) { return has_before() ? before_data[tile] : 0u; }
 
 // Inclusive, Hillis & Steele 1986.

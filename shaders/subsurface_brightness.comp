@@ -28,7 +28,7 @@ vec2 surface_before(ivec2 pixel) { return residual_surface_before(texelFetch(pla
 // Of the surface at a pixel; false where it was not to be seen before, or is dark.
 bool change_of(ivec2 pixel, out float change) {
   change = 0.0;
-  if (!inside_rect(pixel) || classes_data[sap_tile(pixel)] != class_scatter)
+  if (!inside_rect(pixel) || class_of_tile(classes_data[sap_tile(pixel)]) != class_scatter)
     return false;
   ivec2 texel = texel_of(pixel);
   sap_texel own = sap_unpack(texelFetch(surface_image, texel, 0));

@@ -24,6 +24,7 @@ layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 // light as bits. Floats from 0 on are ordered as their bits are.
 const uint below_a_pixel = 1u;
 shared uint widest_of[block_tiles];
+shared uint holes_of[block_tiles]; // whether any pixel has none
 shared uvec3 low_of[block_tiles], high_of[block_tiles];
 
 uint class_of(uint widest) {
@@ -128,15 +129,19 @@ void main() {
 
   if (lane < block_tiles) {
     widest_of[lane] = 0u;
+    holes_of[lane] = 0u;
     low_of[lane] = uvec3(floatBitsToUint(largest_half));
     high_of[lane] = uvec3(0u);
   }
   uint ids[run];
   uint mask = find_subsurface(first, ids);
+  bool any_hole = mask != (1u << uint(run)) - 1u;
   uint widest = find_widest(first, mask, ids);
   barrier();
   if (widest != 0u)
     atomicMax(widest_of[tile_of_run], widest);
+  if (any_hole)
+    atomicOr(holes_of[tile_of_run], 1u);
   barrier();
   if (ranged) {
     gather_light(first, class_of(widest_of[tile_of_run]) == class_scatter ? mask : 0u, tile_of_run);
@@ -147,7 +152,7 @@ void main() {
   if (lane < block_tiles && all(lessThan(tile, frame.tiles))) {
     int index = tile.y * frame.tiles.x + tile.x;
     uint own = widest_of[lane];
-    classes_data[index] = class_of(own);
+    classes_data[index] = class_of(own) | (holes_of[lane] == 0u ? class_full_bit : 0u);
     if (ranged) // light below a pixel stays where it is, and is not looked at: beside it nothing counts as flat
       light_range_data[index] =
           own == below_a_pixel ? any_light()

@@ -10,11 +10,15 @@
 
 void main() {
   ivec2 pixel;
-  bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  bool copy_only, full;
+  if (!listed_pixel(pixel, copy_only, full))
     return;
   ivec2 texel = texel_of(pixel);
-  if (texelFetch(material_image, texel, 0).r == 0u)
+  // Loops that run once or not at all: some drivers run both sides of a branch.
+  bool subsurface = full;
+  for (uint left = full ? 0u : 1u; left != 0u; --left)
+    subsurface = texelFetch(material_image, texel, 0).r != 0u;
+  if (!subsurface)
     return;
   vec3 albedo = vec3(1.0);
   if (has_albedo() && (settings.result == RESULT_COLOR || settings.texturing != TEXTURING_POST))
@@ -23,7 +27,6 @@ void main() {
     albedo = sqrt(albedo);
   vec3 color = vec3(0.0);
   bool copies = has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
-  // Loops that run once or not at all: some drivers run both sides of a branch.
   for (uint left = copies ? 1u : 0u; left != 0u; --left) {
     color = clean_light(texelFetch(unscattered_image, texel, 0).rgb);
     color = round_to_half(settings.texturing != TEXTURING_POST ? color * albedo : color); // as it comes through

@@ -37,7 +37,7 @@ bool tiles_alike(ivec2 first, ivec2 last, vec3 low, vec3 high) {
 
 void main() {
   int index = int(gl_GlobalInvocationID.x);
-  if (index >= frame.tiles.x * frame.tiles.y || classes_data[index] != class_scatter)
+  if (index >= frame.tiles.x * frame.tiles.y || class_of_tile(classes_data[index]) != class_scatter)
     return;
   uvec4 own = light_range_data[index];
   vec3 low, high;
@@ -50,6 +50,6 @@ void main() {
   ivec2 first = max(tile - reach, ivec2(0)), last = min(tile + reach, frame.tiles - 1);
   if (!cells_alike(first, last, low, high) && !tiles_alike(first, last, low, high))
     return;
-  classes_data[index] = class_flat;
+  classes_data[index] = class_flat | (classes_data[index] & class_full_bit);
   recount_as_flat(d_px);
 }

@@ -24,7 +24,7 @@ void main() {
     float depth = view_depth(texelFetch(depth_image, texel, 0).r);
     bool scatters = has_scattered() && depth > 0.0 && projected_d(d.w, depth) >= copy_below_d_px;
     if (has_classes())
-      scatters = scatters && classes_data[(pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3)] == class_scatter;
+      scatters = scatters && class_of_tile(classes_data[(pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3)]) == class_scatter;
     vec3 through = light;
     if (settings.texturing != TEXTURING_POST && has_albedo()) {
       vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);

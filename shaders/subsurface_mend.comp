@@ -8,7 +8,7 @@
 #include "tiles.glsl"
 #include "half.glsl"
 #include "sap.glsl"
-bool near_written(ivec2 at) { return classes_data[sap_tile(at)] != class_none; }
+bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) != class_none; }
 #include "sap_samples.glsl"
 #include "allotment.glsl"
 #include "tile_edges.glsl"

@@ -135,7 +135,7 @@ void main() {
   if (share < 1.0 && floor((float(run) + 1.0) * share + start) <= floor(float(run) * share + start))
     return;
   uint tile = run * lanes + lane;
-  listed[lane] = tile < uint(frame.tiles.x * frame.tiles.y) ? classes_data[tile] : class_none;
+  listed[lane] = tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(classes_data[tile]) : class_none;
   barrier();
   if (lane == 0u) {
     listed_count = 0u;
@@ -154,7 +154,7 @@ void main() {
   for (uint quarter = 0u; quarter < quarters; ++quarter) {
     uvec3 place = pcg3d(uvec3(frame.frame_index, chosen, 2u + quarter));
     ivec2 pixel = first + 4 * ivec2(quarter % 2u, quarter / 2u) + ivec2(place.xy >> 30);
-    float squared = squared_error(pixel, lane, classes_data[chosen] != class_scatter);
+    float squared = squared_error(pixel, lane, class_of_tile(classes_data[chosen]) != class_scatter);
     barrier();
     if (squared >= 0.0) {
       errors += squared;

@@ -5,10 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_sap_setup.bindings.glsl"
 #include "environment.glsl"
-#include "half.glsl"
-#include "sanitise.glsl"
-#include "radius.glsl"
-#include "patch.glsl"
+#include "sap_pixel.glsl"
 const int block_width = 4, block_height = 2;
 #include "sap_tiles.glsl"
 
@@ -48,22 +45,12 @@ void main() {
     vec4 light = vec4(0.0);
     uvec4 bits = uvec4(0u);
     if (id != 0u) {
-      light.rgb = clean_light(texelFetch(lighting_image, texel, 0).rgb);
-      if (settings.texturing != TEXTURING_POST && has_albedo()) {
-        vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-        light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
-      }
+      light.rgb = sap_pixel_light(texel);
       if (depth > 0.0) {
         patch_neighbours around = patch_neighbours(
             vec2(depth_of_profile(here - 1, id), depth_of_profile(here - ring_width, id)),
             vec2(depth_of_profile(here + 1, id), depth_of_profile(here + ring_width, id)));
-        surface_patch patch_here = build_patch(pixel, depth, around);
-        vec2 sides = pixel_footprint(depth);
-        float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
-        light.a = sqrt(sqrt(patch_here.area));
-        float reach = min(inversesqrt(light.a) * scale, largest_half);
-        bits = sap_pack(sap_texel(depth, round_to_half(vec3(patch_here.slope * sides / sap_footprint(depth), 0.0)).xy,
-                                  round_to_half(reach), 1.0, id));
+        bits = sap_pack(sap_pixel_surface(pixel, id, depth, around, light.a));
       }
     }
     imageStore(light_image, texel, settings.storage == STORAGE_FULL ? light : round_to_half(light));

@@ -26,7 +26,7 @@ bool is_flagged(int level, ivec2 tile) {
     return false;
   int index = tile.y * tiles.x + tile.x;
   if (level == 0)
-    return classes_data[index] != class_none;
+    return class_of_tile(classes_data[index]) != class_none;
   if (scatters == 0u)
     return false;
   return !fits(tiles) || (flags[level & 1][index >> 5] >> uint(index & 31) & 1u) != 0u;
@@ -46,7 +46,7 @@ void main() {
     scatters = 0u;
   barrier();
   for (uint i = lane; i < uint(frame.tiles.x * frame.tiles.y); i += lanes)
-    if (classes_data[i] == class_scatter)
+    if (class_of_tile(classes_data[i]) == class_scatter)
       atomicOr(scatters, 1u);
   barrier();
   bool builds = scatters != 0u || !has_copy_arguments(); // else light is copied, and the levels' lists are empty
@@ -81,13 +81,12 @@ void main() {
       ivec2 tile = ivec2(i % tiles.x, i / tiles.x);
       if (!is_flagged(level, tile))
         continue;
-      uint place = uint(tile.x) | uint(tile.y) << 15;
-      uint copy = level == 0 && classes_data[i] != class_scatter ? tile_copy_bit : 0u;
+      uint place = level == 0 ? pack_tile(uvec2(tile), classes_data[i]) : uint(tile.x) | uint(tile.y) << 15;
       if (level == 0)
-        tiles_data[1u + at - next] = place | copy;
+        tiles_data[1u + at - next] = place;
       if (builds) {
         uint children = level > 0 ? flags_from(level - 1, 2 * tile - 1) : 0u;
-        level_tiles_data[at] = uvec2(place | copy, children | flags_from(level, tile - 1) << 9);
+        level_tiles_data[at] = uvec2(place, children | flags_from(level, tile - 1) << 9);
       }
       ++at;
     }

@@ -4,6 +4,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_skips.bindings.glsl"
 #include "environment.glsl"
+#include "tile_packing.glsl"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
@@ -12,7 +13,7 @@ void main() {
   if (!inside_rect(pixel))
     return;
   ivec2 texel = texel_of(pixel);
-  uint tile_class = classes_data[gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x];
+  uint tile_class = class_of_tile(classes_data[gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x]);
   uint id = texelFetch(material_image, texel, 0).r;
   imageStore(skips_image, texel, vec4(float(tile_class), float(id), 0.0, 1.0));
 }

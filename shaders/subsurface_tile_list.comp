@@ -19,7 +19,7 @@ void main() {
 
   uint own = 0u;
   for (uint i = first; i < last; ++i)
-    own += classes_data[i] != class_none ? 1u : 0u;
+    own += class_of_tile(classes_data[i]) != class_none ? 1u : 0u;
   counts[lane] = own;
   barrier();
   for (uint stride = 1u; stride < lanes; stride *= 2u) { // inclusive scan, Hillis & Steele 1986
@@ -31,11 +31,11 @@ void main() {
 
   uint at = counts[lane] - own;
   for (uint i = first; i < last; ++i) {
-    uint tile_class = classes_data[i];
-    if (tile_class == class_none)
+    uint entry = classes_data[i];
+    if (class_of_tile(entry) == class_none)
       continue;
-    uint x = i % uint(frame.tiles.x), y = i / uint(frame.tiles.x);
-    tiles_data[1u + at++] = x | (y << 15) | (tile_class != class_scatter ? tile_copy_bit : 0u);
+    uvec2 tile = uvec2(i % uint(frame.tiles.x), i / uint(frame.tiles.x));
+    tiles_data[1u + at++] = pack_tile(tile, entry);
   }
   if (lane == lanes - 1u) {
     uint listed = counts[lane];

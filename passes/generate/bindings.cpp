@@ -97,7 +97,7 @@ std::string shared_constants() {
       "const int separable_rows_per_kernel = {};\n"
       "const int sap_levels = {}; // sap_weights.hpp\n"
       "const int sap_variants = {};\n"
-      "const int sap_plain = {};\n"
+      "const int sap_half = {}, sap_plain = {};\n"
       "const int sap_nodes = {};\n"
       "const float sap_nodes_per_octave = {:.1f};\n"
       "const float sap_log2_d_first = {};\n"
@@ -122,8 +122,8 @@ std::string shared_constants() {
       choice::allot_first_bin, subsurface::min_patch_cosine, subsurface::separable_nodes,
       subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
       subsurface::separable_rows_per_profile, subsurface::sap_level_count, subsurface::sap_variant_count,
-      static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
-      double(subsurface::sap_nodes_per_octave), subsurface::sap_log2_d_first,
+      static_cast<int>(subsurface::SapVariant::half), static_cast<int>(subsurface::SapVariant::plain),
+      subsurface::sap_node_count, double(subsurface::sap_nodes_per_octave), subsurface::sap_log2_d_first,
       subsurface::sap_tiles_per_group_first, subsurface::sap_tiles_per_group, subsurface::radial_nodes,
       subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
       subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,

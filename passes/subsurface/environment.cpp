@@ -151,7 +151,8 @@ PyramidUse pyramid_use(const Graph& graph, const KindRegistry& kinds) {
                        [id = kinds.find(kind)](const PassDeclaration& pass) { return pass.kind == id; });
   };
   const bool surface = has("subsurface.sap_gather") || has("subsurface.sap_up") ||
-                       has("subsurface.sap_gather_layered") || has("subsurface.sap_up_layered");
+                       has("subsurface.sap_gather_half") || has("subsurface.sap_gather_layered") ||
+                       has("subsurface.sap_up_layered");
   return {surface, has("subsurface.pyramid_gather")};
 }
 
@@ -165,7 +166,8 @@ std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfi
         used ? make_sap_table(fit_sap_weights(variant, shape)) : std::vector<float>(table_floats);
     tables.insert(tables.end(), table.begin(), table.end());
   };
-  constexpr SapVariant variants[] = {SapVariant::base, SapVariant::smooth, SapVariant::plain};
+  constexpr SapVariant variants[] = {SapVariant::base, SapVariant::smooth, SapVariant::half,
+                                     SapVariant::plain};
   static_assert(std::size(variants) == sap_variant_count);
   for (const SapVariant variant : variants)
     add(variant, burley_shape(1));

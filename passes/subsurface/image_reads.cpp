@@ -101,6 +101,18 @@ ImageReads separable(const PassKind& kind, const ReadsQuestion& question) {
           sides * 2 * 2 * 3};
 }
 
+// subsurface_sap_halve.comp: material, depth and light of the 4x4 pixels of 2x2 texels.
+ImageReads sap_halve(const PassKind& kind, const ReadsQuestion& question) {
+  return {4 * (light_reads(kind, question) + 2)};
+}
+
+// Those of a block of 4x2 pixels; surface and scattered light of the texels of level 1 on which they lie.
+ImageReads sap_gather_half(const PassKind& kind, const ReadsQuestion& question) {
+  const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
+  const double own = light_reads(kind, question) + 2;
+  return {widest < copy_below_d_px ? own : own + 2 * block_reads(4 * 3, 4, 2)};
+}
+
 // subsurface_sap_down.comp: surface and light of the 6x6 children of 2x2 parents.
 ImageReads sap_down(const PassKind&, const ReadsQuestion&) {
   return {2 * block_reads(6 * 6, 2, 2)};
@@ -226,9 +238,9 @@ ImageReads transmission(const PassKind& kind, const ReadsQuestion& question) {
   return {4 + scale_read(kind, question)};
 }
 
-// Material, scattered light, albedo.
+// Scattered light, albedo; material only in tiles with holes.
 ImageReads combine(const PassKind& kind, const ReadsQuestion& question) {
-  return {2 + one_if(kind, question, "albedo", PortSide::read)};
+  return {1 + one_if(kind, question, "albedo", PortSide::read)};
 }
 
 // Lighting.
@@ -292,6 +304,8 @@ constexpr Entry entries[] = {
     {"subsurface.sap_down", sap_down},
     {"subsurface.sap_up", sap_up},
     {"subsurface.sap_gather", sap_gather},
+    {"subsurface.sap_halve", sap_halve},
+    {"subsurface.sap_gather_half", sap_gather_half},
     {"subsurface.sap_down_layered", sap_down_layered},
     {"subsurface.sap_up_layered", sap_up_layered},
     {"subsurface.sap_gather_layered", sap_gather_layered},

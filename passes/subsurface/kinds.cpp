@@ -46,7 +46,9 @@ KindRegistry make_kinds() {
                                &sap_down_layered_kind,
                                &sap_up_layered_kind,
                                &sap_gather_layered_kind,
-                               &brightness_kind}) {
+                               &brightness_kind,
+                               &sap_halve_kind,
+                               &sap_gather_half_kind}) {
     PassKind known = *kind;
     known.needs = needs_of(known.name);
     registry.add(known);

@@ -1,7 +1,8 @@
-// One level down: [1 3 3 1] x [1 3 3 1] over the children that lie on the parent's tangent plane. With one layer a
+// One level down: [1 3 3 1] x [1 3 3 1] over the children that lie on the parent's tangent plane, or the mean of 2x2
+// of them (SAP_BOX, whose kernel reads the children). With one layer a
 // block's four parents share their 6x6 children. With two layers (SAP_LAYERS) what the first layer of a parent does not take makes a second one,
 // and both are children of the next level.
-// Include after bindings with `light`, `surface` and `level_tiles`, of two layers with `second_light` and `second_surface`.
+// Include after bindings with `light`, `surface` (but for a box) and `level_tiles`, of two layers with `second_light` and `second_surface`.
 #ifndef DERMIS_SAP_DOWN_GLSL
 #define DERMIS_SAP_DOWN_GLSL
 
@@ -12,18 +13,26 @@ const float hysteresis = 1.02;   // the first of equals stays the seed
 const float nearest_share = 0.25; // a plane is not extrapolated nearer than this share of its depth
 
 #if SAP_LAYERS > 1
-const int parents_across = 1, side = 4; // a parent at a time, else the kernel takes long to compile
+const int parents_across = 1; // a parent at a time, else the kernel takes long to compile
 #else
-const int parents_across = 2, side = 6; // that share their children along an axis
+const int parents_across = 2; // that share their children along an axis
 #endif
+#ifdef SAP_BOX
+const int children_across = 2;
+#else
+const int children_across = 4;
+#endif
+const int children_a_layer = children_across * children_across;
+const int side = 2 * parents_across + children_across - 2; // texels that they share
 sap_texel children[SAP_LAYERS * side * side]; // one layer behind the other
 vec4 child_light[SAP_LAYERS * side * side];
-const int child_count = SAP_LAYERS * 16; // of a parent
+const int child_count = SAP_LAYERS * children_a_layer; // of a parent
 #if SAP_LAYERS > 1
 const float least_seed_part = 0.5; // what has less left is no seed of the second layer
 float child_left[child_count];     // what no layer of the parent at hand has taken yet
 #endif
 
+#ifndef SAP_BOX
 // Reads the children of the parents from `first` on.
 void read_children(texel_block block, ivec2 first, int finer) {
   [[unroll]] for (int i = 0; i < side * side; ++i) {
@@ -38,9 +47,12 @@ void read_children(texel_block block, ivec2 first, int finer) {
 #endif
   }
 }
-// Of parent `parent` of those, child 0 to 15 of its 4x4, 16 to 31 of the second layer.
+#endif
+// Of parent `parent` of those, child 0 to 15 of its 4x4, 16 to 31 of the second layer; of a box 0 to 3.
 int child_index(int parent, int child) {
-  return child / 16 * side * side + (2 * (parent / parents_across) + child % 16 / 4) * side + 2 * (parent % parents_across) + child % 4;
+  int place = child % children_a_layer;
+  return child / children_a_layer * side * side + (2 * (parent / parents_across) + place / children_across) * side +
+         2 * (parent % parents_across) + place % children_across;
 }
 bool may_seed(int parent, int child) {
 #if SAP_LAYERS > 1
@@ -50,9 +62,16 @@ bool may_seed(int parent, int child) {
   return children[child_index(parent, child)].id != 0u;
 }
 
-vec2 offset_of(int child, float spacing) { return (vec2(child & 3, child >> 2 & 3) - 1.5) * spacing; }
+vec2 offset_of(int child, float spacing) {
+  int place = child % children_a_layer;
+  return (vec2(place % children_across, place / children_across) - 0.5 * float(children_across - 1)) * spacing;
+}
 float binomial(int child) {
+#ifdef SAP_BOX
+  return 0.25;
+#else
   return ((child & 3) % 3 == 0 ? 0.125 : 0.375) * ((child >> 2 & 3) % 3 == 0 ? 0.125 : 0.375);
+#endif
 }
 float at_parent(sap_texel child, vec2 offset) {
   return max(child.depth - sap_rise(child.depth, child.slope, offset), nearest_share * child.depth);
@@ -64,7 +83,13 @@ struct seed_search {
   int child;
 };
 // Central child 0 to 3, of a layer.
-int central(int i, int layer) { return 16 * layer + 5 + i % 2 + 4 * (i / 2); }
+int central(int i, int layer) {
+#ifdef SAP_BOX
+  return i;
+#else
+  return 16 * layer + 5 + i % 2 + 4 * (i / 2);
+#endif
+}
 // How much the central children of a layer lie on a seed's surface.
 float support_of(int parent, sap_texel seed, float spacing, int layer) {
   float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(seed.depth)), support = 0.0;
@@ -91,6 +116,7 @@ void search_central(int parent, float spacing, int layer, inout seed_search foun
     }
   }
 }
+#ifndef SAP_BOX
 void search_outer(int parent, int layer, inout seed_search found) {
   [[unroll]] for (int a = 16 * layer; a < 16 * layer + 16; ++a) {
     sap_texel seed = children[child_index(parent, a)];
@@ -102,6 +128,7 @@ void search_outer(int parent, int layer, inout seed_search found) {
     }
   }
 }
+#endif
 
 // The child whose plane most of the central ones support; without a central one, the weightiest outer one. Its
 // depth is that of its plane at the parent; id 0: no child at all.
@@ -111,6 +138,7 @@ sap_texel find_seed(int parent, float spacing) {
 #if SAP_LAYERS > 1
   search_central(parent, spacing, 1, found);
 #endif
+#ifndef SAP_BOX
   if (found.best.id != 0u)
     return found.best;
   search_outer(parent, 0, found);
@@ -118,6 +146,7 @@ sap_texel find_seed(int parent, float spacing) {
   search_outer(parent, 1, found);
 #endif
   found.best.depth = at_parent(found.best, offset_of(found.child, spacing));
+#endif
   return found.best;
 }
 
@@ -129,7 +158,7 @@ struct reduction {
 };
 void add_children(int k, float spacing, sap_texel seed, int layer, inout reduction sum) {
   float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(seed.depth);
-  [[unroll]] for (int c = 16 * layer; c < 16 * layer + 16; ++c) {
+  [[unroll]] for (int c = children_a_layer * layer; c < children_a_layer * (layer + 1); ++c) {
     vec2 offset = offset_of(c, spacing);
     float tilt = dot(seed.slope, offset) * per_sigma;
     if (layer == 0)

@@ -2,6 +2,7 @@
 // block of texels: it reads them and a ring around them once, and the coarser texels on which they lie.
 // Include after bindings with `light`, `surface`, `coarse_surface`, `coarse_scattered` and `level_tiles`, and after
 // `block_width`, `block_height`, `coarse_width`, `coarse_height` and `odd_first`: 1 where a block's first texel is odd; across, down.
+// SAP_NO_RING: the kernel has texels of the level by itself, and no `light` and `surface`.
 // SAP_OWN_LAYERS, SAP_COARSE_LAYERS: layers that a texel of the level and of the coarser one has, 1 unless defined; of the
 // second layer `second_light`, `second_surface`, `second_coarse_surface` and `second_coarse_scattered`.
 #ifndef DERMIS_SAP_UP_GLSL
@@ -25,13 +26,17 @@ struct sap_sum {
 #define SAP_TEXELS_DOWN block_height
 #endif
 const int texels_across = SAP_TEXELS_ACROSS, texels_down = SAP_TEXELS_DOWN;
+const int coarse_texels = coarse_width * coarse_height;
+#ifndef SAP_NO_RING
 const int ring_width = texels_across + 2, ring_height = texels_down + 2;
-const int ring_texels = ring_width * ring_height, coarse_texels = coarse_width * coarse_height;
+const int ring_texels = ring_width * ring_height;
 uvec4 ring_surface[SAP_OWN_LAYERS * ring_texels]; // one layer behind the other
 vec4 ring_light[SAP_OWN_LAYERS * ring_texels];
+#endif
 uvec4 coarse_surface[SAP_COARSE_LAYERS * coarse_texels];
 uvec4 coarse_scattered[SAP_COARSE_LAYERS * coarse_texels];
 
+#ifndef SAP_NO_RING
 // Index of texel k plus an offset in the ring's arrays.
 int ring_index(int k, int i, int j) { return (k / texels_across + 1 + j) * ring_width + k % texels_across + 1 + i; }
 sap_texel sap_own(int k) { return sap_unpack(ring_surface[ring_index(k, 0, 0)]); }
@@ -58,6 +63,7 @@ void read_ring(texel_block block, ivec2 first, int level, bool with_ring) {
 #endif
   }
 }
+#endif
 
 // Reads the coarser texels on which they lie. They exist where a texel of the block does.
 void read_coarser(ivec2 first, int level) {
@@ -78,6 +84,7 @@ bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel
   return second.id == own.id && (first.id != own.id || second_off < first_off);
 }
 
+#ifndef SAP_NO_RING
 // 3x3 tent over the level's own light; of texel k.
 sap_sum sap_tent(int k, int level, sap_texel own) {
   float spacing = float(1 << level);
@@ -116,6 +123,7 @@ sap_sum sap_tent(int k, int level, sap_texel own) {
   float all_weight = 4.0 + 4.0 * (narrowing.x + narrowing.y) + 2.0 * (narrowing.z + narrowing.w);
   return sap_sum(sum / total, vec3(mass / all_weight));
 }
+#endif
 
 // Bilinear over the four nearest texels of the coarser level, along the surface; of texel k. `confidence` gets the
 // share that survives with stricter weights of the further tangent plane: both must see the other on theirs.

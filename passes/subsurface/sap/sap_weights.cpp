@@ -67,11 +67,12 @@ double spline_axis(double f, double spacing) {
 
 SapWeights basis_at(const Frequency& f, SapVariant variant) {
   const bool plain = variant == SapVariant::plain;
-  SapWeights basis{1, plain ? spline_axis(f.x, 1) * spline_axis(f.y, 1) : both_axes(f, 1, 2)};
+  const bool half = variant == SapVariant::half;
+  SapWeights basis{1, plain ? spline_axis(f.x, 1) * spline_axis(f.y, 1) : half ? 0 : both_axes(f, 1, 2)};
   double chain = 1;
   for (uint32_t level = 1; level < sap_level_count; ++level) {
     const double spacing = std::ldexp(1.0, static_cast<int>(level));
-    chain *= both_axes(f, spacing / 2, plain ? 3 : 6);
+    chain *= both_axes(f, spacing / 2, plain ? 3 : half && level == 1 ? 4 : 6);
     double filter = 1;
     if (plain)
       filter = spline_axis(f.x, spacing) * spline_axis(f.y, spacing);
@@ -137,8 +138,9 @@ SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape) {
     basis.push_back(basis_at(f, variant));
     equations.add_row(basis.back(), f.weight);
   }
-  SapWeights ones;
+  SapWeights ones; // of the weights that there are
   ones.fill(1);
+  if (variant == SapVariant::half) ones[1] = 0;
   equations.add_row(ones, sum_weight);
 
   SapFit fit{.variant = variant, .nodes = {}};
@@ -150,8 +152,8 @@ SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape) {
     for (size_t i = 0; i < frequencies.size(); ++i)
       for (uint32_t j = 0; j < sap_weight_count; ++j)
         right[j] += frequencies[i].weight * target[i] * basis[i][j];
-    for (double& r : right)
-      r += sum_weight;
+    for (uint32_t j = 0; j < sap_weight_count; ++j)
+      right[j] += sum_weight * ones[j];
     node.weights = solve_non_negative(equations, right);
     double sum = 0;
     for (const double w : node.weights)

@@ -15,14 +15,16 @@ namespace dermis::subsurface {
 // A level l >= 1 is reached by l reductions with [1 3 3 1] / 8 and l bilinear expansions: its transfer
 // function is the product of cos^6(pi f 2^k) over k < l and both axes. `smooth` filters every level with a
 // 3x3 tent (cos^2(pi f 2^l)) first, which hides the grid's phase; `base` level 1 alone and takes the others
-// as they are. Level 0 gives its centre and its tent in both. `plain` is the pyramid without surface: each
-// level is read by the pixel itself through a cubic B-spline, level 0 as well (in place of the tent).
-enum class SapVariant : uint8_t { base, smooth, plain };
-inline constexpr uint32_t sap_variant_count = 3;
+// as they are. Level 0 gives its centre and its tent in both. `half` is base without that tent and with a
+// level 1 of plain 2x2 means (cos(pi f) in place of cos^3), for kernels that store no level 0. `plain` is the
+// pyramid without surface: each level is read by the pixel itself through a cubic B-spline, level 0 as well
+// (in place of the tent).
+enum class SapVariant : uint8_t { base, smooth, half, plain };
+inline constexpr uint32_t sap_variant_count = 4;
 
 inline constexpr uint32_t sap_level_count = 9;                    // 0 to 8, spacing 1 to 256 px
 inline constexpr uint32_t sap_weight_count = sap_level_count + 1; // centre, tent of level 0, levels 1 to 8
-// The coarsest level that base or smooth filters with a tent.
+// The coarsest level that base, half or smooth filters with a tent.
 constexpr uint32_t sap_last_tent(SapVariant variant) {
   return variant == SapVariant::smooth ? sap_level_count - 1 : 1;
 }

@@ -87,7 +87,7 @@ static_assert(needs[buffers].port == "lighting");
 
 std::span<const PortNeed> needs_of(std::string_view kind) {
   if (kind == clear_kind.name) return {};
-  const bool step = kind == sap_down_kind.name || kind == sap_up_kind.name ||
+  const bool step = kind == sap_halve_kind.name || kind == sap_down_kind.name || kind == sap_up_kind.name ||
                     kind == pyramid_down_kind.name || kind == sap_down_layered_kind.name ||
                     kind == sap_up_layered_kind.name;
   return std::span(needs).first(step ? buffers : std::size(needs));

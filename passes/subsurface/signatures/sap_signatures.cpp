@@ -8,7 +8,8 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr std::string_view variant_options[] = {"base", "smooth"};
+// The first SapVariants.
+constexpr std::string_view variant_options[] = {"base", "smooth", "half"};
 
 constexpr std::string_view light_doc =
     "rgb light, a = fourth root of the surface's area over its cross-section";
@@ -23,12 +24,12 @@ constexpr std::string_view scattered_doc = "scattered light of this level and co
 constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
 constexpr Format surface_formats[] = {Format::rgba32_uint};
 
-constexpr KindSetting level_setting(double first, std::string_view doc) {
+constexpr KindSetting level_setting(double first, std::string_view doc, double last = sap_level_count - 1) {
   return {.name = "level",
           .type = SettingType::integer,
           .default_value = integer_value(static_cast<int64_t>(first)),
           .minimum = first,
-          .maximum = sap_level_count - 1,
+          .maximum = last,
           .options = {},
           .unit = "",
           .doc = doc};
@@ -36,6 +37,13 @@ constexpr KindSetting level_setting(double first, std::string_view doc) {
 
 constexpr KindSetting variant =
     setting::choice("variant", variant_options,
+                    "base: tent at levels 0 and 1; smooth: at every level, which hides the grid; half: at "
+                    "level 1, below subsurface.sap_gather_half",
+                    1);
+
+// With two layers there is no other first level.
+constexpr KindSetting layered_variant =
+    setting::choice("variant", std::span(variant_options).first(2),
                     "base: tent at levels 0 and 1; smooth: at every level, which hides the grid", 1);
 
 constexpr std::string_view storage_options[] = {"half", "full"};
@@ -57,7 +65,8 @@ constexpr Port tiles_ports[] = {
      "uvec2",
      "for each level the index of its first entry and their number, then the entries: tile x in bits 0-14, y "
      "in bits "
-     "15-29, bit 31 = copy only; which of 3x3 tiles can hold surface, in bits 0-8 those of the finer level "
+     "15-29, bit 30 = all pixels have subsurface, bit 31 = copy only; which of 3x3 tiles can hold surface, "
+     "in bits 0-8 those of the finer level "
      "that the "
      "tile reduces, in bits 9-17 those around it",
      {}},
@@ -91,6 +100,20 @@ constexpr Port setup_ports[] = {
     {"surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
 constexpr KindSetting setup_settings[] = {setting::texturing, storage};
+
+constexpr Port halve_ports[] = {
+    setup_ports[0],
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::albedo,
+    level_tiles,
+    level_arguments,
+    {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
+    {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
+};
+constexpr KindSetting halve_settings[] = {level_setting(1, "that is written", 1), setting::texturing,
+                                          storage};
 
 constexpr Port down_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of the finer level", {}},
@@ -126,6 +149,14 @@ constexpr Port gather_ports[] = {
      "rgb scattered light where there is subsurface, undefined elsewhere; a = confidence", light_formats},
 };
 constexpr KindSetting gather_settings[] = {variant, storage};
+
+constexpr Port half_gather_ports[] = {
+    setup_ports[0],  port::material,  port::depth, port::scatter_scale, port::albedo,
+    gather_ports[2], gather_ports[3], level_tiles, level_arguments,     gather_ports[6],
+};
+
+constexpr KindSetting layered_up_settings[] = {level_setting(1, "that is written"), layered_variant, storage};
+constexpr KindSetting layered_gather_settings[] = {layered_variant, storage};
 
 // With two layers a texel of levels from 1 on: ports of the second one beside those of the first.
 constexpr std::string_view second_doc = "the same of the second layer, what lies off the first; id 0 = none";
@@ -227,6 +258,30 @@ const PassKind sap_gather_kind{
     .side_effects = false,
 };
 
+const PassKind sap_halve_kind{
+    .name = "subsurface.sap_halve",
+    .shader = "subsurface_sap_halve",
+    .doc = "Level 1 of the surface-aware pyramid straight from the view: 2x2 pixels of one surface a texel. "
+           "Takes the place of subsurface.sap_setup and the first subsurface.sap_down.",
+    .ports = halve_ports,
+    .settings = halve_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .arguments_entry = "level",
+};
+
+const PassKind sap_gather_half_kind{
+    .name = "subsurface.sap_gather_half",
+    .shader = "subsurface_sap_gather_half",
+    .doc =
+        "As subsurface.sap_gather, above subsurface.sap_halve: a pixel's own light at full resolution, all "
+        "that comes from others at half of it.",
+    .ports = half_gather_ports,
+    .settings = setup_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
 const PassKind sap_down_layered_kind{
     .name = "subsurface.sap_down_layered",
     .shader = "subsurface_sap_down_layered",
@@ -243,7 +298,7 @@ const PassKind sap_up_layered_kind{
     .shader = "subsurface_sap_up_layered",
     .doc = "As subsurface.sap_up, of both layers: each takes of another texel the layer nearer to it.",
     .ports = layered_up_ports,
-    .settings = up_settings,
+    .settings = layered_up_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
     .arguments_entry = "level",
@@ -254,7 +309,7 @@ const PassKind sap_gather_layered_kind{
     .shader = "subsurface_sap_gather_layered",
     .doc = "As subsurface.sap_gather, from two layers.",
     .ports = layered_gather_ports,
-    .settings = gather_settings,
+    .settings = layered_gather_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
 };

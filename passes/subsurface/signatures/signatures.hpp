@@ -13,8 +13,8 @@ extern const PassKind burley_kind, fixed_kind, separable_kind;                  
 extern const PassKind afis_kind, guided_kind, afis_tiles_kind;                    // afis_signatures.cpp
 extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind; // pyramid_signatures.cpp
 extern const PassKind sap_tiles_kind, sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind,
-    sap_down_layered_kind, sap_up_layered_kind,
-    sap_gather_layered_kind;                                            // sap_signatures.cpp
+    sap_down_layered_kind, sap_up_layered_kind, sap_gather_layered_kind, sap_halve_kind,
+    sap_gather_half_kind;                                               // sap_signatures.cpp
 extern const PassKind blend_kind, brightness_kind, residual_kind;       // residual_signatures.cpp
 extern const PassKind doubt_kind, contrast_kind, allot_kind, mend_kind; // allot_signatures.cpp
 extern const PassKind probe_kind;                                       // probe_signature.cpp
@@ -39,13 +39,13 @@ inline constexpr Port scatter_scale{"scatter_scale",
                                     {}};
 inline constexpr Port albedo{
     "albedo", Usage::sampled_image, true, "texture2D", "diffuse albedo, linear; unbound = 1", {}};
-inline constexpr Port tiles{
-    "tiles",
-    Usage::storage_buffer_read,
-    false,
-    "uint",
-    "element 0 = number of tiles; then packed tiles: x in bits 0-14, y in bits 15-29, bit 31 = copy only",
-    {}};
+inline constexpr Port tiles{"tiles",
+                            Usage::storage_buffer_read,
+                            false,
+                            "uint",
+                            "element 0 = number of tiles; then packed tiles: x in bits 0-14, y in bits "
+                            "15-29, bit 30 = all pixels have subsurface, bit 31 = copy only",
+                            {}};
 inline constexpr Port arguments{"arguments",
                                 Usage::indirect_arguments,
                                 false,

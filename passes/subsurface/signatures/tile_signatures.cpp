@@ -27,7 +27,7 @@ constexpr Port classify_ports[] = {
      false,
      "uint",
      "per tile of the render rectangle, row by row: 0 = no subsurface, 1 = scatters, 2 = below a pixel "
-     "(copy), 3 = flat in light (copy)",
+     "(copy), 3 = flat in light (copy); 4 more where all 64 pixels have subsurface",
      {}},
     {"light_range", Usage::storage_buffer_write, true, "uvec4", light_range_doc, {}},
     {"light_cells", Usage::storage_buffer_write, true, "uvec4", light_cells_doc, {}},

@@ -1,0 +1,65 @@
+#version 460
+// Level 1 of the surface-aware pyramid straight from the view: of 2x2 pixels those that lie on one surface. Level 0 is not
+// stored. An invocation reads the 4x4 pixels of its texels once, whose patches see no pixel beyond these.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "subsurface_sap_halve.bindings.glsl"
+#include "environment.glsl"
+#include "sap_pixel.glsl"
+#define SAP_LAYERS 1
+#define SAP_BOX
+#include "sap_down.glsl"
+
+uint pixel_profile[side * side];
+float pixel_depth[side * side]; // mm, 0 where there is nothing
+
+float depth_of_profile(int x, int y, uint id) {
+  bool inside = x >= 0 && y >= 0 && x < side && y < side;
+  int index = inside ? y * side + x : 0;
+  return inside && pixel_profile[index] == id ? pixel_depth[index] : 0.0;
+}
+
+void read_pixels(texel_block block, ivec2 first) {
+  [[unroll]] for (int i = 0; i < side * side; ++i) {
+    ivec2 pixel = 2 * first + ivec2(i % side, i / side), texel = texel_of(pixel);
+    uint id = 0u;
+    float depth = 0.0;
+    if (inside_rect(pixel) && tile_written(block.children, (pixel >> 3) - 2 * block.tile + 1))
+      id = texelFetch(material_image, texel, 0).r;
+    if (id != 0u)
+      depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    pixel_profile[i] = id;
+    pixel_depth[i] = depth;
+  }
+  [[unroll]] for (int i = 0; i < side * side; ++i) {
+    ivec2 pixel = 2 * first + ivec2(i % side, i / side);
+    int x = i % side, y = i / side;
+    uint id = pixel_profile[i];
+    children[i] = sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u);
+    child_light[i] = vec4(0.0);
+    if (id != 0u && pixel_depth[i] > 0.0) {
+      patch_neighbours around = patch_neighbours(vec2(depth_of_profile(x - 1, y, id), depth_of_profile(x, y - 1, id)),
+                                                 vec2(depth_of_profile(x + 1, y, id), depth_of_profile(x, y + 1, id)));
+      children[i] = sap_pixel_surface(pixel, id, pixel_depth[i], around, child_light[i].a);
+      child_light[i].rgb = sap_pixel_light(texel_of(pixel));
+    }
+  }
+}
+
+void main() {
+  texel_block block;
+  if (!listed_block(1, block))
+    return;
+  ivec2 first = block.first - 1;
+  read_pixels(block, first);
+  [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
+    ivec2 at = first + ivec2(k % block_width, k / block_width);
+    if (!sap_inside(at, 1))
+      continue;
+    vec4 light;
+    uvec4 bits;
+    reduce(k, 1.0, light, bits);
+    imageStore(coarse_light_image, sap_address(at, 1), settings.storage == STORAGE_FULL ? light : round_to_half(light));
+    imageStore(coarse_surface_image, sap_address(at, 1), bits);
+  }
+}
