@@ -28,6 +28,7 @@ const Technique separable_17{"separable_17", "separable", {{"taps", "\"17\""}}};
 const Technique separable_25{"separable_25", "separable", {{"taps", "\"25\""}}};
 const Technique sap_base{"sap_base", "sap", {{"variant", "\"base\""}}};
 const Technique sap_smooth{"sap_smooth", "sap", {{"variant", "\"smooth\""}}};
+const Technique sap_half{"sap_half", "skin", {{"variant", "\"half\""}}};
 const Technique sap_layered{"sap_layered", "sap_layered", {}};
 
 // Filtered reads take their weights from coordinates over the image's size, which round.
@@ -46,8 +47,8 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(Laws, EveryTechnique,
                          testing::Values(burley_64, separable_11, separable_17, separable_25, sap_base,
-                                         sap_smooth, sap_layered, pyramid, fixed_16, fixed_published,
-                                         jimenez_17),
+                                         sap_smooth, sap_half, sap_layered, pyramid, fixed_16,
+                                         fixed_published, jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
 // All but the plain pyramid know other profiles and depth.
@@ -55,7 +56,7 @@ class SurfaceTechnique : public EveryTechnique {};
 
 INSTANTIATE_TEST_SUITE_P(Laws, SurfaceTechnique,
                          testing::Values(burley_64, separable_11, separable_17, separable_25, sap_base,
-                                         sap_smooth, sap_layered, fixed_16, jimenez_17),
+                                         sap_smooth, sap_half, sap_layered, fixed_16, jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {

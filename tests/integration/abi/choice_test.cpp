@@ -58,7 +58,7 @@ TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
   EXPECT_STREQ(choice.technique, "sap smooth");
   EXPECT_EQ(choice.budget_ms, 0);
   EXPECT_EQ(choice.outcome_count,
-            8u); // sap and hybrid with two variants, separable with three numbers of taps, off
+            9u); // sap with three variants, hybrid with two, separable with three numbers of taps, off
 }
 
 TEST_F(Choice, EachBudgetGetsTheLeastErrorThatFits) {
