@@ -24,7 +24,10 @@ void main() {
     if (texelFetch(material_image, texel, 0).r != 0u) {
       vec4 light = texelFetch(scattered_image, texel, 0);
       float lacks = clamp((settings.below - light.a) / max(settings.below, 1e-6), 0.0, 1.0);
-      float seen = clamp(dot(light.rgb, luminance) * frame.exposure, 0.0, 4.0);
+      float stake = dot(light.rgb, luminance);
+      if (has_light())
+        stake = abs(stake - dot(texelFetch(light_image, texel, 0).rgb, luminance));
+      float seen = clamp(stake * frame.exposure, 0.0, 4.0);
       float matters = has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
       atomicAdd(sum, uint(lacks * seen * matters * doubt_steps + 0.5));
     }

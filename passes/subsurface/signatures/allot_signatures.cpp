@@ -27,6 +27,8 @@ constexpr KindSetting below =
 constexpr Port doubt_ports[] = {
     {"scattered", Usage::sampled_image, false, "texture2D",
      "of the pyramid; rgb scattered light, a = confidence", light_formats},
+    {"light", Usage::sampled_image, true, "texture2D",
+     "before it scattered: what did not change by that counts less; unbound: all counts alike", light_formats},
     port::material,
     {"importance", Usage::sampled_image, true, "texture2D",
      "how much an error matters to the host, 0 to 1; unbound: 1 everywhere", importance_formats},

@@ -31,6 +31,7 @@ constexpr const char* unit_times = R"({ "dermis_calibration": 1, "device": "inve
 constexpr const char* painted = R"({ "dermis_overlay": 1, "edits": [
   { "set": "/imports/painted", "to": { "format": "rgba16f", "size": "view" } },
   { "set": "/passes/doubt/read/scattered", "to": "painted" },
+  { "remove": "/passes/doubt/read/light" },
   { "set": "/passes/doubt/set/below", "to": 1 },
   { "set": "/passes/combine/read/scattered", "to": "painted" },
   { "set": "/passes/combine/read/tiles", "to": "sampled_tiles" },
@@ -52,11 +53,13 @@ struct Hybrid : DermisTest {
 
   const char* file = "configs/graphs/hybrid.json";
   std::string times = unit_times;
+  std::vector<std::string> overlays;
 
   // A surface in steps, which the pyramid is unsure of.
   void make_hybrid() {
     GraphOptions options;
     options.text = read_text(file);
+    options.overlays = overlays;
     graph = make_graph(options);
     ASSERT_NE(graph, nullptr);
     make_images(graph);
@@ -168,6 +171,26 @@ TEST_F(Hybrid, WithHalfTheBudgetTilesThatMatterKeepTheirPictureAndOthersPay) {
   // whatever the truth is. Without the column of tiles whose share falls towards tiles that were given none.
   EXPECT_EQ(rms(half, all, 0, matters - 8), 0);
   EXPECT_GT(rms(half, all, matters + 8, side), 0.2 * rms(none, all, matters + 8, side));
+}
+
+TEST_F(Hybrid, TilesWhoseLightScatteringDoesNotChangeGetNoSamples) {
+  const auto sampled = [&] {
+    last_frame = 0;
+    make_hybrid();
+    fill("lighting", [](uint32_t x, uint32_t y) {
+      if (x < 48) return x % 16 == 0 && y % 16 == 0 ? 0.505f : 0.5f; // not flat, and almost
+      return float((x * 37 + y * 61) % 97) / 64.0f;
+    });
+    set_units(100000);
+    const dermis_choice choice = run_frame();
+    return choice.sampled_tiles[0] + choice.sampled_tiles[1] + choice.sampled_tiles[2];
+  };
+  const uint32_t some = sampled();
+  overlays = {R"({ "dermis_overlay": 1, "edits": [ { "remove": "/passes/doubt/read/light" } ] })"};
+  const uint32_t all = sampled();
+  EXPECT_EQ(all, 64u); // the pyramid is as unsure left as right
+  EXPECT_GE(some, 16u);
+  EXPECT_LE(some, 48u); // and those beside the border
 }
 
 // Energy of the rows' differences at frequency k of 64.
