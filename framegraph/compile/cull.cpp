@@ -95,6 +95,19 @@ struct Culler {
            next->trouble == Use::Trouble::none;
   }
 
+  // Whether the pass has no other port to go on with. Of several such ports the first is told.
+  bool needs_it(const Use& use) const {
+    const PassKind& kind = c.kind(use.pass);
+    if (!kind.ports[use.port].optional) return true;
+    if (!is_one_of(kind, use.port)) return false;
+    for (uint32_t u = c.first_use[use.pass.value]; u < c.first_use[use.pass.value + 1]; ++u) {
+      const Use& other = c.uses[u];
+      if (!is_one_of(kind, other.port)) continue;
+      if (other.trouble == Use::Trouble::none || &other < &use) return false;
+    }
+    return true;
+  }
+
   // A port of a pass that runs has nothing behind it: fine for an optional port, except for ambiguity.
   void examine(const Use& use) {
     const Port& port = c.kind(use.pass).ports[use.port];
@@ -105,7 +118,7 @@ struct Culler {
                 use.asked.value);
       return;
     }
-    if (missing && port.optional) {
+    if (missing && !needs_it(use)) {
       c.because(Reason::About::pass, use.pass.value, Reason::Why::port_unbound, use.port, use.asked.value);
       return;
     }

@@ -1,5 +1,7 @@
 #include "framegraph/model/pass_kind.hpp"
 
+#include <algorithm>
+
 namespace dermis {
 namespace {
 
@@ -39,6 +41,10 @@ int find_port(const PassKind& kind, std::string_view name, PortSide side) {
 
 int find_setting(const PassKind& kind, std::string_view name) {
   return index_of(kind.settings, name);
+}
+
+bool is_one_of(const PassKind& kind, uint32_t port) {
+  return std::find(kind.one_of.begin(), kind.one_of.end(), kind.ports[port].name) != kind.one_of.end();
 }
 
 } // namespace dermis

@@ -74,6 +74,7 @@ struct PassKind {
   // first.
   std::string_view arguments_entry = "";
   std::span<const PortNeed> needs = {}; // also of ports that the kind does not have; without one: any size
+  std::span<const std::string_view> one_of = {}; // optional ports of which at least one has to be bound
 };
 
 // The kinds a graph may use. Order of registration is the order of KindId; names are unique.
@@ -97,5 +98,7 @@ PortSide side_of(const Port& port);
 int find_port(const PassKind& kind, std::string_view name);
 int find_port(const PassKind& kind, std::string_view name, PortSide side);
 int find_setting(const PassKind& kind, std::string_view name);
+
+bool is_one_of(const PassKind& kind, uint32_t port); // of PassKind::one_of
 
 } // namespace dermis

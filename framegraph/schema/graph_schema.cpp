@@ -62,8 +62,16 @@ bool write_ports(JsonWriter& out, const PassKind& kind, PortSide side) {
       out.value(name);
     out.close();
   }
+  bool one_of = false;
+  for (uint32_t i = 0; i < kind.ports.size(); ++i) {
+    if (side_of(kind.ports[i]) != side || !is_one_of(kind, i)) continue;
+    if (!one_of) out.key("anyOf").open_array(true);
+    one_of = true;
+    out.open_object(true).key("required").open_array(true).value(kind.ports[i].name).close().close();
+  }
+  if (one_of) out.close();
   out.close();
-  return !required.empty();
+  return one_of || !required.empty();
 }
 
 void write_kind(JsonWriter& out, const PassKind& kind) {

@@ -103,6 +103,13 @@ std::string format_decibels(double decibels) {
   return fmt::format("{:.2f} dB", decibels);
 }
 
+std::string format_list(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words)
+    text.append(text.empty() ? "" : ", ").append(word);
+  return text;
+}
+
 std::string format_count(uint64_t count, std::string_view unit, bool being) {
   const bool one = count == 1;
   return fmt::format("{} {}{}{}", count, unit, one ? "" : "s", !being ? "" : one ? " is" : " are");

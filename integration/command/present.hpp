@@ -31,10 +31,11 @@ struct Table {
 // Titles, a rule, rows; two spaces between columns, no trailing spaces; ends in a newline.
 std::string format_table(const Table& table);
 
-std::string format_milliseconds(double milliseconds); // "0.012 ms", "12.3 ms"
-std::string format_duration(double seconds);          // "4.2 s", "3 min 05 s"
-std::string format_bytes(uint64_t bytes);             // "512 B", "3.2 MiB"
-std::string format_decibels(double decibels);         // "41.23 dB"
+std::string format_milliseconds(double milliseconds);           // "0.012 ms", "12.3 ms"
+std::string format_duration(double seconds);                    // "4.2 s", "3 min 05 s"
+std::string format_bytes(uint64_t bytes);                       // "512 B", "3.2 MiB"
+std::string format_decibels(double decibels);                   // "41.23 dB"
+std::string format_list(const std::vector<std::string>& words); // "sap, hybrid, off"
 // "1 frame", "8 frames"; as the start of a sentence "1 frame is", "8 frames are".
 std::string format_count(uint64_t count, std::string_view unit, bool being = false);
 

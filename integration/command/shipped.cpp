@@ -7,13 +7,13 @@ namespace dermis::tools {
 
 std::string shipped(const std::string& path) {
   namespace fs = std::filesystem;
-  constexpr std::string_view sources = "configs/";
+  const auto prefix = std::string_view(path).substr(0, path.find('/') + 1);
   std::error_code error;
-  if (fs::exists(path, error) || !path.starts_with(sources)) return path;
+  if (fs::exists(path, error) || (prefix != "configs/" && prefix != "tests/")) return path;
   const fs::path program = fs::read_symlink("/proc/self/exe", error); // Linux; elsewhere sources alone
   if (error) return path;
   const fs::path installed =
-      program.parent_path().parent_path() / "share" / "dermis" / path.substr(sources.size());
+      program.parent_path().parent_path() / "share" / "dermis" / path.substr(prefix.size());
   return fs::exists(installed, error) ? installed.string() : path;
 }
 

@@ -221,10 +221,11 @@ struct CompareOptions {
 ExitCode compare(const Session& session, const CompareOptions& options);
 
 struct BenchCompileOptions {
-  std::string shapes = "tests/benchmark/shapes.json";
+  std::string shapes = shipped("tests/benchmark/shapes.json");
   std::string graphs;     // folder of graph files to measure instead; "": none
   std::string json, html; // files to write; "": none
   bool optimize = false;  // also the level that takes seconds a graph
+  bool quick = false;     // smaller and fewer, to see that it runs: in the suites below as well
 };
 ExitCode bench_compile(const Session& session, const BenchCompileOptions& options);
 
@@ -241,12 +242,13 @@ struct BenchAllOptions {
   std::string head;                        // folder of the head scan; "": its scenes are left out
   std::string cache = "build/bench_truth"; // folder for references
   bool again = false;                      // also what an earlier run has measured
+  bool quick = false;
 };
-std::string bench_suite_names(); // "compile, record, ..."
+std::vector<std::string> bench_suite_names(); // "record", "skip", ...
 ExitCode bench_all(const Session& session, const BenchAllOptions& options);
 
 struct BenchErrorTimeOptions {
-  std::string file = "tests/benchmark/error_time.json"; // what is measured
+  std::string file = shipped("tests/benchmark/error_time.json"); // what is measured
   Size size{640, 360};
   std::string json, csv, html;             // files to write; "": none
   std::string head;                        // folder of the head scan; "": its scenes are left out
@@ -254,17 +256,18 @@ struct BenchErrorTimeOptions {
   std::vector<std::string> scenes;         // only these; empty: all
   std::vector<std::string> techniques;     // likewise
   std::string cache = "build/bench_truth"; // folder for references; "": none is kept
+  bool quick = false;
 };
 ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& options);
 
 struct BenchTruthOptions {
-  std::string file = "tests/benchmark/truth.json"; // techniques and tolerances
-  std::string json, csv, html;                     // files to write; "": none
+  std::string file = shipped("tests/benchmark/truth.json"); // techniques and tolerances
+  std::string json, csv, html;                              // files to write; "": none
 };
 ExitCode bench_truth(const Session& session, const BenchTruthOptions& options);
 
 struct BenchDynamicOptions {
-  std::string file = "tests/benchmark/dynamic.json"; // what is measured
+  std::string file = shipped("tests/benchmark/dynamic.json"); // what is measured
   Size size{320, 180};
   uint32_t frames = 0;                       // of each sequence; 0: as the file says
   std::string json, csv, html;               // files to write; "": none
@@ -272,6 +275,7 @@ struct BenchDynamicOptions {
   std::vector<std::string> scenes, framings; // only these; empty: all
   std::vector<std::string> techniques;       // likewise
   std::string cache = "build/bench_truth";   // folder for references; "": none is kept
+  bool quick = false;
 };
 ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& options);
 
@@ -282,10 +286,11 @@ struct BenchSupplementOptions {
 ExitCode bench_supplement(const Session& session, const BenchSupplementOptions& options);
 
 struct BenchStabilityOptions {
-  std::string file = "tests/benchmark/stability.json"; // techniques
-  std::vector<std::string> cases, techniques;          // only these; empty: all
-  uint64_t updates = 1000000;                          // of moving values in half floats
-  std::string json, html;                              // files to write; "": none
+  std::string file = shipped("tests/benchmark/stability.json"); // techniques
+  std::vector<std::string> cases, techniques;                   // only these; empty: all
+  uint64_t updates = 1000000;                                   // of moving values in half floats
+  std::string json, html;                                       // files to write; "": none
+  bool quick = false;
 };
 ExitCode bench_stability(const Session& session, const BenchStabilityOptions& options);
 
@@ -297,6 +302,7 @@ struct BenchBudgetOptions {
   uint32_t frames = 40;                    // judged, of each run
   std::string json, html;                  // files to write; "": none
   std::string cache = "build/bench_truth"; // folder for references; "": none is kept
+  bool quick = false;
 };
 ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options);
 
@@ -305,6 +311,7 @@ struct BenchSkipOptions {
   Size size{480, 270};
   uint32_t repetitions = 15;
   std::string json, html; // files to write; "": none
+  bool quick = false;
 };
 ExitCode bench_skip(const Session& session, const BenchSkipOptions& options);
 

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -51,6 +52,35 @@ TEST_F(BenchAll, ASuiteThatFailsIsToldFromOneWhoseRowsMissAndLeavesNoOldPage) {
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.out, HasSubstr("failed"));
   EXPECT_THAT(read("out/index.html"), HasSubstr("<td class=t>failed"));
+}
+
+TEST_F(BenchAll, ARunThatWasStoppedGoesOnAndAQuickOneIsNotTakenForAWholeOne) {
+  std::vector<std::string> arguments = {"bench",          "all",       "--quick",
+                                        "--out",          path("out"), "--suites",
+                                        "record,compile", "--cache",   path("cache")};
+  RunOptions stopped;
+  stopped.interrupt_after = path("out/index.html"); // which is there after the first suite
+  EXPECT_EQ(run(arguments, stopped).exit_code, 130);
+  EXPECT_THAT(files("out"), testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
+
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("1 of 2: record is there from an earlier run"));
+  EXPECT_THAT(read("out/index.html"), HasSubstr("dermis bench compile --quick --json"));
+  EXPECT_THAT(read("out/compile.html"), HasSubstr("the figures say nothing"));
+  // Every row that the whole suite has, to graphs of 10,000 passes.
+  const nlohmann::json rows = nlohmann::json::parse(read("out/compile.json"))["rows"];
+  EXPECT_EQ(rows.size(), 50u);
+  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row["passes"] == 10000; }),
+            11);
+
+  nlohmann::json state = nlohmann::json::parse(read("out/index.json"));
+  ASSERT_EQ(state["suites"][1]["line"],
+            "dermis bench compile --quick --json compile.json --html compile.html");
+  state["suites"][1]["line"] =
+      "dermis bench compile --json compile.json --html compile.html"; // of a whole run
+  std::ofstream(path("out/index.json")) << state;
+  EXPECT_THAT(run(arguments).out, Not(HasSubstr("compile is there")));
 }
 
 TEST_F(BenchAll, ASuiteThatIsNotThereIsAUsageErrorWithASuggestion) {

@@ -115,6 +115,19 @@ std::vector<std::string> validation_environment() {
           "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT"};
 }
 
+std::vector<std::string> verbs_of_help(const std::string& help) {
+  std::vector<std::string> verbs;
+  std::istringstream lines(help);
+  bool listed = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (listed && line.empty()) break;
+    if (listed && line.starts_with("  ") && line[2] != ' ')
+      verbs.push_back(line.substr(2, line.find(' ', 2) - 2));
+    listed = listed || line.starts_with("Subcommands");
+  }
+  return verbs;
+}
+
 bool is_json(const std::string& text) {
   Diagnostics diagnostics;
   return parse_document("answer", text, diagnostics).has_value();

@@ -43,6 +43,9 @@ private:
 // synchronization included; what it finds goes to standard output.
 std::vector<std::string> validation_environment();
 
+// The verbs that a help text lists: what stands between "Subcommands:" and the next empty line.
+std::vector<std::string> verbs_of_help(const std::string& help);
+
 // True if `text` is one JSON document and nothing else.
 bool is_json(const std::string& text);
 

@@ -41,6 +41,12 @@ TEST_F(Shell, BashCompletesVerbsOptionsAndValues) {
   EXPECT_EQ(offered("dermis bench all --agai", 3), "--again\n");
   EXPECT_EQ(offered("dermis graph --color n", 3), "never\n");
   EXPECT_EQ(offered("dermis completion z", 2), "zsh\n");
+  EXPECT_EQ(offered("dermis schema prof", 2), "profile\n");
+  EXPECT_EQ(offered("dermis explain D029", 2), "\n");
+  EXPECT_EQ(offered("dermis explain D022", 2),
+            "D0220\nD0221\nD0222\nD0223\nD0224\nD0225\nD0226\nD0227\nD0228\nD0229\n");
+  EXPECT_EQ(offered("dermis explain configs/graphs/sap.j", 2), "configs/graphs/sap.json\n");
+  EXPECT_EQ(offered("dermis bench all --suites rec", 4), "record\n");
   EXPECT_THAT(offered("dermis graph configs/gra", 2), HasSubstr("configs/graphs"));
   EXPECT_THAT(offered("dermis render configs/scenes/bust.json --graph configs/graphs/sap.", 4),
               HasSubstr("configs/graphs/sap.json"));
@@ -59,17 +65,25 @@ TEST_F(Shell, OtherShellsReadTheirScripts) {
   if (!tried) GTEST_SKIP() << "neither zsh nor fish is installed";
 }
 
+TEST_F(Shell, OtherShellsOfferNamesOfSchemasAndCodesOfMessages) {
+  const std::string zsh = run({"completion", "zsh"}).out;
+  EXPECT_THAT(zsh, HasSubstr("'*:argument:(graph fragment "));
+  EXPECT_THAT(zsh, HasSubstr("'*:argument:_alternative \"files:file:_files\" \"words:word:(D0101 "));
+  ASSERT_EQ(run({"completion", "fish", "--out", path("fish")}).exit_code, 0);
+  if (!has("fish")) GTEST_SKIP() << "fish is not installed";
+  int code = 0;
+  const auto offered_by_fish = [&](const std::string& line) {
+    return shell("fish -c 'source \"" + path("fish") + "\"; complete -C \"" + line + "\"'", code);
+  };
+  EXPECT_EQ(offered_by_fish("dermis schema prof"), "profile\n");
+  EXPECT_EQ(offered_by_fish("dermis explain D0103"), "D0103\n");
+}
+
 TEST_F(Shell, ScriptsAndManualNameEveryVerbOfTheHelp) {
   const std::string manual = run({"man"}).out;
   const std::string fish = run({"completion", "fish"}).out, zsh = run({"completion", "zsh"}).out;
-  std::istringstream help(run({"--help"}).out);
-  size_t verbs = 0;
-  bool listed = false;
-  for (std::string line; std::getline(help, line);) {
-    if (line.starts_with("Subcommands")) listed = true;
-    if (!listed || !line.starts_with("  ") || line[2] == ' ') continue;
-    const std::string verb = line.substr(2, line.find(' ', 2) - 2);
-    ++verbs;
+  const std::vector<std::string> verbs = verbs_of_help(run({"--help"}).out);
+  for (const std::string& verb : verbs) {
     EXPECT_THAT(fish, HasSubstr(" -a " + verb + " ")) << verb;
     EXPECT_THAT(zsh, HasSubstr("        '" + verb + ":")) << verb;
     std::string escaped; // roff's hyphens
@@ -77,7 +91,7 @@ TEST_F(Shell, ScriptsAndManualNameEveryVerbOfTheHelp) {
       escaped += c == '-' ? std::string("\\-") : std::string(1, c);
     EXPECT_NE(manual.find(".SS \"" + escaped), std::string::npos) << verb;
   }
-  EXPECT_GE(verbs, 15u);
+  EXPECT_GE(verbs.size(), 15u);
   EXPECT_THAT(manual, HasSubstr("\\fB\\-\\-html\\fR \\fIFILE\\fR"));
   EXPECT_THAT(manual, HasSubstr("dermis bench all \\-\\-out build/bench"));
 }

@@ -62,7 +62,8 @@ unset LD_LIBRARY_PATH
 "$prefix/bin/dermis" validate "$prefix/share/dermis/graphs/sap.json"
 # Scenes, profiles and graphs that stand for themselves are found where they were installed, from any folder.
 (cd "$scratch" && "$prefix/bin/dermis" report-bug "$prefix/share/dermis/graphs/sap.json" --size 32x18 --count 1 --out bug &&
-  "$prefix/bin/dermis" sheet --graphs sap --profiles skin --size 32x18 --out sheet.png)
+  "$prefix/bin/dermis" sheet --graphs sap --profiles skin --size 32x18 --out sheet.png &&
+  "$prefix/bin/dermis" bench stability --techniques burley --cases light_nan --quick --quiet)
 
 # A host that links the static library sees the interface and nothing else.
 others=$(nm -g --defined-only "$lib/libdermis.a" | awk 'NF == 3 { print $3 }' | grep -v '^dermis_' || true)

@@ -2,20 +2,14 @@
 // node viewer_test.mjs NODE_MODULES CHROMIUM DERMIS OUT
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { join, resolve } from 'node:path';
+import { statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-
-const [modules, executablePath, dermis, out] = process.argv.slice(2);
-const { chromium } = createRequire(join(resolve(modules), '..', 'package.json'))('playwright-core');
+import { dermis, finish, law, open as open_page, out, shade, shot } from './browser.mjs';
 
 const most_bytes = 1.5 * 1024 * 1024, most_seconds = 3; // of a page; from navigation to a drawn graph of 1,000 passes
 const passes_of_large = 1000;
 const hostile = '</script><img src=x onerror="window.hurt=1"><!--';
-
-rmSync(out, { recursive: true, force: true });
-mkdirSync(out, { recursive: true });
 
 function make_page(name, ...options) {
   const file = join(out, `${name}.html`);
@@ -56,28 +50,8 @@ function write_frame_report() {
   return file;
 }
 
-const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
-
-// A page whose every error counts, offline.
-async function open(page_file, scheme = 'light') {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: scheme, offline: true });
-  const page = await context.newPage();
-  page.setDefaultTimeout(10000);
-  const problems = [];
-  page.on('pageerror', (error) => problems.push(String(error)));
-  page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) problems.push(message.text()); });
-  page.on('request', (request) => { if (!request.url().startsWith('file:') && !/^(data|blob):/.test(request.url())) problems.push(`asks for ${request.url()}`); });
-  const before = performance.now();
-  await page.goto(page_file.url);
-  await page.waitForSelector('body[data-ready=true]');
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // it is drawn
-  return { page, problems, seconds: (performance.now() - before) / 1000, close: () => context.close() };
-}
-
-const laws = [];
-const law = (name, work) => laws.push([name, work]);
+const open = (page_file, scheme = 'light') => open_page(page_file.url, scheme, 'body[data-ready=true]');
 const skin = () => ['configs/graphs/skin.json'];
-const shot = (page, name) => page.screenshot({ path: join(out, `${name}.png`) });
 
 law('the page is small, opens without an error and asks nobody for anything', async () => {
   for (const graph of ['skin', 'hybrid', 'sap_residual']) {
@@ -215,8 +189,7 @@ law('light and dark are both drawn', async () => {
   for (const scheme of ['light', 'dark']) {
     const view = await open(make_page(`shown_${scheme}`, ...skin()), scheme);
     const { page } = view;
-    const shade = (element) => page.evaluate((one) => getComputedStyle(document.querySelector(one)).backgroundColor.match(/\d+/g).map(Number).reduce((a, b) => a + b, 0), element);
-    assert.equal(await shade('body') > 3 * 128, scheme === 'light');
+    assert.equal(await shade(page, 'body') > 3 * 128, scheme === 'light');
     await page.locator('#list button[data-name=gather]').click();
     await shot(page, `graph_${scheme}`);
     for (const tab of ['barriers', 'source']) {
@@ -224,23 +197,12 @@ law('light and dark are both drawn', async () => {
       await shot(page, `${tab}_${scheme}`);
     }
     await page.locator('#theme').click(); // auto -> light
-    assert.equal(await shade('body') > 3 * 128, true);
+    assert.equal(await shade(page, 'body') > 3 * 128, true);
     await page.locator('#theme').click(); // -> dark
-    assert.equal(await shade('body') > 3 * 128, false);
+    assert.equal(await shade(page, 'body') > 3 * 128, false);
     assert.deepEqual(view.problems, []);
     await view.close();
   }
 });
 
-let failed = 0;
-for (const [name, work] of laws) {
-  try {
-    await work();
-    console.log(`ok: ${name}`);
-  } catch (problem) {
-    failed += 1;
-    console.log(`FAILED: ${name}\n${problem.stack}`);
-  }
-}
-await browser.close();
-process.exit(failed === 0 ? 0 : 1);
+await finish();

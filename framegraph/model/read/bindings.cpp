@@ -71,11 +71,23 @@ public:
                                 object_.what(), kind_->name, port.name,
                                 side_of(port) == PortSide::read ? "read" : "write", port.doc));
     }
+    report_none_of();
   }
 
   bool writes_known() const { return writes_known_; }
 
 private:
+  void report_none_of() {
+    if (kind_->one_of.empty()) return;
+    for (uint32_t i = 0; i < kind_->ports.size(); ++i)
+      if (bound_[i] && is_one_of(*kind_, i)) return;
+    const Port& first = kind_->ports[static_cast<size_t>(find_port(*kind_, kind_->one_of.front()))];
+    reader_.error(DiagnosticId::missing_port, pass_.where,
+                  fmt::format("{} of kind '{}' needs something at one of its ports {} under \"{}\"",
+                              object_.what(), kind_->name, list_words(kind_->one_of),
+                              side_of(first) == PortSide::read ? "read" : "write"));
+  }
+
   // False when what is bound could not be read.
   bool read_one(PortSide side, NodeId node) {
     const int port = find(side, node);

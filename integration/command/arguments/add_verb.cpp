@@ -80,6 +80,13 @@ void add_common(CLI::App& verb, Session& session, bool json_is_file) {
       ->group(group);
 }
 
+CLI::App& add_group(CLI::App& app, const char* name, const char* what, const char* example) {
+  CLI::App& group = *app.add_subcommand(name, what);
+  group.require_subcommand(1);
+  group.footer(fmt::format("Example:\n  {}", example));
+  return group;
+}
+
 std::string parse_size(const std::string& text, uint32_t& width, uint32_t& height) {
   const std::string expected =
       fmt::format("expected WIDTHxHEIGHT such as 640x360, each 1..{}, found '{}'", max_side, text);

@@ -34,6 +34,9 @@ CLI::Option* add_choice(CLI::App& verb, const char* option, Value& value,
       ->check(CLI::IsMember(names));
 }
 
+// A verb that has verbs below it.
+CLI::App& add_group(CLI::App& app, const char* name, const char* what, const char* example);
+
 // The verb's options live as long as the function that runs it.
 template <class Options, class Declare>
 void add_verb(CLI::App& app, Invocation& invocation, const char* name, const char* what, const char* example,

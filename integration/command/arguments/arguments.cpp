@@ -63,7 +63,9 @@ Invocation read_arguments(int argc, const char* const* argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("dermis {}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR,
                                                 DERMIS_VERSION_PATCH));
-  app.footer("Exit codes: 0 done; 1 the input has problems; 2 bad option or value; 3 no driver, unwritable "
+  app.footer("Example:\n"
+             "  dermis render configs/scenes/bust.json --graph configs/graphs/sap.json --out out/\n\n"
+             "Exit codes: 0 done; 1 the input has problems; 2 bad option or value; 3 no driver, unwritable "
              "output or\n"
              "missing package; 4 a defect of the program; 130 stopped by Ctrl-C.");
   add_text_verbs(app, invocation);

@@ -4,9 +4,18 @@
 #include "integration/command/session.hpp"
 
 #include <functional>
+#include <map>
 #include <string>
+#include <vector>
+
+namespace CLI {
+class Option;
+}
 
 namespace dermis::tools {
+
+// Words that completion offers for the value of an option, beside others that it takes.
+using OfferedWords = std::map<const CLI::Option*, std::vector<std::string>>;
 
 struct Invocation {
   Session session;
@@ -14,6 +23,7 @@ struct Invocation {
       run;             // empty: nothing to do (help, or a usage error that is in `message`)
   std::string help;    // asked for: goes to stdout
   std::string message; // usage error
+  OfferedWords offered;
 };
 
 Invocation read_arguments(int argc, const char* const* argv);

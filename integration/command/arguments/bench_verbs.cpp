@@ -15,6 +15,13 @@ void add_report_files(CLI::App& verb, std::string& json, std::string* csv, std::
   verb.add_option("--html", html, page)->type_name("FILE");
 }
 
+void add_quick(CLI::App& verb, bool& quick, const std::vector<const char*>& instead_of = {}) {
+  CLI::Option* flag = verb.add_flag(
+      "--quick", quick, "Small pictures and few repetitions: to see that it runs; its figures say nothing");
+  for (const char* option : instead_of)
+    flag->excludes(option);
+}
+
 void add_cache(CLI::App& verb, std::string& cache) {
   verb.add_option("--cache", cache, "Folder that keeps references [build/bench_truth]")->type_name("DIR");
 }
@@ -22,8 +29,8 @@ void add_cache(CLI::App& verb, std::string& cache) {
 } // namespace
 
 void add_bench_verbs(CLI::App& app, Invocation& invocation) {
-  CLI::App& bench = *app.add_subcommand("bench", "Measure the library on this machine");
-  bench.require_subcommand(1);
+  CLI::App& bench = add_group(app, "bench", "Measure the library on this machine",
+                              "dermis bench record --html build/bench_record.html");
   add_verb<BenchCompileOptions>(
       bench, invocation, "compile", "Time and memory of compiling drawn graphs, or those of a folder",
       "dermis bench compile --json build/bench_compile.json", bench_compile,
@@ -33,6 +40,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--graphs", options.graphs, "Measure the graph files of a folder instead")
             ->type_name("DIR");
         verb.add_flag("--optimize", options.optimize, "Also the packing level that takes seconds a graph");
+        add_quick(verb, options.quick);
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);
@@ -51,16 +59,20 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
   add_verb<BenchAllOptions>(
       bench, invocation, "all",
       "Every suite, with pages and an index of them; a run that was stopped goes on",
-      "dermis bench all --out build/bench", bench_all, [](CLI::App& verb, BenchAllOptions& options) {
+      "dermis bench all --out build/bench", bench_all,
+      [&invocation](CLI::App& verb, BenchAllOptions& options) {
         verb.add_option("--out,-o", options.out, "Folder for pages and rows")->required()->type_name("DIR");
-        verb.add_option("--suites", options.suites,
-                        fmt::format("Only these, separated by commas: {}", bench_suite_names()))
-            ->type_name("NAME")
-            ->delimiter(',');
+        const CLI::Option* suites = verb.add_option("--suites", options.suites,
+                                                    fmt::format("Only these, separated by commas: {}",
+                                                                format_list(bench_suite_names())))
+                                        ->type_name("NAME")
+                                        ->delimiter(',');
+        invocation.offered[suites] = bench_suite_names();
         verb.add_option("--head", options.head, "Folder of the head scan, for the suites that can show it")
             ->type_name("DIR");
         verb.add_flag("--again", options.again,
                       "Measure also what an earlier run into this folder has measured");
+        add_quick(verb, options.quick);
         add_cache(verb, options.cache);
       });
   add_verb<BenchErrorTimeOptions>(
@@ -82,6 +94,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         verb.add_option("--file", options.file, "What is measured [tests/benchmark/error_time.json]")
             ->type_name("FILE");
+        add_quick(verb, options.quick, {"--size"});
         add_cache(verb, options.cache);
       },
       true);
@@ -99,6 +112,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         verb.add_option("--frames", options.frames, "Judged frames of each run [40]")
             ->check(CLI::Range(4u, max_frames));
+        add_quick(verb, options.quick, {"--size", "--frames"});
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
         add_cache(verb, options.cache);
       },
@@ -120,6 +134,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--updates", options.updates,
                         "Updates of moving values that are kept in half floats [1000000]")
             ->check(CLI::Range(uint64_t{1000}, uint64_t{1} << 40));
+        add_quick(verb, options.quick, {"--updates"});
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);
@@ -133,6 +148,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
         verb.add_option("--repetitions", options.repetitions, "Timed frames of each case [15]")
             ->check(CLI::Range(1u, most_sequence_frames));
+        add_quick(verb, options.quick, {"--size", "--repetitions"});
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);
@@ -166,6 +182,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         verb.add_option("--file", options.file, "What is measured [tests/benchmark/dynamic.json]")
             ->type_name("FILE");
+        add_quick(verb, options.quick, {"--size", "--frames"});
         add_cache(verb, options.cache);
       },
       true);

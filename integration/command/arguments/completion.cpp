@@ -15,7 +15,25 @@ Takes takes_of(const DeclaredOption& option) {
   if (option.type.empty()) return Takes::nothing;
   for (const char* type : {"FILE", "PATH", "A", "B"})
     if (option.type == type) return Takes::file;
-  return option.type == "DIR" ? Takes::folder : Takes::value;
+  if (option.type == "DIR") return Takes::folder;
+  return option.offered.empty() ? Takes::value : Takes::word;
+}
+
+// What may stand where no option does.
+struct Operands {
+  std::vector<std::string> words;
+  bool files = false;
+};
+
+Operands operands_of(const DeclaredVerb& verb) {
+  Operands operands;
+  for (const DeclaredOption& option : verb.options) {
+    if (!option.positional) continue;
+    operands.words.insert(operands.words.end(), option.offered.begin(), option.offered.end());
+    const Takes takes = takes_of(option);
+    operands.files |= takes == Takes::file || takes == Takes::folder;
+  }
+  return operands;
 }
 
 std::string joined(const std::vector<std::string>& words, std::string_view between) {
@@ -37,36 +55,37 @@ std::string in_quotes(const std::string& text) {
 }
 
 std::string bash(const std::vector<DeclaredVerb>& verbs) {
-  std::string known, values, words;
+  std::string known, values, offers;
   for (const DeclaredVerb& verb : verbs) {
     for (const std::string& below : verb.verbs) {
       const std::string whole = verb.name.empty() ? below : verb.name + " " + below;
       known += fmt::format("      '{}/{}') verb='{}' ;;\n", verb.name, below, whole);
     }
-    std::vector<std::string> offered = verb.verbs;
+    const Operands operands = operands_of(verb);
+    std::vector<std::string> options;
     for (const DeclaredOption& option : verb.options) {
-      if (option.positional) { // of which one word is taken: before what begins with a dash
-        offered.insert(offered.begin(), option.values.begin(), option.values.end());
-        continue;
-      }
-      offered.insert(offered.end(), option.names.begin(), option.names.end());
+      if (option.positional) continue;
+      options.insert(options.end(), option.names.begin(), option.names.end());
       std::string patterns;
       for (const std::string& name : option.names)
         patterns += fmt::format("{}'{}/{}'", patterns.empty() ? "" : " | ", verb.name, name);
       const Takes takes = takes_of(option);
       const std::string reply = takes == Takes::file     ? "-f"
                                 : takes == Takes::folder ? "-d"
-                                : takes == Takes::word   ? fmt::format("-W '{}'", joined(option.values, " "))
+                                : takes == Takes::word   ? fmt::format("-W '{}'", joined(option.offered, " "))
                                                          : "-W ''";
       if (takes != Takes::nothing)
         values += fmt::format("    {}) mapfile -t COMPREPLY < <(compgen {} -- \"$current\"); return ;;\n",
                               patterns, reply);
     }
-    words += fmt::format("    '{}') words='{}' ;;\n", verb.name, joined(offered, " "));
+    offers += fmt::format("    '{}') words='{}' options='{}' files={} ;;\n", verb.name,
+                          joined(verb.verbs.empty() ? operands.words : verb.verbs, " "), joined(options, " "),
+                          operands.files ? "-f" : "");
   }
   return fmt::format(R"(# Completion of dermis for bash, made by: dermis completion bash
 _dermis() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} verb='' words='' i
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}}
+  local verb='' words='' options='' files='' i
   for ((i = 1; i < COMP_CWORD; ++i)); do
     case "$verb/${{COMP_WORDS[i]}}" in
 {}    esac
@@ -75,15 +94,15 @@ _dermis() {{
 {}  esac
   case "$verb" in
 {}  esac
-  if [[ $current == -* || $words != -* ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  if [[ $current == -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current")
   else
-    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+    mapfile -t COMPREPLY < <(compgen $files -W "$words" -- "$current")
   fi
 }}
 complete -o filenames -F _dermis dermis
 )",
-                     known, values, words);
+                     known, values, offers);
 }
 
 // Inside of [...] of _arguments.
@@ -98,12 +117,19 @@ std::string zsh_action(const DeclaredOption& option) {
   case Takes::folder:
     return "_files -/";
   case Takes::word:
-    return fmt::format("({})", joined(option.values, " "));
+    return fmt::format("({})", joined(option.offered, " "));
   case Takes::nothing:
   case Takes::value:
     break;
   }
   return " ";
+}
+
+// Of what may stand where no option does.
+std::string zsh_operand(const Operands& operands) {
+  const std::string words = fmt::format("({})", joined(operands.words, " "));
+  if (operands.words.empty()) return operands.files ? "_files" : " ";
+  return operands.files ? fmt::format(R"(_alternative "files:file:_files" "words:word:{}")", words) : words;
 }
 
 std::string zsh_function(const std::string& verb) {
@@ -124,7 +150,8 @@ std::string zsh(const std::vector<DeclaredVerb>& verbs) {
       }
     }
     if (verb.verbs.empty()) {
-      text += fmt::format("  _arguments -s{} \\\n    '*:file:_files'\n}}\n", specifications);
+      text += fmt::format("  _arguments -s{} \\\n    '*:argument:{}'\n}}\n", specifications,
+                          zsh_operand(operands_of(verb)));
       continue;
     }
     text += fmt::format("  local state line\n  local -a verbs\n  _arguments -C -s{} \\\n    '1:verb:->verb' "
@@ -174,6 +201,9 @@ std::string fish(const std::vector<DeclaredVerb>& verbs) {
       text +=
           fmt::format("complete -c dermis -f -n '{}' -a {} -d '{}'\n", condition, below, quoted(at->text));
     }
+    if (const Operands operands = operands_of(verb); !operands.words.empty())
+      text += fmt::format("complete -c dermis{} -n '{}' -a '{}'\n", operands.files ? "" : " -f", condition,
+                          joined(operands.words, " "));
     for (const DeclaredOption& option : verb.options) {
       if (option.positional) continue;
       std::string names;
@@ -184,7 +214,7 @@ std::string fish(const std::vector<DeclaredVerb>& verbs) {
                                 : takes == Takes::file  ? " -r -F"
                                 : takes == Takes::folder
                                     ? " -x -a '(__fish_complete_directories)'"
-                                    : fmt::format(" -x -a '{}'", joined(option.values, " "));
+                                    : fmt::format(" -x -a '{}'", joined(option.offered, " "));
       text += fmt::format("complete -c dermis -n '{}'{}{} -d '{}'\n", condition, names, value,
                           quoted(option.text));
     }

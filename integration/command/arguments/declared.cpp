@@ -17,7 +17,7 @@ std::vector<std::string> values_in(const std::string& type) {
   return values;
 }
 
-DeclaredOption declare(const CLI::Option& option) {
+DeclaredOption declare(const CLI::Option& option, const OfferedWords& offered) {
   DeclaredOption declared;
   declared.text = option.get_description();
   declared.positional = option.get_positional();
@@ -35,6 +35,8 @@ DeclaredOption declare(const CLI::Option& option) {
     declared.type = type.substr(0, type.find_first_of(": "));
     declared.values = values_in(type);
   }
+  const auto words = offered.find(&option);
+  declared.offered = words != offered.end() ? words->second : declared.values;
   return declared;
 }
 
@@ -48,24 +50,25 @@ std::vector<std::string> examples_in(const std::string& footer) {
   return lines;
 }
 
-void add(std::vector<DeclaredVerb>& all, CLI::App& app, const std::string& name) {
+void add(std::vector<DeclaredVerb>& all, CLI::App& app, const OfferedWords& offered,
+         const std::string& name) {
   DeclaredVerb verb{name, app.get_description(), examples_in(app.get_footer()), {}, {}};
   verb.text.erase(verb.text.find_last_not_of('\n') + 1);
   for (const CLI::Option* option : app.get_options())
-    verb.options.push_back(declare(*option));
+    verb.options.push_back(declare(*option, offered));
   const std::vector<CLI::App*> below = app.get_subcommands([](CLI::App*) { return true; });
   for (const CLI::App* one : below)
     verb.verbs.push_back(one->get_name());
   all.push_back(std::move(verb));
   for (CLI::App* one : below)
-    add(all, *one, name.empty() ? one->get_name() : name + " " + one->get_name());
+    add(all, *one, offered, name.empty() ? one->get_name() : name + " " + one->get_name());
 }
 
 } // namespace
 
-std::vector<DeclaredVerb> declared_verbs(CLI::App& app) {
+std::vector<DeclaredVerb> declared_verbs(CLI::App& app, const OfferedWords& offered) {
   std::vector<DeclaredVerb> all;
-  add(all, app, "");
+  add(all, app, offered, "");
   return all;
 }
 

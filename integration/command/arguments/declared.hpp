@@ -2,6 +2,8 @@
 // What the command line declares, as plain data: for completion scripts and the manual page. Internal to
 // arguments/.
 
+#include "integration/command/arguments/arguments.hpp"
+
 #include <CLI/CLI.hpp>
 
 #include <string>
@@ -10,10 +12,11 @@
 namespace dermis::tools {
 
 struct DeclaredOption {
-  std::vector<std::string> names;  // "--out", "-o"; of a positional its one name
-  std::string text;                // what it does
-  std::string type;                // "FILE"; "": takes no value
-  std::vector<std::string> values; // of which it takes one; empty: any
+  std::vector<std::string> names;   // "--out", "-o"; of a positional its one name
+  std::string text;                 // what it does
+  std::string type;                 // "FILE"; "": takes no value
+  std::vector<std::string> values;  // of which it takes one; empty: any
+  std::vector<std::string> offered; // some that it takes
   bool positional = false, required = false;
 };
 
@@ -26,7 +29,7 @@ struct DeclaredVerb {
 };
 
 // The program, then each verb followed by those below it, in the order of their declaration.
-std::vector<DeclaredVerb> declared_verbs(CLI::App& app);
+std::vector<DeclaredVerb> declared_verbs(CLI::App& app, const OfferedWords& offered);
 
 // For the shells "bash", "zsh" and "fish"; "" for another one.
 std::string completion_script(const std::vector<DeclaredVerb>& verbs, std::string_view shell);

@@ -45,10 +45,13 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
   add_verb<ExplainOptions>(
       app, invocation, "explain", "Show the plan of a graph with the reason for each decision",
       "dermis explain configs/graphs/burley.json --size 1920x1080\n  dermis explain D0103", explain,
-      [](CLI::App& verb, ExplainOptions& options) {
-        verb.add_option("graph", options.graph, "Graph file, or the code of a message")
-            ->required()
-            ->type_name("FILE");
+      [&invocation](CLI::App& verb, ExplainOptions& options) {
+        const CLI::Option* graph =
+            verb.add_option("graph", options.graph, "Graph file, or the code of a message")
+                ->required()
+                ->type_name("FILE");
+        for (const DiagnosticInfo& info : all_diagnostic_infos())
+          invocation.offered[graph].emplace_back(info.code);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
@@ -116,8 +119,8 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
 }
 
 void add_plan_verbs(CLI::App& app, Invocation& invocation) {
-  CLI::App& plan = *app.add_subcommand("plan", "Save plans, verify saved ones, compare two");
-  plan.require_subcommand(1);
+  CLI::App& plan = add_group(app, "plan", "Save plans, verify saved ones, compare two",
+                             "dermis plan diff configs/graphs/burley.json configs/graphs/sap.json");
   add_verb<PlanDiffOptions>(
       plan, invocation, "diff",
       "What differs between the plans of two graphs, of one graph, or two saved plans",
@@ -173,9 +176,12 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
   add_verb<SchemaOptions>(
       app, invocation, "schema", "Write the JSON Schemas of the file formats, for editors",
       "dermis schema graph\n  dermis schema --out configs/schema", schema,
-      [](CLI::App& verb, SchemaOptions& options) {
-        verb.add_option("name", options.name, fmt::format("One of {}; without one: all", schema_names()))
-            ->type_name("NAME");
+      [&invocation](CLI::App& verb, SchemaOptions& options) {
+        const CLI::Option* name =
+            verb.add_option("name", options.name,
+                            fmt::format("One of {}; without one: all", format_list(schema_names())))
+                ->type_name("NAME");
+        invocation.offered[name] = schema_names();
         verb.add_option("--out,-o", options.out,
                         "File to write, - for standard output [-]; a folder where all are written")
             ->type_name("PATH");

@@ -39,11 +39,13 @@ void add_text_verb(CLI::App& app, Invocation& invocation, const char* name, cons
 void add_shell_verbs(CLI::App& app, Invocation& invocation) {
   add_text_verb(app, invocation, "completion",
                 "Write a script by which a shell completes this command's lines",
-                "source <(dermis completion bash)", true,
-                [&app](const std::string& shell) { return completion_script(declared_verbs(app), shell); });
+                "source <(dermis completion bash)", true, [&app, &invocation](const std::string& shell) {
+                  return completion_script(declared_verbs(app, invocation.offered), shell);
+                });
   add_text_verb(app, invocation, "man", "Write the manual page",
-                "dermis man --out dermis.1 && man ./dermis.1", false, [&app](const std::string&) {
-                  return manual_page(declared_verbs(app),
+                "dermis man --out dermis.1 && man ./dermis.1", false,
+                [&app, &invocation](const std::string&) {
+                  return manual_page(declared_verbs(app, invocation.offered),
                                      fmt::format("{}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR,
                                                  DERMIS_VERSION_PATCH));
                 });

@@ -6,6 +6,7 @@
 #include "framegraph/text/suggest.hpp"
 #include "integration/command/bench/report/html.hpp"
 #include "integration/command/bench/report/report.hpp"
+#include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
 #include "integration/command/verbs.hpp"
 
@@ -27,6 +28,7 @@ struct Suite {
   std::string_view name, what;
   bool rows_as_table;    // writes CSV, too
   bool shows_head;       // takes --head
+  bool has_quick;        // takes --quick
   std::string_view line; // options beyond the files, as a person would give them
   ExitCode (*run)(const Session&, const BenchAllOptions&, const Files&);
 };
@@ -40,53 +42,62 @@ template <class Options> Options with_files(const Files& files) {
 
 // From what takes seconds to what takes long.
 constexpr Suite suites[] = {
-    {"record", "What recording a frame costs the host's thread", false, false, "",
+    {"record", "What recording a frame costs the host's thread", false, false, false, "",
      [](const Session& session, const BenchAllOptions&, const Files& files) {
        return bench_record(session, with_files<BenchRecordOptions>(files));
      }},
-    {"skip", "What frames cost that do not need all of a graph", false, false, "",
-     [](const Session& session, const BenchAllOptions&, const Files& files) {
-       return bench_skip(session, with_files<BenchSkipOptions>(files));
+    {"skip", "What frames cost that do not need all of a graph", false, false, true, "",
+     [](const Session& session, const BenchAllOptions& all, const Files& files) {
+       auto options = with_files<BenchSkipOptions>(files);
+       options.quick = all.quick;
+       return bench_skip(session, options);
      }},
-    {"truth", "Laws with known answers, beside what every technique makes of them", true, false, "",
+    {"truth", "Laws with known answers, beside what every technique makes of them", true, false, false, "",
      [](const Session& session, const BenchAllOptions&, const Files& files) {
        auto options = with_files<BenchTruthOptions>(files);
        options.csv = files.csv;
        return bench_truth(session, options);
      }},
-    {"supplement", "Table 1 of the supplement on control variates", false, false, "",
+    {"supplement", "Table 1 of the supplement on control variates", false, false, false, "",
      [](const Session& session, const BenchAllOptions&, const Files& files) {
        return bench_supplement(session, with_files<BenchSupplementOptions>(files));
      }},
-    {"compile", "Time and memory of compiling drawn graphs", false, false, "",
-     [](const Session& session, const BenchAllOptions&, const Files& files) {
-       return bench_compile(session, with_files<BenchCompileOptions>(files));
+    {"compile", "Time and memory of compiling drawn graphs", false, false, true, "",
+     [](const Session& session, const BenchAllOptions& all, const Files& files) {
+       auto options = with_files<BenchCompileOptions>(files);
+       options.quick = all.quick;
+       return bench_compile(session, options);
      }},
-    {"stability", "Every technique under what is known to break such techniques", false, false, "",
-     [](const Session& session, const BenchAllOptions&, const Files& files) {
-       return bench_stability(session, with_files<BenchStabilityOptions>(files));
+    {"stability", "Every technique under what is known to break such techniques", false, false, true, "",
+     [](const Session& session, const BenchAllOptions& all, const Files& files) {
+       auto options = with_files<BenchStabilityOptions>(files);
+       options.quick = all.quick;
+       return bench_stability(session, options);
      }},
-    {"budget", "How well frames keep to a budget, and what error that costs", false, false, "",
+    {"budget", "How well frames keep to a budget, and what error that costs", false, false, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchBudgetOptions>(files);
        options.cache = all.cache;
+       options.quick = all.quick;
        return bench_budget(session, options);
      }},
-    {"error-time", "Run time against error of every technique at every still scene", true, true,
+    {"error-time", "Run time against error of every technique at every still scene", true, true, true,
      " --size 640x360",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchErrorTimeOptions>(files);
        options.csv = files.csv;
        options.head = all.head;
        options.cache = all.cache;
+       options.quick = all.quick;
        return bench_error_time(session, options);
      }},
-    {"dynamic", "Samples, time, error and flicker while light, camera or things change", true, true, "",
+    {"dynamic", "Samples, time, error and flicker while light, camera or things change", true, true, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchDynamicOptions>(files);
        options.csv = files.csv;
        options.head = all.head;
        options.cache = all.cache;
+       options.quick = all.quick;
        return bench_dynamic(session, options);
      }},
 };
@@ -99,7 +110,8 @@ struct Outcome {
 };
 
 std::string line_of(const Suite& suite, const BenchAllOptions& options) {
-  std::string line = fmt::format("dermis bench {}{}", suite.name, suite.line);
+  const bool quick = options.quick && suite.has_quick;
+  std::string line = fmt::format("dermis bench {}{}", suite.name, quick ? " --quick" : suite.line);
   if (suite.shows_head && !options.head.empty()) line += fmt::format(" --head {}", options.head);
   return line + fmt::format(" --json {0}.json{1} --html {0}.html", suite.name,
                             suite.rows_as_table ? fmt::format(" --csv {}.csv", suite.name) : "");
@@ -158,7 +170,7 @@ std::string index_html(const Session& session, const std::vector<Outcome>& outco
                                  [&](const Outcome& one) { return one.suite == suite.name; });
     if (at == outcomes.end() || !at->written) {
       body += fmt::format(
-          "<tr><td class=t>{}<td class=t>{}<td class=t><td class=t>{}<td data-v=-1>&ndash;<td class=t>\n",
+          "<tr><td class=t>{}<td class=t>{}<td class=t><td class=t>{}<td data-v=''>&ndash;<td class=t>\n",
           suite.name, suite.what, at == outcomes.end() ? "not measured" : "failed");
       continue;
     }
@@ -187,17 +199,17 @@ std::string unknown_suite(const std::vector<std::string>& asked) {
     if (std::find(names.begin(), names.end(), one) == names.end()) {
       const std::string suggestion = did_you_mean(one, names);
       return fmt::format("there is no suite '{}'; {}", one,
-                         suggestion.empty() ? "suites: " + bench_suite_names() : suggestion);
+                         suggestion.empty() ? "suites: " + format_list(bench_suite_names()) : suggestion);
     }
   return "";
 }
 
 } // namespace
 
-std::string bench_suite_names() {
-  std::string names;
+std::vector<std::string> bench_suite_names() {
+  std::vector<std::string> names;
   for (const Suite& suite : suites)
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", suite.name);
+    names.emplace_back(suite.name);
   return names;
 }
 
@@ -218,6 +230,7 @@ ExitCode bench_all(const Session& session, const BenchAllOptions& options) {
   int64_t number = 0;
   for (const Suite& suite : suites) {
     if (!asked(suite)) continue;
+    if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
     ++number;
     const std::string name(suite.name);
     const Files files{out.path_of(name + ".json"), suite.rows_as_table ? out.path_of(name + ".csv") : "",

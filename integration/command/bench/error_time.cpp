@@ -1,6 +1,7 @@
 // dermis bench error-time: run time against error of every technique at every still scene, in one run.
 
 #include "integration/command/bench/plan_file.hpp"
+#include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/reference.hpp"
 #include "integration/command/bench/report/heat_map.hpp"
 #include "integration/command/bench/report/pareto.hpp"
@@ -449,6 +450,7 @@ Report make_report(const Bench& bench, double seconds) {
                             "the texels each pass computes for a pixel of the view");
   report.facts.emplace_back("baseline",
                             fmt::format("{} {}", bench.file.baseline_technique, bench.file.baseline_setting));
+  if (bench.options.quick) report.facts.push_back(quick_fact());
   report.facts.emplace_back("took", format_duration(seconds));
   report.notes = bench.notes;
   report.pictures.push_back(scene_pictures(bench.subjects));
@@ -460,13 +462,15 @@ Report make_report(const Bench& bench, double seconds) {
 
 } // namespace
 
-ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& options) {
+ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& asked) {
+  const BenchErrorTimeOptions options = quickened(asked);
   const auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
-  const std::optional<ErrorTimeFile> file = read_error_time(options.file, diagnostics);
+  std::optional<ErrorTimeFile> file = read_error_time(options.file, diagnostics);
   if (!file)
     return fail(session, ExitCode::problems, fmt::format("the bench file '{}' cannot be used", options.file),
                 &diagnostics);
+  if (options.quick) quicken(*file);
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
   Bench bench{session, options, *file, **host};

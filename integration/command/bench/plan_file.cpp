@@ -1,6 +1,7 @@
 #include "integration/command/bench/plan_file.hpp"
 
 #include "framegraph/text/reader.hpp"
+#include "integration/command/shipped.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ struct FileReader {
     SceneRequest request;
     if (const auto name = object.name("scene")) request.scene = *name;
     if (const auto name = object.name("framing")) request.framing = *name;
-    if (const auto path = object.string("file", Need::optional)) request.file = *path;
+    if (const auto path = object.string("file", Need::optional)) request.file = shipped(std::string(*path));
     request.camera = read_camera(document, object, diagnostics);
     if (const auto flag = object.boolean("model", Need::optional)) request.model = *flag;
     if (const auto flag = object.boolean("study", Need::optional)) request.study = *flag;
@@ -84,7 +85,7 @@ struct FileReader {
     if (const auto n = object.integer("least_repetitions", 1, 1000, Need::optional))
       file.least_repetitions = static_cast<uint32_t>(*n);
     if (const auto n = object.integer("subset", 1, 1 << 24)) file.subset = static_cast<uint32_t>(*n);
-    if (const auto path = object.string("skin")) file.skin = *path;
+    if (const auto path = object.string("skin")) file.skin = shipped(std::string(*path));
     baseline(object);
     self(object);
     const NodeId scenes = object.array("scenes", 1, most_entries);
@@ -120,7 +121,7 @@ TechniqueRequest read_technique(const Document& document, ObjectReader& object, 
   TechniqueRequest request;
   if (const auto name = object.name("technique")) request.technique = *name;
   if (const auto text = object.string("setting")) request.setting = *text;
-  if (const auto path = object.string("graph")) request.graph = *path;
+  if (const auto path = object.string("graph")) request.graph = shipped(std::string(*path));
   if (const auto flag = object.boolean("heat_map", Need::optional)) request.heat_map = *flag;
   const NodeId set = object.object("set", Need::optional);
   if (!set.valid()) return request;

@@ -43,18 +43,19 @@ ExitCode write_all(const Session& session, const std::string& path) {
 
 } // namespace
 
-std::string schema_names() {
-  std::string names = "graph, fragment";
+std::vector<std::string> schema_names() {
+  std::vector<std::string> names = {"graph", "fragment"};
   for (const NamedSchema& one : written_schemas())
-    names += fmt::format(", {}", one.name);
+    names.emplace_back(one.name);
   return names;
 }
 
 ExitCode schema(const Session& session, const SchemaOptions& options) {
   if (options.name.empty()) {
     if (options.out != "-") return write_all(session, options.out);
-    return fail(session, ExitCode::usage,
-                fmt::format("name one of {}, or a folder for all of them with --out", schema_names()));
+    return fail(
+        session, ExitCode::usage,
+        fmt::format("name one of {}, or a folder for all of them with --out", format_list(schema_names())));
   }
   std::vector<std::string_view> names;
   const auto all = all_schemas();
@@ -67,7 +68,7 @@ ExitCode schema(const Session& session, const SchemaOptions& options) {
   const std::string suggestion = did_you_mean(options.name, names);
   return fail(session, ExitCode::usage,
               fmt::format("there is no schema '{}'; {}", options.name,
-                          suggestion.empty() ? "schemas: " + schema_names() : suggestion));
+                          suggestion.empty() ? "schemas: " + format_list(schema_names()) : suggestion));
 }
 
 ExitCode docs(const Session& session, const DocsOptions& options) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dermis::tools {
 
@@ -24,7 +25,7 @@ struct DocsOptions {
 // Writes the pages of documentation that follow from schemas and signatures.
 ExitCode docs(const Session& session, const DocsOptions& options);
 
-// "graph, profile, ...": for help.
-std::string schema_names();
+// "graph", "fragment", ...
+std::vector<std::string> schema_names();
 
 } // namespace dermis::tools

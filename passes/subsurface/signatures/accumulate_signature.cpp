@@ -12,7 +12,8 @@ constexpr std::string_view past_doc = "light, number of frames behind it";
 constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
 
 constexpr Port ports[] = {
-    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light of this frame", {}},
+    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light of this frame",
+     port::color_formats},
     port::material,
     port::depth,
     port::velocity,
@@ -20,7 +21,8 @@ constexpr Port ports[] = {
     {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
     port::tiles,
     port::arguments,
-    {"accumulated", Usage::storage_image_write, false, "image2D", "scattered light over frames", {}},
+    {"accumulated", Usage::storage_image_write, false, "image2D", "scattered light over frames",
+     port::color_formats},
     {"past_out", Usage::storage_image_write, false, "image2D", past_doc, past_formats},
     {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
 };

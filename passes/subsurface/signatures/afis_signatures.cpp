@@ -7,8 +7,8 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr Port afis_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}},
-    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}},
+    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats},
+    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats},
     port::level_port("level_1"),
     port::level_port("level_2"),
     port::level_port("level_3"),
@@ -101,7 +101,6 @@ constexpr Port afis_tiles_ports[] = {
 
 constexpr Format guide_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::r16f};
-constexpr Format control_formats[] = {Format::rgba16f, Format::rgba32f};
 constexpr std::string_view guide_doc =
     "standard deviation of one frame's exposed luminance, mean number of samples, depth in metres with "
     "split_half and else the moving mean of what is watched, profile id; 0 where nothing was written";
@@ -110,8 +109,8 @@ constexpr std::string_view control_doc =
     "weight of the control, its standard deviation, means of light and control; with ocv";
 
 constexpr Port guided_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}},
-    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}},
+    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats},
+    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats},
     port::level_port("level_1"),
     port::level_port("level_2"),
     port::level_port("level_3"),
@@ -126,13 +125,13 @@ constexpr Port guided_ports[] = {
     port::velocity,
     {"guide", Usage::sampled_image, false, "texture2D", guide_doc, guide_formats},
     {"place", Usage::sampled_image, true, "texture2D", place_doc, place_formats},
-    {"control", Usage::sampled_image, true, "texture2D", control_doc, control_formats},
+    {"control", Usage::sampled_image, true, "texture2D", control_doc, port::light_formats},
     port::tiles,
     port::arguments,
     port::scattered,
     {"guide_out", Usage::storage_image_update, false, port::part_of_cleared, guide_doc, guide_formats},
     {"place_out", Usage::storage_image_write, true, "image2D", place_doc, place_formats},
-    {"control_out", Usage::storage_image_write, true, "image2D", control_doc, control_formats},
+    {"control_out", Usage::storage_image_write, true, "image2D", control_doc, port::light_formats},
     port::sampling,
 };
 

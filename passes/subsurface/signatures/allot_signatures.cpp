@@ -8,7 +8,7 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr Format surface_formats[] = {Format::rgba32_uint};
-constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
+using port::light_formats;
 constexpr Format mended_formats[] = {Format::rgba16f};
 constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format::r32f};
 constexpr std::string_view light_doc = "as subsurface.sap_down writes it";
@@ -39,7 +39,7 @@ constexpr Port doubt_ports[] = {
 constexpr KindSetting doubt_settings[] = {below};
 
 constexpr Port contrast_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}},
+    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", light_formats},
     port::material,
     {"importance", Usage::sampled_image, true, "texture2D",
      "how much an error matters to the host, 0 to 1; unbound: 1 everywhere", importance_formats},

@@ -9,54 +9,37 @@ namespace {
 constexpr std::string_view result_options[] = {"color", "light"};
 
 constexpr Port setup_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
     port::material,
     port::depth,
     port::albedo,
     port::tiles,
     port::arguments,
-    {"light",
-     Usage::storage_image_write,
-     false,
-     "image2D",
+    {"light", Usage::storage_image_write, false, "image2D",
      "rgb scatterable light, a = area of the pixel's surface patch over its projected area; 0 outside",
-     {}},
-    {"slope",
-     Usage::storage_image_write,
-     true,
-     "image2D",
-     "change of depth from pixel to pixel over the pixel's size, x and y",
-     {}},
+     port::light_formats},
+    {"slope", Usage::storage_image_write, true, "image2D",
+     "change of depth from pixel to pixel over the pixel's size, x and y", port::way_formats},
 };
 constexpr KindSetting setup_settings[] = {setting::texturing};
 
 constexpr std::string_view copied_options[] = {"unscattered", "scattered"};
 constexpr Port combine_ports[] = {
-    {"scattered",
-     Usage::sampled_image,
-     true,
-     "texture2D",
-     "scattered light; unbound: none scatters, all is as unscattered",
-     {}},
-    {"unscattered",
-     Usage::sampled_image,
-     true,
-     "texture2D",
+    {"scattered", Usage::sampled_image, true, "texture2D",
+     "scattered light; unbound: none scatters, all is as unscattered", port::color_formats},
+    {"unscattered", Usage::sampled_image, true, "texture2D",
      "diffuse irradiance before albedo: what tiles show that are only copied. May be the image that is "
      "written; one of both is bound",
-     {},
-     true},
+     port::color_formats, true},
     port::material,
     port::albedo,
     port::tiles,
     port::arguments,
-    {"lighting",
-     Usage::storage_image_write,
-     false,
-     "image2D",
-     "written where there is subsurface, untouched elsewhere; alpha becomes 1 there",
-     {}},
+    {"lighting", Usage::storage_image_write, false, "image2D",
+     "written where there is subsurface, untouched elsewhere; alpha becomes 1 there", port::color_formats},
 };
+constexpr std::string_view combined[] = {"scattered", "unscattered"};
 constexpr KindSetting combine_settings[] = {
     setting::texturing,
     setting::choice(
@@ -69,7 +52,8 @@ constexpr KindSetting combine_settings[] = {
 
 constexpr Format scattered_formats[] = {Format::rgba16f}; // that a shader may load
 constexpr Port copy_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
     port::albedo,
     port::tiles,
     port::arguments,
@@ -79,8 +63,10 @@ constexpr Port copy_ports[] = {
 constexpr KindSetting copy_settings[] = {setting::texturing};
 
 constexpr Port light_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
-    {"scattered", Usage::sampled_image, true, "texture2D", "scattered light; unbound: nothing scatters", {}},
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
+    {"scattered", Usage::sampled_image, true, "texture2D", "scattered light; unbound: nothing scatters",
+     port::color_formats},
     port::material,
     port::depth,
     port::scatter_scale,
@@ -92,23 +78,18 @@ constexpr Port light_ports[] = {
      "as subsurface.classify writes them: tiles that do not scatter keep their light. Unbound: their light "
      "is in scattered",
      {}},
-    {"light",
-     Usage::storage_image_write,
-     false,
-     "image2D",
+    {"light", Usage::storage_image_write, false, "image2D",
      "scattered light before albedo; the input light where nothing scatters, in full precision",
-     {}},
+     port::color_formats},
 };
 constexpr KindSetting light_settings[] = {setting::texturing};
 
 constexpr Port transmission_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
-    {"back_lighting",
-     Usage::sampled_image,
-     false,
-     "texture2D",
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
+    {"back_lighting", Usage::sampled_image, false, "texture2D",
      "irradiance on the far side, linear, of the light that thickness is measured along",
-     {}},
+     port::color_formats},
     {"thickness",
      Usage::sampled_image,
      false,
@@ -117,7 +98,8 @@ constexpr Port transmission_ports[] = {
      {}},
     port::material,
     port::scatter_scale,
-    {"lit", Usage::storage_image_write, false, "image2D", "lighting with what came through", {}},
+    {"lit", Usage::storage_image_write, false, "image2D", "lighting with what came through",
+     port::color_formats},
 };
 
 } // namespace
@@ -153,6 +135,7 @@ const PassKind combine_kind{
     .settings = combine_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
+    .one_of = combined,
 };
 
 const PassKind copy_kind{

@@ -7,14 +7,12 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr Port probe_ports[] = {
-    {"scattered",
-     Usage::sampled_image,
-     true,
-     "texture2D",
+    {"scattered", Usage::sampled_image, true, "texture2D",
      "scattered light that is judged; tiles that do not scatter show their own, and all do where it is "
      "unbound",
-     {}},
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+     port::color_formats},
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
     port::material,
     port::depth,
     port::scatter_scale,

@@ -8,14 +8,15 @@ namespace dermis::subsurface {
 namespace {
 
 using port::level_doc;
-using port::level_formats;
 using port::level_port;
+using port::light_formats;
 
 constexpr Port setup_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
     port::material,
     port::albedo,
-    {"level_0", Usage::storage_image_write, false, "image2D", level_doc, level_formats},
+    {"level_0", Usage::storage_image_write, false, "image2D", level_doc, light_formats},
 };
 constexpr std::string_view profiles_options[] = {"merged", "apart"};
 constexpr KindSetting setup_settings[] = {
@@ -26,7 +27,7 @@ constexpr KindSetting setup_settings[] = {
 
 constexpr Port down_ports[] = {
     level_port("fine"),
-    {"coarse", Usage::storage_image_write, false, "image2D", level_doc, level_formats},
+    {"coarse", Usage::storage_image_write, false, "image2D", level_doc, light_formats},
 };
 
 constexpr std::string_view halving_options[] = {"binomial", "box"};

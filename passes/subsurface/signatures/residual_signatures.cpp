@@ -8,7 +8,7 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr Format surface_formats[] = {Format::rgba32_uint};
-constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
+using port::light_formats;
 constexpr std::string_view light_doc = "as subsurface.sap_down writes it";
 
 constexpr Port light_port(std::string_view name) {

@@ -21,7 +21,7 @@ constexpr std::string_view scattered_doc = "scattered light of this level and co
                                            "surface (3 halves), 0; in full storage light (bits of 3 floats), "
                                            "the share and confidence (a byte each)";
 
-constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
+using port::light_formats;
 constexpr Format surface_formats[] = {Format::rgba32_uint};
 
 constexpr KindSetting level_setting(double first, std::string_view doc, double last = sap_level_count - 1) {
@@ -89,7 +89,8 @@ constexpr Port tiles_ports[] = {
 };
 
 constexpr Port setup_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear", {}},
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
     port::material,
     port::depth,
     port::scatter_scale,
@@ -116,7 +117,7 @@ constexpr KindSetting halve_settings[] = {level_setting(1, "that is written", 1)
                                           storage};
 
 constexpr Port down_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "of the finer level", {}},
+    {"light", Usage::sampled_image, false, "texture2D", "of the finer level", light_formats},
     {"surface", Usage::sampled_image, false, "utexture2D", "of the finer level", surface_formats},
     level_tiles,
     level_arguments,
@@ -126,7 +127,7 @@ constexpr Port down_ports[] = {
 constexpr KindSetting down_settings[] = {level_setting(1, "that is written"), storage};
 
 constexpr Port up_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "of this level", {}},
+    {"light", Usage::sampled_image, false, "texture2D", "of this level", light_formats},
     {"surface", Usage::sampled_image, false, "utexture2D", "of this level", surface_formats},
     {"coarse_surface", Usage::sampled_image, true, "utexture2D", "of the coarser level; unbound at the last",
      surface_formats},
@@ -139,7 +140,7 @@ constexpr Port up_ports[] = {
 constexpr KindSetting up_settings[] = {level_setting(1, "that is written"), variant, storage};
 
 constexpr Port gather_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "of level 0", {}},
+    {"light", Usage::sampled_image, false, "texture2D", "of level 0", light_formats},
     {"surface", Usage::sampled_image, false, "utexture2D", "of level 0", surface_formats},
     {"coarse_surface", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
     {"coarse_scattered", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
@@ -164,7 +165,8 @@ constexpr std::string_view second_doc = "the same of the second layer, what lies
 constexpr Port layered_down_ports[] = {
     down_ports[0],
     down_ports[1],
-    {"second_light", Usage::sampled_image, true, "texture2D", "of the second layer; level 0 has none", {}},
+    {"second_light", Usage::sampled_image, true, "texture2D", "of the second layer; level 0 has none",
+     light_formats},
     {"second_surface", Usage::sampled_image, true, "utexture2D", "of the second layer; level 0 has none",
      surface_formats},
     level_tiles,
@@ -178,7 +180,7 @@ constexpr Port layered_down_ports[] = {
 constexpr Port layered_up_ports[] = {
     up_ports[0],
     up_ports[1],
-    {"second_light", Usage::sampled_image, false, "texture2D", second_doc, {}},
+    {"second_light", Usage::sampled_image, false, "texture2D", second_doc, light_formats},
     {"second_surface", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
     up_ports[2],
     up_ports[3],

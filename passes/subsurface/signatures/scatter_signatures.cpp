@@ -6,9 +6,11 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr Port light{"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}};
+constexpr Port light{
+    "light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats};
 
-constexpr Port slope{"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", {}};
+constexpr Port slope{
+    "slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats};
 
 constexpr Port burley_ports[] = {
     light,       slope,           port::material,  port::depth, port::scatter_scale,
@@ -58,12 +60,8 @@ constexpr std::string_view taps_options[] = {"11", "17", "25"};
 constexpr std::string_view kernel_options[] = {"fitted", "jimenez"};
 constexpr Port separable_ports[] = {
     light,
-    {"blurred",
-     Usage::sampled_image,
-     true,
-     "texture2D",
-     "the horizontal pass's result; bound for the vertical pass",
-     {}},
+    {"blurred", Usage::sampled_image, true, "texture2D",
+     "the horizontal pass's result; bound for the vertical pass", port::color_formats},
     port::material,
     port::depth,
     port::scatter_scale,

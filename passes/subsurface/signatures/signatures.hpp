@@ -23,6 +23,13 @@ extern const PassKind clear_kind;                                       // clear
 
 // Ports that several kinds declare with the same meaning.
 namespace port {
+// What an image has to be for the channels that kernels read and write of it.
+inline constexpr Format color_formats[] = {Format::rgba16f, Format::rgba32f, Format::b10g11r11f,
+                                           Format::rgba8_unorm, Format::rgba8_srgb}; // three
+inline constexpr Format light_formats[] = {Format::rgba16f,
+                                           Format::rgba32f}; // four, areas above 1 among them
+inline constexpr Format way_formats[] = {Format::rg16f, Format::rg32f, Format::rgba16f,
+                                         Format::rgba32f}; // two, below 0 as well
 inline constexpr Port material{
     "material", Usage::sampled_image, false, "utexture2D", "profile id per pixel, 0 = no subsurface", {}};
 inline constexpr Port depth{"depth",
@@ -38,7 +45,7 @@ inline constexpr Port scatter_scale{"scatter_scale",
                                     "factor on d per pixel, 0 = diffuse; unbound = 1",
                                     {}};
 inline constexpr Port albedo{
-    "albedo", Usage::sampled_image, true, "texture2D", "diffuse albedo, linear; unbound = 1", {}};
+    "albedo", Usage::sampled_image, true, "texture2D", "diffuse albedo, linear; unbound = 1", color_formats};
 inline constexpr Port tiles{"tiles",
                             Usage::storage_buffer_read,
                             false,
@@ -57,13 +64,12 @@ inline constexpr Port scattered{"scattered",
                                 false,
                                 "image2D",
                                 "scattered light where there is subsurface, undefined elsewhere",
-                                {}};
+                                color_formats};
 inline constexpr std::string_view level_doc =
     "rgb light times mask, a = mask: the share of the texel with subsurface";
-inline constexpr Format level_formats[] = {Format::rgba16f, Format::rgba32f};
 // A level of the plain pyramid to read.
 constexpr Port level_port(std::string_view name) {
-  return {name, Usage::sampled_image, false, "texture2D", level_doc, level_formats};
+  return {name, Usage::sampled_image, false, "texture2D", level_doc, light_formats};
 }
 inline constexpr Port velocity{
     "velocity",
@@ -72,7 +78,7 @@ inline constexpr Port velocity{
     "texture2D",
     "now - before: pixels to the right and down, jitter taken out; in a third channel view depth that the "
     "camera does not explain, world units. Unbound: what is seen stands still",
-    {}};
+    way_formats};
 inline constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
                               "uint",    "as subsurface.classify writes them", {}};
 inline constexpr Port shares{"shares",
@@ -84,7 +90,6 @@ inline constexpr Port shares{"shares",
 // Of an image that was cleared in the same frame and is written where there is subsurface: what was not
 // written reads 0 in the next frame.
 inline constexpr std::string_view part_of_cleared = "writeonly image2D";
-inline constexpr Format sampling_formats[] = {Format::rgba16f, Format::rgba32f};
 inline constexpr Port sampling{
     "sampling",
     Usage::storage_image_write,
@@ -92,7 +97,7 @@ inline constexpr Port sampling{
     "image2D",
     "for tools: samples taken in this frame, samples that history stands for or their mean "
     "number, confidence or spread, 1 where history was not of this surface",
-    sampling_formats};
+    light_formats};
 } // namespace port
 
 constexpr SettingValue integer_value(int64_t value) {

@@ -15,12 +15,8 @@ constexpr Port classify_ports[] = {
     port::material,
     port::depth,
     port::scatter_scale,
-    {"lighting",
-     Usage::sampled_image,
-     true,
-     "texture2D",
-     "diffuse irradiance before albedo, linear; for light_range and light_cells",
-     {}},
+    {"lighting", Usage::sampled_image, true, "texture2D",
+     "diffuse irradiance before albedo, linear; for light_range and light_cells", port::color_formats},
     port::albedo,
     {"classes",
      Usage::storage_buffer_write,
@@ -55,7 +51,7 @@ constexpr Port skips_ports[] = {
      {}},
     port::material,
     {"skips", Usage::storage_image_write, true, "image2D",
-     "for tools: class of the pixel's tile, its profile id, 0, 1", port::sampling_formats},
+     "for tools: class of the pixel's tile, its profile id, 0, 1", port::light_formats},
 };
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "framegraph/model/graph.hpp"
 #include "integration/command/bench/choice/scene_run.hpp"
+#include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/report/report.hpp"
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/interrupt.hpp"
@@ -224,7 +225,8 @@ std::string text_of(const Report& report) {
 
 } // namespace
 
-ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options) {
+ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
+  const BenchBudgetOptions options = quickened(asked);
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> loaded = load_graph(options.graph, {}, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
@@ -266,6 +268,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options)
   }
   if (report.table.rows.empty()) return fail(session, ExitCode::usage, "no scene is left to measure");
   report.facts = machine_facts(session.command, bench.device);
+  if (options.quick) report.facts.push_back(quick_fact());
   add_plots(report);
   if (!session.quiet && options.json != "-" && options.html != "-") print(text_of(report));
   const std::string problem = deliver_report(report, options.json, "", options.html);

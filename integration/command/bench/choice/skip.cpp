@@ -2,6 +2,7 @@
 
 #include "framegraph/text/document.hpp"
 #include "integration/command/bench/choice/skip_cases.hpp"
+#include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/report/report.hpp"
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/interrupt.hpp"
@@ -173,10 +174,11 @@ Report make_report(const Session& session, Bench& bench) {
   Report report;
   report.bench = "skip";
   report.title = "Frames that do not need all of a graph";
-  report.summary =
-      fmt::format("{}, {}x{}, d = {} px; medians of {} frames, all cases by turns", bench.options.graph,
-                  bench.options.size.width, bench.options.size.height, d_px, bench.options.repetitions);
+  report.summary = fmt::format("{}, {}x{}, d = {} px; medians of {}, all cases by turns", bench.options.graph,
+                               bench.options.size.width, bench.options.size.height, d_px,
+                               format_count(bench.options.repetitions, "frame"));
   report.facts = machine_facts(session.command, bench.host.properties.deviceName);
+  if (bench.options.quick) report.facts.push_back(quick_fact());
   report.facts.emplace_back("full",
                             "all of the picture scatters, nothing is looked for that could be skipped");
   report.facts.emplace_back("reads",
@@ -229,7 +231,8 @@ ExitCode failed(const Session& session, const demo::Error& error) {
 
 } // namespace
 
-ExitCode bench_skip(const Session& session, const BenchSkipOptions& options) {
+ExitCode bench_skip(const Session& session, const BenchSkipOptions& asked) {
+  const BenchSkipOptions options = quickened(asked);
   Diagnostics diagnostics;
   auto loaded = load_graph(options.graph, {}, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);

@@ -3,9 +3,11 @@
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "integration/command/bench/compile/shapes.hpp"
+#include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/thread_time.hpp"
 #include "integration/command/inspect/graph_input.hpp"
+#include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
 #include "integration/command/verbs.hpp"
 
@@ -19,10 +21,16 @@ namespace dermis::tools {
 namespace {
 
 constexpr uint32_t pass_counts[] = {10, 100, 1000, 10000};
-constexpr uint32_t rotating = 64;              // graphs that take turns, so that none stays in the caches
-constexpr uint64_t time_per_row = 300'000'000; // ns
 constexpr uint32_t least_samples = 5, most_samples = 200;
-constexpr uint32_t memory_passes = 100, memory_seeds = 50, fan_seeds = 20;
+constexpr uint32_t memory_passes = 100;
+
+struct Effort {
+  uint32_t rotating = 64;              // graphs that take turns, so that none stays in the caches
+  uint64_t time_per_row = 300'000'000; // ns
+  uint32_t memory_seeds = 50, fan_seeds = 20;
+};
+constexpr Effort quick_effort{2, 3'000'000, 2, 2};
+
 constexpr double mebibyte = 1024.0 * 1024.0, ns_per_ms = 1e6;
 
 constexpr std::string_view level_names[] = {"fast", "tight", "optimize"};
@@ -110,7 +118,7 @@ bool measure_memory(Compiler& compiler, const Subject& subject, const DeviceProf
 }
 
 void measure_time(Compiler& compiler, const Subject& subject, const DeviceProfile& device, CompiledPlan& plan,
-                  Row& row, Diagnostics& diagnostics) {
+                  uint64_t time_per_row, Row& row, Diagnostics& diagnostics) {
   std::vector<CompileInput> inputs;
   uint64_t passes = 0;
   for (const Graph& graph : subject.graphs) {
@@ -135,7 +143,8 @@ void measure_time(Compiler& compiler, const Subject& subject, const DeviceProfil
   row.high = samples[samples.size() * 9 / 10];
 }
 
-std::optional<Row> measure(const Subject& subject, const Options& options, bool timed,
+// time_per_row: 0, or for how long it is timed.
+std::optional<Row> measure(const Subject& subject, const Options& options, uint64_t time_per_row,
                            Diagnostics& diagnostics) {
   const DeviceProfile device = generic_profile();
   Row row;
@@ -147,7 +156,7 @@ std::optional<Row> measure(const Subject& subject, const Options& options, bool 
   Compiler compiler;
   CompiledPlan plan;
   if (!measure_memory(compiler, subject, device, plan, row, diagnostics)) return std::nullopt;
-  if (timed) measure_time(compiler, subject, device, plan, row, diagnostics);
+  if (time_per_row > 0) measure_time(compiler, subject, device, plan, time_per_row, row, diagnostics);
   return row;
 }
 
@@ -238,11 +247,13 @@ Report page_of(const Session& session, const std::vector<Row>& rows) {
 
 struct Bench {
   const Session& session;
+  Effort effort = {};
   Diagnostics diagnostics = {};
   std::vector<Row> rows = {};
 
   bool add(const Subject& subject, const Options& options, bool timed) {
-    const std::optional<Row> row = measure(subject, options, timed, diagnostics);
+    if (interrupted()) return false;
+    const std::optional<Row> row = measure(subject, options, timed ? effort.time_per_row : 0, diagnostics);
     if (!row) return false;
     if (!session.quiet) print(table_line(*row));
     rows.push_back(*row);
@@ -252,7 +263,7 @@ struct Bench {
   bool add_times(const ShapeFile& file, const KindRegistry& kinds) {
     for (const Shape& shape : file.shapes)
       for (const uint32_t passes : pass_counts) {
-        const Subject subject = draw(file, kinds, shape, passes, rotating);
+        const Subject subject = draw(file, kinds, shape, passes, effort.rotating);
         if (!add(subject, {}, true) || !add(subject, {PackingLevel::fast, PassOrder::memory, true}, true))
           return false;
         if (passes == memory_passes && !add(subject, {PackingLevel::tight, PassOrder::memory, false}, true))
@@ -264,7 +275,7 @@ struct Bench {
   bool add_memory(const ShapeFile& file, const KindRegistry& kinds, bool optimize) {
     for (const Shape& shape : file.shapes) {
       if (shape.kind == Shape::Kind::random && shape.dead_percent == 0) {
-        const Subject subject = draw(file, kinds, shape, memory_passes, memory_seeds);
+        const Subject subject = draw(file, kinds, shape, memory_passes, effort.memory_seeds);
         for (const PackingLevel level : {PackingLevel::fast, PackingLevel::tight, PackingLevel::optimize})
           if ((level != PackingLevel::optimize || optimize) &&
               !add(subject, {level, PassOrder::memory, false}, false))
@@ -272,7 +283,7 @@ struct Bench {
       }
       if (shape.kind != Shape::Kind::fan) continue;
       for (const uint32_t passes : pass_counts) {
-        const Subject subject = draw(file, kinds, shape, passes, fan_seeds);
+        const Subject subject = draw(file, kinds, shape, passes, effort.fan_seeds);
         for (const PassOrder order : {PassOrder::memory, PassOrder::program})
           if (!add(subject, {PackingLevel::fast, order, false}, false)) return false;
         if (!add(subject, {PackingLevel::tight, PassOrder::memory, false}, false)) return false;
@@ -312,7 +323,7 @@ struct Bench {
 } // namespace
 
 ExitCode bench_compile(const Session& session, const BenchCompileOptions& options) {
-  Bench bench{session};
+  Bench bench{session, options.quick ? quick_effort : Effort()};
   if (!session.quiet) print(table_head);
   bool good = true;
   if (options.graphs.empty()) {
@@ -323,8 +334,11 @@ ExitCode bench_compile(const Session& session, const BenchCompileOptions& option
   } else {
     good = bench.add_given(options.graphs);
   }
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!good) return fail_graph(session, options.graphs, bench.diagnostics);
-  const std::string refused = deliver_report(page_of(session, bench.rows), "", "", options.html);
+  Report page = page_of(session, bench.rows);
+  if (options.quick) page.facts.push_back(quick_fact());
+  const std::string refused = deliver_report(page, "", "", options.html);
   if (!refused.empty()) return fail(session, ExitCode::environment, refused);
   if (options.json.empty()) return ExitCode::ok;
   JsonWriter out;

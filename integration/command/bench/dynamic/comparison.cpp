@@ -1,5 +1,7 @@
 #include "integration/command/bench/dynamic/comparison.hpp"
 
+#include "integration/command/present.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -43,8 +45,9 @@ void add_against(Report& report, const std::string& technique, const std::string
   }
   if (count == 0) return;
   report.facts.emplace_back(technique + " against afis + ccv",
-                            fmt::format("{} sequences: samples x {:.3f}, time x {:.3f}, PSNR {:+.2f} dB",
-                                        count, std::exp(log_samples / count), std::exp(log_ms / count),
+                            fmt::format("{}: samples x {:.3f}, time x {:.3f}, PSNR {:+.2f} dB",
+                                        format_count(static_cast<uint64_t>(count), "sequence"),
+                                        std::exp(log_samples / count), std::exp(log_ms / count),
                                         difference / count));
 }
 

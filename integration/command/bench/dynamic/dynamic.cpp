@@ -5,6 +5,7 @@
 #include "integration/command/bench/dynamic/comparison.hpp"
 #include "integration/command/bench/dynamic/dynamic_file.hpp"
 #include "integration/command/bench/dynamic/figures.hpp"
+#include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/technique.hpp"
 #include "integration/command/interrupt.hpp"
@@ -272,13 +273,15 @@ std::string text_of(const Report& report) {
 
 } // namespace
 
-ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& options) {
+ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& asked) {
+  const BenchDynamicOptions options = quickened(asked);
   const auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
-  const std::optional<DynamicFile> file = read_dynamic(options.file, diagnostics);
+  std::optional<DynamicFile> file = read_dynamic(options.file, diagnostics);
   if (!file)
     return fail(session, ExitCode::problems, fmt::format("the bench file '{}' cannot be used", options.file),
                 &diagnostics);
+  if (options.quick) quicken(*file);
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
   Bench bench{session, options, *file, **host};
@@ -302,6 +305,7 @@ ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& option
   bench.report.facts.emplace_back("truth", fmt::format("at {} stratified pixels a frame", file->subset));
   bench.report.facts.emplace_back("frames",
                                   fmt::format("counted from number {} of each sequence on", file->counted));
+  if (options.quick) bench.report.facts.push_back(quick_fact());
   add_comparisons(bench.report);
   add_published(bench.report);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

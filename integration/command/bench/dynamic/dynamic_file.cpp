@@ -1,5 +1,7 @@
 #include "integration/command/bench/dynamic/dynamic_file.hpp"
 
+#include "integration/command/shipped.hpp"
+
 #include <fmt/format.h>
 
 namespace dermis::tools {
@@ -14,7 +16,7 @@ void read_scene(const Document& document, NodeId node, Diagnostics& diagnostics,
   SequenceRequest request;
   if (const auto name = object.name("scene")) request.scene = *name;
   if (const auto name = object.name("framing")) request.framing = *name;
-  if (const auto path = object.string("file")) request.file = *path;
+  if (const auto path = object.string("file")) request.file = shipped(std::string(*path));
   if (const auto d = object.number("d_px", least_d_px, most_d_px, Need::optional)) request.d_px = *d;
   request.camera = read_camera(document, object, diagnostics);
   if (const auto n = object.integer("first", 0, most_frames, Need::optional)) request.first = uint32_t(*n);

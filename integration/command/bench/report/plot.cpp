@@ -1,5 +1,5 @@
 // Plots with logarithmic axes, or over frames, as SVG. Colours come from the page: classes s0, s1, ... by the
-// series' place in its list.
+// series' place in its list, and b0, b1, ... of baselines, whose lines differ.
 
 #include "integration/command/bench/report/html.hpp"
 #include "integration/command/bench/report/report.hpp"
@@ -46,13 +46,14 @@ Axis axis_over(const Plot& plot, double PlotPoint::*which, double from, double t
 }
 
 std::string number(double value) {
-  return value >= 1e-4 && value < 10000 ? fmt::format("{:.4g}", value) : fmt::format("{:.0e}", value);
+  return value == 0 || (value >= 1e-4 && value < 10000) ? fmt::format("{:.4g}", value)
+                                                        : fmt::format("{:.0e}", value);
 }
 
 // 1, 2, 5 of each decade; 1 alone where the axis spans many, more where it spans little.
 std::vector<double> ticks(const Axis& axis) {
   if (axis.even) {
-    const double step = axis.high > 100 ? 50 : axis.high > 40 ? 10 : 5; // frames
+    const double step = axis.high > 100 ? 50 : axis.high > 40 ? 10 : axis.high > 8 ? 5 : 1; // frames
     std::vector<double> frames;
     for (double at = 0; at <= axis.high; at += step)
       frames.push_back(at);
@@ -100,7 +101,21 @@ void add_front(std::string& svg, const Plot& plot, const Axis& x, const Axis& y)
 
 } // namespace
 
-std::string plot_as_svg(const Plot& plot, const std::vector<std::string>& names) {
+size_t place_of(const std::vector<SeriesName>& names, std::string_view name) {
+  const auto at =
+      std::find_if(names.begin(), names.end(), [&](const SeriesName& one) { return one.name == name; });
+  return static_cast<size_t>(at - names.begin());
+}
+
+std::string series_class(const std::vector<SeriesName>& names, size_t place) {
+  constexpr std::ptrdiff_t lines = 6; // that the style has for baselines
+  if (!names[place].baseline) return fmt::format("s{}", place);
+  const auto before = std::count_if(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(place),
+                                    [](const SeriesName& one) { return one.baseline; });
+  return fmt::format("s{} base b{}", place, before % lines);
+}
+
+std::string plot_as_svg(const Plot& plot, const std::vector<SeriesName>& names) {
   const Axis x = plot.over_frames ? frames_axis(plot, left, width - right)
                                   : axis_over(plot, &PlotPoint::x, left, width - right);
   const Axis y = axis_over(plot, &PlotPoint::y, height - bottom, top);
@@ -109,8 +124,7 @@ std::string plot_as_svg(const Plot& plot, const std::vector<std::string>& names)
   add_axes(svg, plot, x, y);
   add_front(svg, plot, x, y);
   for (const PlotSeries& series : plot.series) {
-    const auto place = std::find(names.begin(), names.end(), series.name) - names.begin();
-    svg += fmt::format("<g class='s{}{}'>", place, series.baseline ? " base" : "");
+    svg += fmt::format("<g class='{}'>", series_class(names, place_of(names, series.name)));
     if (plot.over_frames) {
       svg += "<polyline class=line points='";
       for (const PlotPoint& point : series.points)

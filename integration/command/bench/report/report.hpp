@@ -86,7 +86,16 @@ std::string deliver_report(const Report& report, const std::string& json, const 
 // Is it what others do, and not one of the project's own techniques? By its name in the reports.
 bool is_baseline(std::string_view technique);
 
-// SVG of a plot; `names` holds the names of all series of the page in order.
-std::string plot_as_svg(const Plot& plot, const std::vector<std::string>& names);
+// A series of the page's plots: each has a look of its own, baselines by their lines alone.
+struct SeriesName {
+  std::string name;
+  bool baseline = false;
+};
+// Index of a name; names.size() where there is none.
+size_t place_of(const std::vector<SeriesName>& names, std::string_view name);
+std::string series_class(const std::vector<SeriesName>& names, size_t place); // of the style: "s2 base b0"
+
+// SVG of a plot; `names` holds those of all series of the page in order.
+std::string plot_as_svg(const Plot& plot, const std::vector<SeriesName>& names);
 
 } // namespace dermis::tools

@@ -1,5 +1,6 @@
 // dermis bench stability: every technique under everything that is known to break such techniques.
 
+#include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/stability/rows.hpp"
 #include "integration/command/interrupt.hpp"
@@ -105,7 +106,8 @@ std::string text_of(const std::vector<StabilityRow>& rows, const std::vector<std
 
 } // namespace
 
-ExitCode bench_stability(const Session& session, const BenchStabilityOptions& options) {
+ExitCode bench_stability(const Session& session, const BenchStabilityOptions& asked) {
+  const BenchStabilityOptions options = quickened(asked);
   Diagnostics diagnostics;
   const auto techniques = read_techniques(options.file, diagnostics);
   if (!techniques)
@@ -148,8 +150,9 @@ ExitCode bench_stability(const Session& session, const BenchStabilityOptions& op
       std::count_if(rows.begin(), rows.end(), [](const StabilityRow& row) { return !row.holds(); });
   if (!session.quiet && options.json != "-" && options.html != "-")
     print(text_of(rows, notes) + fmt::format("{} of {} rows do not hold\n", broken, rows.size()));
-  const std::string problem = deliver_report(
-      make_report(session, rows, notes, (*host)->properties.deviceName), options.json, "", options.html);
+  Report report = make_report(session, rows, notes, (*host)->properties.deviceName);
+  if (options.quick) report.facts.push_back(quick_fact());
+  const std::string problem = deliver_report(report, options.json, "", options.html);
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   return broken == 0 ? ExitCode::ok : ExitCode::problems;
 }

@@ -85,6 +85,9 @@ std::string kinds_page(const KindRegistry& kinds) {
     const PassKind& kind = kinds[KindId{k}];
     out += fmt::format("\n## {}\n\n{} Runs {}{}.\n", kind.name, kind.doc, dispatch_text(kind.dispatch),
                        kind.side_effects ? "; never left out" : "");
+    for (const std::string_view port : kind.one_of)
+      out += fmt::format("{}`{}`", port == kind.one_of.front() ? "\nBound is at least one of " : ", ", port);
+    if (!kind.one_of.empty()) out += ".\n";
     out += "\n| port | | | |\n|---|---|---|---|\n";
     for (const Port& port : kind.ports) {
       std::string formats;

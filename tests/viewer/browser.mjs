@@ -1,0 +1,54 @@
+// A headless Chromium that takes pages of the command one by one, and laws that are asked of them.
+import { mkdirSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join, resolve } from 'node:path';
+
+const [modules, executablePath] = process.argv.slice(2);
+export const [dermis, out] = process.argv.slice(4);
+const { chromium } = createRequire(join(resolve(modules), '..', 'package.json'))('playwright-core');
+
+rmSync(out, { recursive: true, force: true });
+mkdirSync(out, { recursive: true });
+
+const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
+
+// A page whose every error counts, offline; `ready` is there once it is whole.
+export async function open(url, scheme = 'light', ready = 'body') {
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: scheme, offline: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(10000);
+  const problems = [];
+  page.on('pageerror', (error) => problems.push(String(error)));
+  page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) problems.push(message.text()); });
+  page.on('request', (request) => { if (!request.url().startsWith('file:') && !/^(data|blob):/.test(request.url())) problems.push(`asks for ${request.url()}`); });
+  const before = performance.now();
+  await page.goto(url);
+  await page.waitForSelector(ready);
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // it is drawn
+  return { page, problems, seconds: (performance.now() - before) / 1000, close: () => context.close() };
+}
+
+export const shot = (page, name, options = {}) => page.screenshot({ path: join(out, `${name}.png`), ...options });
+
+// Sum of the channels of the background, 0 to 765.
+export const shade = (page, element) =>
+  page.evaluate((one) => getComputedStyle(document.querySelector(one)).backgroundColor.match(/\d+/g).map(Number).reduce((a, b) => a + b, 0), element);
+
+const laws = [];
+export const law = (name, work) => laws.push([name, work]);
+
+// Asks all laws and ends the program.
+export async function finish() {
+  let failed = 0;
+  for (const [name, work] of laws) {
+    try {
+      await work();
+      console.log(`ok: ${name}`);
+    } catch (problem) {
+      failed += 1;
+      console.log(`FAILED: ${name}\n${problem.stack}`);
+    }
+  }
+  await browser.close();
+  process.exit(failed === 0 ? 0 : 1);
+}
