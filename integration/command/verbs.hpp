@@ -21,8 +21,8 @@ using NamedValue = std::pair<std::string, std::string>;
 // What is put together with a graph file.
 struct GraphParts {
   std::vector<std::string> overlays; // files, applied in this order
-  std::vector<std::string> roots;    // folders that included files are read from, beside the graph's own
-  std::vector<std::string> kinds;    // files of the host's pass kinds, for verbs that do not run the graph
+  std::vector<std::string> roots; // folders that files may be read from which others name, beside their own
+  std::vector<std::string> kinds; // files of the host's pass kinds, for verbs that do not run the graph
 };
 
 struct ValidateOptions {
@@ -146,6 +146,7 @@ struct CaptureOptions {
   Size size{640, 360};
   uint32_t frames = 8, first = 0;
   ModelOptions model;
+  std::vector<std::string> roots; // folders that scene and model may read from, beside their own
 };
 ExitCode capture(const Session& session, const CaptureOptions& options);
 
@@ -185,6 +186,7 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options);
 struct SheetOptions {
   std::string scene = shipped("configs/scenes/bust.json"), out;
   std::vector<std::string> graphs, profiles; // files; empty: those that ship
+  std::vector<std::string> roots;            // folders that the scene may read from, beside its own
   Size size{320, 180};                       // of one picture
 };
 ExitCode sheet(const Session& session, const SheetOptions& options);
@@ -199,7 +201,8 @@ ExitCode apply(const Session& session, const ApplyOptions& options);
 
 struct ReferenceOptions {
   std::string frames, out, profiles;
-  uint32_t subset = 0; // pixels of a frame; 0: all
+  std::vector<std::string> roots; // folders that the capture may read from, beside its own
+  uint32_t subset = 0;            // pixels of a frame; 0: all
 };
 ExitCode reference(const Session& session, const ReferenceOptions& options);
 

@@ -37,9 +37,9 @@ Result<> check(const RenderOptions& options) {
   return success();
 }
 
-Result<Scene> load(const std::string& path) {
+Result<Scene> load(const std::string& path, const std::vector<std::string>& roots) {
   dermis::Diagnostics diagnostics;
-  auto scene = read_scene(path, diagnostics);
+  auto scene = read_scene(path, diagnostics, roots);
   if (scene) return *scene;
   std::string text;
   for (const dermis::Diagnostic& one : diagnostics.list) {
@@ -225,14 +225,14 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
 Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks) {
   const Clock::time_point start = Clock::now();
   if (auto done = check(options); !done) return done.error();
-  auto scene = load(options.scene);
+  auto scene = load(options.scene, options.roots);
   if (!scene) return scene.error();
   if (options.camera) move_camera(*scene, *options.camera);
   zoom_in(scene->camera, options.zoom);
   if (options.frames_per_second > 0) scene->frames_per_second = options.frames_per_second;
   Model model;
   if (!options.model.mesh.empty()) {
-    auto loaded = load_model(options.model);
+    auto loaded = load_model(options.model, options.roots);
     if (!loaded) return loaded.error();
     model = loaded.take();
     put_in_place(*scene);

@@ -41,16 +41,17 @@ struct RenderOptions {
   std::function<std::optional<NamedText>(const std::string& name)> shaders = {};
   ModelOptions model;
   std::string profile; // file that takes the place of each of the scene's profiles; "" = as the scene says
-  uint32_t width = 640, height = 360; // pixels, 1..16384
+  std::vector<std::string> roots = {}; // folders that scene and model may read from, beside their own
+  uint32_t width = 640, height = 360;  // pixels, 1..16384
   uint32_t first_frame = 0, frames = 1;
   double frames_per_second = 0; // 0: the scene's
-  bool reversed_depth = false; // far plane at depth 0
-  bool jitter = false;         // sub-pixel camera jitter (Halton 2, 3; period 8)
-  bool taa = false;            // temporal anti-aliasing of `color`, with jitter
-  bool sampling = false;       // hand out what the graph says of its samples
-  bool skips = false;          // and of what it left out
-  bool validation = false;     // run under the Khronos validation layer
-  std::string device;          // part of the device's name; "" = choose
+  bool reversed_depth = false;  // far plane at depth 0
+  bool jitter = false;          // sub-pixel camera jitter (Halton 2, 3; period 8)
+  bool taa = false;             // temporal anti-aliasing of `color`, with jitter
+  bool sampling = false;        // hand out what the graph says of its samples
+  bool skips = false;           // and of what it left out
+  bool validation = false;      // run under the Khronos validation layer
+  std::string device;           // part of the device's name; "" = choose
   std::optional<CameraPlace> camera;
   double zoom = 1.0; // how many times larger the camera shows things: its field of view shrinks; > 0
   std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text

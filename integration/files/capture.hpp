@@ -66,21 +66,27 @@ struct CapturedFrame {
   SanitisedCounts sanitised;
 };
 
-// The frames of a capture in order of their names: sub-folders that hold a frame.json, or the folder itself.
-// Empty with an error if there is none. `diagnostics` may be any thread's own.
-std::vector<std::filesystem::path> find_frames(const std::filesystem::path& folder, Diagnostics& diagnostics);
+// Folders that a capture may read from beside its own and that of the profiles: links of theirs count as what
+// they lead to.
+using FileRoots = std::span<const std::string>;
 
-// Reads and checks one frame. A profile's "file" is looked up beside frame.json, or, where it is a plain
-// name, as <profile_folder>/<name>.json. Damaged values are mended, counted and reported as a warning. Empty
-// with located errors if anything else is wrong.
+// The frames of a capture in order of their names: sub-folders that hold a frame.json, or the folder itself.
+// Empty with an error if there is none, or if one is a link out of `folder`. `diagnostics` may be any
+// thread's own.
+std::vector<std::filesystem::path> find_frames(const std::filesystem::path& folder, Diagnostics& diagnostics,
+                                               FileRoots roots = {});
+
+// Reads and checks one frame. A profile's "file" is looked up below the folder of frame.json, or, where it is
+// a plain name, as <profile_folder>/<name>.json. Damaged values are mended, counted and reported as a
+// warning. Empty with located errors if anything else is wrong.
 std::optional<CapturedFrame> read_frame(const std::filesystem::path& folder,
-                                        const std::filesystem::path& profile_folder,
-                                        Diagnostics& diagnostics);
+                                        const std::filesystem::path& profile_folder, Diagnostics& diagnostics,
+                                        FileRoots roots = {});
 
 // frame.json alone: the pictures stay empty. `folder` is where the document stands.
 std::optional<CapturedFrame> read_description(const Document& document, const std::filesystem::path& folder,
                                               const std::filesystem::path& profile_folder,
-                                              Diagnostics& diagnostics);
+                                              Diagnostics& diagnostics, FileRoots roots = {});
 
 // Fills `rays` from the description, and clip_from_view from pixel_pitch_m where that is given. False: no
 // projection.

@@ -1,5 +1,7 @@
 #include "integration/files/capture_pictures.hpp"
 
+#include "framegraph/text/file_roots.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,7 +14,13 @@ namespace {
 
 std::optional<Image> read_sized(const fs::path& path, const std::vector<ChannelNames>& channels,
                                 const Document& document, const FrameDescription& description,
-                                Diagnostics& diagnostics) {
+                                std::span<const fs::path> roots, Diagnostics& diagnostics) {
+  const PlacedFile placed = place_file(path.parent_path(), path.filename().string(), roots);
+  if (!placed.problem.empty()) {
+    diagnostics.add(DiagnosticId::outside_root, document.where(document.root()),
+                    fmt::format("'{}' is not read: {}", path.string(), placed.problem));
+    return std::nullopt;
+  }
   std::string error;
   auto image = read_exr(path, channels, error);
   if (!image) {
@@ -100,9 +108,12 @@ const std::vector<ChannelNames>& profile_channels() {
 }
 
 void read_pictures(const fs::path& folder, const Document& document, CapturedFrame& frame,
-                   Diagnostics& diagnostics) {
+                   Diagnostics& diagnostics, FileRoots roots) {
+  std::vector<fs::path> readable(roots.begin(), roots.end());
+  readable.insert(readable.begin(), folder);
   const fs::path profile_path = folder / "profile.exr";
-  const auto ids = read_sized(profile_path, profile_channels(), document, frame.description, diagnostics);
+  const auto ids =
+      read_sized(profile_path, profile_channels(), document, frame.description, readable, diagnostics);
   if (ids) {
     take_profile_ids(*ids, profile_path, document, frame, diagnostics);
     check_profiles_known(document, frame, diagnostics);
@@ -111,7 +122,7 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
     const fs::path path = folder / (std::string(kind.name) + ".exr");
     std::error_code code;
     if (!kind.required && !fs::exists(path, code)) continue;
-    auto image = read_sized(path, kind.channels, document, frame.description, diagnostics);
+    auto image = read_sized(path, kind.channels, document, frame.description, readable, diagnostics);
     if (!image || !ids) continue;
     mend(*image, kind.signed_values, frame.profile, frame.sanitised);
     frame.*kind.image = std::move(*image);

@@ -19,8 +19,9 @@ struct PictureKind {
 const std::vector<PictureKind>& picture_kinds();
 const std::vector<ChannelNames>& profile_channels();
 
-// Reads all pictures of `frame.description` from the folder. Errors are located in frame.json.
+// Reads all pictures of `frame.description` from the folder: files, or links to files below it or one of
+// `roots`. Errors are located in frame.json.
 void read_pictures(const std::filesystem::path& folder, const Document& document, CapturedFrame& frame,
-                   Diagnostics& diagnostics);
+                   Diagnostics& diagnostics, FileRoots roots = {});
 
 } // namespace dermis::tools

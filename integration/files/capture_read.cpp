@@ -1,5 +1,6 @@
 #include "integration/files/capture.hpp"
 
+#include "framegraph/text/file_roots.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/reader.hpp"
 #include "integration/files/capture_pictures.hpp"
@@ -88,22 +89,32 @@ void read_projection(const Document& document, ObjectReader& reader, FrameDescri
 
 std::optional<subsurface::Profile> read_profile_file(const Document& document, NodeId key,
                                                      const fs::path& folder, const fs::path& profile_folder,
-                                                     Diagnostics& diagnostics) {
+                                                     FileRoots roots, Diagnostics& diagnostics) {
   const fs::path name{std::string(document.text(key))};
   const bool plain = !name.has_parent_path() && name.extension().empty();
-  const fs::path path = plain ? profile_folder / (name.string() + ".json") : folder / name;
+  std::vector<fs::path> readable(roots.begin(), roots.end());
+  readable.insert(readable.begin(), {folder, profile_folder});
+  const PlacedFile placed = plain ? place_file(profile_folder, name.string() + ".json", readable)
+                                  : place_file(folder, name.string(), readable);
+  if (!placed.problem.empty()) {
+    diagnostics.add(DiagnosticId::outside_root, document.where(key),
+                    fmt::format("profile '{}' is not read: {}", name.string(), placed.problem));
+    return std::nullopt;
+  }
+  const std::string path = placed.path.string();
   std::error_code code;
   if (!fs::is_regular_file(path, code)) {
     diagnostics.add(DiagnosticId::capture_profile, document.where(key),
-                    fmt::format("profile '{}' is not there: no file '{}'", name.string(), path.string()));
+                    fmt::format("profile '{}' is not there: no file '{}'", name.string(), path));
     return std::nullopt;
   }
-  const auto profile = read_document(path.string(), diagnostics);
+  const auto profile = read_document(path, diagnostics);
   return profile ? subsurface::read_profile(*profile, diagnostics) : std::nullopt;
 }
 
 void read_profiles(const Document& document, ObjectReader& reader, const fs::path& folder,
-                   const fs::path& profile_folder, FrameDescription& frame, Diagnostics& diagnostics) {
+                   const fs::path& profile_folder, FileRoots roots, FrameDescription& frame,
+                   Diagnostics& diagnostics) {
   const NodeId list = reader.array("profiles", 0, 255);
   if (!list.valid()) return;
   std::array<NodeId, 256> taken{};
@@ -117,7 +128,7 @@ void read_profiles(const Document& document, ObjectReader& reader, const fs::pat
       ObjectReader object(document, node, what, diagnostics);
       object.any("id");
       if (object.string("file") && object.finish())
-        profile = read_profile_file(document, file, folder, profile_folder, diagnostics);
+        profile = read_profile_file(document, file, folder, profile_folder, roots, diagnostics);
     } else {
       profile = subsurface::read_inline_profile(document, node, what, diagnostics);
     }
@@ -138,8 +149,9 @@ void read_profiles(const Document& document, ObjectReader& reader, const fs::pat
 
 } // namespace
 
-std::vector<fs::path> find_frames(const fs::path& folder, Diagnostics& diagnostics) {
-  std::vector<fs::path> frames;
+std::vector<fs::path> find_frames(const fs::path& folder, Diagnostics& diagnostics, FileRoots roots) {
+  std::vector<fs::path> frames, readable(roots.begin(), roots.end());
+  readable.insert(readable.begin(), folder);
   std::error_code code;
   if (fs::is_regular_file(folder / "frame.json", code)) return {folder};
   for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
@@ -148,6 +160,13 @@ std::vector<fs::path> find_frames(const fs::path& folder, Diagnostics& diagnosti
       frames.push_back(it->path());
   }
   std::sort(frames.begin(), frames.end());
+  for (const fs::path& frame : frames) {
+    const PlacedFile placed = place_file(folder, frame.filename().string(), readable);
+    if (placed.problem.empty()) continue;
+    diagnostics.add(DiagnosticId::outside_root, place_of(diagnostics, frame),
+                    fmt::format("the frame '{}' is not read: {}", frame.string(), placed.problem));
+    return {};
+  }
   if (frames.empty())
     diagnostics.add(DiagnosticId::capture_empty, place_of(diagnostics, folder),
                     fmt::format("'{}' holds no frame: neither frame.json nor folders with one{}",
@@ -184,18 +203,20 @@ bool complete_projection(FrameDescription& frame, subsurface::PixelRays& rays) {
 }
 
 std::optional<CapturedFrame> read_frame(const fs::path& folder, const fs::path& profile_folder,
-                                        Diagnostics& diagnostics) {
+                                        Diagnostics& diagnostics, FileRoots roots) {
   const auto document = read_document((folder / "frame.json").string(), diagnostics);
   if (!document) return std::nullopt;
   const uint32_t errors = diagnostics.count(Severity::error);
-  std::optional<CapturedFrame> frame = read_description(*document, folder, profile_folder, diagnostics);
-  if (frame) read_pictures(folder, *document, *frame, diagnostics);
+  std::optional<CapturedFrame> frame =
+      read_description(*document, folder, profile_folder, diagnostics, roots);
+  if (frame) read_pictures(folder, *document, *frame, diagnostics, roots);
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;
   return frame;
 }
 
 std::optional<CapturedFrame> read_description(const Document& document, const fs::path& folder,
-                                              const fs::path& profile_folder, Diagnostics& diagnostics) {
+                                              const fs::path& profile_folder, Diagnostics& diagnostics,
+                                              FileRoots roots) {
   const uint32_t errors = diagnostics.count(Severity::error);
   if (!check_version(document, "dermis_capture", capture_format_version, diagnostics)) return std::nullopt;
   CapturedFrame frame;
@@ -209,7 +230,7 @@ std::optional<CapturedFrame> read_description(const Document& document, const fs
   const int64_t index = reader.integer("frame_index", 0, INT64_MAX, Need::optional).value_or(0);
   description.frame_index = static_cast<uint64_t>(index);
   description.exposure = reader.number("exposure", 1e-12, 1e12, Need::optional).value_or(1);
-  read_profiles(document, reader, folder, profile_folder, description, diagnostics);
+  read_profiles(document, reader, folder, profile_folder, roots, description, diagnostics);
   reader.has("previous_clip_from_view"); // not read where the projection itself is wrong
   reader.finish();
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;

@@ -1,10 +1,11 @@
 #include "integration/files/roots.hpp"
 
+#include "framegraph/text/file_roots.hpp"
 #include "framegraph/text/limits.hpp"
 #include "integration/files/bytes.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <span>
 #include <system_error>
 
 namespace dermis::tools {
@@ -13,26 +14,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_below(const fs::path& path, const fs::path& root) {
-  return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
-}
-
 FileText open_file(const std::vector<fs::path>& roots, std::string_view name) {
   FileText out;
   std::string looked_in;
   for (const fs::path& root : roots) {
-    const fs::path shown = (root / fs::path(name)).lexically_normal();
-    std::error_code code;
-    const fs::path real_root = fs::canonical(root.empty() ? fs::path(".") : root, code);
-    const fs::path real = code ? fs::path() : fs::canonical(shown, code);
+    const PlacedFile placed = place_file(root, name, std::span(&root, 1));
     looked_in += fmt::format("{}'{}'", looked_in.empty() ? "" : ", ", root.empty() ? "." : root.string());
-    if (code || !fs::is_regular_file(real, code)) continue;
-    out.name = shown.string();
-    if (!is_below(real, real_root)) {
-      out.problem = fmt::format("'{}' leads out of '{}'", out.name, root.string());
+    std::error_code code;
+    if (!fs::exists(placed.real, code)) continue;
+    out.name = placed.path.string();
+    if (!placed.problem.empty()) {
+      out.problem = placed.problem;
       return out;
     }
-    const auto bytes = read_bytes(real, limits::file_bytes, out.problem);
+    if (!fs::is_regular_file(placed.real, code)) continue;
+    const auto bytes = read_bytes(placed.real, limits::file_bytes, out.problem);
     if (bytes) out.text.assign(bytes->begin(), bytes->end());
     return out;
   }

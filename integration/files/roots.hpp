@@ -8,8 +8,8 @@
 
 namespace dermis::tools {
 
-// Opens a name in the first of `roots` that holds a regular file of it. What leads out of that folder,
-// through a link, is refused. Any thread.
+// Opens a name in the first of `roots` that holds a regular file of it. What leads out of that folder is
+// refused (place_file). Any thread.
 OpenFile open_below(std::vector<std::filesystem::path> roots);
 
 } // namespace dermis::tools

@@ -265,5 +265,26 @@ TEST_F(GraphFiles, IncludedFilesAreReadBelowTheGraphsFolderAndDeclaredRoots) {
   EXPECT_THAT(alone.err, HasSubstr("classify.json:2:29: error[D0203"));
 }
 
+TEST_F(GraphFiles, AScenesProfilesAreReadInItsFolderAndDeclaredRoots) {
+  write("elsewhere/secret.json", "{ \"dermis_profile\": 1 }");
+  const std::string scene = write("here/scene.json", R"({ "dermis_scene": 1, "name": "s",
+  "profiles": [ { "name": "skin", "file": "../elsewhere/secret.json" } ],
+  "camera": { "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 },
+  "objects": [ { "shape": "sphere", "profile": "skin" } ] })");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"validate", scene},
+        {"render", scene, "--graph", "none", "--out", path("out")},
+        {"capture", scene, "--out", path("out")}}) {
+    const Outcome outside = run(words);
+    EXPECT_EQ(outside.exit_code, 1) << words[0];
+    EXPECT_THAT(outside.err,
+                AllOf(HasSubstr("scene.json:2:43: error[D0118"), HasSubstr("leads out of what may be read"),
+                      HasSubstr("--root")))
+        << words[0];
+    EXPECT_FALSE(std::filesystem::exists(path("out"))) << words[0];
+  }
+  EXPECT_EQ(run({"validate", scene, "--root", path("elsewhere")}).exit_code, 0);
+}
+
 } // namespace
 } // namespace dermis::test

@@ -319,6 +319,45 @@ TEST_F(Captures, ProfilesComeFromFilesToo) {
   EXPECT_EQ(frame->description.profiles[0].profile.name, "wax");
 }
 
+TEST_F(Captures, NothingIsReadOutsideOfTheirFolder) {
+  const fs::path folder = write(sample());
+  const std::string inline_profile = "\"dmfp_mm\": [3.67, 1.37, 0.68], \"albedo\": [0.44, 0.22, 0.13]";
+  fs::copy_file(shipped / "wax.json", root / "wax.json");
+  std::string before = inline_profile;
+  for (const std::string& outside :
+       {std::string("../../wax.json"), (root / "wax.json").string(), std::string("link/wax.json")}) {
+    diagnostics = {};
+    if (outside.starts_with("link")) fs::create_directory_symlink(root, folder / "link");
+    change(folder, before, "\"file\": \"" + outside + "\"");
+    before = "\"file\": \"" + outside + "\"";
+    expect_refused(folder, DiagnosticId::outside_root, "/profiles/0/file", "leads out of what may be read");
+    diagnostics = {};
+    EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{root.string()})) << messages();
+  }
+}
+
+TEST_F(Captures, PicturesAndFramesThatAreLinksOutAreRefused) {
+  const fs::path folder = write(sample()), other = write(sample(), "other");
+  fs::remove(folder / "lighting.exr");
+  fs::create_symlink(other / "lighting.exr", folder / "lighting.exr");
+  expect_refused(folder, DiagnosticId::outside_root, "", "lighting.exr");
+  diagnostics = {};
+  EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{(root / "other").string()})) << messages();
+  fs::rename(folder / "albedo.exr", folder / "here.exr");
+  fs::create_symlink("here.exr", folder / "albedo.exr"); // inside: what it leads to counts
+  fs::remove(folder / "lighting.exr");
+  fs::copy_file(other / "lighting.exr", folder / "lighting.exr");
+  diagnostics = {};
+  EXPECT_TRUE(read_frame(folder, shipped, diagnostics)) << messages();
+
+  fs::create_directory_symlink(other, root / "capture" / "frame_0001");
+  diagnostics = {};
+  EXPECT_TRUE(find_frames(root / "capture", diagnostics).empty());
+  ASSERT_EQ(diagnostics.list.size(), 1u);
+  EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::outside_root);
+  EXPECT_EQ(find_frames(root / "capture", diagnostics, std::vector{(root / "other").string()}).size(), 2u);
+}
+
 TEST_F(Captures, AProfileIdIsGivenOnce) {
   const fs::path folder = write(sample());
   change(folder, "\"profiles\": [", "\"profiles\": [ { \"id\": 3, \"file\": \"skin\" },");

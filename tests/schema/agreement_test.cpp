@@ -79,7 +79,7 @@ void read_kinds_text(const std::string& text, Diagnostics& diagnostics) {
     read_host_kinds(*document, diagnostics);
 }
 void read_scene_text(const std::string& text, Diagnostics& diagnostics) {
-  demo::parse_scene("scene.json", text, diagnostics);
+  demo::parse_scene("scenes/scene.json", text, diagnostics);
 }
 void read_capture_text(const std::string& text, Diagnostics& diagnostics) {
   if (const auto document = parse_document("frame.json", text, diagnostics))

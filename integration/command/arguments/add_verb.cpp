@@ -57,7 +57,7 @@ void add_parts(CLI::App& verb, GraphParts& parts) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_root(verb, parts.roots,
-           "Folder that included files are read from, beside the graph's own; may be repeated");
+           "Folder that graph, scene, model or capture may read from, beside their own; may be repeated");
 }
 
 void add_kinds(CLI::App& verb, GraphParts& parts) {

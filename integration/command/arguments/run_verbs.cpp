@@ -107,6 +107,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--first", options.first, "Frame of the scene to begin at [0]")
             ->check(CLI::Range(0u, max_frames));
         add_model(verb, options.model);
+        add_root(verb, options.roots,
+                 "Folder that scene and model may read from, beside their own; may be repeated");
       });
   add_verb<WatchOptions>(
       app, invocation, "watch",
@@ -179,6 +181,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',')
             ->type_name("FILE ...");
         add_size(verb, options.size);
+        add_root(verb, options.roots, "Folder that the scene may read from, beside its own; may be repeated");
       });
   add_verb<CalibrateOptions>(
       app, invocation, "calibrate", "Measure what a graph's passes cost on this device",
@@ -222,6 +225,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("DIR");
         verb.add_option("--subset", options.subset, "Pixels of a frame, chosen evenly; 0: all [0]")
             ->check(CLI::Range(0u, max_subset));
+        add_root(verb, options.roots,
+                 "Folder that the capture may read from, beside its own; may be repeated");
       });
   add_verb<CompareOptions>(
       app, invocation, "compare", "Say how far two pictures, or two folders of them, are apart",

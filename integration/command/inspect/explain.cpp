@@ -59,6 +59,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
   constexpr uint32_t frames = 6;
   demo::RenderOptions engine;
   engine.scene = options.scene;
+  engine.roots = options.parts.roots;
   engine.graph = options.graph;
   engine.width = options.size.width;
   engine.height = options.size.height;

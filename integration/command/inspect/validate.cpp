@@ -46,9 +46,9 @@ bool check_profile(const Document& document, Diagnostics& diagnostics, std::stri
   return profile.has_value();
 }
 
-bool check_scene(const Document& document, Diagnostics& diagnostics) {
+bool check_scene(const Document& document, const std::vector<std::string>& roots, Diagnostics& diagnostics) {
   const SourceFile file = diagnostics.files[document.file.value];
-  return demo::parse_scene(file.name, file.text, diagnostics).has_value();
+  return demo::parse_scene(file.name, file.text, diagnostics, roots).has_value();
 }
 
 bool check_expectations(const Document& document, Diagnostics& diagnostics) {
@@ -56,12 +56,12 @@ bool check_expectations(const Document& document, Diagnostics& diagnostics) {
 }
 
 bool check_capture(const Document& document, const std::string& path, const std::string& profiles,
-                   Diagnostics& diagnostics) {
+                   const std::vector<std::string>& roots, Diagnostics& diagnostics) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const uint32_t errors = diagnostics.count(Severity::error);
   std::optional<CapturedFrame> frame =
-      read_description(document, folder, profiles_folder(profiles), diagnostics);
-  if (frame) read_pictures(folder, document, *frame, diagnostics);
+      read_description(document, folder, profiles_folder(profiles), diagnostics, roots);
+  if (frame) read_pictures(folder, document, *frame, diagnostics, roots);
   return diagnostics.count(Severity::error) == errors;
 }
 
@@ -85,13 +85,13 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
     checked.good = check_profile(*document, diagnostics, checked.about);
     break;
   case FileKindId::scene:
-    checked.good = check_scene(*document, diagnostics);
+    checked.good = check_scene(*document, options.parts.roots, diagnostics);
     break;
   case FileKindId::expectations:
     checked.good = check_expectations(*document, diagnostics);
     break;
   case FileKindId::capture:
-    checked.good = check_capture(*document, path, options.profiles, diagnostics);
+    checked.good = check_capture(*document, path, options.profiles, options.parts.roots, diagnostics);
     break;
   case FileKindId::overlay:
     checked.good = check_overlay(*document, diagnostics);
@@ -120,7 +120,7 @@ std::vector<CheckedFile> check_path(const std::string& path, const ValidateOptio
   std::error_code ignored;
   if (!std::filesystem::is_directory(path, ignored)) return {check_file(path, options, diagnostics)};
   std::vector<CheckedFile> checked;
-  for (const std::filesystem::path& frame : find_frames(path, diagnostics))
+  for (const std::filesystem::path& frame : find_frames(path, diagnostics, options.parts.roots))
     checked.push_back(check_file((frame / "frame.json").string(), options, diagnostics));
   if (checked.empty()) checked.push_back({path});
   return checked;

@@ -13,6 +13,7 @@ namespace dermis::tools {
 demo::Result<> capture_scene(const Session& session, const CaptureOptions& options) {
   demo::RenderOptions engine;
   engine.scene = options.scene;
+  engine.roots = options.roots;
   engine.model = {options.model.model, options.model.albedo, options.model.normal, options.model.specular,
                   options.model.height};
   engine.width = options.size.width;

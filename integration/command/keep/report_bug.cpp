@@ -128,12 +128,14 @@ demo::Result<> add_frame(const Session& session, const ReportBugOptions& options
   if (options.frames.empty()) {
     Session quiet = session;
     quiet.quiet = true; // one frame
-    return capture_scene(quiet, {options.scene, folder, options.size, 1, options.count - 1, {}});
+    return capture_scene(
+        quiet, {options.scene, folder, options.size, 1, options.count - 1, {}, options.parts.roots});
   }
   Diagnostics diagnostics;
-  const std::vector<fs::path> frames = find_frames(options.frames, diagnostics);
-  const auto frame =
-      frames.empty() ? std::nullopt : read_frame(frames.back(), profiles_folder(""), diagnostics);
+  const std::vector<fs::path> frames = find_frames(options.frames, diagnostics, options.parts.roots);
+  const auto frame = frames.empty()
+                         ? std::nullopt
+                         : read_frame(frames.back(), profiles_folder(""), diagnostics, options.parts.roots);
   if (!frame) {
     print_diagnostics(session, diagnostics);
     return demo::Error{demo::ErrorKind::input,

@@ -135,7 +135,8 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
-  const std::optional<CapturedSequence> sequence = check_sequence(session, options.frames, options.profiles);
+  const std::optional<CapturedSequence> sequence =
+      check_sequence(session, options.frames, options.profiles, options.parts.roots);
   if (!sequence) return ExitCode::problems;
 
   auto host = demo::create_vulkan_host({});

@@ -39,6 +39,7 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
     for (const auto& values : all) {
       demo::RenderOptions engine;
       engine.scene = options.scene;
+      engine.roots = options.parts.roots;
       engine.graph = options.graph;
       engine.width = options.size.width;
       engine.height = options.size.height;

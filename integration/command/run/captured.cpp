@@ -32,13 +32,15 @@ std::filesystem::path profiles_folder(const std::string& option) {
 }
 
 std::optional<CapturedSequence> check_sequence(const Session& session, const std::string& folder,
-                                               const std::string& profiles) {
+                                               const std::string& profiles,
+                                               const std::vector<std::string>& roots) {
   CapturedSequence sequence;
   sequence.profiles = profiles_folder(profiles);
+  sequence.roots = roots;
   Diagnostics diagnostics;
-  sequence.folders = find_frames(folder, diagnostics);
+  sequence.folders = find_frames(folder, diagnostics, roots);
   for (const std::filesystem::path& one : sequence.folders) {
-    const auto frame = read_frame(one, sequence.profiles, diagnostics);
+    const auto frame = read_frame(one, sequence.profiles, diagnostics, roots);
     if (frame) sequence.sanitised_values += frame->sanitised.not_finite + frame->sanitised.negative;
     // A folder that is itself a frame has no name of its own.
     sequence.names.push_back(one == std::filesystem::path(folder) ? "frame_0000" : one.filename().string());
@@ -53,7 +55,7 @@ std::optional<CapturedSequence> check_sequence(const Session& session, const std
 
 std::optional<CapturedFrame> load_frame(const CapturedSequence& sequence, size_t index) {
   Diagnostics already_said;
-  return read_frame(sequence.folders[index], sequence.profiles, already_said);
+  return read_frame(sequence.folders[index], sequence.profiles, already_said, sequence.roots);
 }
 
 std::string profile_as_json(const subsurface::Profile& profile) {

@@ -18,6 +18,7 @@ struct CapturedSequence {
   std::vector<std::filesystem::path> folders; // of the frames, in order
   std::vector<std::string> names;             // of the frames, for output folders
   std::filesystem::path profiles;             // folder of the profiles that frames name
+  std::vector<std::string> roots;             // that else may be read from
   uint64_t sanitised_values = 0;              // not finite or negative; taken as 0
 };
 
@@ -27,7 +28,8 @@ std::filesystem::path profiles_folder(const std::string& option);
 // Reads every frame once, so that all problems are said before work begins. `profiles` "": configs/profiles.
 // nullopt when it has been said what is wrong.
 std::optional<CapturedSequence> check_sequence(const Session& session, const std::string& folder,
-                                               const std::string& profiles);
+                                               const std::string& profiles,
+                                               const std::vector<std::string>& roots);
 // Frame number `index` again; nullopt if it is no longer what it was.
 std::optional<CapturedFrame> load_frame(const CapturedSequence& sequence, size_t index);
 

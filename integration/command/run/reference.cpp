@@ -74,7 +74,7 @@ std::string write_answer(const Answer& made, const std::string& name, bool with_
 
 ExitCode reference(const Session& session, const ReferenceOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const auto sequence = check_sequence(session, options.frames, options.profiles);
+  const auto sequence = check_sequence(session, options.frames, options.profiles, options.roots);
   if (!sequence) return ExitCode::problems;
   OutputFolder out;
   if (const std::string problem = out.open(options.out); !problem.empty())

@@ -234,6 +234,7 @@ ExitCode report(Run& run) {
 ExitCode render(const Session& session, const RenderOptions& options) {
   demo::RenderOptions engine;
   engine.scene = options.scene;
+  engine.roots = options.parts.roots;
   engine.model = {options.model.model, options.model.albedo, options.model.normal, options.model.specular,
                   options.model.height};
   engine.width = options.size.width;

@@ -89,6 +89,7 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
       }
       demo::RenderOptions engine;
       engine.scene = options.scene;
+      engine.roots = options.roots;
       engine.width = options.size.width;
       engine.height = options.size.height;
       engine.graph = row == 0 ? "" : graphs[row - 1];

@@ -51,7 +51,7 @@ std::optional<SavedPlan> look_at_files(Watch& watch) {
   std::vector<std::string> files = {options.scene, options.graph};
   files.insert(files.end(), options.parts.overlays.begin(), options.parts.overlays.end());
   Diagnostics of_scene;
-  if (const auto scene = demo::read_scene(options.scene, of_scene))
+  if (const auto scene = demo::read_scene(options.scene, of_scene, options.parts.roots))
     for (const demo::SceneProfile& profile : scene->profiles)
       files.push_back(profile.file);
   Diagnostics diagnostics;

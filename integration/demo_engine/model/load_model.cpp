@@ -2,6 +2,7 @@
 
 #include "integration/demo_engine/files.hpp"
 #include "integration/demo_engine/model/load_texture.hpp"
+#include "integration/demo_engine/model/parse_gltf.hpp"
 #include "integration/demo_engine/model/read_accessor.hpp"
 
 #include <fmt/format.h>
@@ -10,62 +11,15 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include <cmath>
-#include <cstring>
-#include <exception>
-#include <filesystem>
 
 namespace demo {
 namespace {
 
-constexpr uint64_t most_file_bytes = uint64_t{1} << 30;
 constexpr size_t most_vertices = size_t{1} << 25;
 constexpr uint32_t deepest_node = 256;
 constexpr std::string_view head_scan = "LeePerrySmith";
 constexpr const char* head_scan_credit =
     "\"Infinite, 3D Head Scan\" by Lee Perry-Smith (www.triplegangers.com), licensed under CC BY 3.0";
-
-// Images are decoded by decode_texture, when they are wanted.
-bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void*) {
-  image->image.assign(bytes, bytes + size);
-  image->as_is = true;
-  return true;
-}
-
-Result<tinygltf::Model> parse(const std::string& path) {
-  auto bytes = read_binary_file(path, most_file_bytes);
-  if (!bytes) return bytes.error();
-  const auto refuse = [&](std::string_view why) {
-    return Error{ErrorKind::input, fmt::format("{}: {}", path, why)};
-  };
-  const bool binary = bytes->size() >= 4 && std::memcmp(bytes->data(), "glTF", 4) == 0;
-  size_t first = 0;
-  while (first < bytes->size() && std::isspace(static_cast<unsigned char>((*bytes)[first])) != 0)
-    ++first;
-  if (!binary && (first == bytes->size() || static_cast<char>((*bytes)[first]) != '{'))
-    return refuse("this is not a glTF file: it starts neither with 'glTF' (binary) nor with '{' (JSON)");
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(keep_encoded, nullptr);
-  tinygltf::Model model;
-  std::string error, warning;
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  const auto size = static_cast<unsigned int>(bytes->size());
-  bool loaded = false;
-  try {
-    loaded = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                                  reinterpret_cast<const unsigned char*>(bytes->data()), size,
-                                                  folder)
-                    : loader.LoadASCIIFromString(&model, &error, &warning,
-                                                 reinterpret_cast<const char*>(bytes->data()), size, folder);
-  } catch (const std::exception& problem) {
-    error = problem.what();
-  }
-  while (!error.empty() && error.back() == '\n')
-    error.pop_back();
-  if (!loaded)
-    return refuse(fmt::format("the glTF file is damaged: {}", error.empty() ? "no reason given" : error));
-  return model;
-}
 
 glm::dmat4 local_matrix(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
@@ -233,13 +187,15 @@ Result<> place_in_middle(Mesh& mesh, const ModelOptions& options) {
 
 } // namespace
 
-Result<Model> load_model(const ModelOptions& options) {
+Result<Model> load_model(const ModelOptions& options, const std::vector<std::string>& roots) {
   constexpr double tallest = 1000.0;
   if (!std::isfinite(options.height_metres) || options.height_metres < 0.0 || options.height_metres > tallest)
     return Error{ErrorKind::usage,
                  fmt::format("the model's height is {}; expected more than 0 and at most {} metres",
                              options.height_metres, tallest)};
-  auto file = parse(options.mesh);
+  auto bytes = read_binary_file(options.mesh, most_model_bytes);
+  if (!bytes) return bytes.error();
+  auto file = parse_gltf(options.mesh, *bytes, roots);
   if (!file) return file.error();
   Gathering gathering{*file, options.mesh, {}, -1, true, true, false, 0};
   const auto scene = static_cast<size_t>(std::max(file->defaultScene, 0));

@@ -1,5 +1,6 @@
 #include "integration/demo_engine/scene/read_scene.hpp"
 
+#include "framegraph/text/file_roots.hpp"
 #include "framegraph/text/reader.hpp"
 #include "integration/demo_engine/scene/read_curve.hpp"
 #include "integration/demo_engine/scene/scene_state.hpp"
@@ -37,6 +38,7 @@ struct SceneReader {
   Diagnostics& diagnostics;
   Scene& scene;
   std::filesystem::path folder;
+  std::vector<std::filesystem::path> roots; // that profiles are read below
 
   void curve(ObjectReader& object, string_view key, const ValueRange& range, Need need, auto& out) const {
     read_curve(object, key, range, need, document, diagnostics, out);
@@ -55,8 +57,13 @@ struct SceneReader {
       const auto name = object.name("name");
       const auto file = object.string("file");
       SceneProfile profile;
-      if (object.finish())
-        profile = {std::string(*name), (folder / std::string(*file)).lexically_normal().string()};
+      if (object.finish()) {
+        const dermis::PlacedFile placed = dermis::place_file(folder, *file, roots);
+        if (!placed.problem.empty())
+          diagnostics.add(DiagnosticId::outside_root, document.where(document.find(node, "file")),
+                          fmt::format("profile '{}' is not read: {}", *file, placed.problem));
+        profile = {std::string(*name), placed.path.string()};
+      }
       for (const SceneProfile& other : scene.profiles)
         if (!profile.name.empty() && other.name == profile.name)
           diagnostics.add(DiagnosticId::scene_profile, document.where(node),
@@ -180,11 +187,14 @@ struct SceneReader {
   }
 };
 
-std::optional<Scene> interpret(const std::string& name, const Document& document, Diagnostics& diagnostics) {
+std::optional<Scene> interpret(const std::string& name, const Document& document, Diagnostics& diagnostics,
+                               std::span<const std::string> roots) {
   if (!dermis::check_version(document, "dermis_scene", format_version, diagnostics)) return std::nullopt;
   const uint32_t errors = diagnostics.count(dermis::Severity::error);
   Scene scene;
-  SceneReader reader{document, diagnostics, scene, std::filesystem::path(name).parent_path()};
+  SceneReader reader{
+      document, diagnostics, scene, std::filesystem::path(name).parent_path(), {dermis::home_of(name)}};
+  reader.roots.insert(reader.roots.end(), roots.begin(), roots.end());
   reader.read_root();
   if (diagnostics.count(dermis::Severity::error) != errors) return std::nullopt;
   return scene;
@@ -192,14 +202,16 @@ std::optional<Scene> interpret(const std::string& name, const Document& document
 
 } // namespace
 
-std::optional<Scene> read_scene(const std::string& path, Diagnostics& diagnostics) {
+std::optional<Scene> read_scene(const std::string& path, Diagnostics& diagnostics,
+                                std::span<const std::string> roots) {
   const auto document = dermis::read_document(path, diagnostics);
-  return document ? interpret(path, *document, diagnostics) : std::nullopt;
+  return document ? interpret(path, *document, diagnostics, roots) : std::nullopt;
 }
 
-std::optional<Scene> parse_scene(const std::string& name, std::string text, Diagnostics& diagnostics) {
+std::optional<Scene> parse_scene(const std::string& name, std::string text, Diagnostics& diagnostics,
+                                 std::span<const std::string> roots) {
   const auto document = dermis::parse_document(name, std::move(text), diagnostics);
-  return document ? interpret(name, *document, diagnostics) : std::nullopt;
+  return document ? interpret(name, *document, diagnostics, roots) : std::nullopt;
 }
 
 } // namespace demo

@@ -1,4 +1,5 @@
-// docs/integration.md says which test holds what of the interface: tests that exist.
+// docs/integration.md says which test holds what of the interface, docs/security.md which holds what is
+// promised of hostile files: tests that exist.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -52,10 +53,11 @@ std::set<std::string> all_tests() {
   return found;
 }
 
-TEST(InterfacePlan, NamesTestsThatExist) {
+// Each test that the page names behind `heading` is there, and it names at least so many.
+void expect_tests_exist(const std::string& page, const std::string& heading, uint32_t least) {
   const std::set<std::string> tests = all_tests();
-  const std::string text = read_text("docs/integration.md");
-  size_t at = text.find("## How the interface is tested");
+  const std::string text = read_text(page);
+  size_t at = text.find(heading);
   ASSERT_NE(at, std::string::npos);
   const std::string cut = "\xE2\x80\xA6`"; // `Suite.Begi…`
   uint32_t count = 0;
@@ -70,7 +72,15 @@ TEST(InterfacePlan, NamesTestsThatExist) {
       return begins ? test.starts_with(name) : test == name;
     })) << name;
   }
-  EXPECT_GE(count, 25u) << "the table names that many";
+  EXPECT_GE(count, least) << "the table names that many";
+}
+
+TEST(InterfacePlan, NamesTestsThatExist) {
+  expect_tests_exist("docs/integration.md", "## How the interface is tested", 35);
+}
+
+TEST(ThreatModel, NamesTestsThatExist) {
+  expect_tests_exist("docs/security.md", "# Security", 30);
 }
 
 } // namespace

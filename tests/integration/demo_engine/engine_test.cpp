@@ -41,6 +41,7 @@ struct Engine : testing::Test {
                    { "shape": "plane", "position": [0, 0, -0.3], "rotation": [90, 0, 0] } ] })";
     RenderOptions options;
     options.scene = path;
+    options.roots = {shipped};
     options.width = 70; // no multiple of a tile
     options.height = 45;
     options.validation = true;

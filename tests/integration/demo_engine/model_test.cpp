@@ -7,6 +7,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <random>
+#include <span>
+#include <string_view>
 #include <unistd.h>
 
 namespace demo {
@@ -121,6 +124,128 @@ TEST_F(ModelFile, AHeightIsAPositiveLength) {
   for (const double height : {-1.0, std::nan(""), 1e9}) {
     options.height_metres = height;
     EXPECT_EQ(refused(options).kind, ErrorKind::usage) << height;
+  }
+}
+
+// A triangle whose buffer is called otherwise, in a folder with a secret beside it.
+std::string with_buffer(std::string text, const std::string& uri) {
+  const size_t at = text.find("triangle.bin");
+  return text.replace(at, 12, uri);
+}
+
+TEST_F(ModelFile, WhatAFileNamesIsReadInItsFolderAlone) {
+  const std::string path = triangle();
+  std::ifstream stream(path, std::ios::binary);
+  const std::string whole((std::istreambuf_iterator<char>(stream)), {});
+  std::filesystem::create_directories(folder / "models");
+  std::filesystem::create_symlink(folder, folder / "models" / "link");
+  std::filesystem::copy_file(folder / "triangle.bin", folder / "models" / "here.bin");
+  const std::string absolute = (folder / "triangle.bin").string();
+  for (const std::string& outside :
+       {std::string("../triangle.bin"), absolute, std::string("link/triangle.bin"),
+        std::string("%2e%2e/triangle.bin"), std::string("../not_there.bin")}) {
+    const std::string model = write("models/a.gltf", with_buffer(whole, outside));
+    EXPECT_THAT(refused(only(model)).text, HasSubstr("leads out of what may be read")) << outside;
+    EXPECT_THAT(refused(only(model)).text, HasSubstr("--root")) << outside;
+  }
+  const auto declared =
+      load_model(only(write("models/a.gltf", with_buffer(whole, "../triangle.bin"))), {folder.string()});
+  EXPECT_TRUE(declared) << declared.error().text;
+  const auto inside = load_model(only(write("models/b.gltf", with_buffer(whole, "here.bin"))));
+  EXPECT_TRUE(inside) << inside.error().text;
+  // Not in the working folder either, where tinygltf would look.
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  EXPECT_THAT(refused(only(write("models/c.gltf", whole))).text, HasSubstr("triangle.bin"));
+  std::filesystem::current_path(before);
+  EXPECT_THAT(refused(only(write("models/d.gltf", with_buffer(whole, std::string(5000, 'a'))))).text,
+              HasSubstr("too long"));
+}
+
+// A binary glTF of this JSON and chunk; `more`: what the chunk says it has beyond.
+std::string binary(std::string json, const std::string& chunk, uint32_t more = 0) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto word = [](uint64_t value) {
+    const auto narrow = static_cast<uint32_t>(value);
+    return std::string(reinterpret_cast<const char*>(&narrow), 4);
+  };
+  return "glTF" + word(2) + word(28 + json.size() + chunk.size()) + word(json.size()) + "JSON" + json +
+         word(chunk.size() + more) + std::string("BIN\0", 4) + chunk;
+}
+
+TEST_F(ModelFile, PicturesBeyondTheEndOfTheirBufferAreNotRead) {
+  const std::string begin = R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 48 }],
+      "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": )";
+  const std::string end =
+      R"( }], "images": [{ "bufferView": 1, "mimeType": "image/png" }], "textures": [{ "source": 0 }],
+      "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+      "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+      "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
+      "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }], "scene": 0 })";
+  const float positions[12] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
+  const std::string chunk(reinterpret_cast<const char*>(positions), sizeof(positions));
+  for (const char* view : {R"(36, "byteLength": 100000)", R"(100000, "byteLength": 12)",
+                           R"(36, "byteLength": 18446744073709551615)", R"(36, "byteLength": 4294967295)"}) {
+    const auto model = load_model(only(write("view.glb", binary(begin + view + end, chunk))));
+    if (!model) continue; // refused is well, too
+    ASSERT_EQ(model->warnings.size(), 1u) << view;
+    EXPECT_THAT(model->warnings[0], HasSubstr("not an image"));
+  }
+}
+
+TEST_F(ModelFile, ChunksBeyondTheEndOfTheFileAreRefused) {
+  const std::string json = R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 16 }] })";
+  EXPECT_THAT(refused(only(write("chunk.glb", binary(json, "12345678", 8)))).text,
+              HasSubstr("second chunk reaches beyond its end"));
+}
+
+TEST_F(ModelFile, DeepNestingIsRefusedBeforeItIsFollowed) {
+  const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
+  EXPECT_THAT(
+      refused(only(write("deep.gltf", R"({ "asset": { "version": "2.0" }, "extras": )" + deep + "}"))).text,
+      HasSubstr("nested deeper than 64"));
+}
+
+TEST_F(ModelFile, WhateverIsDamagedIsRefusedOrRead) {
+  std::ifstream stream(triangle(), std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(stream)), {});
+  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
+  std::string json = text;
+  json.replace(json.find(R"("uri": "triangle.bin", )"), 23, "");
+  const std::string glb = binary(json, std::string(reinterpret_cast<const char*>(positions), 36) +
+                                           std::string("\0\0\1\0\2\0\0\0", 8));
+  ASSERT_TRUE(load_model(only(write("whole.glb", glb))));
+  std::mt19937 random(20);
+  uint32_t read = 0;
+  constexpr int tries = 4000; // of each; 7 s with the address sanitizer
+  for (const std::string& whole : {text, glb})
+    for (int i = 0; i < tries; ++i) {
+      std::string damaged = whole;
+      for (uint32_t changes = 1 + random() % 3; changes > 0; --changes) {
+        const size_t at = random() % damaged.size();
+        const char* digits = "0123456789-{}[],\"e";
+        if (random() % 2 == 0)
+          damaged[at] = digits[random() % 18];
+        else if (random() % 2 == 0)
+          damaged[at] = static_cast<char>(random());
+        else
+          damaged.insert(at, std::string(1 + random() % 12, '9'));
+      }
+      const auto model = load_model(only(write("damaged.gltf", damaged)));
+      if (model)
+        ++read;
+      else
+        EXPECT_EQ(model.error().kind, ErrorKind::input);
+    }
+  EXPECT_GT(read, 100u); // else the law says little
+}
+
+TEST(Texture, FormatsThatAreNotAskedForAreNotParsed) {
+  for (const char* other : {"GIF89a\1\1", "8BPS", "P6 1 1 255\n123", "#?RADIANCE\n"}) {
+    const std::string_view bytes(other);
+    const auto texture = decode_texture("a", std::as_bytes(std::span(bytes)));
+    ASSERT_FALSE(texture) << other;
+    EXPECT_THAT(texture.error().text, HasSubstr("PNG, JPEG, TGA, BMP"));
   }
 }
 

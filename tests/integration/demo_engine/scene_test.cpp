@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
+#include <unistd.h>
 
 namespace demo {
 namespace {
@@ -25,7 +28,7 @@ const std::string plain_camera = R"({ "position": [0, 0, 2], "target": [0, 0, 0]
 void expect_refused(const std::string& text, dermis::DiagnosticId id, uint32_t line,
                     const std::string& words) {
   dermis::Diagnostics diagnostics;
-  EXPECT_FALSE(parse_scene("s.json", text, diagnostics)) << text;
+  EXPECT_FALSE(parse_scene("scenes/s.json", text, diagnostics)) << text;
   ASSERT_FALSE(diagnostics.list.empty());
   EXPECT_EQ(diagnostics.list[0].id, id) << diagnostics.list[0].text;
   EXPECT_EQ(diagnostics.list[0].where.line, line);
@@ -49,6 +52,71 @@ TEST(SceneFile, ProfilesAreFoundBesideTheScene) {
   ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
   EXPECT_EQ(scene->profiles[0].file, "a/profiles/skin.json");
   EXPECT_EQ(scene->objects[0].profile, 1u);
+}
+
+// Folders with a secret beside them, gone afterwards.
+struct SceneFolders : testing::Test {
+  std::filesystem::path top =
+      std::filesystem::path(testing::TempDir()) / ("dermis_scene_roots_" + std::to_string(getpid()));
+  void SetUp() override {
+    for (const char* folder : {"project/scenes", "project/profiles", "elsewhere"})
+      std::filesystem::create_directories(top / folder);
+    for (const char* file : {"project/profiles/skin.json", "elsewhere/secret.json"})
+      std::ofstream(top / file) << "{}";
+    std::filesystem::create_symlink(top / "elsewhere", top / "project/scenes/link");
+    std::filesystem::create_symlink(top / "project/profiles", top / "project/scenes/near");
+  }
+  void TearDown() override { std::filesystem::remove_all(top); }
+  // The profile `file` of a scene in `folder`.
+  static std::string scene_of(const std::string& file) {
+    std::string text = scene_with(plain_camera);
+    return text.replace(text.find("../profiles/skin.json"), 21, file);
+  }
+  std::optional<Scene> read(const std::string& folder, const std::string& file,
+                            const std::vector<std::string>& roots = {}) {
+    diagnostics = {};
+    return parse_scene((top / folder / "s.json").string(), scene_of(file), diagnostics, roots);
+  }
+  dermis::Diagnostics diagnostics;
+};
+
+TEST_F(SceneFolders, ASceneReadsInsideOfItsProjectAlone) {
+  for (const char* inside :
+       {"../profiles/skin.json", "own.json", "near/skin.json", "a/../../profiles/skin.json"})
+    EXPECT_TRUE(read("project/scenes", inside)) << inside << dermis::format_as_json(diagnostics);
+  EXPECT_TRUE(read("project/scenes", (top / "project/profiles/skin.json").string()));
+  const std::string secret = (top / "elsewhere/secret.json").string();
+  for (const std::string& outside :
+       {std::string("../../elsewhere/secret.json"), std::string("link/secret.json"), secret,
+        std::string("/etc/passwd"), std::string("../../elsewhere/not_there.json"),
+        std::string("a/../../../../../../../../../../etc/passwd")}) {
+    EXPECT_FALSE(read("project/scenes", outside)) << outside;
+    ASSERT_EQ(diagnostics.list.size(), 1u) << outside;
+    const dermis::Diagnostic& one = diagnostics.list[0];
+    EXPECT_EQ(one.id, dermis::DiagnosticId::outside_root) << outside;
+    EXPECT_EQ(one.where.line, 2u);
+    EXPECT_EQ(one.where.column, 43u);
+    EXPECT_EQ(one.where.pointer, "/profiles/0/file");
+    EXPECT_THAT(one.text, HasSubstr("leads out of what may be read"));
+    EXPECT_THAT(one.text, HasSubstr((top / "project").string()));
+    EXPECT_THAT(dermis::format_for_people(diagnostics, one), HasSubstr("--root"));
+  }
+}
+
+TEST_F(SceneFolders, ASceneThatIsInNoProjectReadsInItsFolder) {
+  EXPECT_TRUE(read("elsewhere", "secret.json"));
+  EXPECT_FALSE(read("elsewhere", "../project/profiles/skin.json"));
+  EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
+  EXPECT_TRUE(read("elsewhere", "../project/profiles/skin.json", {(top / "project").string() + "/"}));
+}
+
+TEST_F(SceneFolders, NamesThatNoSystemTakesAreRefused) {
+  EXPECT_FALSE(read("project/scenes", ""));
+  EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
+  EXPECT_FALSE(read("project/scenes", std::string(5000, 'a')));
+  EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
+  EXPECT_FALSE(read("project/scenes", R"(../profiles/skin.json\u0000.png)"));
+  EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::syntax);
 }
 
 TEST(SceneFile, MistakesAreNamedWithTheirPlace) {
@@ -84,7 +152,7 @@ TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
     return text;
   };
   dermis::Diagnostics diagnostics;
-  const auto scene = parse_scene("s.json", lit(R"({ "keys": [[0, 1], [2, 3]] })"), diagnostics);
+  const auto scene = parse_scene("scenes/s.json", lit(R"({ "keys": [[0, 1], [2, 3]] })"), diagnostics);
   ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
   EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 0.5), 1.5);
   EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 9.0), 3.0);

@@ -1,0 +1,162 @@
+#include "integration/demo_engine/model/parse_gltf.hpp"
+
+#include "framegraph/text/file_roots.hpp"
+#include "framegraph/text/limits.hpp"
+#include "integration/demo_engine/files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <climits>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <string_view>
+
+namespace demo {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What tinygltf asks for while it parses.
+struct Beside {
+  const tinygltf::Model& model;
+  fs::path folder;
+  std::vector<fs::path> roots;
+  std::string refused; // the first name that leads out, and why
+};
+
+bool is_there(const std::string& name, void* user) {
+  auto& beside = *static_cast<Beside*>(user);
+  const dermis::PlacedFile placed = dermis::place_file(beside.folder, name, beside.roots);
+  if (!placed.problem.empty()) {
+    if (beside.refused.empty())
+      beside.refused =
+          fmt::format("'{}' is not read: {}; --root declares further folders", name, placed.problem);
+    return false;
+  }
+  std::error_code ignored;
+  return fs::is_regular_file(placed.path, ignored);
+}
+
+std::string as_it_is(const std::string& name, void*) {
+  return name;
+}
+
+bool read_whole(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user) {
+  const auto& beside = *static_cast<const Beside*>(user);
+  const dermis::PlacedFile placed = dermis::place_file(beside.folder, name, beside.roots);
+  auto bytes = read_binary_file(placed.path.string(), most_model_bytes);
+  if (!bytes) {
+    if (error != nullptr) *error += bytes.error().text;
+    return false;
+  }
+  const auto* first = reinterpret_cast<const unsigned char*>(bytes->data());
+  out->assign(first, first + bytes->size());
+  return true;
+}
+
+// Images are decoded by decode_texture, when they are wanted. tinygltf 2.7 hands out views of buffers without
+// looking whether they reach beyond their end.
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void* user) {
+  const tinygltf::Model& model = static_cast<const Beside*>(user)->model;
+  image->as_is = true;
+  if (image->bufferView >= 0) {
+    const tinygltf::BufferView& view = model.bufferViews[static_cast<size_t>(image->bufferView)];
+    const size_t held = model.buffers[static_cast<size_t>(view.buffer)].data.size();
+    if (view.byteLength > INT_MAX || view.byteOffset > held || view.byteLength > held - view.byteOffset)
+      return true;
+  }
+  image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+// "": well. tinygltf 2.7 takes eight bytes more than there are for a chunk's.
+std::string wrong_chunks(std::span<const std::byte> bytes) {
+  constexpr size_t header = 12, chunk_header = 8;
+  if (bytes.size() < header + chunk_header) return "it ends within its header";
+  const auto word = [&](size_t at) {
+    uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return uint64_t{value};
+  };
+  const uint64_t length = word(8), json_end = header + chunk_header + word(header);
+  if (length > bytes.size() || json_end > length) return "its first chunk reaches beyond its end";
+  if (json_end == length) return "";
+  if (length - json_end < chunk_header || word(json_end) > length - json_end - chunk_header)
+    return "its second chunk reaches beyond its end";
+  return "";
+}
+
+// Objects and arrays inside each other, of any text. tinygltf follows them by calling itself.
+uint32_t nesting_of(std::string_view text) {
+  uint32_t depth = 0, deepest = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string && c == '\\')
+      ++i;
+    else if (c == '"')
+      in_string = !in_string;
+    else if (!in_string && (c == '{' || c == '['))
+      deepest = std::max(deepest, ++depth);
+    else if (!in_string && (c == '}' || c == ']') && depth > 0)
+      --depth;
+  }
+  return deepest;
+}
+
+} // namespace
+
+Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std::byte> bytes,
+                                   const std::vector<std::string>& roots) {
+  const auto refuse = [&](std::string_view why) {
+    return Error{ErrorKind::input, fmt::format("{}: {}", path, why)};
+  };
+  const bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  size_t first = 0;
+  while (first < text.size() && std::isspace(static_cast<unsigned char>(text[first])) != 0)
+    ++first;
+  if (!binary && (first == text.size() || text[first] != '{'))
+    return refuse("this is not a glTF file: it starts neither with 'glTF' (binary) nor with '{' (JSON)");
+  if (binary) {
+    if (const std::string wrong = wrong_chunks(bytes); !wrong.empty())
+      return refuse("the glTF file is damaged: " + wrong);
+    uint32_t json_size = 0;
+    std::memcpy(&json_size, bytes.data() + 12, sizeof json_size);
+    text = text.substr(20, json_size);
+  }
+  if (nesting_of(text) > dermis::limits::nesting)
+    return refuse(fmt::format("objects and arrays are nested deeper than {}", dermis::limits::nesting));
+
+  tinygltf::Model model;
+  Beside beside{model, fs::path(path).parent_path(), {fs::path(path).parent_path()}, ""};
+  beside.roots.insert(beside.roots.end(), roots.begin(), roots.end());
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(keep_encoded, &beside);
+  loader.SetFsCallbacks({is_there, as_it_is, read_whole, nullptr, &beside});
+  std::string error, warning;
+  const auto size = static_cast<unsigned int>(bytes.size());
+  bool loaded = false;
+  try {
+    // No folder is given: what is asked for is a name as the file has it.
+    loaded = binary
+                 ? loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                               reinterpret_cast<const unsigned char*>(bytes.data()), size, "")
+                 : loader.LoadASCIIFromString(&model, &error, &warning,
+                                              reinterpret_cast<const char*>(bytes.data()), size, "");
+  } catch (const std::exception& problem) {
+    error = problem.what();
+  }
+  while (!error.empty() && error.back() == '\n')
+    error.pop_back();
+  if (!beside.refused.empty()) return refuse(beside.refused);
+  if (!loaded)
+    return refuse(fmt::format("the glTF file is damaged: {}", error.empty() ? "no reason given" : error));
+  return model;
+}
+
+} // namespace demo
