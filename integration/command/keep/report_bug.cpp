@@ -128,8 +128,14 @@ demo::Result<> add_frame(const Session& session, const ReportBugOptions& options
   if (options.frames.empty()) {
     Session quiet = session;
     quiet.quiet = true; // one frame
-    return capture_scene(
-        quiet, {options.scene, folder, options.size, 1, options.count - 1, {}, options.parts.roots});
+    CaptureOptions one;
+    one.scene = options.scene;
+    one.out = folder;
+    one.size = options.size;
+    one.frames = 1;
+    one.first = options.count - 1;
+    one.roots = options.parts.roots;
+    return capture_scene(quiet, one);
   }
   Diagnostics diagnostics;
   const std::vector<fs::path> frames = find_frames(options.frames, diagnostics, options.parts.roots);
