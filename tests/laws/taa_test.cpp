@@ -64,7 +64,8 @@ struct Taa : laws::DeviceTest {
   }
 
   // What is recorded is what docs/papers.md quotes.
-  void judge(bool resting) {
+  // `least_gain_db`: of sap_residual over sap.
+  void judge(bool resting, double least_gain_db) {
     constexpr uint32_t frames = 32, counted = 24;
     const Pictures truth = resolved("burley", {{"samples", "192"}}, resting, frames);
     const Figures sap = compare(resolved("sap", {}, resting, frames), truth, counted),
@@ -76,7 +77,7 @@ struct Taa : laws::DeviceTest {
       RecordProperty(std::string(name) + "_db", std::to_string(figures.psnr_db));
       RecordProperty(std::string(name) + "_flicker", std::to_string(figures.flicker));
     }
-    EXPECT_GE(residual.psnr_db, sap.psnr_db + 1.5);
+    EXPECT_GE(residual.psnr_db, sap.psnr_db + least_gain_db);
     EXPECT_GE(residual.psnr_db, afis.psnr_db);
     EXPECT_LE(residual.flicker, afis.flicker);
     EXPECT_LE(sap.flicker, afis.flicker);
@@ -84,11 +85,11 @@ struct Taa : laws::DeviceTest {
 };
 
 TEST_F(Taa, MendedLightDoesNotLoseToEightSamplesWhereTheCameraRests) {
-  judge(true);
+  judge(true, 3.2); // measured 3.6
 }
 
 TEST_F(Taa, MendedLightDoesNotLoseToEightSamplesUnderAPanOfPartsOfPixels) {
-  judge(false);
+  judge(false, 3.6); // measured 4.1
 }
 
 } // namespace

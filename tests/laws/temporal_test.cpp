@@ -93,10 +93,10 @@ TEST_F(Temporal, AThingThatMovesBeforeACameraThatRestsKeepsItsHistory) {
   EXPECT_GT(residual.mean_psnr_db, untold.mean_psnr_db + 0.5);
 }
 
-// The same graph whose ratio is trusted whatever the light's pattern.
+// The same graph with all patterns taken for the same: the ratio is trusted whatever light came.
 constexpr const char* trusting = "100";
 
-TEST_F(Temporal, ShadowsThatMoveAcrossSkinNeverCostADecibelAndGainInTheMean) {
+TEST_F(Temporal, ShadowsThatMoveAcrossSkinAreGainedUponInEachFrame) {
   const Sequence sequence = frames_of("dynamic", 88, 36); // boids cross the face from 88 to 140
   Judge judge{sequence};
   const Frames judged = range(24, 36);
@@ -105,46 +105,61 @@ TEST_F(Temporal, ShadowsThatMoveAcrossSkinNeverCostADecibelAndGainInTheMean) {
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("blind", std::to_string(blind.mean_psnr_db));
-  // Measured: 2.1 dB better in the mean, .9 in the worst frame; blind .3 better and 1.7 worse.
-  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1);
+  // Measured: 3.2 dB better in the mean, 1.7 in the worst frame.
+  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.7);
   EXPECT_GT(residual.mean_psnr_db, blind.mean_psnr_db + 1);
   for (const uint32_t t : judged)
-    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 1) << t;
+    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 1.2) << t;
 }
 
-TEST_F(Temporal, AFlashFromAnotherSideCostsLittleAndLeavesTheRatioAsItWas) {
+TEST_F(Temporal, AFlashFromAnotherSideCostsNothingAndLeavesTheRatioAsItWas) {
   const Sequence sequence = frames_of("strobe", 10, 34); // shots at 30 .. 32 and 38 .. 39
   Judge judge{sequence};
-  const Frames judged = range(18, 34), lit = {20, 21}, between = {18, 19, 24, 25, 26, 27};
+  const Frames judged = range(18, 34), lit = {20, 21, 22, 28, 29};
   const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),
                     blind = run(judge, "sap_residual", judged, {{"tolerance", trusting}});
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("blind", std::to_string(blind.mean_psnr_db));
-  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db - 2.3); // measured -1.8; blind -6.9 (docs/limits.md)
+  EXPECT_GT(residual.mean_psnr_db,
+            sap.mean_psnr_db - 0.1); // frames that are lit have nearly all of the error
+  for (const uint32_t t : judged)
+    RecordProperty("gain_" + std::to_string(t), std::to_string(residual.psnr_db.at(t) - sap.psnr_db.at(t)));
   for (const uint32_t t : lit) {
-    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 2.3) << t;
+    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 0.2) << t; // measured .0
     EXPECT_LT(blind.psnr_db.at(t), sap.psnr_db.at(t) - 3) << t;
   }
-  for (const uint32_t t : between) {
-    RecordProperty("gain_" + std::to_string(t), std::to_string(residual.psnr_db.at(t) - sap.psnr_db.at(t)));
-    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 2) << t;
+  for (const uint32_t t : judged)
+    if (std::find(lit.begin(), lit.end(), t) == lit.end()) {
+      EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 4.3) << t; // 5.0 to 6.6
+    }
+}
+
+TEST_F(Temporal, ALightThatIsSwitchedOffOrOnCostsNothing) {
+  for (const uint32_t first : {155u, 335u}) { // off from 180 on, a candle stays; on from 360 on
+    const Sequence sequence = frames_of("regular", first, 40);
+    Judge judge{sequence};
+    const Frames judged = range(20, 40);
+    const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged);
+    for (const uint32_t t : judged) {
+      const double gain = residual.psnr_db.at(t) - sap.psnr_db.at(t);
+      RecordProperty("gain_" + std::to_string(first + t), std::to_string(gain));
+      EXPECT_GT(gain, t < 25 ? 3.8 : -0.2) << first + t; // measured 4.3 and more, .0
+    }
   }
 }
 
-TEST_F(Temporal, ALightThatIsSwitchedOffCostsLittle) {
-  const Sequence sequence = frames_of("regular", 155, 40); // off from 180 on, a candle stays
+TEST_F(Temporal, LightThatStaysIsLearnedInTheEnd) {
+  const Sequence sequence = frames_of("regular", 155, 106); // off from 180 on
   Judge judge{sequence};
-  const Frames judged = range(20, 40);
+  const Frames judged = {55, 65, 75, 85, 95, 105};
   const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged);
-  double gain = 0;
   for (const uint32_t t : judged) {
-    const double one = residual.psnr_db.at(t) - sap.psnr_db.at(t);
-    RecordProperty("gain_" + std::to_string(t), std::to_string(one));
-    EXPECT_GT(one, -2.3) << t; // measured -1.9 in the first frame; blind -9.9
-    gain += one / double(judged.size());
+    const double gain = residual.psnr_db.at(t) - sap.psnr_db.at(t);
+    RecordProperty("gain_" + std::to_string(t - 25), std::to_string(gain));
+    EXPECT_GT(gain, -0.2) << t;
   }
-  EXPECT_GT(gain, 0); // measured .5 while most of a history is of the other light
+  EXPECT_GT(residual.psnr_db.at(105), sap.psnr_db.at(105) + 1.3); // measured 1.8, 80 frames after
 }
 
 TEST_F(Temporal, AfterACutTheErrorIsBackWithinThreeFrames) {

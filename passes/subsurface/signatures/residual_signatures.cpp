@@ -53,13 +53,14 @@ constexpr Format ratio_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::rgba16f};
 constexpr std::string_view ratio_doc =
     "rgb running ratio of sampled light to the pyramid's, a = samples behind it";
-constexpr std::string_view place_doc =
-    "view depth in metres, profile id, pattern of the light that the ratio was learned in, brightness when "
-    "last lit (logarithms); 0 where nothing was written";
+constexpr std::string_view place_doc = "view depth in metres, profile id, pattern of the light that the "
+                                       "ratio was learned in (a logarithm), mean "
+                                       "square of how far patterns stray; 0 where nothing was written";
 
-constexpr Format brightness_formats[] = {Format::r32f};
-constexpr std::string_view brightness_doc =
-    "logarithm of how much brighter all that is seen has become since history began";
+constexpr Format brightness_formats[] = {Format::rgba32f};
+constexpr std::string_view brightness_doc = "logarithm of how much brighter all that is seen is than what "
+                                            "was learned, odds that light of the learned "
+                                            "pattern is the learned light, tolerance of patterns";
 
 constexpr Port brightness_ports[] = {
     surface_port("surface"),
@@ -67,8 +68,7 @@ constexpr Port brightness_ports[] = {
     port::velocity,
     classes,
     {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
-    {"brightness", Usage::sampled_image, false, "texture2D", "of the frame before", brightness_formats},
-    {"brightness_out", Usage::storage_image_write, false, "image2D", brightness_doc, brightness_formats},
+    {"brightness", Usage::storage_image_write, false, "image2D", brightness_doc, brightness_formats},
 };
 
 constexpr Port residual_ports[] = {
@@ -110,6 +110,12 @@ constexpr KindSetting samples{.name = "samples",
 constexpr KindSetting lod_bias = setting::real(
     "lod_bias", -1.5, -8, 4, "levels", "on the level whose texels have the area that a sample stands for");
 
+constexpr KindSetting brightness_settings[] = {
+    setting::real(
+        "tolerance", 0.06, 0.001, 100, "",
+        "change of the logarithm of a surface's light, beside that of all light, that is none, at least"),
+};
+
 constexpr KindSetting blend_settings[] = {
     samples,
     lod_bias,
@@ -124,9 +130,6 @@ constexpr KindSetting residual_settings[] = {
     setting::real("often_below", 0.85, 0, 2, "",
                   "confidence below which it is in one frame of four, not of sixteen"),
     setting::real("alpha", 0.2, 0.01, 1, "", "weight of what is new in the running ratio, at least"),
-    setting::real("tolerance", 0.12, 0.001, 100, "",
-                  "change of the logarithm of a pixel's light, beside that of all light, that leaves 1/e of "
-                  "the samples' weight"),
     {.name = "eager",
      .type = SettingType::integer,
      .default_value = integer_value(6),
@@ -152,10 +155,9 @@ const PassKind blend_kind{
 const PassKind brightness_kind{
     .name = "subsurface.brightness",
     .shader = "subsurface_brightness",
-    .doc =
-        "Follows how bright all that is seen is, so that light that flashes can be told from another light.",
+    .doc = "Finds how bright all that is seen is, so that light that flashes can be told from another light.",
     .ports = brightness_ports,
-    .settings = {},
+    .settings = brightness_settings,
     .dispatch = DispatchShape::single_group,
     .side_effects = false,
 };
