@@ -30,7 +30,7 @@ void add_cache(CLI::App& verb, std::string& cache) {
 
 void add_bench_verbs(CLI::App& app, Invocation& invocation) {
   CLI::App& bench = add_group(app, "bench", "Measure the library on this machine",
-                              "dermis bench record --html build/bench_record.html");
+                              "dermis bench record --html bench_record.html");
   add_verb<BenchCompileOptions>(
       bench, invocation, "compile", "Time and memory of compiling drawn graphs, or those of a folder",
       "dermis bench compile --json build/bench_compile.json", bench_compile,
