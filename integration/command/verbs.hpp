@@ -266,6 +266,7 @@ ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& o
 struct BenchTruthOptions {
   std::string file = shipped("tests/benchmark/truth.json"); // techniques and tolerances
   std::string json, csv, html;                              // files to write; "": none
+  bool quick = false;
 };
 ExitCode bench_truth(const Session& session, const BenchTruthOptions& options);
 

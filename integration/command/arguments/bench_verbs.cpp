@@ -16,8 +16,9 @@ void add_report_files(CLI::App& verb, std::string& json, std::string* csv, std::
 }
 
 void add_quick(CLI::App& verb, bool& quick, const std::vector<const char*>& instead_of = {}) {
-  CLI::Option* flag = verb.add_flag(
-      "--quick", quick, "Small pictures and few repetitions: to see that it runs; its figures say nothing");
+  CLI::Option* flag = verb.add_flag("--quick", quick,
+                                    "Small pictures and few repetitions, scenes or techniques: to see that "
+                                    "it runs; its figures say nothing");
   for (const char* option : instead_of)
     flag->excludes(option);
 }
@@ -30,7 +31,7 @@ void add_cache(CLI::App& verb, std::string& cache) {
 
 void add_bench_verbs(CLI::App& app, Invocation& invocation) {
   CLI::App& bench = add_group(app, "bench", "Measure the library on this machine",
-                              "dermis bench record --html build/bench_record.html");
+                              "dermis bench record --html bench_record.html");
   add_verb<BenchCompileOptions>(
       bench, invocation, "compile", "Time and memory of compiling drawn graphs, or those of a folder",
       "dermis bench compile --json build/bench_compile.json", bench_compile,
@@ -112,7 +113,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         verb.add_option("--frames", options.frames, "Judged frames of each run [40]")
             ->check(CLI::Range(4u, max_frames));
-        add_quick(verb, options.quick, {"--size", "--frames"});
+        add_quick(verb, options.quick, {"--size", "--frames", "--scenes"});
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
         add_cache(verb, options.cache);
       },
@@ -159,6 +160,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_report_files(verb, options.json, &options.csv, options.html, "File for a page with the rows");
         verb.add_option("--file", options.file, "Techniques and tolerances [tests/benchmark/truth.json]")
             ->type_name("FILE");
+        add_quick(verb, options.quick);
       },
       true);
   add_verb<BenchDynamicOptions>(

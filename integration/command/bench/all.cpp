@@ -52,9 +52,10 @@ constexpr Suite suites[] = {
        options.quick = all.quick;
        return bench_skip(session, options);
      }},
-    {"truth", "Laws with known answers, beside what every technique makes of them", true, false, false, "",
-     [](const Session& session, const BenchAllOptions&, const Files& files) {
+    {"truth", "Laws with known answers, beside what every technique makes of them", true, false, true, "",
+     [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchTruthOptions>(files);
+       options.quick = all.quick;
        options.csv = files.csv;
        return bench_truth(session, options);
      }},

@@ -1,13 +1,15 @@
 #pragma once
-// --quick of the suites: small pictures and few repetitions, with every row that the whole suite has. It
-// shows that everything runs and how its pages look; its figures say nothing.
+// --quick of the suites: small pictures, few repetitions and, of what takes long, few scenes or techniques.
+// It shows that everything runs and how its pages look; its figures say nothing.
 
 #include "integration/command/bench/dynamic/dynamic_file.hpp"
+#include "integration/command/bench/laws/law_file.hpp"
 #include "integration/command/bench/plan_file.hpp"
 #include "integration/command/verbs.hpp"
 
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace dermis::tools {
 
@@ -19,6 +21,8 @@ BenchBudgetOptions quickened(BenchBudgetOptions options);
 BenchSkipOptions quickened(BenchSkipOptions options);
 void quicken(ErrorTimeFile& file);
 void quicken(DynamicFile& file);
+void quicken(LawFile& file);
+void quicken(std::vector<TechniqueRequest>& techniques); // the first setting of some
 
 // What pages and rows of such a run say of themselves.
 std::pair<std::string, std::string> quick_fact();

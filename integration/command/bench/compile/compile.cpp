@@ -172,7 +172,7 @@ std::string table_line(const Row& row) {
   const auto time = [&](double ns, bool given) { return given ? fmt::format("{:.0f}", ns) : "-"; };
   const bool timed = row.samples > 0;
   return fmt::format(
-      "{:<12}{:>7}{:>5}  {:<9}{:<9}{:<4}{:>9}{:>9}{:>9}{:>7}{:>10.1f}{:>8.4f}{:>8.4f}{:>6}{:>9.1f}{:>7.2f}\n",
+      "{:<22}{:>6}{:>5}  {:<9}{:<9}{:<4}{:>9}{:>9}{:>9}{:>7}{:>10.1f}{:>8.4f}{:>8.4f}{:>6}{:>9.1f}{:>7.2f}\n",
       row.shape, row.passes, row.rotating, level_names[static_cast<size_t>(row.options.level)],
       order_names[static_cast<size_t>(row.options.order)], row.options.reasons ? "yes" : "no",
       time(row.median, timed), time(row.low, timed), time(row.high, timed),
@@ -180,8 +180,9 @@ std::string table_line(const Row& row) {
       row.optimal, row.slowest_ms, row.batches_per_pass);
 }
 
-constexpr std::string_view table_head = "shape        passes  rot  level    order    why  ns/pass    10 %    "
-                                        " 90 %   goal  heap MiB   ratio   worst  best  slow ms  batch\n";
+constexpr std::string_view table_head =
+    "shape                 passes  rot  level    order    why  ns/pass    10 %    "
+    " 90 %   goal  heap MiB   ratio   worst  best  slow ms  batch\n";
 
 void write_row(JsonWriter& out, const Row& row) {
   out.open_object(true)

@@ -2,6 +2,7 @@
 // them.
 
 #include "integration/command/bench/laws/law_file.hpp"
+#include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/report/report.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/verbs.hpp"
@@ -82,10 +83,11 @@ std::string text_of(const std::vector<LawRow>& rows) {
 
 ExitCode bench_truth(const Session& session, const BenchTruthOptions& options) {
   Diagnostics diagnostics;
-  const std::optional<LawFile> file = read_law_file(options.file, diagnostics);
+  std::optional<LawFile> file = read_law_file(options.file, diagnostics);
   if (!file)
     return fail(session, ExitCode::problems,
                 fmt::format("the file of laws '{}' cannot be used", options.file), &diagnostics);
+  if (options.quick) quicken(*file);
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
 
@@ -123,7 +125,8 @@ ExitCode bench_truth(const Session& session, const BenchTruthOptions& options) {
     if (const ExitCode code = measure(subject); code != ExitCode::ok) return code;
   }
 
-  const Report report = make_report(session, rows, notes, (*host)->properties.deviceName);
+  Report report = make_report(session, rows, notes, (*host)->properties.deviceName);
+  if (options.quick) report.facts.push_back(quick_fact());
   const auto broken = std::count_if(rows.begin(), rows.end(), [](const LawRow& row) { return !row.holds(); });
   if (!session.quiet && options.json != "-" && options.csv != "-" && options.html != "-") {
     std::string text = text_of(rows);

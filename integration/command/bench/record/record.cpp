@@ -164,11 +164,12 @@ Report page_of(const Session& session, const std::vector<Row>& rows) {
   return report;
 }
 
-constexpr std::string_view table_head = "graph           passes  commands  barriers  allocations    us/frame "
-                                        "    10 %     90 %  us/pass    goal\n";
+constexpr std::string_view table_head =
+    "graph                 passes  commands  barriers  allocations    us/frame "
+    "    10 %     90 %  us/pass    goal\n";
 
 std::string table_line(const Row& row) {
-  return fmt::format("{:<16}{:>6}{:>10.0f}{:>10.0f}{:>13g}{:>12.2f}{:>9.2f}{:>9.2f}{:>9.3f}{:>8.3f}\n",
+  return fmt::format("{:<22}{:>6}{:>10.0f}{:>10.0f}{:>13g}{:>12.2f}{:>9.2f}{:>9.2f}{:>9.3f}{:>8.3f}\n",
                      row.graph, row.passes, row.commands, row.barriers, row.allocations, row.median, row.low,
                      row.high, row.per_pass(), goal_per_pass);
 }

@@ -109,10 +109,11 @@ std::string text_of(const std::vector<StabilityRow>& rows, const std::vector<std
 ExitCode bench_stability(const Session& session, const BenchStabilityOptions& asked) {
   const BenchStabilityOptions options = quickened(asked);
   Diagnostics diagnostics;
-  const auto techniques = read_techniques(options.file, diagnostics);
+  auto techniques = read_techniques(options.file, diagnostics);
   if (!techniques)
     return fail(session, ExitCode::problems,
                 fmt::format("the file of techniques '{}' cannot be used", options.file), &diagnostics);
+  if (options.quick && options.techniques.empty()) quicken(*techniques);
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
   const std::vector<StabilityCase> cases = cases_asked_for(options.cases);
