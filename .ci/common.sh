@@ -25,6 +25,10 @@ interface_packages=(abigail-tools libplacebo-dev)
 # shellcheck disable=SC2034
 windows_packages=(g++-mingw-w64-x86-64-posix)
 
+# What the full tests count covered code with; without it that is skipped.
+# shellcheck disable=SC2034
+coverage_packages=(gcovr)
+
 say() { printf '%s\n' "$*"; }
 fail() { # exit code, message
   printf '%s: %s\n' "$(basename "$0")" "$2" >&2

@@ -1,0 +1,84 @@
+#include "tests/integration/soak/memory_counts.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+#include <unistd.h>
+
+namespace dermis::abi_test {
+namespace {
+
+void* DERMIS_CALL allocate(void* user, size_t size, size_t alignment) {
+  auto& heap = *static_cast<CountedHeap*>(user);
+  ++heap.blocks;
+  heap.bytes += static_cast<int64_t>(size);
+  return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+
+void DERMIS_CALL release(void* user, void* memory, size_t size, size_t) {
+  auto& heap = *static_cast<CountedHeap*>(user);
+  --heap.blocks;
+  heap.bytes -= static_cast<int64_t>(size);
+  std::free(memory);
+}
+
+VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request, dermis_memory_block* out) {
+  auto& counted = *static_cast<CountedDeviceMemory*>(user);
+  VkPhysicalDeviceMemoryProperties properties;
+  vkGetPhysicalDeviceMemoryProperties(counted.host.physical_device, &properties);
+  const VkMemoryPropertyFlags wanted[] = {request->required | request->preferred, request->required};
+  for (const VkMemoryPropertyFlags flags : wanted)
+    for (uint32_t type = 0; type < properties.memoryTypeCount; ++type) {
+      const VkMemoryPropertyFlags has = properties.memoryTypes[type].propertyFlags;
+      if ((request->memory_types >> type & 1u) == 0 || (has & flags) != flags) continue;
+      auto info = demo::vulkan_struct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+      info.allocationSize = request->bytes;
+      info.memoryTypeIndex = type;
+      VkResult result = counted.host.vk.vkAllocateMemory(counted.host.device, &info, nullptr, &out->memory);
+      if (result != VK_SUCCESS) return result;
+      if ((has & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0)
+        result =
+            counted.host.vk.vkMapMemory(counted.host.device, out->memory, 0, VK_WHOLE_SIZE, 0, &out->mapped);
+      out->offset = 0;
+      out->user = std::bit_cast<void*>(static_cast<uintptr_t>(request->bytes));
+      ++counted.blocks;
+      counted.bytes += static_cast<int64_t>(request->bytes);
+      counted.most_bytes = std::max(counted.most_bytes, counted.bytes);
+      return result;
+    }
+  return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+}
+
+void DERMIS_CALL give_back(void* user, const dermis_memory_block* block) {
+  auto& counted = *static_cast<CountedDeviceMemory*>(user);
+  --counted.blocks;
+  counted.bytes -= static_cast<int64_t>(std::bit_cast<uintptr_t>(block->user));
+  counted.host.vk.vkFreeMemory(counted.host.device, block->memory, nullptr);
+}
+
+} // namespace
+
+dermis_allocator CountedHeap::allocator() {
+  dermis_allocator out = DERMIS_ALLOCATOR_INIT;
+  out.allocate = allocate;
+  out.release = release;
+  out.user = this;
+  return out;
+}
+
+dermis_device_allocator CountedDeviceMemory::allocator() {
+  dermis_device_allocator out = DERMIS_DEVICE_ALLOCATOR_INIT;
+  out.take = take;
+  out.give_back = give_back;
+  out.user = this;
+  return out;
+}
+
+int64_t resident_bytes() {
+  int64_t pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  return resident * static_cast<int64_t>(sysconf(_SC_PAGESIZE));
+}
+
+} // namespace dermis::abi_test

@@ -1,0 +1,27 @@
+#pragma once
+// Allocators of a host that count what they have handed out.
+
+#include "integration/demo_engine/vulkan_host.hpp"
+
+#include <dermis/dermis.h>
+
+#include <atomic>
+#include <cstdint>
+
+namespace dermis::abi_test {
+
+struct CountedHeap {
+  std::atomic<int64_t> blocks = 0, bytes = 0;
+  dermis_allocator allocator();
+};
+
+struct CountedDeviceMemory {
+  demo::VulkanHost& host;
+  int64_t blocks = 0, bytes = 0, most_bytes = 0;
+  dermis_device_allocator allocator();
+};
+
+// Of this process, bytes; 0 where it cannot be told.
+int64_t resident_bytes();
+
+} // namespace dermis::abi_test

@@ -1,0 +1,372 @@
+// Frames without end: graphs, views, sizes, settings, budgets, light and surfaces change at random, and
+// nothing adds up: no message, no value that is not finite, no light that was not there, no memory.
+//
+// DERMIS_SOAK_FRAMES: how many frames (300; ./test.sh --full: 100,000); DERMIS_SOAK_SEED: which.
+
+#include "tests/integration/soak/memory_counts.hpp"
+#include "tests/integration/soak/stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace dermis::abi_test {
+namespace {
+
+constexpr size_t most_views = 3;
+const demo::ImageState between{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                               VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
+
+uint64_t from_environment(const char* name, uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+struct Recorded {
+  Stage* stage;
+  size_t view;
+  dermis_frame frame;
+};
+
+struct Soak : DermisTest {
+  CountedHeap heap;
+  std::unique_ptr<CountedDeviceMemory> memory;
+  dermis_allocator host_allocator = DERMIS_ALLOCATOR_INIT;
+  dermis_device_allocator device_allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
+  bool counts_heap = true;
+  SplitMix64 random{from_environment("DERMIS_SOAK_SEED", 1)};
+  SoakTotals totals;
+  std::vector<Stage> stages;
+
+  void SetUp() override {
+    DermisTest::SetUp();
+    if (!host) return;
+    dermis_context_destroy(context);
+    memory = std::make_unique<CountedDeviceMemory>(CountedDeviceMemory{*host});
+    host_allocator = heap.allocator();
+    device_allocator = memory->allocator();
+    dermis_context_desc desc = context_desc();
+    desc.log = nullptr; // refused reloads are wanted
+    desc.device_allocator = &device_allocator;
+    desc.allocator = &host_allocator;
+    dermis_result made = dermis_context_create(&desc, &context);
+    if (made == DERMIS_ERROR_UNSUPPORTED) { // with sanitizers, which count leaks themselves
+      counts_heap = false;
+      desc.allocator = nullptr;
+      made = dermis_context_create(&desc, &context);
+    }
+    ASSERT_EQ(made, DERMIS_OK) << dermis_last_error();
+  }
+  void TearDown() override {
+    drop();
+    DermisTest::TearDown();
+    if (!memory) return;
+    EXPECT_EQ(memory->blocks, 0);
+    EXPECT_EQ(heap.blocks, 0) << heap.bytes << " bytes";
+  }
+  void drop() {
+    for (Stage& stage : stages)
+      dermis_graph_destroy(stage.graph);
+    stages.clear();
+  }
+
+  bool chance(double share) { return unit(random) < share; }
+  template <class List> const auto& any(const List& list) { return list[random.below(list.size())]; }
+
+  std::string text_of(const StageDesc& desc) { return read_text("configs/graphs/" + desc.graph); }
+
+  void create(const StageDesc& desc) {
+    Stage stage;
+    stage.desc = desc;
+    const std::string text = text_of(desc), skin = read_text("configs/profiles/skin.json"),
+                      wax = read_text("configs/profiles/wax.json");
+    dermis_profile profiles[2] = {DERMIS_PROFILE_INIT, DERMIS_PROFILE_INIT};
+    profiles[0].id = 1;
+    profiles[0].source = source_of(skin, "skin.json");
+    profiles[1].id = 2;
+    profiles[1].source = source_of(wax, "wax.json");
+    std::vector<std::string> overlays;
+    std::vector<dermis_source> sources;
+    for (const std::string& name : desc.overlays)
+      overlays.push_back(read_text("configs/overlays/" + name));
+    for (const std::string& overlay : overlays)
+      sources.push_back(source_of(overlay, "overlay.json"));
+    const char* unbound[] = {"albedo",   "scatter_scale", "importance",     "thickness",
+                             "sampling", "back_lighting", "scattered_light"};
+    dermis_slot_format depth = DERMIS_SLOT_FORMAT_INIT;
+    depth.name = "depth";
+    depth.format = VK_FORMAT_R32_SFLOAT;
+    dermis_graph_desc out = DERMIS_GRAPH_DESC_INIT;
+    out.source = source_of(text, "graph.json");
+    out.width = out.height = soak_side;
+    out.profiles = profiles;
+    out.profile_count = 2;
+    out.unbound = unbound;
+    out.unbound_count = static_cast<uint32_t>(std::size(unbound));
+    out.formats = &depth;
+    out.format_count = 1;
+    out.overlays = sources.data();
+    out.overlay_count = static_cast<uint32_t>(sources.size());
+    ASSERT_EQ(dermis_graph_create(context, &out, &stage.graph, nullptr), DERMIS_OK) << dermis_last_error();
+    stages.push_back(std::move(stage));
+    add_view(stages.back(), nullptr);
+    ++totals.graphs;
+  }
+
+  // Its images have room for every size that the graph may get.
+  void add_view(Stage& stage, dermis_view view) {
+    SoakView added;
+    added.view = view;
+    for (const dermis_slot& slot : slots_of(stage.graph)) {
+      if (slot.bound == 0) continue;
+      demo::ImageDesc desc;
+      desc.format = slot.format;
+      desc.width = desc.height = soak_side;
+      desc.usage = slot.usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+      auto image = demo::create_image(*host, desc);
+      ASSERT_TRUE(image) << image.error().text;
+      images.emplace(slot.name, image.take());
+    }
+    added.bound = bindings(stage.graph);
+    added.images.swap(images);
+    images.clear();
+    stage.views.push_back(std::move(added));
+    show(stage.views.back());
+  }
+
+  void put(SoakView& view, const std::string& slot, const std::vector<float>& texels, uint32_t channels) {
+    const auto image = view.images.find(slot);
+    if (image == view.images.end()) return;
+    const auto done = demo::upload_image(*host, image->second, texels, channels, between);
+    ASSERT_TRUE(done) << done.error().text;
+  }
+  // Another surface.
+  void show(SoakView& view) {
+    view.surface = draw_surface(random);
+    put(view, "depth", view.surface.depth, 1);
+    put(view, "material", view.surface.material, 1);
+    put(view, "velocity", view.surface.velocity, 2);
+  }
+
+  void change(Stage& stage) {
+    if (chance(0.02)) { // half of them broken
+      std::string text = text_of(stage.desc);
+      const bool broken = chance(0.5);
+      if (broken) text.resize(text.size() * random.below(100) / 100);
+      const dermis_source source = source_of(text, "graph.json");
+      EXPECT_EQ(dermis_graph_reload(stage.graph, &source, nullptr), broken ? DERMIS_ERROR_CONFIG : DERMIS_OK)
+          << dermis_last_error();
+      ++(broken ? totals.refused_reloads : totals.reloads);
+    }
+    if (chance(0.02)) {
+      stage.width = static_cast<uint32_t>(1 + random.below(soak_side));
+      stage.height = static_cast<uint32_t>(1 + random.below(soak_side));
+      EXPECT_EQ(dermis_graph_resize(stage.graph, stage.width, stage.height, nullptr), DERMIS_OK)
+          << dermis_last_error();
+      ++totals.resizes;
+    }
+    if (chance(0.1)) {
+      const auto& [name, values] = any(stage.desc.settings);
+      EXPECT_EQ(dermis_graph_set_setting(stage.graph, name.c_str(), any(values).c_str(), nullptr), DERMIS_OK)
+          << dermis_last_error();
+      ++totals.settings;
+    }
+    if (chance(0.03)) {
+      dermis_budget budget = DERMIS_BUDGET_INIT;
+      budget.milliseconds = static_cast<float>(random.below(4)) * 0.5f;
+      budget.flags = chance(0.5) ? DERMIS_BUDGET_METER : 0;
+      EXPECT_EQ(dermis_graph_set_budget(stage.graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+      ++totals.budgets;
+    }
+    if (chance(0.01) && stage.views.size() < most_views) {
+      dermis_view view = nullptr;
+      ASSERT_EQ(dermis_view_create(stage.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+      add_view(stage, view);
+      ++totals.views;
+    } else if (chance(0.01) && stage.views.size() > 1) {
+      dermis_view_destroy(stage.views.back().view);
+      stage.views.pop_back();
+    }
+  }
+
+  dermis_frame frame_for(Stage& stage, SoakView& view) {
+    dermis_frame out = frame(view.bound);
+    out.frame_index = view.frame + 1;
+    out.completed_frame_index = view.frame;
+    for (float* from_world : {out.view_from_world, out.previous_view_from_world})
+      for (size_t i = 0; i < 16; i += 5)
+        from_world[i] = 1.0f;
+    if (chance(0.15)) {
+      out.rect_width = static_cast<uint32_t>(1 + random.below(stage.width));
+      out.rect_height = static_cast<uint32_t>(1 + random.below(stage.height));
+      out.rect_x = static_cast<uint32_t>(random.below(stage.width - out.rect_width + 1));
+      out.rect_y = static_cast<uint32_t>(random.below(stage.height - out.rect_height + 1));
+    }
+    const uint32_t width = out.rect_width > 0 ? out.rect_width : stage.width,
+                   height = out.rect_width > 0 ? out.rect_height : stage.height;
+    out.clip_from_view[0] = static_cast<float>(2.0 / (width * pitch_m));
+    out.clip_from_view[5] = static_cast<float>(-2.0 / (height * pitch_m));
+    std::copy(std::begin(out.clip_from_view), std::end(out.clip_from_view), out.previous_clip_from_view);
+    if (chance(0.03)) {
+      out.flags |= DERMIS_FRAME_RESET_HISTORY;
+      view.brightest_yet = view.light.brightest;
+      view.calm = view.light.even;
+      ++totals.cuts;
+    }
+    if (chance(0.01)) out.flags |= DERMIS_FRAME_BOUNDS; // empty
+    out.exposure = chance(0.1) ? 4.0f : 0.0f;
+    return out;
+  }
+
+  dermis_result record(const Recorded& one, VkCommandBuffer commands) {
+    dermis_frame frame = one.frame;
+    frame.command_buffer = commands;
+    const dermis_view view = one.stage->views[one.view].view;
+    return view != nullptr ? dermis_view_record(view, &frame) : dermis_graph_record(one.stage->graph, &frame);
+  }
+
+  // A frame that will not be submitted.
+  void record_in_vain(const Recorded& one) {
+    auto allocate =
+        demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    allocate.commandPool = host->pool;
+    allocate.commandBufferCount = 1;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    ASSERT_EQ(host->vk.vkAllocateCommandBuffers(host->device, &allocate, &commands), VK_SUCCESS);
+    const auto begin =
+        demo::vulkan_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    ASSERT_EQ(host->vk.vkBeginCommandBuffer(commands, &begin), VK_SUCCESS);
+    EXPECT_EQ(record(one, commands), DERMIS_OK) << dermis_last_error();
+    host->vk.vkEndCommandBuffer(commands);
+    const dermis_view view = one.stage->views[one.view].view;
+    EXPECT_EQ(view != nullptr ? dermis_view_discard(view, one.frame.frame_index)
+                              : dermis_frame_discard(one.stage->graph, one.frame.frame_index),
+              DERMIS_OK)
+        << dermis_last_error();
+    host->vk.vkFreeCommandBuffers(host->device, host->pool, 1, &commands);
+    ++totals.discards;
+  }
+
+  void light_up(SoakView& view) {
+    if (chance(0.05)) show(view);
+    if (view.light.texels.empty() || chance(0.6)) {
+      const bool damaged = chance(0.1);
+      view.light = draw_light(random, damaged);
+      totals.damaged += damaged;
+    }
+    view.brightest_yet = std::max(view.brightest_yet, view.light.brightest);
+    view.calm = view.calm && view.light.even;
+    put(view, "lighting", view.light.texels, 4);
+  }
+
+  void judge(const Recorded& one) {
+    if ((one.frame.flags & DERMIS_FRAME_BOUNDS) != 0)
+      return; // nothing ran: light is as it was, damaged or not
+    Stage& stage = *one.stage;
+    SoakView& view = stage.views[one.view];
+    auto read = demo::read_image(*host, view.images.at("lighting"), between);
+    ASSERT_TRUE(read) << read.error().text;
+    const std::vector<float> out = read.take();
+    const bool part = one.frame.rect_width > 0;
+    const uint32_t width = part ? one.frame.rect_width : stage.width,
+                   height = part ? one.frame.rect_height : stage.height;
+    const double level = stage.desc.keeps_history ? view.brightest_yet : view.light.brightest;
+    double brightest = 0, off = 0;
+    for (uint32_t y = one.frame.rect_y; y < one.frame.rect_y + height; ++y)
+      for (uint32_t x = one.frame.rect_x; x < one.frame.rect_x + width; ++x) {
+        const size_t i = size_t{y} * soak_side + x;
+        if (view.surface.material[i] == 0.0f) continue; // keeps its light, whatever that is
+        for (size_t c = 0; c < 3; ++c) {
+          const double value = out[4 * i + c];
+          if (!std::isfinite(value) || value < 0) {
+            if (totals.not_finite++ < 5)
+              ADD_FAILURE() << stage.desc.name << ", frame " << totals.frames << ", pixel " << x << ", " << y
+                            << ": " << value;
+            continue;
+          }
+          brightest = std::max(brightest, value);
+          off = std::max(off, std::abs(value - view.light.brightest));
+        }
+      }
+    double& most = totals.brightest[stage.desc.name];
+    most = std::max(most, brightest / level);
+    EXPECT_LE(brightest / level, stage.desc.most) << stage.desc.name << ", frame " << totals.frames;
+    if (stage.desc.keeps_history ? view.calm : view.light.even) {
+      ++totals.even;
+      double& worst = totals.even_error[stage.desc.name];
+      worst = std::max(worst, off / level);
+      EXPECT_LE(off / level, stage.desc.even_error) << stage.desc.name << ", frame " << totals.frames;
+    }
+    ++totals.pictures;
+  }
+
+  void step() {
+    Stage& stage = stages[random.below(stages.size())];
+    change(stage);
+    std::vector<Recorded> all;
+    for (size_t v = 0; v < stage.views.size(); ++v) {
+      if (v > 0 && chance(0.3)) continue;
+      SoakView& view = stage.views[v];
+      light_up(view);
+      const Recorded one{&stage, v, frame_for(stage, view)};
+      if (chance(0.02)) record_in_vain(one);
+      all.push_back(one);
+    }
+    const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+      for (const Recorded& one : all)
+        EXPECT_EQ(record(one, commands), DERMIS_OK) << dermis_last_error();
+      return demo::success();
+    });
+    ASSERT_TRUE(ran) << ran.error().text;
+    for (const Recorded& one : all) {
+      stage.views[one.view].frame = one.frame.frame_index;
+      judge(one);
+    }
+    ++totals.frames;
+  }
+};
+
+// Of what is there when the graphs of a round are gone.
+struct Rest {
+  int64_t heap_blocks = 0, heap_bytes = 0, device_blocks = 0, resident = 0;
+};
+
+TEST_F(Soak, FramesWithoutEndAddNothingUp) {
+  const uint64_t frames = from_environment("DERMIS_SOAK_FRAMES", 300);
+  constexpr uint64_t many_frames = 3000;
+  const uint64_t rounds = frames < many_frames ? 2 : 10;
+  const std::vector<StageDesc> descs = soak_stages();
+  std::vector<Rest> rests;
+  for (uint64_t round = 0; round < rounds && !HasFailure(); ++round) {
+    for (const StageDesc& desc : descs)
+      ASSERT_NO_FATAL_FAILURE(create(desc));
+    while (totals.frames < frames * (round + 1) / rounds && !HasFailure())
+      ASSERT_NO_FATAL_FAILURE(step());
+    drop();
+    rests.push_back({heap.blocks, heap.bytes, memory->blocks, resident_bytes()});
+    const Rest& rest = rests.back();
+    fmt::print("{} frames: {} blocks of {} bytes on the heap, {} of the device's, {} MiB resident\n",
+               totals.frames, rest.heap_blocks, rest.heap_bytes, rest.device_blocks, rest.resident >> 20);
+    std::fflush(stdout);
+    EXPECT_EQ(rest.heap_blocks, rests.front().heap_blocks);
+    EXPECT_EQ(rest.heap_bytes, rests.front().heap_bytes);
+    EXPECT_EQ(rest.device_blocks, 0);
+  }
+  fmt::print("{} frames, {} pictures: {} reloads, {} refused, {} resizes, {} settings, {} budgets, {} cuts, "
+             "{} taken "
+             "back, {} views, {} graphs; {} lights damaged, {} pictures judged as even\n",
+             totals.frames, totals.pictures, totals.reloads, totals.refused_reloads, totals.resizes,
+             totals.settings, totals.budgets, totals.cuts, totals.discards, totals.views, totals.graphs,
+             totals.damaged, totals.even);
+  for (const auto& [name, most] : totals.brightest)
+    fmt::print("{}: brightest {:.5f} of the light, off even light {:.5f}\n", name, most,
+               totals.even_error[name]);
+  EXPECT_EQ(totals.not_finite, 0u);
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,64 @@
+#include "tests/integration/soak/stage.hpp"
+
+namespace dermis::abi_test {
+
+namespace {
+
+constexpr double largest_ratio = 4.0; // subsurface_residual.comp
+
+} // namespace
+
+// `afis_guided` weighs the control of frames before against samples, and `accumulate` takes light before with
+// the factor by which its tile became brighter: neither is a mean of what fell on the surface. Their bounds
+// are wide: they tell light that runs away.
+std::vector<StageDesc> soak_stages() {
+  const std::vector<std::string> samples = {"2", "8", "16"};
+  return {
+      {"skin",
+       "skin.json",
+       {},
+       {{"technique", {"\"sap\"", "\"hybrid\"", "\"separable\"", "\"off\""}},
+        {"variant", {"\"base\"", "\"smooth\""}},
+        {"taps", {"\"11\"", "\"17\"", "\"25\""}},
+        {"below", {"0", "0.8", "2"}},
+        {"share", {"0", "0.5", "1"}},
+        {"lod_bias", {"-8", "-1.5", "4"}}}},
+      {"residual",
+       "sap_residual.json",
+       {},
+       {{"variant", {"\"base\"", "\"smooth\""}},
+        {"samples", samples},
+        {"below", {"0", "0.985", "2"}},
+        {"alpha", {"0.01", "0.2", "1"}},
+        {"eager", {"0", "8", "64"}}},
+       true,
+       largest_ratio * (1.0 + soak_rounding)},
+      {"guided",
+       "afis_guided.json",
+       {},
+       {{"guidance", {"\"split_half\"", "\"spvg\"", "\"ccv\"", "\"ocv\"", "\"ocv_seed\""}},
+        {"most", {"8", "16", "32"}},
+        {"kappa", {"0", "0.2", "1"}},
+        {"eta", {"0.001", "0.2", "1"}}},
+       true,
+       4.0,
+       0.1},
+      {"accumulated",
+       "burley.json",
+       {"accumulate.json"},
+       {{"accumulate_weight", {"0.001", "0.1", "1"}},
+        {"accumulate_clip", {"0", "1.5", "64"}},
+        {"accumulate_follow", {"0", "3", "64"}}},
+       true,
+       8.0,
+       1.0},
+      {"by_tile",
+       "hybrid_afis_separable.json",
+       {},
+       {{"samples", samples}, {"least", {"0", "0.01", "4"}}, {"taps", {"\"11\"", "\"25\""}}}},
+      {"layered", "sap_layered.json", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
+      {"blended", "sap_blend.json", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
+  };
+}
+
+} // namespace dermis::abi_test
