@@ -125,6 +125,14 @@ struct FrameChoice {
   std::string miss; // why it took longer than the budget; "": it did not
 };
 
+// What a history of the graph holds after the frame.
+struct FrameHistory {
+  std::string name;
+  bool valid = false;
+  uint32_t age = 0; // frames in a row that are in it
+  std::string why;  // it holds nothing; where it holds something, why it held nothing when it last did not
+};
+
 struct FrameOutputs {
   uint32_t frame = 0;   // first_frame .. first_frame + frames - 1
   double seconds = 0.0; // scene time
@@ -139,10 +147,11 @@ struct FrameOutputs {
   FloatImage skips; // 2: class of the tile (0 nothing, 1 scatters, 2 below a pixel, 3 flat light), profile
                     // id. Empty unless asked for and exported
   FloatImage color; // 3: linear radiance times exposure
-  std::vector<uint8_t> display;       // RGB, tonemapped and sRGB encoded
-  std::vector<PassTime> host_times;   // shadows, gbuffer, lighting, composite
-  std::optional<FrameChoice> choice;  // none without Dermis
-  std::vector<HostPhase> phases;      // of this frame; "run scene" and "run graph" wait for the device
+  std::vector<uint8_t> display;        // RGB, tonemapped and sRGB encoded
+  std::vector<PassTime> host_times;    // shadows, gbuffer, lighting, composite
+  std::optional<FrameChoice> choice;   // none without Dermis
+  std::vector<FrameHistory> histories; // of the graph, also of plans that did not run
+  std::vector<HostPhase> phases;       // of this frame; "run scene" and "run graph" wait for the device
   std::vector<PassTime> dermis_times; // passes of the graph in plan order; empty without Dermis or timestamps
 };
 

@@ -75,6 +75,31 @@ TEST_F(Choice, ExplainTellsOfAFrame) {
   EXPECT_EQ(run({"explain", graph, "--budget", "2"}).exit_code, 2); // of which frame?
 }
 
+TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
+  constexpr const char* residual = "configs/graphs/sap_residual.json";
+  const Outcome text = run({"explain", residual, "--frame", "--size", "64x36"});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, testing::ContainsRegex("\nratio +6 frames +nothing has been recorded yet\n"));
+  const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", residual, "--size", "64x36",
+                               "--frames", "3", "--subset", "0", "--out", path("out"), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  uint32_t age = 0;
+  const json answer = json::parse(outcome.out);
+  for (const json& frame : answer["choices"]) {
+    const json& histories = frame["histories"];
+    ASSERT_EQ(histories.size(), 2u);
+    for (const json& one : histories) {
+      EXPECT_THAT(one["name"].get<std::string>(), testing::AnyOf("ratio", "place"));
+      EXPECT_EQ(one["valid"], true);
+      EXPECT_EQ(one["age"], age + 1);
+      EXPECT_EQ(one["why"], "nothing has been recorded yet");
+    }
+    ++age;
+  }
+  const Outcome without = run({"explain", "configs/graphs/sap.json", "--frame", "--size", "64x36"});
+  EXPECT_THAT(without.out, testing::Not(HasSubstr("held nothing")));
+}
+
 TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {
   const Outcome outcome = run({"explain", "configs/graphs/hybrid_afis_separable.json", "--frame", "--size",
                                "64x36", "--set", "taps=11", "--json"});

@@ -78,7 +78,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
   demo::RenderCallbacks callbacks;
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
     if (frame.choice && frame.frame + 1 == frames)
-      report.add(frame.frame, *frame.choice,
+      report.add(frame.frame, *frame.choice, frame.histories,
                  tile_costs(loaded, options.size, options.settings, *frame.choice));
     return interrupted() ? demo::Result<>(demo::Error{demo::ErrorKind::environment, "stopped"})
                          : demo::success();

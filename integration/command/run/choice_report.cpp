@@ -1,6 +1,7 @@
 #include "integration/command/run/choice_report.hpp"
 
 #include "integration/command/present.hpp"
+#include "integration/command/run/history_report.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +9,9 @@
 
 namespace dermis::tools {
 
-void ChoiceReport::add(uint32_t frame, const demo::FrameChoice& choice, TileCosts costs) {
-  frames_.push_back({frame, choice, std::move(costs)});
+void ChoiceReport::add(uint32_t frame, const demo::FrameChoice& choice,
+                       std::vector<demo::FrameHistory> histories, TileCosts costs) {
+  frames_.push_back({frame, choice, std::move(histories), std::move(costs)});
 }
 
 std::string describe_choice(const demo::FrameChoice& choice) {
@@ -57,7 +59,7 @@ std::string ChoiceReport::text() const {
     }
   }
   return text + fmt::format("frame {}: {}\n", frames_.back().frame, describe_choice(newest)) +
-         describe_tile_costs(frames_.back().costs);
+         describe_tile_costs(frames_.back().costs) + describe_histories(frames_.back().histories);
 }
 
 void ChoiceReport::write(JsonWriter& writer) const {
@@ -99,6 +101,7 @@ void ChoiceReport::write(JsonWriter& writer) const {
       writer.close().member("reads_per_sample", frame.costs.reads_per_sample);
       writer.member("reads_beside", frame.costs.reads_beside).member("reads", frame.costs.total());
     }
+    write_histories(writer.key("histories"), frame.histories);
     writer.member("miss", std::string_view(choice.miss));
     writer.member("next_better", std::string_view(choice.next_better));
     writer.member("next_better_missing_ms", choice.next_better_missing_ms).close();

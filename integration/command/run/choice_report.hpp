@@ -1,5 +1,5 @@
 #pragma once
-// What the library chose over a run of frames, for people and for programs.
+// What the library chose over a run of frames, and what its histories held, for people and for programs.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/command/run/tile_costs.hpp"
@@ -12,11 +12,13 @@ namespace dermis::tools {
 
 class ChoiceReport {
 public:
-  void add(uint32_t frame, const demo::FrameChoice& choice, TileCosts costs = {});
+  // `histories`: after the frame.
+  void add(uint32_t frame, const demo::FrameChoice& choice, std::vector<demo::FrameHistory> histories,
+           TileCosts costs = {});
   bool empty() const { return frames_.empty(); }
 
   // "technique=sap: 412 tiles, copied 3, skipped 3,185: 2.10 ms predicted, 2.20 measured, budget 2.50; ...":
-  // the newest frame, and before it how many frames each outcome had.
+  // the newest frame, before it how many frames each outcome had, after it its histories.
   std::string text() const;
   // [{"frame": .., "outcome": .., ..}, ..]
   void write(JsonWriter& writer) const;
@@ -25,6 +27,7 @@ private:
   struct Frame {
     uint32_t frame = 0;
     demo::FrameChoice choice;
+    std::vector<demo::FrameHistory> histories;
     TileCosts costs;
   };
   std::vector<Frame> frames_;

@@ -141,7 +141,7 @@ demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
     for (const demo::PassTime& time : frame.host_times)
       run.host_times.add(time.pass, time.milliseconds);
   }
-  if (frame.choice) run.choices.add(frame.frame, *frame.choice);
+  if (frame.choice) run.choices.add(frame.frame, *frame.choice, frame.histories);
   if (!run.options.trace.empty()) run.trace.add(frame);
   run.exposure.add(captured->lighting.values, captured->profile);
   run.last = make_truth_frame(*captured);

@@ -396,6 +396,20 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   return out;
 }
 
+Result<std::vector<FrameHistory>> graph_histories(DermisHost& host) {
+  uint32_t count = 0;
+  dermis_result result = dermis_graph_histories(host.graph, &count, nullptr);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_histories", result);
+  std::vector<FrameHistory> out;
+  if (count == 0) return out;
+  std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
+  result = dermis_graph_histories(host.graph, &count, all.data());
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_histories", result);
+  for (const dermis_history& one : all)
+    out.push_back({one.name, one.valid != 0, one.age, one.text});
+  return out;
+}
+
 std::string graph_calibration(DermisHost& host) {
   size_t size = 0;
   if (dermis_graph_calibration(host.graph, &size, nullptr) != DERMIS_OK || size == 0) return "";

@@ -56,6 +56,8 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
 std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index);
 // What was chosen for the frame; the device must have finished it. Errors: internal.
 Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index);
+// What its histories hold now.
+Result<std::vector<FrameHistory>> graph_histories(DermisHost& host);
 // What the graph learned of the device's times, as JSON.
 std::string graph_calibration(DermisHost& host);
 

@@ -121,7 +121,7 @@ TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
   const dermis_source source = source_of(text, "graph.json");
   ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
   const auto before = told(graph);
-  ASSERT_EQ(before.size(), 3u); // ratio, brightness and place
+  ASSERT_EQ(before.size(), 2u); // ratio and place
   EXPECT_EQ(named(before, "ratio").valid, 0u);
   EXPECT_EQ(named(before, "ratio").reason, DERMIS_HISTORY_RELOADED);
   EXPECT_EQ(named(before, "place").age, 2u);
