@@ -178,7 +178,7 @@ std::string index_html(const Session& session, const std::vector<Outcome>& outco
     const std::string csv = suite.rows_as_table ? fmt::format(" <a href='{}.csv'>CSV</a>", suite.name) : "";
     body +=
         fmt::format("<tr><td class=t><a href='{0}.html'>{0}</a><td class=t>{1}<td class=t><a href='{0}.json'>"
-                    "JSON</a>{2}<td class=t>{3}<td data-v={4:.1f}>{5}<td class=t>{6}\n",
+                    "JSON</a>{2}<td class=t>{3}<td data-v={4:.1f}>{5}<td class='t wrap'>{6}\n",
                     suite.name, suite.what, csv, state_text(*at), at->seconds, format_duration(at->seconds),
                     html_text(at->line));
   }

@@ -24,7 +24,7 @@ dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1rem}dt{color:va
 .wide{overflow-x:auto}table{border-collapse:collapse;font-size:.86rem;font-variant-numeric:tabular-nums}
 th,td{padding:.22rem .6rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
 th{white-space:normal;vertical-align:bottom;background:var(--head);position:sticky;top:0;cursor:pointer;user-select:none}
-th[aria-sort]::after{content:' \2193';color:var(--dim)}th[aria-sort=ascending]::after{content:' \2191'}th.t,td.t{text-align:left}
+th[aria-sort]::after{content:' \2193';color:var(--dim)}th[aria-sort=ascending]::after{content:' \2191'}th.t,td.t{text-align:left}td.wrap{white-space:normal}
 tr.best td{background:var(--mark)}tr.bad td{background:var(--bad)}
 .plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(400px,1fr));gap:1.2rem}figure{margin:0}
 figcaption{font-size:.86rem;color:var(--dim)}svg{width:100%;height:auto}svg text{font-size:11px;fill:var(--dim)}

@@ -13,7 +13,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr double width = 460, height = 300; // of the picture
-constexpr double left = 58, right = 14, top = 12, bottom = 44;
+constexpr double left = 70, right = 14, top = 12, bottom = 44;
 
 struct Axis {
   double low = 0, high = 1; // log10, or the values where the axis is even
