@@ -106,16 +106,20 @@ TEST_F(SceneFolders, ASceneReadsInsideOfItsProjectAlone) {
 TEST_F(SceneFolders, ASceneThatIsInNoProjectReadsInItsFolder) {
   EXPECT_TRUE(read("elsewhere", "secret.json"));
   EXPECT_FALSE(read("elsewhere", "../project/profiles/skin.json"));
+  ASSERT_FALSE(diagnostics.list.empty());
   EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
   EXPECT_TRUE(read("elsewhere", "../project/profiles/skin.json", {(top / "project").string() + "/"}));
 }
 
 TEST_F(SceneFolders, NamesThatNoSystemTakesAreRefused) {
   EXPECT_FALSE(read("project/scenes", ""));
+  ASSERT_FALSE(diagnostics.list.empty());
   EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
   EXPECT_FALSE(read("project/scenes", std::string(5000, 'a')));
+  ASSERT_FALSE(diagnostics.list.empty());
   EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
   EXPECT_FALSE(read("project/scenes", R"(../profiles/skin.json\u0000.png)"));
+  ASSERT_FALSE(diagnostics.list.empty());
   EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::syntax);
 }
 
