@@ -60,7 +60,7 @@ TEST(ReportFiles, BaselinesAreGreyAndOwnTechniquesAreNot) {
   Report report = small_report();
   EXPECT_THAT(report_as_html(report), Not(HasSubstr("s0 base")));
   report.plots[0].series[0].baseline = true;
-  EXPECT_THAT(report_as_html(report), HasSubstr("<g class='s0 base'>"));
+  EXPECT_THAT(report_as_html(report), HasSubstr("<g class='s0 base b0'>"));
 }
 
 TEST(ReportFiles, PlotsHaveTheTitleOfTheBenchOrThatOfTimeAgainstError) {
