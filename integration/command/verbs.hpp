@@ -303,7 +303,7 @@ struct BenchBudgetOptions {
   std::string calibration; // file of dermis calibrate; "": the library's own
   std::vector<std::string> scenes{"flashing", "regular", "dynamic", "dolly", "cut"}; // in configs/scenes
   Size size{480, 270};
-  uint32_t frames = 40;                    // judged, of each run
+  uint32_t frames = 32;                    // judged, of each run
   std::string json, html;                  // files to write; "": none
   std::string cache = "build/bench_truth"; // folder for references; "": none is kept
   bool quick = false;

@@ -111,7 +111,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--scenes", options.scenes, "Scenes of configs/scenes, separated by commas")
             ->type_name("NAME")
             ->delimiter(',');
-        verb.add_option("--frames", options.frames, "Judged frames of each run [40]")
+        verb.add_option("--frames", options.frames, "Judged frames of each run [32]")
             ->check(CLI::Range(4u, max_frames));
         add_quick(verb, options.quick, {"--size", "--frames", "--scenes"});
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
