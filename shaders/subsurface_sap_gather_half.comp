@@ -5,24 +5,18 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_sap_gather_half.bindings.glsl"
 #include "environment.glsl"
-#include "sap_pixel.glsl"
+#include "half.glsl"
+#include "radius.glsl"
 const int block_width = 4, block_height = 2, coarse_width = 4, coarse_height = 3;
 const ivec2 odd_first = ivec2(0);
 #define SAP_NO_RING
 #include "sap_up.glsl"
 
-const int block_texels = block_width * block_height;
-uint pixel_profile[block_texels];
-float pixel_depth[block_texels]; // mm, 0 where there is nothing
-
-float depth_of_profile(int x, int y, uint id) {
-  bool inside = x >= 0 && y >= 0 && x < block_width && y < block_height;
-  int index = inside ? y * block_width + x : 0;
-  return inside && pixel_profile[index] == id ? pixel_depth[index] : 0.0;
-}
+const int pixels_across = block_width, pixels_down = block_height;
+#include "sap_pixel_block.glsl"
 
 void read_pixels(texel_block block) {
-  [[unroll]] for (int k = 0; k < block_texels; ++k) {
+  [[unroll]] for (int k = 0; k < block_pixels; ++k) {
     ivec2 pixel = block.first + ivec2(k % block_width, k / block_width), texel = texel_of(pixel);
     uint id = 0u;
     float depth = 0.0;
@@ -36,12 +30,9 @@ void read_pixels(texel_block block) {
 }
 
 vec4 gather(int k, ivec2 pixel, vec3 light) {
-  int x = k % block_width, y = k / block_width;
   uint id = pixel_profile[k];
-  patch_neighbours around = patch_neighbours(vec2(depth_of_profile(x - 1, y, id), depth_of_profile(x, y - 1, id)),
-                                             vec2(depth_of_profile(x + 1, y, id), depth_of_profile(x, y + 1, id)));
   float area_root;
-  sap_texel own = sap_pixel_surface(pixel, id, pixel_depth[k], around, area_root);
+  sap_texel own = block_surface(pixel, k, area_root);
   vec3 d_px = sap_d_px(own) * inversesqrt(area_root); // a tilted pixel keeps more of its own light
   vec3 centre = sap_lookup(id, sap_half, 0, d_px);
   float confidence;
@@ -60,7 +51,7 @@ void main() {
   read_pixels(block);
   if (!block.copy_only)
     read_coarser(block.first, 0);
-  [[unroll]] for (int k = 0; k < block_texels; ++k) {
+  [[unroll]] for (int k = 0; k < block_pixels; ++k) {
     ivec2 pixel = block.first + ivec2(k % block_width, k / block_width);
     if (!inside_rect(pixel))
       continue;

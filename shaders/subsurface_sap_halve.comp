@@ -5,19 +5,12 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_sap_halve.bindings.glsl"
 #include "environment.glsl"
-#include "sap_pixel.glsl"
+#include "half.glsl"
 #define SAP_LAYERS 1
 #define SAP_BOX
 #include "sap_down.glsl"
-
-uint pixel_profile[side * side];
-float pixel_depth[side * side]; // mm, 0 where there is nothing
-
-float depth_of_profile(int x, int y, uint id) {
-  bool inside = x >= 0 && y >= 0 && x < side && y < side;
-  int index = inside ? y * side + x : 0;
-  return inside && pixel_profile[index] == id ? pixel_depth[index] : 0.0;
-}
+const int pixels_across = side, pixels_down = side;
+#include "sap_pixel_block.glsl"
 
 void read_pixels(texel_block block, ivec2 first) {
   [[unroll]] for (int i = 0; i < side * side; ++i) {
@@ -33,14 +26,10 @@ void read_pixels(texel_block block, ivec2 first) {
   }
   [[unroll]] for (int i = 0; i < side * side; ++i) {
     ivec2 pixel = 2 * first + ivec2(i % side, i / side);
-    int x = i % side, y = i / side;
-    uint id = pixel_profile[i];
     children[i] = sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u);
     child_light[i] = vec4(0.0);
-    if (id != 0u && pixel_depth[i] > 0.0) {
-      patch_neighbours around = patch_neighbours(vec2(depth_of_profile(x - 1, y, id), depth_of_profile(x, y - 1, id)),
-                                                 vec2(depth_of_profile(x + 1, y, id), depth_of_profile(x, y + 1, id)));
-      children[i] = sap_pixel_surface(pixel, id, pixel_depth[i], around, child_light[i].a);
+    if (pixel_profile[i] != 0u && pixel_depth[i] > 0.0) {
+      children[i] = block_surface(pixel, i, child_light[i].a);
       child_light[i].rgb = sap_pixel_light(texel_of(pixel));
     }
   }
