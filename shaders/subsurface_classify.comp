@@ -89,8 +89,7 @@ uint find_widest(ivec2 first, uint mask, uint ids[run]) {
   [[unroll]] for (int i = 0; i < run; ++i)
     others |= ids[i] != id ? 1u << uint(i) : 0u;
   bool alike = (mask & others) == 0u && !has_scatter_scale();
-  // A loop that runs once or not at all: some drivers run both sides of a branch.
-  for (uint left = alike && mask != 0u ? 1u : 0u; left != 0u; --left) {
+  if (alike && mask != 0u) {
     float depth = find_nearest(first, mask);
     float d_px = depth > 0.0 ? projected_d(profiles[min(id, 255u)].d_mm.w, depth) : 0.0;
     widest = d_px >= copy_below_d_px ? floatBitsToUint(d_px) : below_a_pixel;

@@ -14,9 +14,8 @@ void main() {
   if (!listed_pixel(pixel, copy_only, full))
     return;
   ivec2 texel = texel_of(pixel);
-  // Loops that run once or not at all: some drivers run both sides of a branch.
   bool subsurface = full;
-  for (uint left = full ? 0u : 1u; left != 0u; --left)
+  if (!full)
     subsurface = texelFetch(material_image, texel, 0).r != 0u;
   if (!subsurface)
     return;
@@ -27,12 +26,12 @@ void main() {
     albedo = sqrt(albedo);
   vec3 color = vec3(0.0);
   bool copies = has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
-  for (uint left = copies ? 1u : 0u; left != 0u; --left) {
+  if (copies) {
     color = clean_light(texelFetch(unscattered_image, texel, 0).rgb);
     color = round_to_half(settings.texturing != TEXTURING_POST ? color * albedo : color); // as it comes through
-  }
-  for (uint left = copies ? 0u : 1u; left != 0u; --left)
+  } else {
     color = texelFetch(scattered_image, texel, 0).rgb;
+  }
   if (settings.result == RESULT_COLOR && settings.texturing != TEXTURING_PRE)
     color *= albedo;
   imageStore(lighting_image, texel, vec4(round_to_half(color), 1.0));

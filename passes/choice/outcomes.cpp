@@ -311,8 +311,8 @@ uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad 
   const double unit_ms = (expected(many).ms - without.ms) / double(many);
   if (!(unit_ms > 0)) return UINT32_MAX;
   const auto units_beside = [&](double spread_ms) {
-    return static_cast<uint32_t>(
-        std::clamp((budget_ms - without.ms - spread_ms) / unit_ms, 0.0, double(UINT32_MAX)));
+    const double left_ms = budget_ms - without.ms - given_deviations * spread_ms;
+    return static_cast<uint32_t>(std::clamp(left_ms / unit_ms, 0.0, double(UINT32_MAX)));
   };
   // Units deviate, too: fewer of them by no more than the most would.
   return units_beside(expected(std::min<uint64_t>(units_beside(without.spread_ms), many)).spread_ms);

@@ -80,7 +80,10 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
 // By the calibration alone, as on any other machine; no spread.
 Estimate metered(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
 Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
-// Units of samples that fit into `budget_ms` beside everything else, with the deviation of both; UINT32_MAX
+// Typical deviations that samples leave free of a budget which they fill: frames are late by more than two in
+// one of twenty (a mean deviation is .8 of a standard one). Work that is there in any case needs one.
+inline constexpr double given_deviations = 2.0;
+// Units of samples that fit into `budget_ms` beside everything else, with the deviations of both; UINT32_MAX
 // where the outcome takes no samples by tile, or a unit costs nothing.
 uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
                       bool meter);
