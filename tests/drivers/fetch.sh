@@ -38,11 +38,12 @@ echo "deb $options$mirror $release-backports main" >"$folder/apt/sources.list"
 own=(-o Dir::Etc::sourcelist="$folder/apt/sources.list" -o Dir::Etc::sourceparts=- -o Dir::State::Lists="$folder/apt/lists"
   -o Dir::Cache="$folder/apt/cache" -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any -o Acquire::Retries=2)
 log=$folder/apt/log
-apt-get "${own[@]}" update >"$log" 2>&1 || unavailable "the lists of $release-backports cannot be had: $(tail -n 1 "$log")"
+complaint() { grep -m 1 -E '^(W|E): ' "$log" || tail -n 1 "$log"; }
+apt-get "${own[@]}" update >"$log" 2>&1 || unavailable "the lists of $release-backports cannot be had: $(complaint)"
 cd "$folder/apt"
 rm -f "$package"_*.deb
 apt-get "${own[@]}" download "$package/$release-backports" >>"$log" 2>&1 ||
-  unavailable "$release-backports has no $package to give: $(tail -n 1 "$log")"
+  unavailable "$release-backports has no $package to give: $(complaint)"
 
 archive=$(echo "$package"_*.deb)
 version=$(dpkg-deb -f "$archive" Version)
