@@ -1,38 +1,65 @@
 #!/usr/bin/env bash
-# The device tests on other drivers than the system's: SwiftShader where chromium-common brings it, and those that
-# DERMIS_DRIVERS names (manifests, separated by ':'). Prints a table of drivers and suites. Tests that one does not pass
-# are listed in known/DRIVER and left out; any other failure fails. Exit code 77: there is no other driver.
-# usage: run.sh [BUILD]; BUILD: build/release
+# The device tests on other drivers than the system's: the Mesa of Debian's backports (fetch.sh), SwiftShader where
+# chromium-common brings it, and those that DERMIS_DRIVERS names (manifests, separated by ':'). Prints a table of drivers
+# and suites. Golden frames are held against those of the system's driver. Tests that a driver does not pass are listed
+# in known/DRIVER with the reason and left out; any other failure fails. Exit code 77: there is no other driver.
+# usage: run.sh [BUILD [SUITE...]]; BUILD: build/release, SUITE: "abi" for test_integration_abi and so on
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
 build=${1:-build/release}
-suites=(test_framegraph_vulkan test_passes_kernels test_integration_abi test_integration_embedding)
+shift || true
+suites=("$@")
+[[ $# -gt 0 ]] || suites=(framegraph_vulkan passes_kernels passes_device integration_abi integration_embedding
+  integration_demo_engine laws)
+seconds=1800       # a suite
+memory=$((8 << 20)) # KiB that a suite may take: a driver gone astray must not take the machine with it
+swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
+
 drivers=()
+fetched=$(tests/drivers/fetch.sh) && drivers+=("$fetched")
+[[ -e $swiftshader ]] && drivers+=("$swiftshader") || echo "SwiftShader: skipped, chromium-common is not installed" >&2
 named=${DERMIS_DRIVERS:-}
-for manifest in /usr/lib/chromium/vk_swiftshader_icd.json ${named//:/ }; do
-  [[ -e $manifest ]] && drivers+=("$manifest")
+for manifest in ${named//:/ }; do
+  [[ -e $manifest ]] && drivers+=("$manifest") || echo "$manifest: skipped, there is no such file" >&2
 done
 if [[ ${#drivers[@]} -eq 0 ]]; then
-  echo "other drivers: skipped, none is installed (chromium-common has SwiftShader; DERMIS_DRIVERS names manifests)"
+  echo "other drivers: skipped, there is none"
   exit 77
 fi
+
+pictures=$build/drivers_pictures
+mkdir -p "$pictures"
+DERMIS_PICTURES=$pictures DERMIS_PICTURES_KEEP=1 "$build/tests/test_passes_device" \
+  --gtest_filter='*Golden.FramesAreThoseOfAnotherDriver*' >"$pictures/log" 2>&1 ||
+  { echo "golden frames of the system's driver failed; the log: $pictures/log"; exit 1; }
+
 failed=0
 for manifest in "${drivers[@]}"; do
   name=$(basename "$manifest" .json)
+  name=${name#vk_}
+  name=${name%_icd}
   known=tests/drivers/known/$name
-  left_out=-$(grep -v '^#' "$known" 2>/dev/null | grep . | paste -sd: || true)
+  left_out=$(grep -v '^#' "$known" 2>/dev/null | grep . | awk '{ print $1 }' | paste -sd: || true)
   for suite in "${suites[@]}"; do
     log=$build/drivers_${name}_$suite.log
     begin=$SECONDS
     rc=0
-    VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest timeout 1800 "$build/tests/$suite" --gtest_filter="$left_out" \
-      >"$log" 2>&1 || rc=$?
-    printf '%-24s %-30s %5s passed, %3s failed, %3s skipped, %4s s%s\n' "$name" "$suite" \
+    (
+      ulimit -v $memory
+      VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest DERMIS_PICTURES=$pictures timeout $seconds \
+        "$build/tests/test_$suite" --gtest_filter="-$left_out"
+    ) >"$log" 2>&1 || rc=$?
+    of_suite=0 # tests that are left out
+    if [[ -n $left_out ]]; then
+      of_suite=$("$build/tests/test_$suite" --gtest_list_tests --gtest_filter="$left_out" | grep -c '^  ' || true)
+    fi
+    printf '%-14s %-24s %4s passed, %2s failed, %2s skipped, %3s known, %4s s%s\n' "$name" "$suite" \
       "$(grep -c '^\[       OK \]' "$log" || true)" "$(grep -c '^\[  FAILED  \].* (.* ms)$' "$log" || true)" \
-      "$(grep -c '^\[  SKIPPED \].* (.* ms)$' "$log" || true)" "$((SECONDS - begin))" \
-      "$([[ $rc -eq 0 ]] || echo "; the log: $log")"
+      "$(grep -c '^\[  SKIPPED \].* (.* ms)$' "$log" || true)" "$of_suite" "$((SECONDS - begin))" \
+      "$([[ $rc -eq 0 ]] || echo "; ended with $rc; the log: $log")"
     [[ $rc -eq 0 ]] || failed=1
   done
+  grep -h '^pictures' "$build/drivers_${name}_passes_device.log" 2>/dev/null | cut -f 3- || true
 done
 exit $failed

@@ -1,6 +1,7 @@
 // Pipelines of the pass kinds that the plan runs: layouts from the signature, checked against the kernel's
 // SPIR-V.
 #include "framegraph/vulkan/executor/state.hpp"
+#include "framegraph/vulkan/shader/loop_hints.hpp"
 #include "framegraph/vulkan/shader/signature_check.hpp"
 
 #include <algorithm>
@@ -100,6 +101,11 @@ Error create_pipeline(State& state, const PassKind& kind, std::span<const uint32
   const Device& device = *state.device;
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  std::vector<uint32_t> mended;
+  if (unrolls_without_end(device.properties)) {
+    mended = without_unrolling(spirv);
+    spirv = mended;
+  }
   module_info.codeSize = spirv.size_bytes();
   module_info.pCode = spirv.data();
   VkShaderModule module = VK_NULL_HANDLE;

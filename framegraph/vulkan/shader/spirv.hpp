@@ -1,5 +1,5 @@
 #pragma once
-// The few numbers of SPIR-V 1.6 that reflect.cpp needs (SPIR-V specification, section 3).
+// The few numbers of SPIR-V 1.6 that reflect.cpp and loop_hints.cpp need (SPIR-V specification, section 3).
 
 #include <cstdint>
 
@@ -34,6 +34,7 @@ enum Op : uint32_t {
   op_variable = 59,
   op_decorate = 71,
   op_member_decorate = 72,
+  op_loop_merge = 246,
   op_execution_mode_id = 331
 };
 

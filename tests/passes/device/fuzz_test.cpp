@@ -1,0 +1,180 @@
+// Random graphs of the real pass kinds on a device: whatever the compiler decides about order and memory, the
+// host gets the same bits.
+#include "framegraph/interpret/interpret.hpp"
+#include "framegraph/model/expression.hpp"
+#include "framegraph/text/diagnostic.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/test_tier.hpp"
+#include "tests/passes/device/player.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace dermis::testing {
+namespace {
+
+// A decision of the compiler that must not show.
+struct Decisions {
+  std::string name;
+  PassOrder order = PassOrder::memory;
+  uint64_t order_seed = 0;
+  PackingLevel packing = PackingLevel::tight;
+  bool alias = true, cull = true, poison = false;
+  ResourceId keep_alive = {};
+};
+
+struct Totals {
+  uint64_t graphs = 0, passes = 0, plans = 0, other_plans = 0, frames = 0, pictures = 0, lent = 0, shared = 0,
+           cuts = 0, truths = 0;
+};
+
+bool lends(const Plan& plan, uint32_t history) {
+  const PlanResource& resource = plan.resources[plan.histories[history].resource];
+  if (resource.first_instance == no_instance) return false;
+  const Placement& lender = plan.placements[resource.first_instance];
+  for (const Placement& placement : plan.placements)
+    if (!placement.persistent && placement.heap == lender.heap &&
+        placement.offset < lender.offset + lender.size && lender.offset < placement.offset + placement.size)
+      return true;
+  return false;
+}
+
+// Everything is bound, and every pass on: what an optional port that nothing provides means, the truth does
+// not know.
+bool whole(const Graph& graph, const Show& show) {
+  std::vector<SettingValue> settings;
+  for (const SettingDeclaration& setting : graph.settings)
+    settings.push_back(setting.default_value);
+  const auto on = [&](const PassDeclaration& pass) {
+    return !pass.when.valid() || evaluate(graph, pass.when, settings);
+  };
+  return std::find(show.bound.begin(), show.bound.end(), false) == show.bound.end() &&
+         std::all_of(graph.passes.begin(), graph.passes.end(), on);
+}
+
+class DeviceFuzz : public DevicePlayer {
+protected:
+  std::optional<Plan> plan_of(const RealGraph& graph, const Show& show, const Decisions& decisions) const {
+    CompileInput input = compile_input(graph, show);
+    input.order = decisions.order;
+    input.order_seed = decisions.order_seed;
+    input.packing = decisions.packing;
+    input.alias = decisions.alias;
+    input.cull = decisions.cull;
+    input.poison = decisions.poison;
+    input.keep_alive = decisions.keep_alive;
+    input.reasons = false;
+    Diagnostics diagnostics;
+    auto compiled = compile(input, diagnostics);
+    EXPECT_TRUE(compiled) << decisions.name << ": " << format_as_json(diagnostics);
+    if (!compiled) return std::nullopt;
+    EXPECT_EQ(verify(compiled->plan), std::vector<std::string>{}) << decisions.name;
+    return std::move(compiled->plan);
+  }
+
+  // First what all others are held against: nothing shared, nothing moved. What nobody reads has memory of
+  // its own: the validation layer (1.3.239) takes images of one kind in the same memory for one, and does not
+  // see the barriers of those that lay there between them.
+  std::vector<Decisions> decisions_of(const RealGraph& graph, const Show& show, uint64_t seed) const {
+    std::vector<Decisions> all = {
+        {"nothing shared, order of the file", PassOrder::program, 0, PackingLevel::fast, false},
+        {"as it ships"},
+        {"packed fast, poison", PassOrder::memory, 0, PackingLevel::fast, true, true, true},
+        {"another order", PassOrder::random, 2 * seed + 1},
+        {"a third order, packed fast", PassOrder::random, 2 * seed + 2, PackingLevel::fast},
+        {"another order, nothing shared, nothing culled", PassOrder::random, 2 * seed + 1,
+         PackingLevel::tight, false, false}};
+    if (std::getenv("DERMIS_TESTS_FULL") != nullptr)
+      all.push_back({"packed as well as can be", PassOrder::memory, 0, PackingLevel::optimize});
+    const auto shipped = plan_of(graph, show, all[1]);
+    for (uint32_t h = 0; shipped && h < shipped->histories.size(); ++h)
+      if (lends(*shipped, h)) {
+        Decisions without = {"as it ships, a history lends nothing"};
+        without.keep_alive = shipped->resources[shipped->histories[h].resource].declared;
+        all.push_back(without);
+        break;
+      }
+    return all;
+  }
+
+  void try_graph(uint64_t seed, Totals& totals) {
+    const auto graph = random_real_graph(seed, kinds);
+    if (!graph) return;
+    const Show show = random_show(seed, graph->graph);
+    SCOPED_TRACE(fmt::format("seed {}: {}, {}x{}", seed, graph->name, show.width, show.height));
+    const std::vector<Decisions> all = decisions_of(*graph, show, seed);
+    std::optional<Plan> first_plan;
+    Played first;
+    Interpretation meant;
+    for (const Decisions& decisions : all) {
+      auto plan = plan_of(*graph, show, decisions);
+      if (!plan) return;
+      const Played played = play(*graph, show, *plan, decisions.poison);
+      EXPECT_EQ(take_messages(), std::vector<std::string>{}) << decisions.name;
+      const Interpretation interpreted = interpret(*plan, {random_frames, seed, seed + 1, seed});
+      ++totals.plans;
+      totals.frames += played.size();
+      totals.lent += decisions.keep_alive.valid();
+      if (!first_plan) {
+        first_plan = std::move(plan);
+        first = played;
+        meant = interpreted;
+        if (whole(graph->graph, show)) {
+          EXPECT_TRUE(agrees(meant, graph_truth(graph->graph, kinds, random_frames, seed)));
+          ++totals.truths;
+        }
+        totals.passes += first_plan->passes.size();
+        for (const auto& frame : first)
+          totals.pictures += frame.size();
+        continue;
+      }
+      totals.other_plans += plan->barriers.size() != first_plan->barriers.size() ||
+                            plan->heaps.size() != first_plan->heaps.size() ||
+                            plan->transient_bytes != first_plan->transient_bytes;
+      totals.shared += plan->transient_bytes < first_plan->transient_bytes;
+
+      EXPECT_TRUE(agrees(interpreted, meant)) << decisions.name;
+      for (size_t f = 0; f < first.size() && f < played.size(); ++f)
+        for (const auto& [slot, texels] : first[f])
+          EXPECT_TRUE(same(slot, texels, played[f])) << decisions.name << ": " << slot << ", frame " << f;
+    }
+    ++totals.graphs;
+    for (const ShownFrame& frame : show.frames)
+      totals.cuts += frame.cut;
+  }
+
+  // What tools are told of samples means nothing where nothing scatters.
+  static bool same(const std::string& slot, const std::vector<std::byte>& texels,
+                   const std::map<std::string, std::vector<std::byte>>& others) {
+    const auto other = others.find(slot);
+    return slot.ends_with("sampling") || (other != others.end() && other->second == texels);
+  }
+
+  static constexpr uint32_t random_frames = 4;
+};
+
+TEST_F(DeviceFuzz, WhatTheCompilerDecidesShowsInNoBitOfAnyRandomGraph) {
+  const char* const first = std::getenv("DERMIS_FUZZ_SEED");
+  const uint64_t begin = first != nullptr ? std::strtoull(first, nullptr, 10) : 0;
+  const char* const number = std::getenv("DERMIS_FUZZ_GRAPHS");
+  const uint64_t graphs = number != nullptr ? std::strtoull(number, nullptr, 10) : seeds_of_tier(8, 400);
+  Totals totals;
+  for (uint64_t seed = begin; seed < begin + graphs && !HasFailure(); ++seed)
+    try_graph(seed, totals);
+  const std::string told = fmt::format(
+      "{} graphs of {} passes, {} interpreted against what they mean; {} plans, {} of them unlike the "
+      "first, {} with shared memory, {} without a loan; {} frames, {} cuts; {} pictures compared with "
+      "those of each other plan; {}",
+      totals.graphs, totals.passes, totals.truths, totals.plans, totals.other_plans, totals.shared,
+      totals.lent, totals.frames, totals.cuts, totals.pictures, HasFailure() ? "a finding" : "no finding");
+  RecordProperty("totals", told);
+  std::printf("%s\n", told.c_str());
+  EXPECT_EQ(totals.graphs, graphs);
+  EXPECT_GT(totals.shared, totals.graphs); // the law sees what sharing does
+}
+
+} // namespace
+} // namespace dermis::testing

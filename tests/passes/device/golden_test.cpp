@@ -1,0 +1,108 @@
+// The same inputs give the same bits: run after run, however many threads the driver has, in whatever order
+// passes are recorded; and, of a driver and version that is in the table, the bits that are kept there.
+#include "tests/passes/device/golden.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <unistd.h>
+
+namespace dermis::testing {
+namespace {
+
+class Golden : public DevicePlayer, public ::testing::WithParamInterface<std::string> {
+protected:
+  Played frames(PassOrder order = PassOrder::memory, uint64_t order_seed = 0) {
+    const auto graph = shipped_graph(GetParam(), kinds);
+    if (!graph) return {};
+    const Show show = golden_show(graph->graph);
+    CompileInput input = compile_input(*graph, show);
+    input.order = order;
+    input.order_seed = order_seed;
+    Diagnostics diagnostics;
+    const auto compiled = compile(input, diagnostics);
+    EXPECT_TRUE(compiled) << format_as_json(diagnostics);
+    return compiled ? play(*graph, show, compiled->plan, false) : Played{};
+  }
+
+  std::string line(const std::string& hash) const {
+    return fmt::format("golden\t{}\t{}\t{}\n", driver(), GetParam(), hash);
+  }
+};
+
+// Each way to scatter once, and histories.
+INSTANTIATE_TEST_SUITE_P(Graphs, Golden,
+                         ::testing::Values("burley", "separable", "afis", "afis_guided", "sap",
+                                           "sap_residual", "hybrid"),
+                         [](const auto& graph) { return graph.param; });
+
+TEST_P(Golden, FramesAreThoseThatAreKeptForThisDriver) {
+  const std::string here = driver(), found = hash_of(frames());
+  if (std::getenv("DERMIS_GOLDEN_UPDATE") != nullptr) keep_golden_hash(here, GetParam(), found);
+  std::printf("%s", line(found).c_str());
+  const std::string kept = golden_hash(here, GetParam());
+  if (kept.empty())
+    GTEST_SKIP() << "no frames are kept for this driver, '" << here << "', but for\n" << golden_drivers();
+  EXPECT_EQ(found, kept);
+}
+
+TEST_P(Golden, FramesAreTheSameInEveryRunAndEveryOrder) {
+  const Played first = frames();
+  EXPECT_EQ(frames(), first);
+  EXPECT_EQ(frames(PassOrder::program), first);
+  for (uint64_t seed = 1; seed <= 2; ++seed)
+    EXPECT_EQ(frames(PassOrder::random, seed), first) << "order " << seed;
+}
+
+// In a process of its own: lavapipe reads the number of its threads once.
+TEST_P(Golden, FramesAreTheSameHoweverManyThreadsTheDriverHas) {
+  if (!driver().starts_with("llvmpipe")) GTEST_SKIP() << "of lavapipe alone is known how to set its threads";
+  const std::string expected = line(hash_of(frames()));
+  for (const int threads : {1, 2}) {
+    const std::string command = fmt::format(
+        "LP_NUM_THREADS={} /proc/{}/exe --gtest_filter=Graphs/Golden.FramesAreThoseThatAreKept*/{}", threads,
+        getpid(), GetParam());
+    FILE* const child = popen(command.c_str(), "r");
+    ASSERT_NE(child, nullptr);
+    std::string told;
+    char text[512];
+    while (std::fgets(text, sizeof text, child) != nullptr)
+      if (std::string(text).starts_with("golden\t")) told += text;
+    pclose(child);
+    EXPECT_EQ(told, expected) << threads << " threads";
+  }
+}
+
+// Drivers round otherwise, and where a sample falls on the border of a texel they take another one: most
+// pixels differ by some roundings, few by a sample. Bounds: medians within 4 roundings to a half (2^-11) of
+// light that is about 1, one of those that stores, filters, exponentials and roots add up to; .1 % of the
+// pixels may be further off than 1 of the 16 or more samples that a pixel has, times the contrast of the
+// light, which is .625.
+TEST_P(Golden, FramesAreThoseOfAnotherDriverButForRoundingAndFewSamples) {
+  const char* const folder = std::getenv("DERMIS_PICTURES");
+  if (folder == nullptr)
+    GTEST_SKIP() << "DERMIS_PICTURES names no folder with frames of another driver (tests/drivers/run.sh)";
+  constexpr double rounding = 1.0 / 2048, contrast = 0.625, samples = 16;
+  const std::string path = fmt::format("{}/{}.floats", folder, GetParam());
+  const std::vector<float> here = light_of(frames());
+  if (std::getenv("DERMIS_PICTURES_KEEP") != nullptr) return keep_floats(path, here);
+  const std::vector<float> there = kept_floats(path);
+  ASSERT_EQ(here.size(), there.size()) << path;
+  std::vector<double> off;
+  for (size_t i = 0; i < here.size(); ++i)
+    off.push_back(std::abs(double(here[i]) - double(there[i])));
+  std::sort(off.begin(), off.end());
+  const auto percentile = [&](double share) {
+    return off[static_cast<size_t>(share * double(off.size() - 1))];
+  };
+  std::printf("pictures\t%s\t%s\tmedian %.2g\tp99 %.2g\tp99.9 %.2g\tmost %.2g\n", driver().c_str(),
+              GetParam().c_str(), percentile(0.5), percentile(0.99), percentile(0.999), off.back());
+  EXPECT_LE(percentile(0.5), 4 * rounding);
+  EXPECT_LE(percentile(0.999), contrast / samples);
+}
+
+} // namespace
+} // namespace dermis::testing

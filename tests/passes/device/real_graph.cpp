@@ -1,0 +1,190 @@
+#include "tests/passes/device/real_graph.hpp"
+
+#include "framegraph/model/read_graph.hpp"
+#include "framegraph/model/splitmix.hpp"
+#include "framegraph/text/diagnostic.hpp"
+#include "framegraph/text/document.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace dermis::testing {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* folder = DERMIS_SOURCE_DIR "/configs/graphs/";
+constexpr int64_t most_steps = 6; // of an integer setting above its least value
+
+Json read_shipped(const std::string& name) {
+  std::ifstream file(folder + name + ".json");
+  return Json::parse(file, nullptr, true, true);
+}
+
+std::optional<RealGraph> made(std::string name, std::string text, const KindRegistry& kinds) {
+  Diagnostics diagnostics;
+  auto document = parse_document(name, text, diagnostics);
+  auto graph = document ? read_graph(*document, kinds, diagnostics) : std::nullopt;
+  if (!graph) {
+    ADD_FAILURE() << format_as_json(diagnostics) << "\n" << text;
+    return std::nullopt;
+  }
+  return RealGraph{std::move(name), std::move(text), std::move(*graph)};
+}
+
+struct Draft {
+  SplitMix64 random;
+  Json graph = {{"dermis", 1},
+                {"name", "drawn"},
+                {"settings", Json::object()},
+                {"imports", Json::object()},
+                {"resources", Json::object()},
+                {"passes", Json::array()},
+                {"exports", Json::array()}};
+  std::vector<std::string> lights = {"lighting"}; // that a part may scatter
+
+  bool chance(uint32_t percent) { return random.below(100) < percent; }
+
+  // Its default becomes a value that it may have: defaults are what is compiled.
+  void draw_value(Json& setting) {
+    if (setting.contains("int")) {
+      const int64_t least = setting["min"], most = setting["max"];
+      const auto steps = static_cast<size_t>(std::min(most - least, most_steps));
+      setting["int"] = least + static_cast<int64_t>(random.below(steps + 1));
+    } else if (setting.contains("real")) {
+      const Json ends[] = {setting["min"], setting["max"]};
+      if (chance(30)) setting["real"] = ends[random.below(2)];
+    } else if (setting.contains("bool")) {
+      setting["bool"] = chance(50);
+    } else {
+      const Json& options = setting.contains("enum") ? setting["enum"] : setting["choice"];
+      setting["default"] = options[random.below(options.size())];
+    }
+  }
+
+  using Names = std::map<std::string, std::string>;
+
+  static std::string renamed(const Names& names, const std::string& name) {
+    const auto found = names.find(name);
+    return found == names.end() ? name : found->second;
+  }
+
+  // "ratio#1@-1?other": every word that is the name of a resource; "technique == 'sap'": of a setting,
+  // outside of quotes; "$samples".
+  static std::string renamed_words(const Names& names, const std::string& text) {
+    std::string out, word;
+    bool quoted = false;
+    const auto flush = [&] {
+      out += quoted ? word : renamed(names, word);
+      word.clear();
+    };
+    for (const char c : text) {
+      if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_') {
+        word += c;
+        continue;
+      }
+      flush();
+      if (c == '\'') quoted = !quoted;
+      out += c;
+    }
+    flush();
+    return out;
+  }
+
+  void rename_pass(Json& pass, const std::string& prefix, const Names& resources, const Names& settings) {
+    pass["pass"] = prefix + std::string(pass["pass"]);
+    for (const char* side : {"read", "write"})
+      if (pass.contains(side))
+        for (auto& [port, resource] : pass[side].items())
+          resource = renamed_words(resources, resource);
+    if (pass.contains("when")) pass["when"] = renamed_words(settings, pass["when"]);
+    if (pass.contains("set"))
+      for (auto& [name, value] : pass["set"].items())
+        if (value.is_string() && std::string(value).starts_with("$"))
+          value = fmt::format("${}", renamed(settings, std::string(value).substr(1)));
+    if (!pass.contains("otherwise")) return;
+    Json otherwise = Json::object();
+    for (auto& [resource, instead] : pass["otherwise"].items())
+      otherwise[renamed(resources, resource)] = renamed(resources, instead);
+    pass["otherwise"] = otherwise;
+  }
+
+  void add(Json part, const std::string& prefix) {
+    Names resources, settings;
+    for (auto& [name, declared] : part["settings"].items()) {
+      settings[name] = prefix + name;
+      draw_value(declared);
+      graph["settings"][prefix + name] = declared;
+    }
+    for (auto& [name, declared] : part["imports"].items())
+      if (!graph["imports"].contains(name)) graph["imports"][name] = declared;
+    for (auto& [name, declared] : part["resources"].items()) {
+      resources[name] = prefix + name;
+      graph["resources"][prefix + name] = declared;
+    }
+    const std::string light = lights[random.below(lights.size())];
+    Names redirected = resources;
+    redirected["lighting"] = light;
+    const bool puts_back = chance(80); // what it scatters into the host's light
+    for (Json& pass : part["passes"]) {
+      const std::string kind = pass["kind"];
+      if (kind == "subsurface.combine" && !puts_back) continue;
+      // Where it comes back, light is what the host bound.
+      rename_pass(pass, prefix, kind == "subsurface.combine" ? resources : redirected, settings);
+      if (!graph["passes"].empty() && chance(10)) {
+        const Json& earlier = graph["passes"][random.below(graph["passes"].size())];
+        pass["after"] = Json::array({{{"pass", earlier["pass"]}, {"reason", "drawn"}}});
+      }
+      graph["passes"].push_back(pass);
+    }
+    for (const Json& one : part["exports"]) {
+      const std::string name = renamed(resources, one);
+      Json& exports = graph["exports"];
+      if (std::find(exports.begin(), exports.end(), name) == exports.end()) exports.push_back(name);
+      if (one == "scattered_light") lights.push_back(name);
+    }
+  }
+};
+
+} // namespace
+
+std::vector<std::string> shipped_graphs() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string file = entry.path().filename().string();
+    if (file.ends_with(".json") && !file.ends_with(".expect.json"))
+      names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::optional<RealGraph> shipped_graph(const std::string& name, const KindRegistry& kinds) {
+  std::ifstream file(folder + name + ".json");
+  std::stringstream text;
+  text << file.rdbuf();
+  return made(name, text.str(), kinds);
+}
+
+std::optional<RealGraph> random_real_graph(uint64_t seed, const KindRegistry& kinds) {
+  const std::vector<std::string> files = shipped_graphs();
+  Draft draft{{seed}};
+  std::string name;
+  const size_t parts = 1 + draft.random.below(3);
+  for (size_t i = 0; i < parts; ++i) {
+    const std::string& file = files[draft.random.below(files.size())];
+    draft.add(read_shipped(file), i == 0 ? "" : fmt::format("p{}_", i));
+    name += (i == 0 ? "" : "+") + file;
+  }
+  return made(name, draft.graph.dump(1), kinds);
+}
+
+} // namespace dermis::testing
