@@ -62,7 +62,7 @@ Reservoir merge_temporal(const Scene& scene, const ReuseSettings& settings, cons
   const Shifted here = shift_path(scene, settings.shift, previous_domain, domain, history);
   const double there = here.jacobian > 0 ? target_of(scene, previous_domain, history) / here.jacobian : 0;
   const double mis = part(history.confidence * there, own.confidence * here.target);
-  stream_add(stream, here.sample, here.target, mis * here.target * history.weight * here.jacobian,
+  stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian,
              history.confidence, random_unit(random));
   return stream_end(stream);
 }
@@ -92,7 +92,7 @@ void spatial_add(const Scene& scene, const ReuseSettings& settings, const Domain
   const Shifted here = shift_path(scene, settings.shift, neighbour_domain, domain, other);
   const double there = here.jacobian > 0 ? target_of(scene, neighbour_domain, other) / here.jacobian : 0;
   const double mis = share * part(spatial.neighbours * there, own_confidence * here.target);
-  stream_add(spatial.stream, here.sample, here.target, mis * here.target * other.weight * here.jacobian,
+  stream_add(spatial.stream, here.path, here.target, mis * here.target * other.weight * here.jacobian,
              other.confidence, random_unit(random));
 }
 

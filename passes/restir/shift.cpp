@@ -20,7 +20,7 @@ bool replays(Shift shift, const Domain& domain, const SurfacePoint& x2) {
 
 Shifted reconnect(const Domain& to, const SurfacePoint& x2, const Reservoir& sample) {
   Shifted result{sample, 1, 0};
-  result.sample.hits = 0;
+  result.path.hits = 0;
   result.target = luminance(scattered(to, length(x2.position - to.position), sample.irradiance));
   return result;
 }
@@ -35,7 +35,7 @@ Shifted replay(const Scene& scene, Shift shift, const Domain& to, const Reservoi
   const SurfacePoint y2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
   if (shift == Shift::hybrid && connectable(to, y2.position, y2.normal))
     return result; // would not come back so
-  Reservoir& y = result.sample;
+  Reservoir& y = result.path;
   y.density = probe_pdf(to, y2.position, y2.normal);
   result.jacobian = replay_jacobian(sample.density, sample.hits, y.density, hits.count);
   y.hits = hits.count;

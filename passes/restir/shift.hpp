@@ -41,7 +41,7 @@ void prepare(const Scene& scene, Shift shift, Index index, const Domain& domain,
              Random& random);
 
 struct Shifted {
-  Reservoir sample;
+  Reservoir path;
   double jacobian = 0; // 0: the path has no image
   double target = 0;   // in the new pixel
 };
