@@ -220,7 +220,7 @@ bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector
 
 TriangleScene ear_scene() {
   TriangleScene scene;
-  scene.d = {{}, {0.35, 0.2, 0.12}, {0.5, 0.25, 0}};
+  scene.d = {{}, {0.6, 0.4, 0.25}, {0.8, 0.4, 0}};
   add_instance(scene, 1, sphere({-1.6, 1.2, 0}, 1.7, 12));
   add_instance(scene, 1, cube(2, [](const Vector3& p) {
                  return Vector3{-3.6 + 5.4 * p[0], -2.6 + 1.6 * p[1], -1.5 + 2 * p[2]};
@@ -233,15 +233,15 @@ TriangleScene ear_scene() {
       }));
   Light behind;
   behind.position = {2.6, 0.6, -3};
-  behind.emission = {9, 8, 7};
+  behind.emission = {12, 10, 8};
   Light above;
   above.type = LightType::parallelogram;
-  above.position = {-4, 4.5, 1};
-  above.edge_u = {0, 0, 2};
-  above.edge_v = {-2.2, -1.2, 0};
-  above.emission = {5, 6, 7};
-  if (dot(cross(above.edge_u, above.edge_v), Vector3{0, 0, 0} - above.position) < 0)
-    std::swap(above.edge_u, above.edge_v);
+  above.position = {-5, 3, 4};
+  above.edge_u = {1, 2, 0};
+  above.edge_v = {1.5, 0, 1.5};
+  above.emission = {16, 18, 20};
+  const Vector3 to_middle = -above.position;
+  if (dot(cross(above.edge_u, above.edge_v), to_middle) < 0) std::swap(above.edge_u, above.edge_v);
   scene.lights = {behind, above};
   finish(scene);
   return scene;
