@@ -14,6 +14,8 @@ using Barycentrics = std::array<double, 2>; // of the second and third vertex
 
 inline constexpr std::array<double, 3> probe_axis_share = {0.5, 0.25, 0.25}; // normal, tangents (R11)
 inline constexpr uint32_t most_probe_hits = 16; // surfaces along one probe; more are not seen
+// A count of hits that was not traced: taken for that of whatever it is compared with (Index::drawn).
+inline constexpr uint32_t assumed_hits = 255;
 
 // The random numbers of one point x2, with the choices they lead to.
 struct ProbeNumbers {

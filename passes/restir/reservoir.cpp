@@ -33,7 +33,8 @@ Reservoir sanitised(const Reservoir& reservoir) {
   for (const double x : {clean.barycentrics[0], clean.barycentrics[1], clean.numbers.survival,
                          clean.numbers.angle, clean.numbers.pick})
     good = good && usable(x) && x <= 1;
-  good = good && clean.numbers.axis < 3 && clean.numbers.channel < 3 && clean.hits <= most_probe_hits;
+  good = good && clean.numbers.axis < 3 && clean.numbers.channel < 3 &&
+         (clean.hits <= most_probe_hits || clean.hits == assumed_hits);
   if (good) return clean;
   Reservoir none;
   none.confidence = clean.confidence;

@@ -10,44 +10,44 @@ namespace {
 // reached through the body (KIT's implementation; R4).
 constexpr double connectable_cosine = 0.5, connectable_distance_in_d = 2;
 
-SurfacePoint surface_of(const Scene& scene, const Reservoir& sample) {
-  return scene.surface_at(scene.of, sample.instance, sample.primitive, sample.barycentrics);
+SurfacePoint surface_of(const Scene& scene, const Reservoir& path) {
+  return scene.surface_at(scene.of, path.instance, path.primitive, path.barycentrics);
 }
 
 bool replays(Shift shift, const Domain& domain, const SurfacePoint& x2) {
   return shift == Shift::delayed || (shift == Shift::hybrid && !connectable(domain, x2.position, x2.normal));
 }
 
-Shifted reconnect(const Domain& to, const SurfacePoint& x2, const Reservoir& sample) {
-  Shifted result{sample, 1, 0};
+Shifted reconnect(const Domain& to, const SurfacePoint& x2, const Reservoir& path) {
+  Shifted result{path, 1, 0};
   result.path.hits = 0;
-  result.target = luminance(scattered(to, length(x2.position - to.position), sample.irradiance));
+  result.target = luminance(scattered(to, length(x2.position - to.position), path.irradiance));
   return result;
 }
 
-Shifted replay(const Scene& scene, Shift shift, const Domain& to, const Reservoir& sample) {
-  Shifted result{sample, 0, 0};
-  if (sample.hits == 0) return result;
+Shifted replay(const Scene& scene, Shift shift, const Domain& to, const Reservoir& path) {
+  Shifted result{path, 0, 0};
+  if (path.hits == 0) return result;
   ProbeHits hits;
-  scene.trace_probe(scene.of, probe_of(to, sample.numbers), to.medium, hits);
+  scene.trace_probe(scene.of, probe_of(to, path.numbers), to.medium, hits);
   if (hits.count == 0) return result;
-  const ProbeHit& hit = hits.hit[picked_hit(sample.numbers.pick, hits.count)];
+  const ProbeHit& hit = hits.hit[picked_hit(path.numbers.pick, hits.count)];
   const SurfacePoint y2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
   if (shift == Shift::hybrid && connectable(to, y2.position, y2.normal))
     return result; // would not come back so
   Reservoir& y = result.path;
   y.density = probe_pdf(to, y2.position, y2.normal);
-  result.jacobian = replay_jacobian(sample.density, sample.hits, y.density, hits.count);
+  result.jacobian = replay_jacobian(path.density, path.hits, y.density, hits.count);
   y.hits = hits.count;
   y.instance = hit.instance;
   y.primitive = hit.primitive;
   y.barycentrics = hit.barycentrics;
   y.irradiance = {};
-  if (!(result.jacobian > 0) || sample.light >= scene.lights.size()) return result;
-  const Light& light = scene.lights[sample.light];
-  y.irradiance = light_irradiance(light, sample.place, y2.position, y2.normal, y2.shading);
+  if (!(result.jacobian > 0) || path.light >= scene.lights.size()) return result;
+  const Light& light = scene.lights[path.light];
+  y.irradiance = light_irradiance(light, path.place, y2.position, y2.normal, y2.shading);
   result.target = luminance(scattered(to, length(y2.position - to.position), y.irradiance));
-  if (result.target > 0 && !scene.visible(scene.of, y2, light_target(light, sample.place, y2.position))) {
+  if (result.target > 0 && !scene.visible(scene.of, y2, light_target(light, path.place, y2.position))) {
     y.irradiance = {};
     result.target = 0;
   }
@@ -78,47 +78,47 @@ double reconnection_jacobian(const Vector3& x, const Vector3& y, const Vector3& 
 
 double replay_jacobian(double from_density, uint32_t from_hits, double to_density, uint32_t to_hits) {
   if (!(from_density > 0) || !(to_density > 0) || from_hits == 0 || to_hits == 0) return 0;
-  const double jacobian = from_density / to_density * to_hits / from_hits;
+  const double hits = from_hits == assumed_hits ? 1 : double(to_hits) / from_hits;
+  const double jacobian = from_density / to_density * hits;
   return std::isfinite(jacobian) ? jacobian : 0;
 }
 
-Vector3 contribution_of(const Scene& scene, const Domain& domain, const Reservoir& sample) {
-  if (!has_sample(sample)) return {};
-  return scattered(domain, length(surface_of(scene, sample).position - domain.position), sample.irradiance);
+Vector3 contribution_of(const Scene& scene, const Domain& domain, const Reservoir& path) {
+  if (!has_sample(path)) return {};
+  return scattered(domain, length(surface_of(scene, path).position - domain.position), path.irradiance);
 }
 
-double target_of(const Scene& scene, const Domain& domain, const Reservoir& sample) {
-  return luminance(contribution_of(scene, domain, sample));
+double target_of(const Scene& scene, const Domain& domain, const Reservoir& path) {
+  return luminance(contribution_of(scene, domain, path));
 }
 
-void prepare(const Scene& scene, Shift shift, Index index, const Domain& domain, Reservoir& sample,
+void prepare(const Scene& scene, Shift shift, Index index, const Domain& domain, Reservoir& path,
              Random& random) {
-  if (!has_sample(sample) || sample.hits > 0) return;
-  const SurfacePoint x2 = surface_of(scene, sample);
+  if (!has_sample(path) || path.hits > 0) return;
+  const SurfacePoint x2 = surface_of(scene, path);
   const double technique = random_unit(random), within = random_unit(random);
-  if (!replays(shift, domain, x2) || !invert_point(domain, x2.position, x2.normal, technique, sample.numbers))
+  if (!replays(shift, domain, x2) || !invert_point(domain, x2.position, x2.normal, technique, path.numbers))
     return;
-  sample.density = probe_pdf(domain, x2.position, x2.normal);
+  path.density = probe_pdf(domain, x2.position, x2.normal);
   if (index == Index::drawn) {
-    sample.numbers.pick = within;
-    sample.hits = 1;
+    path.numbers.pick = within;
+    path.hits = assumed_hits;
     return;
   }
   ProbeHits hits;
-  scene.trace_probe(scene.of, probe_of(domain, sample.numbers), domain.medium, hits);
-  if (invert_pick(hits, sample.instance, sample.primitive, within, sample.numbers.pick))
-    sample.hits = hits.count;
+  scene.trace_probe(scene.of, probe_of(domain, path.numbers), domain.medium, hits);
+  if (invert_pick(hits, path.instance, path.primitive, within, path.numbers.pick)) path.hits = hits.count;
 }
 
 Shifted shift_path(const Scene& scene, Shift shift, const Domain& from, const Domain& to,
-                   const Reservoir& sample) {
-  Shifted none{sample, 0, 0};
-  if (!has_sample(sample) || from.medium != to.medium) return none;
-  if (shift == Shift::delayed) return replay(scene, shift, to, sample);
-  const SurfacePoint x2 = surface_of(scene, sample);
-  if (replays(shift, from, x2)) return replay(scene, shift, to, sample);
+                   const Reservoir& path) {
+  Shifted none{path, 0, 0};
+  if (!has_sample(path) || from.medium != to.medium) return none;
+  if (shift == Shift::delayed) return replay(scene, shift, to, path);
+  const SurfacePoint x2 = surface_of(scene, path);
+  if (replays(shift, from, x2)) return replay(scene, shift, to, path);
   if (shift == Shift::hybrid && !connectable(to, x2.position, x2.normal)) return none;
-  return reconnect(to, x2, sample);
+  return reconnect(to, x2, path);
 }
 
 } // namespace dermis::restir

@@ -27,8 +27,8 @@ double reconnection_jacobian(const Vector3& x, const Vector3& y, const Vector3& 
 double replay_jacobian(double from_density, uint32_t from_hits, double to_density, uint32_t to_hits);
 
 // The target: luminance of the whole integrand, visibility included. 0 without a sample.
-double target_of(const Scene& scene, const Domain& domain, const Reservoir& sample);
-Vector3 contribution_of(const Scene& scene, const Domain& domain, const Reservoir& sample);
+double target_of(const Scene& scene, const Domain& domain, const Reservoir& path);
+Vector3 contribution_of(const Scene& scene, const Domain& domain, const Reservoir& path);
 
 // Whether inverting finds the hit's index by tracing the probe, or draws it and takes both probes' hits for
 // equally many: saves a probe, and is what biases the sequential shift (supplement, section 6).
@@ -37,7 +37,7 @@ enum class Index : uint32_t { traced, drawn };
 // Finds the random numbers of a sample that `shift` will replay and that has none (it was reconnected
 // before), by probabilistic inversion in its own pixel. Once for each sample and pass: what comes after must
 // see the same numbers. Where none lead there, hits stays 0 and no replay of it succeeds.
-void prepare(const Scene& scene, Shift shift, Index index, const Domain& domain, Reservoir& sample,
+void prepare(const Scene& scene, Shift shift, Index index, const Domain& domain, Reservoir& path,
              Random& random);
 
 struct Shifted {
@@ -47,6 +47,6 @@ struct Shifted {
 };
 // `shift` is none of a sequence: ask shift_of_stage first.
 Shifted shift_path(const Scene& scene, Shift shift, const Domain& from, const Domain& to,
-                   const Reservoir& sample);
+                   const Reservoir& path);
 
 } // namespace dermis::restir

@@ -7,6 +7,7 @@
 
 const vec3 probe_axis_share = vec3(0.5, 0.25, 0.25); // normal, tangents
 const uint most_probe_hits = 16u;
+const uint assumed_hits = 255u; // not traced: taken for that of whatever it is compared with
 
 struct probe_numbers {
   uint axis, channel;

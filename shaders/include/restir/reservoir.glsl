@@ -42,7 +42,8 @@ reservoir sanitised(reservoir r) {
   float shares[5] = float[5](r.barycentrics.x, r.barycentrics.y, r.numbers.survival, r.numbers.angle, r.numbers.pick);
   for (int i = 0; i < 5; ++i)
     good = good && shares[i] >= 0.0 && shares[i] <= 1.0;
-  good = good && r.numbers.axis < 3u && r.numbers.channel < 3u && r.hits <= most_probe_hits;
+  good = good && r.numbers.axis < 3u && r.numbers.channel < 3u &&
+         (r.hits <= most_probe_hits || r.hits == assumed_hits);
   if (good)
     return r;
   return no_reservoir(r.confidence);

@@ -39,7 +39,8 @@ bool replays(uint shift, scatter_domain domain, surface_point x2) {
 float replay_jacobian(float from_density, uint from_hits, float to_density, uint to_hits) {
   if (!(from_density > 0.0) || !(to_density > 0.0) || from_hits == 0u || to_hits == 0u)
     return 0.0;
-  float jacobian = from_density / to_density * float(to_hits) / float(from_hits);
+  float hits = from_hits == assumed_hits ? 1.0 : float(to_hits) / float(from_hits);
+  float jacobian = from_density / to_density * hits;
   return is_usable(jacobian) ? jacobian : 0.0;
 }
 
@@ -101,7 +102,7 @@ void prepare(uint shift, uint index, scatter_domain domain, inout reservoir path
   path.density = probe_pdf(domain, x2.position, x2.normal);
   if (index == index_drawn) {
     path.numbers.pick = within;
-    path.hits = 1u;
+    path.hits = assumed_hits;
     return;
   }
   probe_hits hits;

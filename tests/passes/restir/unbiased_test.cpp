@@ -34,9 +34,11 @@ SequenceSettings settings_of(Shift shift, Reuse reuse) {
   settings.shift = shift;
   settings.reuse = reuse;
   settings.width = settings.height = tier(16, 64);
-  settings.frames = tier(12, 32);
-  if ((static_cast<uint32_t>(reuse) & 1u) != 0)
-    settings.jitter = 0.4; // else the history's path is the pixel's own
+  settings.frames = tier(12, 8); // each stands alone
+  if ((static_cast<uint32_t>(reuse) & 1u) != 0) {
+    settings.frames = tier(12, 32); // more than the confidence cap lets a history count for
+    settings.jitter = 0.4;          // else the history's path is the pixel's own
+  }
   return settings;
 }
 
@@ -110,17 +112,50 @@ TEST_F(Unbiased, EveryShiftWithEveryReuse) {
     }
 }
 
-// With drawn indices the sequence of shifts has a bias (supplement, section 6): how much, and that the test
-// above would have found a larger one.
-TEST_F(Unbiased, NotWhereTheIndexIsDrawn) {
+// With drawn indices the sequence of shifts has a bias (supplement, section 6). It is printed; that it stays
+// small is what is asked of it.
+TEST_F(Unbiased, AlmostWhereIndicesAreDrawn) {
   SequenceSettings settings = settings_of(Shift::sequential, Reuse::spatiotemporal);
   settings.index = Index::drawn;
   const std::vector<Mean> found = restarted(scene, settings, regions);
-  const Judged judged = judge(found, reference);
   for (size_t r = 0; r < found.size(); ++r)
-    std::printf("region %zu: %+.2f %% +- %.2f\n", r, 100 * (found[r].mean / reference[r].mean - 1),
+    std::printf("region %zu: %+.2f %%, 1 sigma is %.2f %%\n", r,
+                100 * (found[r].mean / reference[r].mean - 1),
                 100 * std::hypot(found[r].sigma, reference[r].sigma) / reference[r].mean);
-  EXPECT_LT(judged.largest, 0.5);
+  EXPECT_LT(judge(found, reference).largest, 0.25);
+}
+
+// Mean square error of a frame late in the sequence, over pixels and restarts.
+TEST_F(Unbiased, AndNearerToTheTruthWithReuse) {
+  testing::Regions each;
+  std::vector<double> truth(pixels.size());
+  for (uint32_t i = 0; i < pixels.size(); ++i)
+    if (pixels[i].domain.medium != 0) each.pixels.push_back({i});
+  const auto means = means_of(area_reference(scene, pixels, each, batches, 20000, 98));
+  for (size_t r = 0; r < each.pixels.size(); ++r)
+    truth[each.pixels[r][0]] = means[r].mean;
+  const auto error = [&](Shift shift, Reuse reuse) {
+    SequenceSettings settings = settings_of(shift, reuse);
+    settings.frames = 13;
+    std::vector<double> squares(16);
+    subsurface::parallel_for(squares.size(), 1, 0, [&](size_t restart) {
+      squares[restart] =
+          run_sequence(scene, settings, regions, truth, static_cast<uint32_t>(restart + 101)).last_square;
+    });
+    return testing::mean_of(squares).mean;
+  };
+  const double none = error(Shift::reconnection, Reuse::none);
+  double parts[4] = {};
+  for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid, Shift::sequential}) {
+    const double spatial = error(shift, Reuse::spatial), both = error(shift, Reuse::spatiotemporal);
+    std::printf("shift %u: mse %.4f alone, %.4f spatial, %.4f spatiotemporal\n", static_cast<unsigned>(shift),
+                none, spatial, both);
+    EXPECT_LT(spatial, none);
+    EXPECT_LT(both, spatial);
+    parts[static_cast<size_t>(shift)] = both;
+  }
+  EXPECT_LT(parts[3],
+            1.1 * std::max(parts[0], parts[1])); // the sequence: at least as good as the worse of its parts
 }
 
 } // namespace
