@@ -90,9 +90,11 @@ ProcessMemory process_memory() {
   std::ifstream("/proc/self/statm") >> pages >> resident;
   out.resident = resident * static_cast<int64_t>(sysconf(_SC_PAGESIZE));
   std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);)
-    out.kernels += line.find(" r-xp ") != std::string::npos && line.find('/') == std::string::npos &&
-                   line.find('[') == std::string::npos;
+  for (std::string line; std::getline(maps, line);) {
+    if (line.find(" r-xp ") == std::string::npos || line.find_first_of("/[") != std::string::npos) continue;
+    const std::string end = line.substr(line.find('-') + 1);
+    out.compiled += static_cast<int64_t>(std::stoull(end, nullptr, 16) - std::stoull(line, nullptr, 16));
+  }
   return out;
 }
 

@@ -24,7 +24,7 @@ struct CountedDeviceMemory {
 // Of this process, once what is free is given back to the system; 0 where it cannot be told.
 struct ProcessMemory {
   int64_t resident = 0, heap = 0; // bytes; of the heap those in use
-  int64_t kernels = 0;            // executable mappings of no file: what drivers compiled
+  int64_t compiled = 0;           // bytes of executable mappings of no file: kernels that drivers compiled
 };
 ProcessMemory process_memory();
 

@@ -362,12 +362,9 @@ struct Soak : DermisTest {
 struct Rest {
   int64_t heap_blocks = 0, heap_bytes = 0, device_blocks = 0;
   ObjectCounts objects;
-  ProcessMemory process;
+  ProcessMemory process; // told, not judged: drivers keep some of each kernel that they compile
+                         // (null_soak_test.cpp judges)
 };
-
-// What Mesa's software driver (22.3) never gives back of a kernel that it compiled, at most; 26 KiB were
-// measured (docs/stability.md). The rest is for what grows by steps: tables of the layer and of the driver.
-constexpr int64_t heap_a_kernel = int64_t{64} << 10, heap_steps = int64_t{24} << 20;
 
 TEST_F(Soak, FramesWithoutEndAddNothingUp) {
   const uint64_t frames = from_environment("DERMIS_SOAK_FRAMES", 300);
@@ -387,16 +384,14 @@ TEST_F(Soak, FramesWithoutEndAddNothingUp) {
     const Rest &rest = rests.back(), &first = rests.front();
     fmt::print(
         "{} frames: {} blocks of {} bytes on the heap, {} of the device's, {} of {} objects; process: {} MiB "
-        "resident, {} MiB on its heap, {} compiled kernels\n",
+        "resident, {} MiB on its heap, {} MiB of compiled kernels\n",
         totals.frames, rest.heap_blocks, rest.heap_bytes, rest.device_blocks, rest.objects.alive,
-        rest.objects.made, rest.process.resident >> 20, rest.process.heap >> 20, rest.process.kernels);
+        rest.objects.made, rest.process.resident >> 20, rest.process.heap >> 20, rest.process.compiled >> 20);
     std::fflush(stdout);
     EXPECT_EQ(rest.heap_blocks, first.heap_blocks);
     EXPECT_EQ(rest.heap_bytes, first.heap_bytes);
     EXPECT_EQ(rest.device_blocks, 0);
     EXPECT_EQ(rest.objects.text, "none");
-    EXPECT_LE(rest.process.heap - first.process.heap,
-              heap_steps + heap_a_kernel * (rest.process.kernels - first.process.kernels));
   }
   fmt::print("{} frames, {} pictures: {} reloads, {} refused, {} resizes, {} settings, {} budgets, {} cuts, "
              "{} taken "
