@@ -4,7 +4,11 @@
 #include <bit>
 #include <cstdlib>
 #include <fstream>
+#include <string>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace dermis::abi_test {
 namespace {
@@ -75,10 +79,23 @@ dermis_device_allocator CountedDeviceMemory::allocator() {
   return out;
 }
 
-int64_t resident_bytes() {
+ProcessMemory process_memory() {
+  ProcessMemory out;
+#ifdef __GLIBC__
+  malloc_trim(0);
+  const struct mallinfo2 told = mallinfo2();
+  out.heap = static_cast<int64_t>(told.uordblks + told.hblkhd);
+#endif
   int64_t pages = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident;
-  return resident * static_cast<int64_t>(sysconf(_SC_PAGESIZE));
+  out.resident = resident * static_cast<int64_t>(sysconf(_SC_PAGESIZE));
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    if (line.find(" r-xp ") == std::string::npos || line.find_first_of("/[") != std::string::npos) continue;
+    const std::string end = line.substr(line.find('-') + 1);
+    out.compiled += static_cast<int64_t>(std::stoull(end, nullptr, 16) - std::stoull(line, nullptr, 16));
+  }
+  return out;
 }
 
 } // namespace dermis::abi_test

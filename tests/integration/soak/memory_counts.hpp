@@ -21,7 +21,11 @@ struct CountedDeviceMemory {
   dermis_device_allocator allocator();
 };
 
-// Of this process, bytes; 0 where it cannot be told.
-int64_t resident_bytes();
+// Of this process, once what is free is given back to the system; 0 where it cannot be told.
+struct ProcessMemory {
+  int64_t resident = 0, heap = 0; // bytes; of the heap those in use
+  int64_t compiled = 0;           // bytes of executable mappings of no file: kernels that drivers compiled
+};
+ProcessMemory process_memory();
 
 } // namespace dermis::abi_test

@@ -1,0 +1,61 @@
+// The same without a driver and without the validation layer: what the process takes is the library's alone.
+
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+#include "tests/integration/soak/memory_counts.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dermis::abi_test {
+namespace {
+
+// A graph that comes, runs, is edited, resized, seen from elsewhere, and goes.
+void live_once(NullHost& host) {
+  constexpr uint32_t frames = 100, reload_every = 10, resize_every = 25, side = 64;
+  ASSERT_EQ(host.make_graph(side), DERMIS_OK) << dermis_last_error();
+  dermis_view view = nullptr;
+  ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  host.last_frame = 0;
+  for (uint32_t i = 1; i <= frames; ++i) {
+    if (i % reload_every == 0) {
+      ASSERT_EQ(host.reload(), DERMIS_OK) << dermis_last_error();
+      ASSERT_EQ(host.reload("{ \"dermis\": 1 }"), DERMIS_ERROR_CONFIG);
+    }
+    if (i % resize_every == 0) { // and back: the images of the host keep their size
+      ASSERT_EQ(dermis_graph_resize(host.graph, side / 2, side / 4, nullptr), DERMIS_OK);
+      ASSERT_EQ(dermis_graph_resize(host.graph, side, side, nullptr), DERMIS_OK);
+    }
+    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.record(view, i), DERMIS_OK) << dermis_last_error();
+  }
+  dermis_view_destroy(view);
+  dermis_graph_destroy(host.graph);
+  host.graph = nullptr;
+}
+
+// 20,000 frames after 2,000 that warm up. A block of a byte leaked once in a hundred frames would be 6 KiB of
+// heap.
+TEST(NullSoak, WithoutADriverTheProcessTakesNoMoreAfterManyFramesThanAfterFew) {
+  constexpr int warm_up = 10, lives = 100;
+  constexpr int64_t heap_slack = 16 << 10, resident_slack = 1 << 20; // bytes; 3 KiB and 100 KiB were measured
+  NullHost host;
+  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+  host.make_bindings(); // images of the null device die with it alone: made once
+  dermis_graph_destroy(host.graph);
+  host.graph = nullptr;
+  ProcessMemory warm;
+  for (int life = 0; life < lives; ++life) {
+    if (life == warm_up) warm = process_memory();
+    ASSERT_NO_FATAL_FAILURE(live_once(host));
+  }
+  const ProcessMemory after = process_memory();
+  RecordProperty("heap_grown_bytes", static_cast<int>(after.heap - warm.heap));
+  RecordProperty("resident_grown_bytes", static_cast<int>(after.resident - warm.resident));
+  EXPECT_LE(after.heap - warm.heap, heap_slack);
+  EXPECT_LE(after.resident - warm.resident, resident_slack);
+  EXPECT_EQ(host.device.memory_bytes(), 0u);
+}
+
+} // namespace
+} // namespace dermis::abi_test
