@@ -1,0 +1,126 @@
+// Passes over reservoirs: a pixel's own sample, its history, its neighbours, its light. passes/restir/reuse.cpp mirrors
+// these functions in fp64 under the same names and says what they mean.
+#ifndef DERMIS_RESTIR_REUSE_GLSL
+#define DERMIS_RESTIR_REUSE_GLSL
+
+#include "restir/shift.glsl"
+
+struct reuse_settings {
+  uint shift; // of this stage: shift_of_stage
+  uint index; // index_traced, index_drawn
+  float cap;  // confidence_cap
+};
+
+// One x2 by a probe, one place on one light, one shadow ray; confidence 1, without a sample too.
+reservoir draw_initial(scatter_domain domain, inout random_state random) {
+  reservoir none = no_reservoir(1.0), drawn = none;
+  float u[7];
+  for (int i = 0; i < 7; ++i)
+    u[i] = random_unit(random);
+  if (!(scattering_reach(domain.d) > 0.0) || light_count() == 0u)
+    return none;
+  drawn.numbers = draw_numbers(domain.d, vec4(u[0], u[1], u[2], u[3]));
+  probe_hits hits;
+  trace_probe(probe_of(domain, drawn.numbers), domain.medium, hits);
+  if (hits.count == 0u)
+    return none;
+  probe_hit hit = hits.hit[picked_hit(u[3], hits.count)];
+  surface_point x2 = surface_at(hit.instance, hit.primitive, hit.barycentrics);
+  drawn.instance = hit.instance;
+  drawn.primitive = hit.primitive;
+  drawn.barycentrics = hit.barycentrics;
+  drawn.hits = hits.count;
+  drawn.density = probe_pdf(domain, x2.position, x2.normal);
+  drawn.light = pick_light(u[4]);
+  drawn.place = light_place(u[5], u[6]);
+  light_source light = light_at(drawn.light);
+  drawn.irradiance = light_irradiance(light, drawn.place, x2.position, x2.normal, x2.shading);
+  drawn.weight = float(hits.count) / (drawn.density * light_density(light));
+  float target = luminance(scattered(domain, length(x2.position - domain.position), drawn.irradiance));
+  if (!(target > 0.0) || !visible(x2, light_target(light, drawn.place, x2.position)))
+    return none;
+  return sanitised(drawn);
+}
+
+// x / (x + y) for densities, 0 where both are.
+float restir_part(float x, float y) { return x > 0.0 ? x / (x + y) : 0.0; }
+
+// Generalised balance heuristic over frame and history.
+reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservoir current,
+                         scatter_domain previous_domain, reservoir previous, inout random_state random) {
+  reservoir own = sanitised(current), history = sanitised(previous);
+  history.confidence = min(history.confidence, settings.cap * own.confidence);
+  prepare(settings.shift, settings.index, domain, own, random);
+  prepare(settings.shift, settings.index, previous_domain, history, random);
+  reservoir_stream stream = stream_begin();
+
+  float target = target_of(domain, own);
+  shifted_path back = shift_path(settings.shift, domain, previous_domain, own);
+  float own_mis = restir_part(own.confidence * target, history.confidence * back.target * back.jacobian);
+  stream_add(stream, own, target, own_mis * target * own.weight, own.confidence, random_unit(random));
+
+  shifted_path here = shift_path(settings.shift, previous_domain, domain, history);
+  float there = here.jacobian > 0.0 ? target_of(previous_domain, history) / here.jacobian : 0.0;
+  float mis = restir_part(history.confidence * there, own.confidence * here.target);
+  stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian, history.confidence,
+             random_unit(random));
+  return stream_end(stream);
+}
+
+// Defensive pairwise MIS: spatial_begin, spatial_add for each neighbour, spatial_end.
+struct spatial_merge {
+  reservoir_stream stream;
+  reservoir own; // with its random numbers, where the shift replays
+  float own_target, own_mis;
+  float neighbours; // sum of their confidences
+};
+
+spatial_merge spatial_begin(reuse_settings settings, scatter_domain domain, reservoir own, float neighbours,
+                            inout random_state random) {
+  spatial_merge spatial;
+  spatial.stream = stream_begin();
+  spatial.own = sanitised(own);
+  spatial.neighbours = max(neighbours, 0.0);
+  prepare(settings.shift, settings.index, domain, spatial.own, random);
+  spatial.own_target = target_of(domain, spatial.own);
+  spatial.own_mis = restir_part(spatial.own.confidence, spatial.neighbours);
+  return spatial;
+}
+
+void spatial_add(reuse_settings settings, scatter_domain domain, inout spatial_merge spatial,
+                 scatter_domain neighbour_domain, reservoir neighbour, inout random_state random) {
+  reservoir other = sanitised(neighbour);
+  float own_confidence = spatial.own.confidence;
+  float share = restir_part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
+  prepare(settings.shift, settings.index, neighbour_domain, other, random);
+
+  shifted_path back = shift_path(settings.shift, domain, neighbour_domain, spatial.own);
+  spatial.own_mis += share * restir_part(own_confidence * spatial.own_target,
+                                         spatial.neighbours * back.target * back.jacobian);
+
+  shifted_path here = shift_path(settings.shift, neighbour_domain, domain, other);
+  float there = here.jacobian > 0.0 ? target_of(neighbour_domain, other) / here.jacobian : 0.0;
+  float mis = share * restir_part(spatial.neighbours * there, own_confidence * here.target);
+  stream_add(spatial.stream, here.path, here.target, mis * here.target * other.weight * here.jacobian,
+             other.confidence, random_unit(random));
+}
+
+reservoir spatial_end(inout spatial_merge spatial, inout random_state random) {
+  stream_add(spatial.stream, spatial.own, spatial.own_target,
+             spatial.own_mis * spatial.own_target * spatial.own.weight, spatial.own.confidence, random_unit(random));
+  return stream_end(spatial.stream);
+}
+
+// The pixel's estimate: scattered diffuse light before albedo.
+vec3 resolve(scatter_domain domain, reservoir r) {
+  r = sanitised(r);
+  return r.weight * contribution_of(domain, r);
+}
+
+// How far neighbours are looked for, pixels; `footprint`: of a pixel across the view at x1, in d's unit.
+float search_radius(vec3 d, float footprint) {
+  float px = 2.0 * max(d.r, max(d.g, d.b)) / footprint;
+  return px >= 5.0 ? min(px, 30.0) : 5.0;
+}
+
+#endif

@@ -1,0 +1,88 @@
+// What merging keeps, whatever is merged.
+#include "passes/restir/reuse.hpp"
+#include "tests/passes/restir/triangle_scene.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dermis::restir {
+namespace {
+
+struct Merge : ::testing::Test {
+  testing::TriangleScene ear = testing::ear_scene();
+  Scene scene = ear.access();
+  std::vector<testing::Pixel> pixels = testing::look_at(ear, 16, 16);
+  Random random{23, 0, 0};
+
+  // A sample of the pixel that says the pixel's light is `light`; any confidence.
+  Reservoir that_says(const Domain& domain, double light) {
+    while (true) {
+      Reservoir r = draw_initial(scene, domain, random);
+      if (!has_sample(r)) continue;
+      r.weight = light / target_of(scene, domain, r);
+      r.confidence = 1 + 19 * random_unit(random);
+      return r;
+    }
+  }
+};
+
+TEST_F(Merge, OfSamplesThatAgreeSaysTheSame) {
+  // MIS weights of one pixel's domain sum to 1, so that the estimate is kept but for rounding.
+  constexpr double light = 5;
+  int judged = 0;
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    const Domain& domain = pixels[i].domain;
+    if (domain.medium == 0) continue;
+    for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
+      const ReuseSettings settings{shift, Index::traced, confidence_cap};
+      const Reservoir own = that_says(domain, light), history = that_says(domain, light);
+      const Reservoir merged = merge_temporal(scene, settings, domain, own, domain, history, random);
+      EXPECT_NEAR(luminance(resolve(scene, domain, merged)), light, 1e-6);
+      EXPECT_NEAR(merged.confidence, own.confidence + history.confidence, 1e-9);
+
+      const Reservoir others[] = {that_says(domain, light), that_says(domain, light),
+                                  that_says(domain, light)};
+      double confidences = 0;
+      for (const Reservoir& other : others)
+        confidences += other.confidence;
+      Spatial spatial = spatial_begin(scene, settings, domain, own, confidences, random);
+      for (const Reservoir& other : others)
+        spatial_add(scene, settings, domain, spatial, domain, other, random);
+      const Reservoir last = spatial_end(spatial, random);
+      EXPECT_NEAR(luminance(resolve(scene, domain, last)), light, 1e-6);
+      EXPECT_NEAR(last.confidence, own.confidence + confidences, 1e-9);
+      ++judged;
+    }
+  }
+  EXPECT_GT(judged, 200);
+}
+
+TEST_F(Merge, WithNothingKeepsTheOwnSample) {
+  for (const testing::Pixel& pixel : pixels) {
+    if (pixel.domain.medium == 0) continue;
+    const Reservoir own = that_says(pixel.domain, 3);
+    const ReuseSettings settings;
+    const Reservoir merged = merge_temporal(scene, settings, pixel.domain, own, pixel.domain, {}, random);
+    EXPECT_NEAR(luminance(resolve(scene, pixel.domain, merged)), 3, 1e-9);
+    Spatial alone = spatial_begin(scene, settings, pixel.domain, own, 0, random);
+    EXPECT_NEAR(luminance(resolve(scene, pixel.domain, spatial_end(alone, random))), 3, 1e-9);
+    break;
+  }
+}
+
+TEST_F(Merge, CapsTheConfidenceOfHistory) {
+  for (const testing::Pixel& pixel : pixels) {
+    if (pixel.domain.medium == 0) continue;
+    Reservoir own = that_says(pixel.domain, 3), history = that_says(pixel.domain, 3);
+    own.confidence = 2;
+    for (const double huge : {41.0, 1e6, 1e300, std::numeric_limits<double>::infinity()}) {
+      history.confidence = huge;
+      const Reservoir merged = merge_temporal(scene, {}, pixel.domain, own, pixel.domain, history, random);
+      EXPECT_EQ(merged.confidence, 2 + 2 * confidence_cap);
+      EXPECT_NEAR(luminance(resolve(scene, pixel.domain, merged)), 3, 1e-9);
+    }
+    break;
+  }
+}
+
+} // namespace
+} // namespace dermis::restir

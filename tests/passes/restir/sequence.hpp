@@ -1,0 +1,30 @@
+#pragma once
+// Frames of the whole pipeline on the CPU: own samples, history, neighbours twice, light.
+
+#include "passes/restir/reuse.hpp"
+#include "tests/passes/restir/area_reference.hpp"
+
+namespace dermis::restir::testing {
+
+enum class Reuse : uint32_t { none = 0, temporal = 1, spatial = 2, spatiotemporal = 3 };
+
+struct SequenceSettings {
+  Shift shift = Shift::reconnection;
+  Reuse reuse = Reuse::spatiotemporal;
+  Index index = Index::traced;
+  uint32_t width = 16, height = 16, frames = 8;
+  double jitter = 0; // pixels that the camera stands to the right in odd frames, which are not judged
+  std::array<uint32_t, 2> neighbours{4, 2}; // of the two spatial passes (R11)
+};
+
+struct SequenceResult {
+  std::vector<double> region_mean; // luminance over the judged frames
+  double last_square = 0; // mean over pixels of (estimate - truth)^2 in the last frame that is judged
+};
+
+// One sequence with an empty history. Regions and `truth` (luminance a pixel, or empty) are those of even
+// frames.
+SequenceResult run_sequence(const TriangleScene& scene, const SequenceSettings& settings,
+                            const Regions& regions, const std::vector<double>& truth, uint32_t seed);
+
+} // namespace dermis::restir::testing
