@@ -1,5 +1,6 @@
 // Values of the settings, and which passes their `when` turns on.
 
+#include "framegraph/compile/offers.hpp"
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/model/expression.hpp"
 
@@ -43,11 +44,35 @@ std::string setting_text(const SettingDeclaration& setting, const SettingValue& 
   return fmt::format("{}", value.integer);
 }
 
+namespace {
+
+void check_features(CompileContext& c) {
+  const Features missing = c.graph->features & ~c.device->features;
+  if (missing == 0) return;
+  c.diagnostics->add(DiagnosticId::device_feature, c.graph->requires_where,
+                     fmt::format("graph '{}' cannot run on '{}': {}", c.graph->name, c.device->name,
+                                 lacks_text(*c.graph, {missing, {}})));
+}
+
+// The value that counts, where `value` names an option that is not offered.
+SettingValue settled(CompileContext& c, uint32_t setting, const SettingValue& value) {
+  const SettingDeclaration& declared = c.graph->settings[setting];
+  if (declared.needs.empty()) return value;
+  const Lacks lacks = lacks_of(declared, value.integer, c.device->features, c.input->bound);
+  if (!lacks.any()) return value;
+  c.because(Reason::About::choice, setting, Reason::Why::not_offered, static_cast<uint32_t>(value.integer),
+            lacks.features, lacks.imports.empty() ? 0 : lacks.imports.front().value);
+  return offered_value(declared, value, c.device->features, c.input->bound);
+}
+
+} // namespace
+
 void choose(CompileContext& c) {
   c.settings.clear();
   c.on.clear();
   c.kind_of.clear();
   c.ordered = false;
+  check_features(c);
   for (uint32_t i = 0; i < c.graph->settings.size(); ++i) {
     const SettingDeclaration& declared = c.graph->settings[i];
     const bool given = !c.input->settings.empty();
@@ -56,7 +81,9 @@ void choose(CompileContext& c) {
       c.diagnostics->add(
           DiagnosticId::setting_value, declared.where,
           fmt::format("setting '{}' cannot be {}", declared.name, setting_text(declared, value)));
-    c.settings.push_back(value);
+    const SettingValue used = settled(c, i, value);
+    c.settings.push_back(used);
+    if (used.integer != value.integer) continue; // said already
     const bool differs =
         value.integer != declared.default_value.integer || value.real != declared.default_value.real;
     c.because(Reason::About::choice, i, differs ? Reason::Why::asked_for : Reason::Why::by_default);

@@ -33,6 +33,7 @@ bool usable(Format format, uint32_t vk_usage) {
 
 DeviceProfile generic_profile() {
   DeviceProfile profile;
+  profile.features = (Features{1} << static_cast<uint32_t>(Feature::count)) - 1;
   profile.supports = usable;
   profile.image_needs = needs_of_image;
   profile.buffer_needs = [](const BufferDescription& buffer) { return whole_pages(buffer.bytes); };

@@ -37,13 +37,15 @@ struct DeviceProfile {
       0xffffffffu;                      // memory types a heap must keep one of where its occupants can
   uint32_t max_workgroup_count = 65535; // smallest of the three dimensions
   uint32_t max_push_constants_bytes = 128;
+  Features features = 0; // that it has, enabled
   // May the format be used so? vk_usage are VkImageUsageFlags.
   std::function<bool(Format, uint32_t vk_usage)> supports;
   std::function<MemoryNeeds(const ImageDescription&)> image_needs;
   std::function<MemoryNeeds(const BufferDescription&)> buffer_needs;
 };
 
-// Texels times packed size and bytes, rounded to 64 KiB; one memory type; what common devices support.
+// Texels times packed size and bytes, rounded to 64 KiB; one memory type; what common devices support; every
+// feature, so that all of a graph is checked.
 DeviceProfile generic_profile();
 
 } // namespace dermis

@@ -1,5 +1,6 @@
 // From which pass to which each resource is alive, how it is used, and the settings each pass runs with.
 
+#include "framegraph/compile/offers.hpp"
 #include "framegraph/compile/phases.hpp"
 
 #include <fmt/format.h>
@@ -34,12 +35,16 @@ void add_settings(CompileContext& c, PassId pass, PlanPass& planned) {
 // Whether all limits of the device hold; what is beyond them is said of each pass.
 bool check_limits(CompileContext& c, PassId pass) {
   const PassKind& kind = c.kind(pass);
-  bool fits = true;
+  bool fits = (kind.features & ~c.device->features) == 0;
   const auto refuse = [&](const std::string& text) {
     fits = false;
     c.diagnostics->add(DiagnosticId::device_limit, c.graph->passes[pass.value].where,
                        fmt::format("pass '{}' {} (device '{}')", c.name(pass), text, c.device->name));
   };
+  if (const Features missing = kind.features & ~c.device->features; missing != 0)
+    c.diagnostics->add(DiagnosticId::device_feature, c.graph->passes[pass.value].where,
+                       fmt::format("pass '{}' cannot run on '{}': {}", c.name(pass), c.device->name,
+                                   lacks_text(*c.graph, {missing, {}})));
   const uint64_t push_bytes = push_constant_bytes * (1 + uint64_t{kind.settings.size()});
   if (push_bytes > c.device->max_push_constants_bytes)
     refuse(fmt::format("needs {} bytes of push constants; the limit is {}", push_bytes,

@@ -17,6 +17,7 @@ inline constexpr uint32_t no_value = 0xffffffffu;
 
 // What most phases ask of a declaration, without its names and places in the file.
 struct ResourceFacts {
+  ResourceType type = ResourceType::image;
   bool image = true, imported = false, exported = false, optional = false;
   bool host_owned = false; // its memory comes from the host in this plan
   bool history = false;
@@ -100,7 +101,7 @@ struct ObjectState {
   Stage readers = 0;        // stages that read since
   Layout layout = Layout::undefined;
   uint32_t last_pass = no_value; // position; in the frame before while `carried`
-  uint8_t visible = 0;           // usages that may read without another barrier
+  uint16_t visible = 0;          // usages that may read without another barrier
   Queue queue = Queue::main;     // that touched it last
   bool touched = false;
   bool carried = false;       // from the frame before
@@ -121,7 +122,7 @@ struct SyncFacts {
 
 struct PassTouch { // all accesses of one pass to one object
   uint32_t object = 0, resource = 0, frames_back = 0;
-  uint8_t usages = 0;
+  uint16_t usages = 0;
   bool certain = false; // in every frame
   uint32_t part = 0;
   Layout layout = Layout::undefined;

@@ -21,10 +21,11 @@ struct SubresourceRange {
   constexpr bool operator==(const SubresourceRange&) const = default;
 };
 
-// A physical image or buffer. Transients have one instance, or one in each instance of a history whose memory
-// they use while it holds nothing; a history resource of which N earlier frames are
-// read has N+1, or N where a frame may be written into the memory of the oldest. In frame f (counted per view
-// from 0), `frames_back` b of resource r lives in instance first_instance + (f - b) mod instance_count.
+// A physical image or buffer, or the host's acceleration structure. Transients have one instance, or one in
+// each instance of a history whose memory they use while it holds nothing; a history resource of which N
+// earlier frames are read has N+1, or N where a frame may be written into the memory of the oldest. In frame
+// f (counted per view from 0), `frames_back` b of resource r lives in instance first_instance + (f - b) mod
+// instance_count.
 struct PlanResource {
   ResourceId declared;
   ResourceType type = ResourceType::image;
@@ -33,7 +34,7 @@ struct PlanResource {
       false; // bound by the host: the host owns the memory; an unbound export is an ordinary transient
   Format format = Format::undefined;
   uint32_t width = 1, height = 1, mips = 1, layers = 1; // images, at the allocated view size
-  uint64_t bytes = 0;                                   // buffers: size asked for
+  uint64_t bytes = 0;                                   // buffers: size asked for; the host's: the least
   uint32_t vk_usage = 0;                                // of all its ports; histories: and of a clear
   uint32_t instance_count = 1;
   uint32_t first_instance = no_instance; // into Plan::placements; no_instance: the host's memory
@@ -214,6 +215,7 @@ struct Reason {
     // of a setting
     asked_for, // by the caller
     by_default,
+    not_offered, // option a: the device lacks features b, or the host leaves import c unbound (0: features)
     // of the order; a, b: KiB of transients alive at once in it, and in the other one that was tried
     order_of_file,
     depth_first,

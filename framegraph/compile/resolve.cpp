@@ -101,6 +101,7 @@ struct SizeResolver {
     Extent& extent = c.extents[id.value];
     extent.width = *width;
     extent.height = *height;
+    if (declared.type == ResourceType::acceleration_structure) return true; // it has no size
     return declared.type == ResourceType::image ? finish_image(declared, extent)
                                                 : finish_buffer(declared, extent);
   }
@@ -313,6 +314,7 @@ void resolve_sizes(CompileContext& c) {
     const ResourceDeclaration& declared = c.graph->resources[i];
     const bool slot = declared.origin == Origin::imported || declared.exported;
     ResourceFacts& facts = c.facts[i];
+    facts.type = declared.type;
     facts.image = declared.type == ResourceType::image;
     facts.imported = declared.origin == Origin::imported;
     facts.exported = declared.exported;
@@ -357,7 +359,7 @@ void resolve_formats(CompileContext& c) {
     const ResourceFacts& facts = c.facts[i];
     PlanResource& resource = plan.resources.emplace_back();
     resource.declared = id;
-    resource.type = facts.image ? ResourceType::image : ResourceType::buffer;
+    resource.type = facts.type;
     resource.origin = facts.imported ? Origin::imported : Origin::transient;
     resource.exported = facts.exported && c.bound[i];
     resource.width = c.extents[i].width;

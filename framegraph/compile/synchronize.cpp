@@ -140,7 +140,7 @@ inline void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
   if (!set.writes) {
     if (waited) {
       state.source_access = 0;
-      state.visible = static_cast<uint8_t>(state.visible | touch.usages);
+      state.visible = static_cast<uint16_t>(state.visible | touch.usages);
     }
     state.readers |= set.stages;
     state.read_for_sure |= touch.certain;

@@ -180,8 +180,10 @@ struct VersionScan {
     for (const PassThrough& through : c.graph->passes[pass.value].otherwise) {
       if (c.graph->resources[through.output.value].type != c.graph->resources[through.instead.value].type) {
         c.diagnostics->add(DiagnosticId::otherwise_mismatch, through.where,
-                           fmt::format("'{}' cannot stand in for '{}': one is an image, the other a buffer",
-                                       c.name(through.instead), c.name(through.output)));
+                           fmt::format("'{}' cannot stand in for '{}': one is {}, the other {}",
+                                       c.name(through.instead), c.name(through.output),
+                                       type_phrase(c.graph->resources[through.instead.value].type),
+                                       type_phrase(c.graph->resources[through.output.value].type)));
         continue;
       }
       if (c.split(through.output) || c.split(through.instead)) {

@@ -31,6 +31,7 @@ constexpr Bit access_bits[] = {
     {access::transfer_write, "transfer_write"},
     {access::memory_read, "memory_read"},
     {access::memory_write, "memory_write"},
+    {access::acceleration_structure_read, "acceleration_structure_read"},
     {access::shader_sampled_read, "shader_sampled_read"},
     {access::shader_storage_read, "shader_storage_read"},
     {access::shader_storage_write, "shader_storage_write"},

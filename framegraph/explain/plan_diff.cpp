@@ -55,6 +55,11 @@ Lines compiled_from(const SavedPlan& saved, const SavedPlan& other) {
                   key.buffer_image_granularity, key.max_image_dimension, key.max_image_layers,
                   bytes_text(key.max_storage_buffer_bytes), key.device_local_type_bits,
                   key.max_workgroup_count, key.max_push_constants_bytes));
+  std::string features;
+  for (uint32_t f = 0; f < static_cast<uint32_t>(Feature::count); ++f)
+    if ((key.features & bit_of(static_cast<Feature>(f))) != 0)
+      features += (features.empty() ? "" : ", ") + std::string(feature_name(static_cast<Feature>(f)));
+  lines.add("device features", features.empty() ? "none" : features);
   std::string unbound, formats;
   for (size_t r = 0; r < key.bound.size(); ++r)
     if (key.bound[r] == 0)
@@ -122,8 +127,10 @@ Lines resources(const SavedPlan& saved) {
     const PlanResource& resource = saved.plan.resources[r];
     std::string text = resource.type == ResourceType::image
                            ? fmt::format("{} {}", format_info(resource.format).name, shape_text(resource))
-                           : bytes_text(resource.bytes);
-    text += fmt::format(", used as {}", usage_text(resource.type, resource.vk_usage));
+                       : resource.type == ResourceType::buffer ? bytes_text(resource.bytes)
+                                                               : "acceleration structure";
+    if (resource.type != ResourceType::acceleration_structure)
+      text += fmt::format(", used as {}", usage_text(resource.type, resource.vk_usage));
     text += resource.first_instance == no_instance ? ", the host's"
                                                    : fmt::format(", {} instance{}", resource.instance_count,
                                                                  resource.instance_count == 1 ? "" : "s");

@@ -75,7 +75,8 @@ std::string plan_dot(const Graph& graph, const KindRegistry& kinds, const Compil
     const bool image = resource.type == ResourceType::image;
     const std::string detail =
         image ? fmt::format("\n{} {}x{}", format_info(resource.format).name, resource.width, resource.height)
-              : fmt::format("\n{} bytes", resource.bytes);
+        : resource.type == ResourceType::buffer ? fmt::format("\n{} bytes", resource.bytes)
+                                                : "\nacceleration structure";
     out += resource_node(graph.resources[resource.declared.value], resource.declared.value, detail);
   }
   std::vector<bool> runs(graph.passes.size(), false);

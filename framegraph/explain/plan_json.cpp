@@ -82,7 +82,7 @@ struct Exporter {
       const bool image = resource.type == ResourceType::image;
       out.open_object();
       out.member("name", graph.resources[resource.declared.value].name);
-      out.member("type", image ? "image" : "buffer");
+      out.member("type", type_name(resource.type));
       out.member("origin", resource.origin == Origin::imported ? "import" : "resource");
       out.member("exported", resource.exported).key("slot");
       resource.slot < 0 ? out.null() : out.value(resource.slot);

@@ -139,7 +139,9 @@ struct TextExporter {
     line("\nresources");
     for (const PlanResource& resource : plan.resources) {
       const std::string size = resource.type == ResourceType::image ? shape_text(resource)
-                                                                    : fmt::format("{} bytes", resource.bytes);
+                               : resource.type == ResourceType::buffer
+                                   ? fmt::format("{} bytes", resource.bytes)
+                                   : "acceleration structure";
       const std::string why = reason(Reason::About::resource, resource.declared.value);
       line(fmt::format("  {}: {}{}{}", graph.resources[resource.declared.value].name, size,
                        why.empty() ? "" : "; ", why));

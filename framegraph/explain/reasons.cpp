@@ -1,6 +1,7 @@
 #include "framegraph/explain/reasons.hpp"
 
 #include "framegraph/compile/compile.hpp"
+#include "framegraph/compile/offers.hpp"
 #include "framegraph/explain/names.hpp"
 
 #include <fmt/format.h>
@@ -35,6 +36,15 @@ struct Speaker {
     for (const PortBinding& binding : graph.writes(graph.passes[reason.index]))
       names += fmt::format("{}'{}'", names.empty() ? "" : ", ", resource(binding.resource.value));
     return names.empty() ? "culled: it writes nothing" : "culled: nothing that is bound needs " + names;
+  }
+
+  std::string not_offered() const {
+    const SettingDeclaration& declared = graph.settings[reason.index];
+    Lacks lacks{reason.b, {}};
+    if (reason.b == 0) lacks.imports.push_back(ResourceId{reason.c});
+    return fmt::format("{} instead of '{}', which is not offered: {}",
+                       setting_text(declared, plan.setting_values[reason.index]), declared.options[reason.a],
+                       lacks_text(graph, lacks));
   }
 
   // With the values that its `when` asks for.
@@ -176,6 +186,8 @@ struct Speaker {
       return setting("asked for by the caller");
     case Reason::Why::by_default:
       return setting("its default");
+    case Reason::Why::not_offered:
+      return not_offered();
     case Reason::Why::order_of_file:
       return order("in the order of the file", "depth first it would be");
     case Reason::Why::depth_first:

@@ -31,7 +31,10 @@ struct SizeExpression {
   uint32_t border = 0; // images: texels added on every side, last
 };
 
-enum class ResourceType : uint8_t { image, buffer };
+// Acceleration structures are imports, read by ray queries: without size or format.
+enum class ResourceType : uint8_t { image, buffer, acceleration_structure };
+std::string_view type_name(ResourceType type);       // "buffer"
+std::string_view type_phrase(ResourceType type);     // "a buffer"
 enum class Origin : uint8_t { imported, transient }; // imported: memory belongs to the host
 
 struct HistoryDeclaration {
@@ -43,8 +46,9 @@ struct HistoryDeclaration {
 
 struct ResourceDeclaration { // what every compile reads comes first
   FormatList formats;
-  SizeExpression size; // images; buffers: element count = ceil-size x*y + extra_elements
-  uint32_t mips = 1;   // 0 = full chain
+  // Images; buffers: element count = ceil-size x*y + extra_elements, of imports the least the host binds.
+  SizeExpression size;
+  uint32_t mips = 1; // 0 = full chain
   uint32_t layers = 1;
   uint32_t stride = 0; // buffers: bytes an element
   ResourceType type = ResourceType::image;
@@ -58,12 +62,19 @@ struct ResourceDeclaration { // what every compile reads comes first
   SourceLocation where;
 };
 
+// What an option of a choice needs to be offered; none: always.
+struct OptionNeeds {
+  Features features = 0;           // of the device
+  std::vector<ResourceId> imports; // optional ones that the host has to bind
+};
+
 struct SettingDeclaration {
   std::string name;
   SettingType type = SettingType::integer;
   SettingValue default_value;
   double minimum = 0.0, maximum = 0.0;
   std::vector<std::string> options; // enumeration and choice
+  std::vector<OptionNeeds> needs;   // by option; empty: all are offered on every device
   bool by_budget = false;           // a choice the library makes
   std::string unit, note;
   SourceLocation where;
@@ -147,6 +158,8 @@ struct PassDeclaration { // what every compile reads comes first
 
 struct Graph {
   std::string name;
+  Features features = 0; // that the whole graph requires of the device
+  SourceLocation requires_where;
   std::vector<SettingDeclaration> settings;
   std::vector<ResourceDeclaration> resources; // imports first, in file order, then resources
   std::vector<Expression> expressions;

@@ -15,9 +15,10 @@ namespace {
 constexpr std::string_view own_prefix = "subsurface."; // names of the library's kinds begin with it
 
 // What a host may do at a port: in the order of dermis_port_usage.
-constexpr std::array host_usages{Usage::sampled_image,        Usage::storage_image_write,
-                                 Usage::storage_image_update, Usage::storage_buffer_read,
-                                 Usage::storage_buffer_write, Usage::storage_buffer_update};
+constexpr std::array host_usages{Usage::sampled_image,         Usage::storage_image_write,
+                                 Usage::storage_image_update,  Usage::storage_buffer_read,
+                                 Usage::storage_buffer_write,  Usage::storage_buffer_update,
+                                 Usage::acceleration_structure};
 constexpr std::array<std::string_view, 3> type_words{"bool", "int", "real"};
 constexpr std::array types{SettingType::boolean, SettingType::integer, SettingType::real};
 

@@ -75,6 +75,7 @@ struct PassKind {
   std::string_view arguments_entry = "";
   std::span<const PortNeed> needs = {}; // also of ports that the kind does not have; without one: any size
   std::span<const std::string_view> one_of = {}; // optional ports of which at least one has to be bound
+  Features features = 0;                         // that its kernel needs of the device
 };
 
 // The kinds a graph may use. Order of registration is the order of KindId; names are unique.

@@ -22,6 +22,7 @@ std::optional<Graph> read_graph(const Document& document, const KindRegistry& ki
   ObjectReader root(document, document.root(), "the graph", diagnostics);
   root.any("dermis");
   if (const auto name = root.name("name")) reader.graph.name = *name;
+  const NodeId requirements = root.array("requires", 0, limits::options, Need::optional);
   const NodeId settings = root.object("settings", Need::optional);
   const NodeId imports = root.object("imports", Need::optional);
   const NodeId resources = root.object("resources", Need::optional);
@@ -43,6 +44,8 @@ std::optional<Graph> read_graph(const Document& document, const KindRegistry& ki
   declare_resources(reader, imports, Origin::imported);
   declare_resources(reader, resources, Origin::transient);
   read_resources(reader);
+  read_option_requirements(reader);
+  read_graph_requirements(reader, requirements);
   read_exports(reader, exports);
   declare_passes(reader, passes);
   read_passes(reader);

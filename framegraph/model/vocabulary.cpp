@@ -48,7 +48,11 @@ constexpr std::array<UsageInfo, usage_count> usages{{
     // layers. A buffer has no layout, so readers of this table ignore the layout for buffers.
     {"clear", stage::all_transfer, access::transfer_write, Layout::transfer_destination,
      transfer_destination_usage, true, true, false, true},
+    {"acceleration_structure", stage::compute_shader, access::acceleration_structure_read, Layout::undefined,
+     0, false, false, true, false, true},
 }};
+
+constexpr std::array<std::string_view, static_cast<size_t>(Feature::count)> features{"ray_query"};
 
 } // namespace
 
@@ -70,6 +74,16 @@ std::optional<Format> format_from_vulkan(uint32_t vk_format) {
 
 const UsageInfo& usage_info(Usage usage) {
   return usages[static_cast<size_t>(usage)];
+}
+
+std::string_view feature_name(Feature feature) {
+  return features[static_cast<size_t>(feature)];
+}
+
+std::optional<Feature> feature_from_name(std::string_view name) {
+  for (size_t i = 0; i < features.size(); ++i)
+    if (features[i] == name) return static_cast<Feature>(i);
+  return std::nullopt;
 }
 
 } // namespace dermis

@@ -70,6 +70,7 @@ inline constexpr Access transfer_read = 0x800;
 inline constexpr Access transfer_write = 0x1000;
 inline constexpr Access memory_read = 0x8000;
 inline constexpr Access memory_write = 0x10000;
+inline constexpr Access acceleration_structure_read = 0x200000;
 inline constexpr Access shader_sampled_read = 0x100000000ull;
 inline constexpr Access shader_storage_read = 0x200000000ull;
 inline constexpr Access shader_storage_write = 0x400000000ull;
@@ -93,8 +94,9 @@ enum class Usage : uint8_t {
   storage_buffer_read,
   storage_buffer_write,
   storage_buffer_update,
-  indirect_arguments, // read by vkCmdDispatchIndirect
-  clear,              // vkCmdFillBuffer / vkCmdClearColorImage
+  indirect_arguments,     // read by vkCmdDispatchIndirect
+  clear,                  // vkCmdFillBuffer / vkCmdClearColorImage
+  acceleration_structure, // compute shader, ray queries; read only
   count
 };
 
@@ -106,9 +108,23 @@ struct UsageInfo {
   uint32_t vk_usage;  // VkImageUsageFlags for images, VkBufferUsageFlags for buffers
   bool image, buffer; // what may be bound; both for `clear`
   bool reads, writes;
+  bool acceleration_structure = false; // may be bound
 };
 
 const UsageInfo& usage_info(Usage usage);
+
+// What a device may lack. Graphs, options of choices and pass kinds say what they require.
+enum class Feature : uint8_t {
+  ray_query, // VK_KHR_ray_query and VK_KHR_acceleration_structure
+  count
+};
+using Features = uint32_t; // bit i: Feature i
+
+constexpr Features bit_of(Feature feature) {
+  return Features{1} << static_cast<uint32_t>(feature);
+}
+std::string_view feature_name(Feature feature); // as written in a graph file
+std::optional<Feature> feature_from_name(std::string_view name);
 
 inline constexpr Access all_write_access =
     access::transfer_write | access::memory_write | access::shader_storage_write | 0x40 /* shader write */ |

@@ -17,10 +17,18 @@ std::string format_names() {
   return out;
 }
 
+std::string feature_names() {
+  std::string out;
+  for (uint32_t f = 0; f < static_cast<uint32_t>(Feature::count); ++f)
+    out += fmt::format("{}\"{}\"", out.empty() ? "" : ", ", feature_name(static_cast<Feature>(f)));
+  return out;
+}
+
 // `text` with every <word> replaced: limits by their number, <kinds> and <formats> by their names.
 std::string filled(std::string_view text, std::string_view kinds = {}) {
   const std::pair<std::string_view, std::string> values[] = {
       {"<formats>", format_names()},
+      {"<features>", feature_names()},
       {"<kinds>", std::string(kinds)},
       {"<name bytes>", fmt::format("{}", limits::name_bytes)},
       {"<expression bytes>", fmt::format("{}", limits::expression_bytes)},
@@ -73,7 +81,9 @@ std::string setting_definition() {
       form(R"("enum", "default")", R"("enum": { )" + options + R"( }, "default": { "type": "string" })");
   const std::string choice =
       form(R"("choice", "default")", R"("choice": { )" + options + R"( }, "default": { "type": "string" },
-        "by": { "enum": ["host", "budget"], "description": "who picks it; budget: the library" })");
+        "by": { "enum": ["host", "budget"], "description": "who picks it; budget: the library" },
+        "requires": { "type": "object", "description": "option: what it needs to be offered",
+          "additionalProperties": { "type": "array", "items": { "type": "string", "description": "feature of the device, or an optional import that the host binds" } } })");
   const auto branch = [](std::string_view key, const std::string& then, const std::string& otherwise) {
     return fmt::format(R"({{
       "if": {{ "required": ["{}"] }},
@@ -127,11 +137,27 @@ constexpr std::string_view history_text =
         "on_cut": { "enum": ["invalidate", "keep"], "description": "when the camera jumps" },
         "on_resize": { "enum": ["invalidate", "rescale"], "description": "when the view changes its size" }, <note> } })";
 
+constexpr std::string_view host_buffer_text =
+    R"({ "type": "object", "required": ["stride"], "additionalProperties": false, "properties": {
+        "stride": { "type": "integer", "minimum": 4, "maximum": <stride>, "multipleOf": 4, "description": "bytes of an element [bytes]" },
+        "count": { "$ref": "#/definitions/count" },
+        "extra": { "type": "integer", "minimum": 0, "maximum": <elements>, "description": "elements beyond count" },
+        "round": { "$ref": "#/definitions/round" }, "align": { "$ref": "#/definitions/align" }, <note> } })";
+
 constexpr std::string_view import_text =
-    R"({ "type": "object", "required": ["format", "size"], "additionalProperties": false, "properties": {
+    R"({ "type": "object",
+      "if": { "required": ["buffer"] },
+      "then": { "additionalProperties": false, "properties": {
+        "buffer": { "$ref": "#/definitions/host_buffer" },
+        "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } },
+      "else": { "if": { "required": ["acceleration_structure"] },
+      "then": { "additionalProperties": false, "properties": {
+        "acceleration_structure": { "enum": ["top_level"], "description": "that ray queries go through" },
+        "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } },
+      "else": { "required": ["format", "size"], "additionalProperties": false, "properties": {
         "format": { "$ref": "#/definitions/formats" }, "size": { "$ref": "#/definitions/size" }, "border": { "$ref": "#/definitions/border" },
         "round": { "$ref": "#/definitions/round" }, "align": { "$ref": "#/definitions/align" },
-        "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } })";
+        "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } } } })";
 
 constexpr std::string_view pass_text =
     R"({ "type": "object", "required": ["pass", "kind"], "additionalProperties": false, "properties": {
@@ -181,9 +207,10 @@ SchemaMembers graph_root_members() {
     "$schema": { "type": "string" },
     "dermis": { "type": "integer", "const": 1, "description": "version of the format" },
     "name": { "$ref": "#/definitions/name" },
+    "requires": { "type": "array", "maxItems": <options>, "items": { "enum": [<features>] }, "description": "features of the device without which the graph does not run" },
     "settings": { "type": "object", "maxProperties": <settings>, "additionalProperties": { "$ref": "#/definitions/setting" } },
     "imports": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/import" },
-      "description": "images that the host owns and binds" },
+      "description": "images, buffers and acceleration structures that the host owns and binds" },
     "resources": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/resource" },
       "description": "images and buffers that the graph owns" },
     "passes": { "$ref": "#/definitions/passes" },
@@ -233,6 +260,7 @@ SchemaMembers graph_definitions(std::string_view kind_names) {
       {"size", with_note(size_text)},
       {"count", with_note(count_text)},
       {"buffer", with_note(buffer_text)},
+      {"host_buffer", with_note(host_buffer_text)},
       {"history", with_note(history_text)},
       {"setting", with_note(setting_definition())},
       {"import", with_note(import_text)},

@@ -43,6 +43,10 @@ struct GraphWriter {
     out.real("", setting.maximum);
     all(setting.options, [&](const std::string& option) { text(option); });
     number(setting.by_budget);
+    all(setting.needs, [&](const OptionNeeds& needs) {
+      number(needs.features);
+      all(needs.imports, [&](ResourceId import) { index(import); });
+    });
   }
 
   void resource(const ResourceDeclaration& resource) {
@@ -98,6 +102,7 @@ struct GraphWriter {
     });
     word(kind.dispatch);
     number(kind.side_effects);
+    number(kind.features);
   }
 
   void pass(const PassDeclaration& pass) {
@@ -130,6 +135,7 @@ struct GraphWriter {
 
   std::string whole() {
     text(graph.name);
+    number(graph.features);
     all(graph.settings, [&](const SettingDeclaration& one) { setting(one); });
     all(graph.resources, [&](const ResourceDeclaration& one) { resource(one); });
     all(graph.expressions, [&](const Expression& one) { expression(one); });

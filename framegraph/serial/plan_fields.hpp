@@ -48,7 +48,7 @@ template <class A> void fields(A& a, Of<A, NamedSettingValue>& setting) {
 
 template <class A> void fields(A& a, Of<A, PlanResource>& resource) {
   fields(a, resource.declared);
-  a.word("resource type", resource.type, ResourceType::buffer);
+  a.word("resource type", resource.type, ResourceType::acceleration_structure);
   a.word("origin", resource.origin, Origin::transient);
   a.flag("exported", resource.exported);
   fields(a, resource.format);
@@ -203,6 +203,7 @@ template <class A> void fields(A& a, Of<A, PlanKey>& key) {
   a.number("device local type bits", key.device_local_type_bits);
   a.number("max workgroup count", key.max_workgroup_count);
   a.number("max push constants bytes", key.max_push_constants_bytes);
+  a.number("features", key.features);
   a.list("settings", key.settings, limits::settings);
   a.list("bound", key.bound, limits::resources);
   a.list("host formats", key.host_formats, limits::resources);

@@ -19,6 +19,7 @@ PlanKey plan_key(const CompileInput& input) {
   key.device_local_type_bits = device.device_local_type_bits;
   key.max_workgroup_count = device.max_workgroup_count;
   key.max_push_constants_bytes = device.max_push_constants_bytes;
+  key.features = device.features;
   key.settings = input.settings;
   if (key.settings.empty())
     for (const SettingDeclaration& setting : graph.settings)

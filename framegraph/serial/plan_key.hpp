@@ -18,6 +18,7 @@ struct PlanKey {
   uint64_t buffer_image_granularity = 1, max_storage_buffer_bytes = 0;
   uint32_t max_image_dimension = 0, max_image_layers = 0, device_local_type_bits = 0;
   uint32_t max_workgroup_count = 0, max_push_constants_bytes = 0;
+  Features features = 0;
   std::vector<SettingValue> settings; // one per Graph::settings
   std::vector<uint8_t> bound;         // one per Graph::resources: 1 bound, or not optional
   std::vector<Format> host_formats;   // one per Graph::resources

@@ -48,7 +48,7 @@ struct Checker {
   void resources() {
     for (size_t i = 0; i < plan.resources.size(); ++i) {
       const PlanResource& resource = plan.resources[i];
-      const bool buffer = resource.type == ResourceType::buffer;
+      const bool buffer = resource.type != ResourceType::image;
       expect(resource.mips >= 1 && resource.mips <= (buffer ? 1 : most_mips) && resource.layers >= 1 &&
                  resource.layers <= (buffer ? 1 : limits::image_layers),
              "a resource has no mips or layers, or too many", i);
@@ -56,6 +56,8 @@ struct Checker {
       const bool host = resource.origin == Origin::imported || resource.exported;
       expect(host == (resource.first_instance == no_instance),
              "memory must be the host's or in a heap, not both", i);
+      expect(host || resource.type != ResourceType::acceleration_structure,
+             "an acceleration structure is not the host's", i);
       expect(!host || resource.instance_count == 1, "the host's memory has one instance", i);
       if (host) continue;
       const bool inside = range_in(resource.first_instance, resource.instance_count, plan.placements.size());

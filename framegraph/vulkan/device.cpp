@@ -59,6 +59,7 @@ Error make_device(const DeviceInput& input, Device& device) {
             fmt::format("the device {} speaks Vulkan {}.{}, 1.2 is needed", device.properties.deviceName,
                         VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
   if (Error error = read_queue_family(input, device)) return error;
+  device.features = input.features;
   device.labels = input.labels;
   device.host_memory = input.host_memory;
   device.timings = input.timings && device.timestamp_valid_bits > 0;

@@ -1,6 +1,7 @@
 #pragma once
 // The host's device as a value: handles, functions and the limits that running a plan needs. Owns nothing.
 
+#include "framegraph/model/vocabulary.hpp"
 #include "framegraph/vulkan/error.hpp"
 #include "framegraph/vulkan/function_table.hpp"
 
@@ -48,6 +49,7 @@ struct DeviceInput { // all handles belong to the host and must outlive the Devi
   const VkAllocationCallbacks* allocator = nullptr; // may be null; must outlive the Device
   uint32_t queue_family = 0;                        // of the command buffers that will be recorded into
   bool labels = false;                              // object names and debug labels; needs VK_EXT_debug_utils
+  Features features = 0;                            // that the host enabled
   bool timings = false;                             // timestamps around each pass
   HostMemory host_memory{};
 };
@@ -62,6 +64,7 @@ struct Device {
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   uint32_t timestamp_valid_bits = 0; // of the queue family; 0: it cannot write timestamps
+  Features features = 0;
   bool labels = false;
   bool timings = false; // asked for, and timestamp_valid_bits > 0
   HostMemory host_memory{};

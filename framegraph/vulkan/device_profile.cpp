@@ -68,6 +68,7 @@ DeviceProfile device_profile(const Device& device) {
       std::min({limits.maxComputeWorkGroupCount[0], limits.maxComputeWorkGroupCount[1],
                 limits.maxComputeWorkGroupCount[2]});
   profile.max_push_constants_bytes = limits.maxPushConstantsSize;
+  profile.features = device.features;
   profile.supports = [&device](Format format, uint32_t vk_usage) {
     return supports(device, format, vk_usage);
   };

@@ -58,7 +58,8 @@ struct Rectangle { // pixels; inside the allocated view size
   uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-// What stands at a port of a pass that the host records: image or buffer; both null where nothing is bound.
+// What stands at a port of a pass that the host records: image, buffer or acceleration structure; all null
+// where nothing is bound.
 struct HostPort {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE; // of the part that the port names; storage images: of one mip
@@ -66,7 +67,8 @@ struct HostPort {
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; // that the image is in, and must be left in
   uint32_t width = 0, height = 0;                   // of the view's first mip
   VkBuffer buffer = VK_NULL_HANDLE;
-  uint64_t bytes = 0;
+  uint64_t offset = 0, bytes = 0; // of it; the offset is not 0 in buffers of the host alone
+  VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
 };
 
 // One call of a host's pass. Everything lives until the call returns.
@@ -127,10 +129,26 @@ struct HostImage {
   uint32_t first_layer = 0, layers = 0;
 };
 
+// Buffer of the host: `bytes` of it from `offset`. HostState::layout means nothing.
+struct HostBuffer {
+  VkBuffer buffer = VK_NULL_HANDLE; // null: not bound
+  VkDeviceSize offset = 0, bytes = 0;
+  HostState before, after;
+};
+
+// The barriers are about all memory: what lies below the top level is the host's to know. Queue families are
+// IGNORED.
+struct HostStructure {
+  VkAccelerationStructureKHR structure = VK_NULL_HANDLE; // null: not bound
+  HostState before, after;
+};
+
 struct FrameInput {
   VkCommandBuffer command_buffer =
       VK_NULL_HANDLE;                         // recording, outside a render pass, of Device::queue_family
   std::span<const HostImage> images;          // by slot number; shorter: the rest is not bound
+  std::span<const HostBuffer> buffers;        // likewise
+  std::span<const HostStructure> structures;  // likewise
   std::span<const std::byte> frame_constants; // for set 1 binding 0; at most its bytes
   std::span<const SettingValue> settings;     // one per Graph::settings; empty: those of the plan
   Rectangle rectangle;                        // width 0: the allocated view size

@@ -21,6 +21,7 @@ static_assert(access::transfer_read == VK_ACCESS_2_TRANSFER_READ_BIT);
 static_assert(access::transfer_write == VK_ACCESS_2_TRANSFER_WRITE_BIT);
 static_assert(access::memory_read == VK_ACCESS_2_MEMORY_READ_BIT);
 static_assert(access::memory_write == VK_ACCESS_2_MEMORY_WRITE_BIT);
+static_assert(access::acceleration_structure_read == VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR);
 static_assert(access::shader_sampled_read == VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
 static_assert(access::shader_storage_read == VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
 static_assert(access::shader_storage_write == VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);

@@ -60,7 +60,7 @@ dermis_result check_alive(const dermis_context_t& context, const char* function)
 
 namespace {
 
-constexpr uint32_t known_flags = DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS;
+constexpr uint32_t known_flags = DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS | DERMIS_CONTEXT_RAY_QUERY;
 
 dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   const auto null = [&](const char* field) {
@@ -86,9 +86,11 @@ dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
 // All that is missing in one message.
 dermis_result check_requirements(const dermis_context_desc& desc, const Log& log) {
   std::string missing;
-  for (const dermis_requirement& item :
-       requirements_of(desc.get_instance_proc_addr, desc.instance, desc.physical_device))
-    if (item.required == 1 && item.present == 0)
+  const bool rays = (desc.flags & DERMIS_CONTEXT_RAY_QUERY) != 0;
+  const auto all = requirements_of(desc.get_instance_proc_addr, desc.instance, desc.physical_device);
+  for (uint32_t i = 0; i < all.size(); ++i)
+    if (const dermis_requirement& item = all[i];
+        item.present == 0 && (item.required == 1 || (rays && i >= first_ray_requirement)))
       missing += fmt::format("{}{} ({})", missing.empty() ? "" : ", ", item.name, item.why);
   if (missing.empty()) return DERMIS_OK;
   return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
@@ -154,6 +156,7 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   input.allocator = desc.vk_allocator;
   input.queue_family = desc.queue_family;
   input.labels = (desc.flags & DERMIS_CONTEXT_LABELS) != 0;
+  if ((desc.flags & DERMIS_CONTEXT_RAY_QUERY) != 0) input.features |= bit_of(Feature::ray_query);
   input.timings = (desc.flags & DERMIS_CONTEXT_TIMINGS) != 0;
   input.host_memory = host_memory_of(context->device_allocator);
   if (const vulkan::Error error = vulkan::make_device(input, context->device))

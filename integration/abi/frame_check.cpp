@@ -1,5 +1,7 @@
 #include "integration/abi/frame_check.hpp"
 
+#include "integration/abi/memory_bindings.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -184,18 +186,21 @@ dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, c
               vulkan::result_name(result));
 }
 
-// Every slot without an image in one message.
+// Every slot without a binding in one message.
 dermis_result check_complete(const Log& log, const char* function, const Program& program) {
   std::array<char, failure_text_size> names;
   size_t used = 0;
   for (size_t i = 0; i < program.slots.size(); ++i) {
-    if (!program.slots[i].bound || program.images[i].image != VK_NULL_HANDLE) continue;
+    const bool given = program.images[i].image != VK_NULL_HANDLE ||
+                       program.buffers[i].buffer != VK_NULL_HANDLE ||
+                       program.structures[i].structure != VK_NULL_HANDLE;
+    if (!program.slots[i].bound || given) continue;
     const auto written = fmt::format_to_n(names.data() + used, names.size() - used, "{}'{}' (slot {})",
                                           used == 0 ? "" : ", ", program.slots[i].name, i);
     used = std::min(names.size(), used + written.size);
   }
   if (used == 0) return DERMIS_OK;
-  return bad_argument(log, "{}: no image is bound to {}", function, std::string_view{names.data(), used});
+  return bad_argument(log, "{}: nothing is bound to {}", function, std::string_view{names.data(), used});
 }
 
 dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
@@ -224,6 +229,9 @@ dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis
       return bad_argument(log, "{}: bindings[{}].slot is {}, the graph has slots 0..{}", function, i,
                           binding.slot, static_cast<int64_t>(program.slots.size()) - 1);
     const Slot& slot = program.slots[binding.slot];
+    if (slot.type != ResourceType::image)
+      return bad_argument(log, "{}: bindings[{}] binds an image to slot {} ('{}'), which takes {}", function,
+                          i, binding.slot, slot.name, type_phrase(slot.type));
     if (!slot.bound) continue;
     vulkan::HostImage& image = program.images[binding.slot];
     if (image.image != VK_NULL_HANDLE)
@@ -236,6 +244,8 @@ dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis
     image = {binding.image, binding.view,       host_state(binding.before), host_state(binding.after),
              binding.layer, binding.layer_count};
   }
+  if (const dermis_result result = check_memory_bindings(view, program, frame); result != DERMIS_OK)
+    return result;
   return check_complete(log, function, program);
 }
 
@@ -320,6 +330,8 @@ dermis_result fill_frame(const dermis_view_t& view, const Program& program, uint
   checked.constants.sample_units = sample_units;
   checked.input.command_buffer = frame.command_buffer;
   checked.input.images = program.images;
+  checked.input.buffers = program.buffers;
+  checked.input.structures = program.structures;
   checked.input.frame_constants = std::as_bytes(std::span(&checked.constants, 1));
   checked.input.settings = program.outcomes[outcome].settings;
   checked.input.frame_index = frame.frame_index;

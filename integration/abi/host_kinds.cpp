@@ -21,9 +21,10 @@ template <class T> const void* element(const T* items, uint32_t i) {
   return reinterpret_cast<const std::byte*>(items) + i * stated_size(items);
 }
 
-constexpr std::array usages{Usage::sampled_image,        Usage::storage_image_write,
-                            Usage::storage_image_update, Usage::storage_buffer_read,
-                            Usage::storage_buffer_write, Usage::storage_buffer_update};
+constexpr std::array usages{Usage::sampled_image,         Usage::storage_image_write,
+                            Usage::storage_image_update,  Usage::storage_buffer_read,
+                            Usage::storage_buffer_write,  Usage::storage_buffer_update,
+                            Usage::acceleration_structure};
 constexpr std::array setting_types{SettingType::boolean, SettingType::integer, SettingType::real};
 
 dermis_result read_ports(const Log& log, const dermis_pass_kind& given, HostKindDeclaration& kind) {
@@ -111,6 +112,8 @@ dermis_pass_port port_of(const vulkan::HostPort& port) {
   out.height = port.height;
   out.buffer = port.buffer;
   out.bytes = port.bytes;
+  out.offset = port.offset;
+  out.structure = port.structure;
   return out;
 }
 

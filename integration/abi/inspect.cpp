@@ -22,6 +22,9 @@ dermis_slot describe_slot(const Slot& slot, uint32_t id) {
   out.width = slot.width;
   out.height = slot.height;
   out.bound = slot.bound ? 1 : 0;
+  out.type = static_cast<dermis_slot_type>(slot.type);
+  out.stride = slot.stride;
+  out.bytes = slot.bytes;
   return out;
 }
 

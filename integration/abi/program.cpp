@@ -1,5 +1,7 @@
 #include "integration/abi/program.hpp"
 
+#include "framegraph/compile/offers.hpp"
+
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/abi/host_files.hpp"
@@ -147,6 +149,12 @@ dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Dia
   return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
 }
 
+void make_room_for_bindings(Program& program) {
+  program.images.resize(program.slots.size());
+  program.buffers.resize(program.slots.size());
+  program.structures.resize(program.slots.size());
+}
+
 // What any of the plans wants of an image the host must provide.
 std::vector<Slot> slots_of(const Program& program) {
   std::vector<Slot> slots = make_slots(program.graph, program.variants.front().compiled->plan);
@@ -231,6 +239,11 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   compile_input.settings = candidate->settings;
   compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);
   compile_input.host_formats = host_formats(candidate->graph, input.formats, diagnostics);
+  tell_withheld(candidate->graph, context.profile, compile_input.bound, diagnostics);
+  for (size_t i = 0; i < candidate->settings.size(); ++i)
+    candidate->settings[i] = offered_value(candidate->graph.settings[i], candidate->settings[i],
+                                           context.profile.features, compile_input.bound);
+  compile_input.settings = candidate->settings;
   auto made = choice::make_outcomes(
       compile_input, errors, costs,
       [&](const CompileInput& one, Diagnostics& told) { return compile(one, plans, told); }, diagnostics,
@@ -243,7 +256,7 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
         {std::make_shared<const CompiledPlan>(std::move(compiled)), nullptr, false, std::move(serving)});
   }
   candidate->slots = slots_of(*candidate);
-  candidate->images.resize(candidate->slots.size());
+  make_room_for_bindings(*candidate);
 
   if (!compile_missing(input.shaders, candidate->graph, context.kinds, diagnostics))
     return DERMIS_ERROR_SHADER;
@@ -267,7 +280,7 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
     candidate->variants.push_back({variant.compiled, nullptr, false, variant.serve_scattering});
   candidate->settings = of.settings;
   candidate->slots = of.slots;
-  candidate->images.resize(of.slots.size());
+  make_room_for_bindings(*candidate);
   if (const vulkan::Error error = make_executors(context, input, history, &of, *candidate))
     return refused(context, error, diagnostics);
   program = std::move(candidate);

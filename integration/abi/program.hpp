@@ -56,6 +56,9 @@ struct ProgramInput {
 struct Slot {
   std::string name;
   ResourceId resource;
+  ResourceType type = ResourceType::image;
+  uint32_t stride = 0; // buffers: bytes of an element
+  uint64_t bytes = 0;  // buffers: least that is bound
   bool required = false, read = false, written = false;
   bool bound = false; // the plan expects a binding
   Format format = Format::undefined;
@@ -86,9 +89,11 @@ struct Program {
   std::vector<SettingValue> settings;          // by Graph::settings: choices by budget at their defaults
   std::vector<Slot> slots;
   std::vector<vulkan::HostImage>
-      images;              // by slot; filled at each record, so that recording allocates nothing
-  uint64_t last_frame = 0; // frame_index it was recorded with last; 0: never
-  std::array<double, 2> last_jitter_px{}; // of that frame
+      images; // by slot; filled at each record, so that recording allocates nothing
+  std::vector<vulkan::HostBuffer> buffers;       // likewise
+  std::vector<vulkan::HostStructure> structures; // likewise
+  uint64_t last_frame = 0;                       // frame_index it was recorded with last; 0: never
+  std::array<double, 2> last_jitter_px{};        // of that frame
 
   const Variant& current() const { return variants[outcomes[outcome].plan]; }
 };

@@ -44,6 +44,8 @@ bool has(const std::vector<std::string>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+constexpr const char* why_rays = "with DERMIS_CONTEXT_RAY_QUERY: passes that trace rays";
+
 } // namespace
 
 std::array<dermis_requirement, requirement_count>
@@ -61,7 +63,9 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
   }
   const bool core = version >= VK_API_VERSION_1_3; // else extensions of 1.2
   const std::vector<std::string> extensions =
-      core ? std::vector<std::string>{} : extensions_of(get_instance_proc_addr, instance, physical_device);
+      extensions_of(get_instance_proc_addr, instance, physical_device);
+  const bool rays = has(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
+                    has(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME);
   const bool has_synchronization2 = core || has(extensions, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
   const bool has_maintenance4 = core || has(extensions, VK_KHR_MAINTENANCE_4_EXTENSION_NAME);
   VkPhysicalDeviceFeatures2 features{};
@@ -74,6 +78,15 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
   if (has_maintenance4) {
     maintenance4.pNext = features.pNext;
     features.pNext = &maintenance4;
+  }
+  VkPhysicalDeviceAccelerationStructureFeaturesKHR structures{};
+  structures.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
+  VkPhysicalDeviceRayQueryFeaturesKHR queries{};
+  queries.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
+  if (rays) {
+    structures.pNext = features.pNext;
+    queries.pNext = &structures;
+    features.pNext = &queries;
   }
   if (get_features != nullptr && version >= VK_API_VERSION_1_2) get_features(physical_device, &features);
 
@@ -89,17 +102,27 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
   const auto feature = [](const char* name, VkBool32 present, const char* why) {
     return requirement(DERMIS_REQUIREMENT_FEATURE, name, present == VK_TRUE, why);
   };
-  return {api,
-          extension(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, has_synchronization2,
-                    "of a device that is used as Vulkan 1.2: enable it there"),
-          extension(VK_KHR_MAINTENANCE_4_EXTENSION_NAME, has_maintenance4,
-                    "of a device that is used as Vulkan 1.2: enable it there"),
-          feature("synchronization2", synchronization2.synchronization2,
-                  "barriers are vkCmdPipelineBarrier2 with 64-bit masks"),
-          feature("maintenance4", maintenance4.maintenance4, "memory needs are asked before images exist"),
-          feature("shaderStorageImageWriteWithoutFormat",
-                  features.features.shaderStorageImageWriteWithoutFormat,
-                  "a port accepts several image formats with one kernel")};
+  const auto optional = [](dermis_requirement item) {
+    item.required = 0;
+    return item;
+  };
+  return {
+      api,
+      extension(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, has_synchronization2,
+                "of a device that is used as Vulkan 1.2: enable it there"),
+      extension(VK_KHR_MAINTENANCE_4_EXTENSION_NAME, has_maintenance4,
+                "of a device that is used as Vulkan 1.2: enable it there"),
+      feature("synchronization2", synchronization2.synchronization2,
+              "barriers are vkCmdPipelineBarrier2 with 64-bit masks"),
+      feature("maintenance4", maintenance4.maintenance4, "memory needs are asked before images exist"),
+      feature("shaderStorageImageWriteWithoutFormat", features.features.shaderStorageImageWriteWithoutFormat,
+              "a port accepts several image formats with one kernel"),
+      optional(requirement(DERMIS_REQUIREMENT_DEVICE_EXTENSION, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                           has(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME), why_rays)),
+      optional(requirement(DERMIS_REQUIREMENT_DEVICE_EXTENSION, VK_KHR_RAY_QUERY_EXTENSION_NAME,
+                           has(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME), why_rays)),
+      optional(feature("accelerationStructure", structures.accelerationStructure, why_rays)),
+      optional(feature("rayQuery", queries.rayQuery, why_rays))};
 }
 
 } // namespace dermis::abi

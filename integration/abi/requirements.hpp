@@ -7,7 +7,9 @@
 
 namespace dermis::abi {
 
-inline constexpr uint32_t requirement_count = 6;
+inline constexpr uint32_t requirement_count = 10;
+inline constexpr uint32_t first_ray_requirement =
+    6; // from there on: needed by DERMIS_CONTEXT_RAY_QUERY alone
 
 // Every requirement with `present` filled from the device. All absent when the functions to ask are missing.
 std::array<dermis_requirement, requirement_count>

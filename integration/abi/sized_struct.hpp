@@ -63,6 +63,12 @@ template <>
 inline constexpr size_t first_version_size<dermis_image_binding> = offsetof(dermis_image_binding, after) +
                                                                    sizeof(dermis_image_state);
 template <>
+inline constexpr size_t first_version_size<dermis_buffer_binding> = offsetof(dermis_buffer_binding, after) +
+                                                                    sizeof(dermis_image_state);
+template <>
+inline constexpr size_t first_version_size<dermis_acceleration_structure_binding> =
+    offsetof(dermis_acceleration_structure_binding, after) + sizeof(dermis_image_state);
+template <>
 inline constexpr size_t first_version_size<dermis_frame> = offsetof(dermis_frame, depth_kind) +
                                                            sizeof(dermis_depth_kind);
 

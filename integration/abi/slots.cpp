@@ -66,6 +66,8 @@ std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {
     Slot slot;
     slot.name = declared.name;
     slot.resource = ResourceId{i};
+    slot.type = declared.type;
+    slot.stride = declared.stride;
     slot.required = !declared.optional;
     if (!declared.formats.empty()) slot.format = declared.formats.front(); // when the plan has no use for it
     const auto id = static_cast<int32_t>(slots.size());
@@ -74,6 +76,7 @@ std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {
       if (resource.slot != id) continue;
       slot.bound = resource.first_instance == no_instance;
       slot.format = resource.format;
+      slot.bytes = resource.bytes;
       slot.vk_usage = resource.vk_usage;
       slot.width = resource.width;
       slot.height = resource.height;

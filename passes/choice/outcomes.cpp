@@ -1,5 +1,6 @@
 #include "passes/choice/outcomes.hpp"
 
+#include "framegraph/compile/offers.hpp"
 #include "framegraph/model/expression.hpp"
 
 #include <fmt/format.h>
@@ -202,6 +203,8 @@ std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const Error
   if (base.empty())
     for (const SettingDeclaration& setting : graph.settings)
       base.push_back(setting.default_value);
+  for (uint32_t i = 0; i < graph.settings.size(); ++i)
+    base[i] = offered_value(graph.settings[i], base[i], input.device->features, input.bound);
   const std::vector<uint32_t> choices = choices_of(graph);
   std::vector<uint32_t> open = choices;
   std::erase_if(open, [&](uint32_t choice) { return choice < pinned.size() && pinned[choice]; });
@@ -243,9 +246,14 @@ std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const Error
   std::vector<size_t> digits(open.size(), 0);
   do {
     std::vector<SettingValue> values = base;
-    for (size_t i = 0; i < open.size(); ++i)
+    bool offered = true;
+    for (size_t i = 0; i < open.size(); ++i) {
       values[open[i]].integer = static_cast<int64_t>(digits[i]);
-    if (!add(values)) return std::nullopt;
+      offered = offered && !lacks_of(graph.settings[open[i]], values[open[i]].integer, input.device->features,
+                                     input.bound)
+                                .any();
+    }
+    if (offered && !add(values)) return std::nullopt;
   } while (count_up(graph, open, digits));
   return out;
 }

@@ -89,7 +89,7 @@ TEST(SavedPlan, CutAnywhereIsRefused) {
 TEST(SavedPlan, OfAnotherVersionIsRefused) {
   std::string bytes = file_of(5);
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "the plan has version 9, this program reads version 5");
+  EXPECT_EQ(refusal(bytes), "the plan has version 9, this program reads version 6");
   EXPECT_EQ(refusal("{}"), "a saved plan begins with DERMPLAN");
 }
 

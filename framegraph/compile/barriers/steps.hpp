@@ -24,13 +24,13 @@ void merge_part_barriers(CompileContext& context);
 // What a set of usages, as a mask of 1 << usage, comes to.
 inline constexpr auto usage_count = static_cast<uint32_t>(Usage::count);
 inline constexpr uint32_t usage_sets = 1u << usage_count;
-static_assert(usage_count <= 8, "PassTouch::usages and ObjectState::visible are bytes");
+static_assert(usage_count <= 16, "PassTouch::usages and ObjectState::visible have 16 bits");
 
 struct UsageSet {
   Stage stages = 0;
   Access access = 0;
   Layout image_layout = Layout::undefined; // one layout for all: `general` serves every one of them
-  uint8_t sees = 0; // usages that see what these see: visible to them, visible to those
+  uint16_t sees = 0; // usages that see what these see: visible to them, visible to those
   bool reads = false, writes = false;
 };
 

@@ -30,7 +30,7 @@ void Synchronizer::collect(uint32_t first_use, uint32_t end) {
     }
     *touch_number = number - touches_before;
     PassTouch& touch = touches[*touch_number];
-    touch.usages = static_cast<uint8_t>(touch.usages | 1u << static_cast<uint32_t>(use.usage));
+    touch.usages = static_cast<uint16_t>(touch.usages | 1u << static_cast<uint32_t>(use.usage));
     touch.certain |= use.when == ReadWhen::always;
     if (of.image) touch.layout = sets[touch.usages].image_layout;
   }

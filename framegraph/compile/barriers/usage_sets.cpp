@@ -18,7 +18,7 @@ std::array<UsageSet, usage_sets> make_usage_sets() {
       for (uint32_t other = 0; other < usage_count; ++other) {
         const UsageInfo& wanted = usage_info(static_cast<Usage>(other));
         if ((wanted.stages & ~info.stages) == 0 && (wanted.access & ~info.access) == 0)
-          set.sees = static_cast<uint8_t>(set.sees | 1u << other);
+          set.sees = static_cast<uint16_t>(set.sees | 1u << other);
       }
     }
   }

@@ -259,8 +259,8 @@ private:
         found.binding.part.first_mip + std::max<uint32_t>(found.binding.part.mips, 1) - 1;
     const uint32_t last_layer =
         found.binding.part.first_layer + std::max<uint32_t>(found.binding.part.layers, 1) - 1;
-    if (resource.type == ResourceType::buffer)
-      problem = fmt::format("'{}' is a buffer", resource.name);
+    if (resource.type != ResourceType::image)
+      problem = fmt::format("'{}' is {}", resource.name, type_phrase(resource.type));
     else if (resource.origin == Origin::imported || resource.exported)
       problem = fmt::format("'{}' is bound by the host, as a whole", resource.name);
     else if (resource.mips != 0 && last_mip >= resource.mips)
@@ -278,7 +278,7 @@ private:
   // A storage image has one mip: of an image with several the first, unless another one is named.
   bool choose_mip(const std::string& what, Found& found) {
     const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
-    if (found.binding.port == unknown_port || resource.type == ResourceType::buffer || resource.mips == 1 ||
+    if (found.binding.port == unknown_port || resource.type != ResourceType::image || resource.mips == 1 ||
         resource.origin == Origin::imported || resource.exported)
       return true;
     const Usage usage = kind_->ports[found.binding.port].usage;
@@ -300,11 +300,16 @@ private:
     const auto declared_here = [&](Diagnostic& one) {
       one.related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     };
-    if (image ? !usage.image : !usage.buffer) {
-      declared_here(
-          reader_.error(DiagnosticId::usage_mismatch, found.where,
-                        fmt::format("{} takes {}; '{}' is {}", what, image ? "a buffer" : "an image",
-                                    resource.name, image ? "an image" : "a buffer")));
+    const bool taken = image                                   ? usage.image
+                       : resource.type == ResourceType::buffer ? usage.buffer
+                                                               : usage.acceleration_structure;
+    if (!taken) {
+      const ResourceType wanted = usage.image    ? ResourceType::image
+                                  : usage.buffer ? ResourceType::buffer
+                                                 : ResourceType::acceleration_structure;
+      declared_here(reader_.error(DiagnosticId::usage_mismatch, found.where,
+                                  fmt::format("{} takes {}; '{}' is {}", what, type_phrase(wanted),
+                                              resource.name, type_phrase(resource.type))));
       return;
     }
     if (!image || std::any_of(resource.formats.begin(), resource.formats.end(),

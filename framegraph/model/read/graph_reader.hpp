@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace dermis {
@@ -33,6 +34,8 @@ struct GraphReader {
   // The message that a resource's formats do not fit a port: further ports are added to it. Indices into
   // Diagnostics::list.
   std::map<ResourceId, size_t> format_mismatches;
+  // "requires" of choices: read when all imports are known.
+  std::vector<std::pair<SettingId, NodeId>> option_requirements;
   // Where each resource and pass is read from, by id.
   std::vector<NodeId> resource_nodes, pass_nodes;
 
@@ -50,6 +53,8 @@ inline constexpr uint32_t unknown_port = 0xffffffffu;
 void read_settings(GraphReader& reader, NodeId settings);
 void declare_resources(GraphReader& reader, NodeId list, Origin origin);
 void read_resources(GraphReader& reader);
+void read_option_requirements(GraphReader& reader);
+void read_graph_requirements(GraphReader& reader, NodeId list);
 void read_exports(GraphReader& reader, NodeId exports);
 void declare_passes(GraphReader& reader, NodeId passes);
 void read_passes(GraphReader& reader);

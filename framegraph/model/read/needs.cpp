@@ -67,6 +67,7 @@ std::string lacks(const ResourceDeclaration& resource, const PortNeed& need, con
                   const Size& view) {
   const uint64_t columns = need.square > 0 ? ceil_div(view.width, need.square) : 0;
   const uint64_t rows = need.square > 0 ? ceil_div(view.height, need.square) : 0;
+  if (resource.type == ResourceType::buffer && resource.origin == Origin::imported) return ""; // the host's
   if (resource.type == ResourceType::image)
     return size.width >= columns && size.height >= rows
                ? ""

@@ -73,8 +73,8 @@ void read_otherwise(GraphReader& reader, ObjectReader& object, PassDeclaration& 
     } else if (from.type != to.type) {
       reader
           .error(DiagnosticId::bad_otherwise, value,
-                 fmt::format("{} replaces '{}' by '{}': one is an image, the other a buffer", what, from.name,
-                             to.name))
+                 fmt::format("{} replaces '{}' by '{}': one is {}, the other {}", what, from.name, to.name,
+                             type_phrase(from.type), type_phrase(to.type)))
           .related.emplace_back(to.where, fmt::format("'{}' is declared here", to.name));
     } else {
       pass.otherwise.push_back({output, instead, value});

@@ -87,7 +87,7 @@ bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, 
   if (base.type == ResourceType::image) return true;
   reader
       .error(DiagnosticId::bad_size, reader.document.where(node),
-             fmt::format("{}: '{}' is a buffer", what, base.name))
+             fmt::format("{}: '{}' is {}", what, base.name, type_phrase(base.type)))
       .related.emplace_back(base.where, fmt::format("'{}' is declared here", base.name));
   return false;
 }
@@ -128,9 +128,13 @@ bool read_buffer(GraphReader& reader, NodeId node, ResourceId id, ResourceDeclar
         fmt::format("'stride' of {} is {}; it must be a multiple of {}", buffer.what(), *stride, word));
   }
   out.stride = static_cast<uint32_t>(stride.value_or(word));
+  const bool least = out.origin != Origin::imported || buffer.has("count"); // hosts may bind any number
   out.extra_elements =
       static_cast<uint64_t>(buffer.integer("extra", 0, limits::buffer_elements, Need::optional).value_or(0));
-  ok &= read_size(reader, buffer, "count", id, out.size);
+  if (least)
+    ok &= read_size(reader, buffer, "count", id, out.size);
+  else
+    out.size.base = SizeExpression::Base::fixed; // one element
   return buffer.finish() && ok;
 }
 
@@ -151,6 +155,15 @@ bool read_image(GraphReader& reader, ObjectReader& object, ResourceId id, Resour
   return ok;
 }
 
+bool read_acceleration_structure(GraphReader& reader, ObjectReader& object, const ResourceDeclaration& out) {
+  constexpr std::string_view levels[] = {"top_level"};
+  const bool ok = object.word("acceleration_structure", levels).has_value();
+  if (out.origin == Origin::imported) return ok;
+  reader.error(DiagnosticId::not_imported, out.where,
+               fmt::format("'{}' is an acceleration structure, which no graph builds", out.name));
+  return false;
+}
+
 bool read_resource(GraphReader& reader, ResourceId id) {
   ResourceDeclaration& out = reader.graph.resources[id.value];
   const NodeId node = reader.resource_nodes[id.value];
@@ -164,6 +177,8 @@ bool read_resource(GraphReader& reader, ResourceId id) {
   if (out.type == ResourceType::buffer) {
     const NodeId buffer = object.any("buffer");
     ok &= read_buffer(reader, buffer, id, out);
+  } else if (out.type == ResourceType::acceleration_structure) {
+    ok &= read_acceleration_structure(reader, object, out);
   } else {
     ok &= read_image(reader, object, id, out);
   }
@@ -199,8 +214,10 @@ void declare_resources(GraphReader& reader, NodeId list, Origin origin) {
     declared.name = reader.document.key(node);
     declared.origin = origin;
     declared.where = reader.document.where_key(node);
-    const bool buffer = origin == Origin::transient && reader.document.find(node, "buffer").valid();
-    declared.type = buffer ? ResourceType::buffer : ResourceType::image;
+    if (reader.document.find(node, "buffer").valid())
+      declared.type = ResourceType::buffer;
+    else if (reader.document.find(node, "acceleration_structure").valid())
+      declared.type = ResourceType::acceleration_structure;
     bool ok = check_name(declared.name, "the name of a resource", declared.where, reader.diagnostics);
     if (declared.name == "view") {
       ok = false;
@@ -242,10 +259,10 @@ void read_exports(GraphReader& reader, NodeId exports) {
     if (const auto [first, added] = seen.emplace(id, node); !added) {
       reader.error(DiagnosticId::duplicate_name, where, fmt::format("'{}' is exported twice", *name))
           .related.emplace_back(reader.document.where(first->second), "first exported here");
-    } else if (resource.type == ResourceType::buffer) {
+    } else if (resource.type != ResourceType::image) {
       reader
           .error(DiagnosticId::bad_export, where,
-                 fmt::format("'{}' is a buffer; hosts bind images only", *name))
+                 fmt::format("'{}' is {}; hosts get back images only", *name, type_phrase(resource.type)))
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", *name));
     }
     resource.exported = true;

@@ -132,7 +132,7 @@ void report_untyped(GraphReader& reader, const ObjectReader& object) {
   reader.error(DiagnosticId::missing_key, reader.document.where(object.node()), text);
 }
 
-bool read_setting(GraphReader& reader, NodeId node, SettingDeclaration& out) {
+bool read_setting(GraphReader& reader, NodeId node, SettingId id, SettingDeclaration& out) {
   ObjectReader object(reader.document, node, fmt::format("setting '{}'", out.name), reader.diagnostics);
   if (!object.ok()) return false;
   size_t found = std::size(type_keys);
@@ -164,6 +164,8 @@ bool read_setting(GraphReader& reader, NodeId node, SettingDeclaration& out) {
   case SettingType::choice: {
     constexpr std::string_view who[] = {"host", "budget"};
     out.by_budget = object.word("by", who, Need::optional).value_or(0) == 1;
+    if (const NodeId requirements = object.object("requires", Need::optional); requirements.valid())
+      reader.option_requirements.emplace_back(id, requirements);
     read_options(reader, object, "choice", out, ok);
     break;
   }
@@ -197,8 +199,9 @@ void read_settings(GraphReader& reader, NodeId settings) {
       reader.error(DiagnosticId::bad_name, declared.where,
                    fmt::format("'{}' is a word of \"when\" expressions", name));
     }
-    ok &= read_setting(reader, node, declared);
-    reader.setting_names.emplace(name, SettingId{static_cast<uint32_t>(reader.graph.settings.size())});
+    const SettingId id{static_cast<uint32_t>(reader.graph.settings.size())};
+    ok &= read_setting(reader, node, id, declared);
+    reader.setting_names.emplace(name, id);
     reader.graph.settings.push_back(std::move(declared));
     reader.broken_settings.push_back(!ok);
   }

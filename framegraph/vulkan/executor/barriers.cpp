@@ -21,7 +21,26 @@ struct Scopes {
   VkImageLayout old_layout, new_layout;
 };
 
-Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostImage* host) {
+struct HostStates {
+  const HostState *before = nullptr, *after = nullptr; // null: not the host's
+};
+
+HostStates host_states(const FrameInput& frame, const PlanResource& resource) {
+  if (resource.first_instance != no_instance) return {};
+  const auto slot = static_cast<size_t>(resource.slot);
+  const auto of = [](const auto& bound) { return HostStates{&bound.before, &bound.after}; };
+  switch (resource.type) {
+  case ResourceType::image:
+    return of(frame.images[slot]);
+  case ResourceType::buffer:
+    return of(frame.buffers[slot]);
+  case ResourceType::acceleration_structure:
+    break;
+  }
+  return of(frame.structures[slot]);
+}
+
+Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostStates& host) {
   Scopes s{barrier.source_stages,
            barrier.destination_stages,
            barrier.source_access,
@@ -30,16 +49,16 @@ Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostIma
            static_cast<VkImageLayout>(barrier.new_layout)};
   if (barrier.from_host) {
     // After an acquire all that the host did is visible to all commands: only their order is left to keep.
-    const bool acquired = foreign(device, host->before.queue_family);
-    s.source_stages = acquired ? all_commands : host->before.stages;
-    s.source_access = acquired ? 0 : host->before.access;
-    s.old_layout = host->before.layout;
+    const bool acquired = foreign(device, host.before->queue_family);
+    s.source_stages = acquired ? all_commands : host.before->stages;
+    s.source_access = acquired ? 0 : host.before->access;
+    s.old_layout = host.before->layout;
   }
   if (barrier.to_host) {
-    const bool released = foreign(device, host->after.queue_family); // the release follows, on all commands
-    s.destination_stages = released ? all_commands : host->after.stages;
-    s.destination_access = released ? all_memory : host->after.access;
-    s.new_layout = host->after.layout;
+    const bool released = foreign(device, host.after->queue_family); // the release follows, on all commands
+    s.destination_stages = released ? all_commands : host.after->stages;
+    s.destination_access = released ? all_memory : host.after->access;
+    s.new_layout = host.after->layout;
   }
   return s;
 }
@@ -96,19 +115,56 @@ VkBufferMemoryBarrier2 buffer_barrier(VkBuffer buffer, const Scopes& s) {
   return out;
 }
 
-void submit_batch(const State& state, VkCommandBuffer commands, uint32_t images, uint32_t buffers) {
-  if (images == 0 && buffers == 0) return;
+// What of its buffer a host binds.
+VkBufferMemoryBarrier2 host_barrier(const HostBuffer& host, const Scopes& s) {
+  VkBufferMemoryBarrier2 out = buffer_barrier(host.buffer, s);
+  out.offset = host.offset;
+  out.size = host.bytes;
+  return out;
+}
+
+VkMemoryBarrier2 memory_barrier(const Scopes& s) {
+  return {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+          nullptr,
+          s.source_stages,
+          s.source_access,
+          s.destination_stages,
+          s.destination_access};
+}
+
+struct Batch { // how many of State::..._barriers are filled
+  uint32_t images = 0, buffers = 0, memory = 0;
+};
+
+void submit_batch(const State& state, VkCommandBuffer commands, const Batch& batch) {
+  if (batch.images == 0 && batch.buffers == 0 && batch.memory == 0) return;
   VkDependencyInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  info.imageMemoryBarrierCount = images;
+  info.memoryBarrierCount = batch.memory;
+  info.pMemoryBarriers = state.memory_barriers.data();
+  info.imageMemoryBarrierCount = batch.images;
   info.pImageMemoryBarriers = state.image_barriers.data();
-  info.bufferMemoryBarrierCount = buffers;
+  info.bufferMemoryBarrierCount = batch.buffers;
   info.pBufferMemoryBarriers = state.buffer_barriers.data();
   state.commands->vkCmdPipelineBarrier2(commands, &info);
 }
 
-VkImageAspectFlags aspects_of_slot(const State& state, size_t slot) {
-  return barrier_aspects(state.plan.resources[state.slot_resource[slot]].format);
+// What the host binds to the resource's slot.
+void add_host_barrier(State& state, const FrameInput& frame, const PlanResource& resource, const Scopes& s,
+                      Batch& batch) {
+  const auto slot = static_cast<size_t>(resource.slot);
+  switch (resource.type) {
+  case ResourceType::image:
+    state.image_barriers[batch.images++] =
+        host_barrier(frame.images[slot], barrier_aspects(resource.format), s);
+    break;
+  case ResourceType::buffer:
+    state.buffer_barriers[batch.buffers++] = host_barrier(frame.buffers[slot], s);
+    break;
+  case ResourceType::acceleration_structure:
+    state.memory_barriers[batch.memory++] = memory_barrier(s);
+    break;
+  }
 }
 
 } // namespace
@@ -121,36 +177,35 @@ uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t 
 
 void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
                      std::span<const uint32_t> writable_stand_ins) noexcept {
-  uint32_t images = 0, buffers = 0;
+  Batch batch;
   for (uint32_t i = first; i < first + count; ++i) {
     const PlanBarrier& barrier = state.plan.barriers[i];
     const PlanResource& resource = state.plan.resources[barrier.resource];
     const bool host_owned = resource.first_instance == no_instance;
-    const HostImage* host = host_owned ? &frame.images[static_cast<size_t>(resource.slot)] : nullptr;
-    const Scopes s = scopes_of(*state.device, barrier, host);
+    const Scopes s = scopes_of(*state.device, barrier, host_states(frame, resource));
     if (nothing_to_do(barrier, s)) continue;
     if (host_owned) {
-      state.image_barriers[images++] = host_barrier(*host, barrier_aspects(resource.format), s);
+      add_host_barrier(state, frame, resource, s, batch);
       continue;
     }
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
     const bool poison = state.poison && discards(state.plan, barrier);
     if (resource.type == ResourceType::image) {
-      VkImageMemoryBarrier2& image = state.image_barriers[images];
+      VkImageMemoryBarrier2& image = state.image_barriers[batch.images];
       image = image_barrier(instance.image, barrier_aspects(resource.format), s);
       image.subresourceRange = subresources(resource, barrier.range);
       if (poison)
         record_poison(state, frame.command_buffer, image, resource.format);
       else
-        ++images;
+        ++batch.images;
       continue;
     }
-    VkBufferMemoryBarrier2& buffer = state.buffer_barriers[buffers];
+    VkBufferMemoryBarrier2& buffer = state.buffer_barriers[batch.buffers];
     buffer = buffer_barrier(instance.buffer, s);
     if (poison)
       record_poison(state, frame.command_buffer, buffer);
     else
-      ++buffers;
+      ++batch.buffers;
   }
   // A shader does not write to a port that is not bound, but only it knows that.
   constexpr Scopes in_order{
@@ -158,11 +213,12 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
   for (const uint32_t index : writable_stand_ins) {
     const StandIn& stand_in = state.stand_ins[index];
     if (stand_in.image != VK_NULL_HANDLE)
-      state.image_barriers[images++] = image_barrier(stand_in.image, VK_IMAGE_ASPECT_COLOR_BIT, in_order);
+      state.image_barriers[batch.images++] =
+          image_barrier(stand_in.image, VK_IMAGE_ASPECT_COLOR_BIT, in_order);
     else
-      state.buffer_barriers[buffers++] = buffer_barrier(stand_in.buffer, in_order);
+      state.buffer_barriers[batch.buffers++] = buffer_barrier(stand_in.buffer, in_order);
   }
-  submit_batch(state, frame.command_buffer, images, buffers);
+  submit_batch(state, frame.command_buffer, batch);
 }
 
 namespace {
@@ -197,34 +253,43 @@ void record_counters_to_host(State& state, const FrameInput& frame) noexcept {
                   VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
 }
 
-void record_acquires(State& state, const FrameInput& frame) noexcept {
-  uint32_t images = 0;
+namespace {
+
+// Releases and acquires: the host's layouts stay as they are.
+template <class Pick>
+void record_transfers(State& state, const FrameInput& frame, bool acquire, const Scopes& scopes, Pick pick) {
+  Batch batch;
+  const uint32_t own = state.device->queue_family;
   for (size_t slot = 0; slot < state.slot_resource.size(); ++slot) {
     if (state.slot_resource[slot] == no_index) continue;
-    const HostImage& host = frame.images[slot];
-    if (!foreign(*state.device, host.before.queue_family)) continue;
-    const Scopes s{0, all_commands, 0, all_memory, host.before.layout, host.before.layout};
-    VkImageMemoryBarrier2& out = state.image_barriers[images++];
-    out = host_barrier(host, aspects_of_slot(state, slot), s);
-    out.srcQueueFamilyIndex = host.before.queue_family;
-    out.dstQueueFamilyIndex = state.device->queue_family;
+    const PlanResource& resource = state.plan.resources[state.slot_resource[slot]];
+    const HostState& there = *pick(host_states(frame, resource));
+    if (!foreign(*state.device, there.queue_family)) continue;
+    Scopes s = scopes;
+    s.old_layout = s.new_layout = there.layout;
+    add_host_barrier(state, frame, resource, s, batch);
+    const auto transfer = [&](auto& barrier) {
+      barrier.srcQueueFamilyIndex = acquire ? there.queue_family : own;
+      barrier.dstQueueFamilyIndex = acquire ? own : there.queue_family;
+    };
+    if (resource.type == ResourceType::image) transfer(state.image_barriers[batch.images - 1]);
+    if (resource.type == ResourceType::buffer) transfer(state.buffer_barriers[batch.buffers - 1]);
   }
-  submit_batch(state, frame.command_buffer, images, 0);
+  submit_batch(state, frame.command_buffer, batch);
+}
+
+constexpr VkImageLayout kept = VK_IMAGE_LAYOUT_UNDEFINED; // filled in for each image
+
+} // namespace
+
+void record_acquires(State& state, const FrameInput& frame) noexcept {
+  record_transfers(state, frame, true, {0, all_commands, 0, all_memory, kept, kept},
+                   [](const HostStates& states) { return states.before; });
 }
 
 void record_releases(State& state, const FrameInput& frame) noexcept {
-  uint32_t images = 0;
-  for (size_t slot = 0; slot < state.slot_resource.size(); ++slot) {
-    if (state.slot_resource[slot] == no_index) continue;
-    const HostImage& host = frame.images[slot];
-    if (!foreign(*state.device, host.after.queue_family)) continue;
-    const Scopes s{all_commands, 0, VK_ACCESS_2_MEMORY_WRITE_BIT, 0, host.after.layout, host.after.layout};
-    VkImageMemoryBarrier2& out = state.image_barriers[images++];
-    out = host_barrier(host, aspects_of_slot(state, slot), s);
-    out.srcQueueFamilyIndex = state.device->queue_family;
-    out.dstQueueFamilyIndex = host.after.queue_family;
-  }
-  submit_batch(state, frame.command_buffer, images, 0);
+  record_transfers(state, frame, false, {all_commands, 0, VK_ACCESS_2_MEMORY_WRITE_BIT, 0, kept, kept},
+                   [](const HostStates& states) { return states.after; });
 }
 
 } // namespace dermis::vulkan

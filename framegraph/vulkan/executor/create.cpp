@@ -17,11 +17,6 @@ Error check_input(const ExecutorInput& input) {
   if (input.frames_in_flight < 1 || input.frames_in_flight > max_frames_in_flight)
     return argument(fmt::format("{} frames in flight, 1 to {} are possible", input.frames_in_flight,
                                 max_frames_in_flight));
-  for (const PlanResource& resource : input.plan->resources)
-    if (resource.first_instance == no_instance && resource.type == ResourceType::buffer)
-      return {ErrorKind::unsupported, VK_SUCCESS,
-              fmt::format("'{}' is a buffer that the host would bind; only images can be bound",
-                          input.graph->resources[resource.declared.value].name)};
   for (const PlanPass& pass : input.plan->passes)
     if (pass.queue != Queue::main)
       return {ErrorKind::unsupported, VK_SUCCESS,
@@ -151,6 +146,7 @@ void reserve_for_recording(State& state) {
     most_settings = std::max<size_t>(most_settings, kernel->push_bytes / sizeof(uint32_t));
   state.image_barriers.resize(largest);
   state.buffer_barriers.resize(largest);
+  state.memory_barriers.resize(largest);
   state.push_constants.resize(most_settings);
   state.before_frame.histories.resize(state.histories.size());
   state.before_frame.ready.resize(state.instances.size());

@@ -35,6 +35,8 @@ void prepare_writes(State& state) {
   d.writes.resize(d.ports.size());
   d.images.resize(d.ports.size());
   d.buffers.resize(d.ports.size());
+  d.structures.resize(d.ports.size());
+  d.handles.resize(d.ports.size());
   for (size_t i = 0; i < d.ports.size(); ++i) {
     const PortWrite& port = d.ports[i];
     const Pass& pass = state.passes[port.pass];
@@ -46,6 +48,9 @@ void prepare_writes(State& state) {
     write.pImageInfo = &d.images[i];
     write.pBufferInfo = &d.buffers[i];
     d.buffers[i] = {VK_NULL_HANDLE, 0, VK_WHOLE_SIZE};
+    d.structures[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR, nullptr, 1,
+                       &d.handles[i]};
+    if (write.descriptorType == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR) write.pNext = &d.structures[i];
   }
 }
 
@@ -53,7 +58,8 @@ Error create_sets(State& state) {
   const Device& device = *state.device;
   Descriptors& d = state.descriptors;
   constexpr std::array types{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                             VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
+                             VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                             VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR};
   std::vector<VkDescriptorPoolSize> sizes;
   for (const VkDescriptorType type : types) {
     uint32_t count = 0;
@@ -105,7 +111,7 @@ void destroy_descriptors(State& state) {
   device.vk.vkDestroyDescriptorPool(device.device, state.descriptors.pool, device.allocator);
 }
 
-void write_descriptors(State& state, uint32_t frame_slot, std::span<const HostImage> images) noexcept {
+void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& frame) noexcept {
   Descriptors& d = state.descriptors;
   for (size_t i = 0; i < d.ports.size(); ++i) {
     const PortWrite& port = d.ports[i];
@@ -121,7 +127,12 @@ void write_descriptors(State& state, uint32_t frame_slot, std::span<const HostIm
     const PlanResource& resource = state.plan.resources[access.resource];
     d.images[i].imageLayout = static_cast<VkImageLayout>(access.layout);
     if (resource.first_instance == no_instance) {
-      d.images[i].imageView = images[static_cast<size_t>(resource.slot)].view;
+      const auto slot = static_cast<size_t>(resource.slot);
+      if (resource.type == ResourceType::image) d.images[i].imageView = frame.images[slot].view;
+      if (resource.type == ResourceType::buffer)
+        d.buffers[i] = {frame.buffers[slot].buffer, frame.buffers[slot].offset, frame.buffers[slot].bytes};
+      if (resource.type == ResourceType::acceleration_structure)
+        d.handles[i] = frame.structures[slot].structure;
       continue;
     }
     const uint32_t number = instance_of(state, resource, access.frames_back);

@@ -17,6 +17,19 @@ HostPort port_now(const State& state, const FrameInput& frame, const PortAccess&
   port.layout = static_cast<VkImageLayout>(access.layout);
   port.width = std::max(resource.width >> access.range.first_mip, 1u);
   port.height = std::max(resource.height >> access.range.first_mip, 1u);
+  if (resource.type == ResourceType::acceleration_structure) {
+    port = {};
+    port.structure = frame.structures[static_cast<size_t>(resource.slot)].structure;
+    return port;
+  }
+  if (resource.first_instance == no_instance && resource.type == ResourceType::buffer) {
+    const HostBuffer& buffer = frame.buffers[static_cast<size_t>(resource.slot)];
+    port = {};
+    port.buffer = buffer.buffer;
+    port.offset = buffer.offset;
+    port.bytes = buffer.bytes;
+    return port;
+  }
   if (resource.first_instance == no_instance) {
     const HostImage& image = frame.images[static_cast<size_t>(resource.slot)];
     port.image = image.image;

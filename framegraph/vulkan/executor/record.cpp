@@ -19,10 +19,34 @@ RecordResult refuse(const char* text, int32_t slot = -1) {
   return {ErrorKind::argument, VK_SUCCESS, text, slot};
 }
 
+RecordResult check_buffer(const State& state, const FrameInput& frame, const PlanResource& resource) {
+  const auto slot = static_cast<size_t>(resource.slot);
+  if (slot >= frame.buffers.size() || frame.buffers[slot].buffer == VK_NULL_HANDLE)
+    return refuse("the slot is not bound", resource.slot);
+  const HostBuffer& bound = frame.buffers[slot];
+  const VkPhysicalDeviceLimits& limits = state.device->properties.limits;
+  if (bound.bytes < resource.bytes || bound.bytes > limits.maxStorageBufferRange)
+    return refuse("the buffer has fewer bytes than the graph needs, or more than the device binds",
+                  resource.slot);
+  if (bound.offset % std::max<VkDeviceSize>(limits.minStorageBufferOffsetAlignment, 1) != 0)
+    return refuse("the buffer's offset is no multiple of minStorageBufferOffsetAlignment", resource.slot);
+  return {};
+}
+
 RecordResult check_slots(const State& state, const FrameInput& frame) {
   for (size_t slot = 0; slot < state.slot_resource.size(); ++slot) {
     if (state.slot_resource[slot] == no_index) continue;
     const auto number = static_cast<int32_t>(slot);
+    const PlanResource& resource = state.plan.resources[state.slot_resource[slot]];
+    if (resource.type == ResourceType::buffer) {
+      if (const RecordResult refused = check_buffer(state, frame, resource)) return refused;
+      continue;
+    }
+    if (resource.type == ResourceType::acceleration_structure) {
+      if (slot >= frame.structures.size() || frame.structures[slot].structure == VK_NULL_HANDLE)
+        return refuse("the slot is not bound", number);
+      continue;
+    }
     if (slot >= frame.images.size() || frame.images[slot].image == VK_NULL_HANDLE)
       return refuse("the slot is not bound", number);
     if (frame.images[slot].view == VK_NULL_HANDLE) return refuse("the binding has no view", number);
@@ -169,7 +193,9 @@ void run_clear(State& state, const FrameInput& frame, size_t p) {
     const Instance& instance =
         host_owned ? none : state.instances[instance_of(state, resource, access.frames_back)];
     if (resource.type == ResourceType::buffer) {
-      vk.vkCmdFillBuffer(frame.command_buffer, instance.buffer, 0, VK_WHOLE_SIZE, 0);
+      const HostBuffer own{instance.buffer, 0, VK_WHOLE_SIZE, {}, {}};
+      const HostBuffer& to = host_owned ? frame.buffers[static_cast<size_t>(resource.slot)] : own;
+      vk.vkCmdFillBuffer(frame.command_buffer, to.buffer, to.offset, to.bytes, 0);
       continue;
     }
     const HostImage* host = host_owned ? &frame.images[static_cast<size_t>(resource.slot)] : nullptr;
@@ -249,7 +275,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   if (frame.before != nullptr) carry_ages(state, *frame.before->state_, frame.reset_history);
   write_frame_constants(state, frame_slot, frame.frame_constants);
   clear_counters(state, frame_slot);
-  write_descriptors(state, frame_slot, frame.images);
+  write_descriptors(state, frame_slot, frame);
   if (frame.taken_over) record_memory_takeover(state, frame);
   if (frame.before != nullptr) record_carried(state, *frame.before->state_, commands, frame.reset_history);
   begin_timestamps(state, commands, frame_slot);

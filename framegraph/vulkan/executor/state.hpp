@@ -93,6 +93,8 @@ struct Descriptors { // sets 0, by frame slot and pass
   std::vector<VkWriteDescriptorSet> writes; // parallel to ports, pointing into the next two
   std::vector<VkDescriptorImageInfo> images;
   std::vector<VkDescriptorBufferInfo> buffers;
+  std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structures; // each points at one of `handles`
+  std::vector<VkAccelerationStructureKHR> handles;
 };
 
 struct PortAccess {              // what stands at a port, into Plan::accesses
@@ -168,6 +170,7 @@ struct Executor::State {
   bool saw_lost_device = false;
   std::vector<VkImageMemoryBarrier2> image_barriers; // room for the largest batch
   std::vector<VkBufferMemoryBarrier2> buffer_barriers;
+  std::vector<VkMemoryBarrier2> memory_barriers;
   std::vector<uint32_t> push_constants;
   const FunctionTable* commands = nullptr; // that the frame is recorded with
   HostPassFunction host_pass = nullptr;
@@ -216,7 +219,7 @@ uint32_t access_now(const State& state, const PortAccess& port) noexcept;
 // ---- descriptors.cpp
 Error create_descriptors(State& state, const KindRegistry& kinds);
 void destroy_descriptors(State& state);
-void write_descriptors(State& state, uint32_t frame_slot, std::span<const HostImage> images) noexcept;
+void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& frame) noexcept;
 
 // ---- barriers.cpp
 // Which instance holds resource `r` of `frames_back` frames ago, in the frame that is being recorded.

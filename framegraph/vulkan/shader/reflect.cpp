@@ -212,6 +212,7 @@ private:
     }
     case op_type_sampler:
     case op_type_sampled_image:
+    case op_type_acceleration_structure:
       id(o.at(0)).op = op;
       break;
     case op_type_array: {
@@ -268,6 +269,8 @@ BindingType binding_type(const Id& type, uint32_t storage_class) {
     return BindingType::sampler;
   case op_type_sampled_image:
     return BindingType::combined_image;
+  case op_type_acceleration_structure:
+    return BindingType::acceleration_structure;
   default:
     return BindingType::other;
   }
@@ -337,6 +340,8 @@ const char* binding_type_name(BindingType type) {
     return "uniform block";
   case BindingType::storage_buffer:
     return "buffer block";
+  case BindingType::acceleration_structure:
+    return "acceleration structure";
   case BindingType::other:
     break;
   }

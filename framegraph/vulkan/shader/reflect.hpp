@@ -18,6 +18,7 @@ enum class BindingType : uint8_t {
   sampler,
   uniform_buffer,
   storage_buffer,
+  acceleration_structure, // accelerationStructureEXT
   other
 };
 enum class Numeric : uint8_t { none, real, signed_integer, unsigned_integer };

@@ -39,9 +39,13 @@ struct Checker {
                       usage_info(port.usage).name, binding.name);
     const BindingType wanted = *type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
                                : *type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? BindingType::storage_image
-                                                                           : BindingType::storage_buffer;
+                               : *type == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
+                                   ? BindingType::acceleration_structure
+                                   : BindingType::storage_buffer;
     check_type(binding, place, wanted);
-    if (wanted == BindingType::storage_buffer || binding.type != wanted || port.glsl_type.empty()) return;
+    if (wanted == BindingType::storage_buffer || wanted == BindingType::acceleration_structure ||
+        binding.type != wanted || port.glsl_type.empty())
+      return;
     const char first = port.glsl_type.front(); // utexture2D, itexture2D, texture2D
     const Numeric numeric = first == 'u'                          ? Numeric::unsigned_integer
                             : port.glsl_type.substr(0, 2) == "im" ? Numeric::real
@@ -129,6 +133,8 @@ std::optional<VkDescriptorType> descriptor_type(Usage usage) {
   case Usage::storage_buffer_write:
   case Usage::storage_buffer_update:
     return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  case Usage::acceleration_structure:
+    return VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
   case Usage::indirect_arguments:
   case Usage::clear:
   case Usage::count:

@@ -35,7 +35,8 @@ enum Op : uint32_t {
   op_decorate = 71,
   op_member_decorate = 72,
   op_loop_merge = 246,
-  op_execution_mode_id = 331
+  op_execution_mode_id = 331,
+  op_type_acceleration_structure = 5341 // SPV_KHR_ray_query
 };
 
 enum Decoration : uint32_t {

@@ -6,7 +6,7 @@
  *   - put every image back into the state that you ask for.
  * DERMIS DOES NOT
  *   - create an instance, a device or a queue; submit; wait; present; make a thread; print; open a file;
- *   - touch an image that you did not bind, or keep a pointer of yours after a call returns, but for callbacks.
+ *   - touch an image or a buffer that you did not bind, or keep a pointer of yours after a call returns, but for callbacks.
  *
  * STEP BY STEP
  *   1. dermis_context_create       once per device, with the device's functions
@@ -20,7 +20,8 @@
  *   Before dermis_graph_record each bound image is in `before.layout` and was last touched by `before.stages` and
  *   `before.access`. At the end of the recorded commands it is in `after.layout`, visible to `after.stages` and
  *   `after.access`. If `after` equals `before` you get the image back as you gave it. Images are not touched
- *   outside of their bindings. Depth images are judged by their format.
+ *   outside of their bindings. Depth images are judged by their format. The same holds for buffers and acceleration
+ *   structures, without layouts.
  *
  * STRUCTS
  *   Every struct starts with `struct_size`; use its DERMIS_..._INIT. Zero means default. A struct from a newer
@@ -217,6 +218,8 @@ typedef struct dermis_device_allocator {
 
 #define DERMIS_CONTEXT_TIMINGS 0x1u /* write timestamps around each pass */
 #define DERMIS_CONTEXT_LABELS 0x2u  /* debug labels and object names; needs VK_EXT_debug_utils enabled */
+#define DERMIS_CONTEXT_RAY_QUERY 0x4u /* the device was created with VK_KHR_ray_query and VK_KHR_acceleration_structure and
+                                         their features: options that require "ray_query" are offered */
 
 typedef struct dermis_context_desc {
   size_t struct_size;
@@ -345,20 +348,31 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uin
  * Thread: any, alone with this graph. */
 DERMIS_API void DERMIS_CALL dermis_graph_destroy(dermis_graph graph);
 
+typedef enum dermis_slot_type {
+  DERMIS_SLOT_IMAGE = 0,                  /* dermis_frame.bindings */
+  DERMIS_SLOT_BUFFER = 1,                 /* dermis_frame.buffers */
+  DERMIS_SLOT_ACCELERATION_STRUCTURE = 2, /* dermis_frame.structures */
+  DERMIS_SLOT_TYPE_FORCE_32BIT = 0x7fffffff
+} dermis_slot_type;
+
 typedef struct dermis_slot {
   size_t struct_size;
-  uint32_t id;           /* goes into dermis_image_binding */
+  uint32_t id;           /* goes into the binding */
   uint32_t required;     /* 0: may be left unbound if named so at creation */
   const char* name;      /* lives until the next reload, resize, set_setting or destroy */
   uint32_t written;      /* 1: the graph writes it */
   uint32_t read;         /* 1: the graph reads what is in it */
   VkFormat format;       /* that the plan was compiled for */
-  VkImageUsageFlags usage; /* that the image must have been created with */
+  VkImageUsageFlags usage; /* that the image must have been created with; of a buffer VkBufferUsageFlags */
   VkImageLayout best_layout; /* the layout of its first use: no transition needed if it comes so */
   uint32_t width, height; /* smallest extent of the image */
   uint32_t bound;        /* 1: every frame must bind it. 0: named as unbound at creation, a binding is ignored */
+  dermis_slot_type type;
+  uint32_t stride;       /* buffers: bytes of an element */
+  uint64_t bytes;        /* buffers: least that a frame binds */
 } dermis_slot;
-#define DERMIS_SLOT_INIT {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0}
+#define DERMIS_SLOT_INIT \
+  {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, DERMIS_SLOT_IMAGE, 0, 0}
 
 /* The slots that the next record expects; ask again after a reload. The same for all views. Two-call array. Thread: beside.
  * Errors: ARGUMENT, INCOMPLETE. */
@@ -531,6 +545,7 @@ typedef enum dermis_port_usage {
   DERMIS_PORT_STORAGE_BUFFER_READ = 3,
   DERMIS_PORT_STORAGE_BUFFER_WRITE = 4,
   DERMIS_PORT_STORAGE_BUFFER_UPDATE = 5,
+  DERMIS_PORT_ACCELERATION_STRUCTURE = 6, /* read by ray queries */
   DERMIS_PORT_USAGE_FORCE_32BIT = 0x7fffffff
 } dermis_port_usage;
 
@@ -563,7 +578,8 @@ typedef struct dermis_kind_setting {
 #define DERMIS_KIND_SETTING_INIT \
   {sizeof(dermis_kind_setting), NULL, NULL, NULL, DERMIS_KIND_SETTING_BOOL, 0, 0, 0, 0}
 
-/* What stands at a port while a pass of the host is recorded: an image, a buffer, or nothing (both null). */
+/* What stands at a port while a pass of the host is recorded: an image, a buffer, an acceleration structure, or nothing
+ * (all null). */
 typedef struct dermis_pass_port {
   size_t struct_size;
   VkImage image;
@@ -573,10 +589,12 @@ typedef struct dermis_pass_port {
   uint32_t width, height; /* of the view's first mip, in texels: the allocated size, see rect_... of the call */
   VkBuffer buffer;
   uint64_t bytes;        /* of the buffer */
+  uint64_t offset;       /* where they begin; not 0 in buffers that you bind alone */
+  VkAccelerationStructureKHR structure;
 } dermis_pass_port;
 #define DERMIS_PASS_PORT_INIT \
   {sizeof(dermis_pass_port), VK_NULL_HANDLE, VK_NULL_HANDLE, VK_FORMAT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, \
-   VK_NULL_HANDLE, 0}
+   VK_NULL_HANDLE, 0, 0, VK_NULL_HANDLE}
 
 /* All of it is valid until the function returns. The images and image views of a view are the same from frame to frame until
  * it is reloaded, resized or given a setting that changes its passes, but for those with history, which take turns. */
@@ -652,6 +670,33 @@ typedef struct dermis_image_binding {
   {sizeof(dermis_image_binding), 0, VK_FORMAT_UNDEFINED, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, \
    {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, 0, 0, 0}
 
+/* A buffer of yours at a slot of type BUFFER. Layouts of the states are VK_IMAGE_LAYOUT_UNDEFINED. */
+typedef struct dermis_buffer_binding {
+  size_t struct_size;
+  uint32_t slot;          /* dermis_slot.id */
+  uint32_t reserved;      /* 0 */
+  VkBuffer buffer;        /* created with dermis_slot.usage */
+  uint64_t offset;        /* a multiple of minStorageBufferOffsetAlignment */
+  uint64_t bytes;         /* from there: a multiple of dermis_slot.stride, dermis_slot.bytes or more */
+  dermis_image_state before, after;
+} dermis_buffer_binding;
+#define DERMIS_BUFFER_BINDING_INIT \
+  {sizeof(dermis_buffer_binding), 0, 0, VK_NULL_HANDLE, 0, 0, \
+   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}}
+
+/* A top-level acceleration structure at a slot of type ACCELERATION_STRUCTURE. `before` also stands for the builds of all
+ * that lies below it. Layouts are VK_IMAGE_LAYOUT_UNDEFINED, queue families VK_QUEUE_FAMILY_IGNORED. */
+typedef struct dermis_acceleration_structure_binding {
+  size_t struct_size;
+  uint32_t slot;          /* dermis_slot.id */
+  uint32_t reserved;      /* 0 */
+  VkAccelerationStructureKHR structure;
+  dermis_image_state before, after;
+} dermis_acceleration_structure_binding;
+#define DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT \
+  {sizeof(dermis_acceleration_structure_binding), 0, 0, VK_NULL_HANDLE, \
+   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}}
+
 typedef enum dermis_depth_kind {
   DERMIS_DEPTH_DEVICE = 0,      /* what the depth test wrote, for clip_from_view; reversed and infinite are fine */
   DERMIS_DEPTH_VIEW_UNITS = 1,  /* distance along the view axis in world units, positive; 0 = nothing there */
@@ -688,9 +733,13 @@ typedef struct dermis_frame {
   /* With DERMIS_FRAME_BOUNDS: where subsurface may be seen, pixels of the images; what lies outside of the rendered part
      does not count. Empty: no kernel runs but those that hand out pictures beside lighting. */
   uint32_t bounds_x, bounds_y, bounds_width, bounds_height;
+  const dermis_buffer_binding* buffers; /* stepped by buffers[0].struct_size */
+  const dermis_acceleration_structure_binding* structures;
+  uint32_t buffer_count, structure_count;
 } dermis_frame;
 #define DERMIS_FRAME_INIT \
-  {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, DERMIS_DEPTH_DEVICE, 0, 0, 0, 0}
+  {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, DERMIS_DEPTH_DEVICE, 0, 0, 0, 0, \
+   NULL, NULL, 0, 0}
 
 /* Records the plan for the graph's own view. Never submits, waits for the device, prints or allocates host memory. On an
  * error nothing was recorded. Thread: one per view. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */

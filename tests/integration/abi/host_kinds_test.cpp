@@ -216,8 +216,8 @@ TEST_F(HostKinds, AreRefusedWithTheFieldThatIsWrong) {
   ports[1].name = "a b";
   expect_refused(kind("studio.add", ports), "ports[1].name is 'a b'");
   ports = add_ports;
-  ports[2].usage = static_cast<dermis_port_usage>(6);
-  expect_refused(kind("studio.add", ports), "kind.ports[2].usage is 6");
+  ports[2].usage = static_cast<dermis_port_usage>(7);
+  expect_refused(kind("studio.add", ports), "kind.ports[2].usage is 7");
   ports[0].struct_size = 4;
   expect_refused(kind("studio.add", ports), "struct_size");
   wrong = kind("studio.add", add_ports);

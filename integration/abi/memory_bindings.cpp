@@ -1,0 +1,156 @@
+#include "integration/abi/memory_bindings.hpp"
+
+#include <algorithm>
+
+namespace dermis::abi {
+namespace {
+
+struct Place { // of one binding, for messages
+  const Log& log;
+  const char* function;
+  const char* array;
+  uint32_t index;
+};
+
+template <class... Arguments>
+dermis_result refuse(const Place& place, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+  std::array<char, failure_text_size> what;
+  const auto end = fmt::format_to_n(what.data(), what.size(), text, std::forward<Arguments>(arguments)...);
+  return bad_argument(place.log, "{}: {}[{}]{}", place.function, place.array, place.index,
+                      std::string_view{what.data(), std::min(what.size(), end.size)});
+}
+
+dermis_result check_state(const dermis_view_t& view, const Place& place, const Slot& slot, const char* which,
+                          const dermis_image_state& state) {
+  const uint32_t own = view.context->device.queue_family;
+  const bool family =
+      state.queue_family == VK_QUEUE_FAMILY_IGNORED || state.queue_family == own ||
+      (slot.type == ResourceType::buffer && state.queue_family < view.context->queue_family_count);
+  if (state.access != 0 && state.stages == 0)
+    return refuse(place, ".{} ('{}') has access {:#x} but no stages", which, slot.name, state.access);
+  if (state.layout != VK_IMAGE_LAYOUT_UNDEFINED)
+    return refuse(place, ".{}.layout ('{}') is {}, expected UNDEFINED: only images have layouts", which,
+                  slot.name, static_cast<uint32_t>(state.layout));
+  if (!family)
+    return refuse(place, ".{}.queue_family ('{}') is {}, {}", which, slot.name, state.queue_family,
+                  slot.type == ResourceType::buffer
+                      ? fmt::string_view("which the device does not have")
+                      : fmt::string_view("expected IGNORED for acceleration structures"));
+  return DERMIS_OK;
+}
+
+// The slot that is meant; null after a message in `result`, or where it is not bound.
+const Slot* find_slot(const Place& place, const Program& program, uint32_t number, uint32_t reserved,
+                      ResourceType type, bool bound_before, dermis_result& result) {
+  result = DERMIS_OK;
+  const Slot& slot = program.slots[number];
+  if (reserved != 0)
+    result = refuse(place, ".reserved is {}, expected 0", reserved);
+  else if (slot.type != type)
+    result = refuse(place, " binds {} to slot {} ('{}'), which takes {}", type_phrase(type), number,
+                    slot.name, type_phrase(slot.type));
+  else if (slot.bound && bound_before)
+    result = refuse(place, " binds slot {} ('{}') a second time", number, slot.name);
+  return result == DERMIS_OK && slot.bound ? &slot : nullptr;
+}
+
+vulkan::HostState host_state(const dermis_image_state& state) {
+  return {state.layout, state.queue_family, state.stages, state.access};
+}
+
+// Calls `use(place, binding)` for each element of a caller's array, stepped by the first one's struct_size.
+template <class T, class Use>
+dermis_result for_each(const Place& array, const Program& program, const T* items, uint32_t count,
+                       const T& defaults, Use use) {
+  if (count == 0) return DERMIS_OK;
+  if (items == nullptr)
+    return bad_argument(array.log, "{}: {} is NULL and its count is {}", array.function, array.array, count);
+  const size_t step = stated_size(items);
+  const auto* at = reinterpret_cast<const std::byte*>(items);
+  for (uint32_t i = 0; i < count; ++i) {
+    const Place place{array.log, array.function, array.array, i};
+    T item = defaults;
+    const std::byte* from = at + i * step;
+    const SizedRead read = stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
+    if (read == SizedRead::unknown_fields)
+      return fail(array.log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
+                  "{}: {}[{}] has fields beyond those this library knows that are not zero", array.function,
+                  array.array, i);
+    if (read != SizedRead::ok)
+      return refuse(place, ".struct_size is {}, expected {} as in the first, at least {}: use its INIT",
+                    stated_size(from), step, first_version_size<T>);
+    if (item.slot >= program.slots.size())
+      return refuse(place, ".slot is {}, the graph has slots 0..{}", item.slot,
+                    static_cast<int64_t>(program.slots.size()) - 1);
+    if (const dermis_result result = use(place, item); result != DERMIS_OK) return result;
+  }
+  return DERMIS_OK;
+}
+
+dermis_result check_buffer(const dermis_view_t& view, const Place& place, const Slot& slot,
+                           const dermis_buffer_binding& binding) {
+  const VkPhysicalDeviceLimits& limits = view.context->device.properties.limits;
+  const uint64_t alignment = std::max<uint64_t>(limits.minStorageBufferOffsetAlignment, 1);
+  if (binding.buffer == VK_NULL_HANDLE) return refuse(place, ".buffer ('{}') is null", slot.name);
+  if (binding.offset % alignment != 0)
+    return refuse(place, ".offset ('{}') is {}, expected a multiple of {}", slot.name, binding.offset,
+                  alignment);
+  if (binding.bytes < slot.bytes)
+    return refuse(place, ".bytes ('{}') is {}, the graph needs at least {}", slot.name, binding.bytes,
+                  slot.bytes);
+  if (binding.bytes % slot.stride != 0)
+    return refuse(place, ".bytes ('{}') is {}, no multiple of the {} bytes of an element", slot.name,
+                  binding.bytes, slot.stride);
+  if (binding.bytes > limits.maxStorageBufferRange)
+    return refuse(place, ".bytes ('{}') is {}, the device binds at most {}", slot.name, binding.bytes,
+                  limits.maxStorageBufferRange);
+  return DERMIS_OK;
+}
+
+dermis_result check_states(const dermis_view_t& view, const Place& place, const Slot& slot,
+                           const dermis_image_state& before, const dermis_image_state& after) {
+  if (const dermis_result result = check_state(view, place, slot, "before", before); result != DERMIS_OK)
+    return result;
+  return check_state(view, place, slot, "after", after);
+}
+
+} // namespace
+
+dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
+  const Log& log = view.context->log;
+  const char* const function = record_function(view);
+  std::fill(program.buffers.begin(), program.buffers.end(), vulkan::HostBuffer{});
+  std::fill(program.structures.begin(), program.structures.end(), vulkan::HostStructure{});
+  const dermis_buffer_binding no_buffer = DERMIS_BUFFER_BINDING_INIT;
+  const auto bind_buffer = [&](const Place& place, const dermis_buffer_binding& binding) {
+    vulkan::HostBuffer& bound = program.buffers[binding.slot];
+    dermis_result result = DERMIS_OK;
+    const Slot* slot = find_slot(place, program, binding.slot, binding.reserved, ResourceType::buffer,
+                                 bound.buffer != VK_NULL_HANDLE, result);
+    if (slot == nullptr) return result;
+    result = check_buffer(view, place, *slot, binding);
+    if (result == DERMIS_OK) result = check_states(view, place, *slot, binding.before, binding.after);
+    bound = {binding.buffer, binding.offset, binding.bytes, host_state(binding.before),
+             host_state(binding.after)};
+    return result;
+  };
+  const dermis_result result = for_each({log, function, "buffers", 0}, program, frame.buffers,
+                                        frame.buffer_count, no_buffer, bind_buffer);
+  if (result != DERMIS_OK) return result;
+  const dermis_acceleration_structure_binding no_structure = DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT;
+  const auto bind_structure = [&](const Place& place, const dermis_acceleration_structure_binding& binding) {
+    vulkan::HostStructure& bound = program.structures[binding.slot];
+    dermis_result checked = DERMIS_OK;
+    const Slot* slot =
+        find_slot(place, program, binding.slot, binding.reserved, ResourceType::acceleration_structure,
+                  bound.structure != VK_NULL_HANDLE, checked);
+    if (slot == nullptr) return checked;
+    if (binding.structure == VK_NULL_HANDLE) return refuse(place, ".structure ('{}') is null", slot->name);
+    bound = {binding.structure, host_state(binding.before), host_state(binding.after)};
+    return check_states(view, place, *slot, binding.before, binding.after);
+  };
+  return for_each({log, function, "structures", 0}, program, frame.structures, frame.structure_count,
+                  no_structure, bind_structure);
+}
+
+} // namespace dermis::abi

@@ -1,0 +1,13 @@
+#pragma once
+// Buffers and acceleration structures of a host's frame against the slots of the program that would record
+// it.
+
+#include "integration/abi/graph.hpp"
+
+namespace dermis::abi {
+
+// Checks every field and fills program.buffers and program.structures. ARGUMENT or VERSION with a message
+// that names the field. Allocates nothing.
+dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame);
+
+} // namespace dermis::abi

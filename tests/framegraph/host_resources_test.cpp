@@ -1,0 +1,307 @@
+// Buffers and acceleration structures that the host binds, and options that need what a device may lack.
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/compile/offers.hpp"
+#include "framegraph/explain/plan_text.hpp"
+#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "tests/framegraph/text_support.hpp"
+
+#include "framegraph/model/read_graph.hpp"
+
+#include <algorithm>
+
+namespace dermis {
+namespace {
+
+using namespace dermis::testing;
+using Id = DiagnosticId;
+
+constexpr Port trace_ports[] = {
+    {"scene", Usage::acceleration_structure, false, "accelerationStructureEXT", "what rays meet"},
+    {"vertices", Usage::storage_buffer_read, false, "vec4", "of its triangles"},
+    {"light", Usage::sampled_image, false, "texture2D", "light"},
+    {"target", Usage::storage_image_write, false, "image2D", "the result"},
+};
+constexpr Port copy_ports[] = {
+    {"light", Usage::sampled_image, false, "texture2D", "light"},
+    {"target", Usage::storage_image_write, false, "image2D", "the result"},
+};
+
+const KindRegistry& kinds() {
+  static const KindRegistry registry = [] {
+    KindRegistry out;
+    PassKind trace{"test.trace", "trace", "traces", trace_ports, {}};
+    trace.features = bit_of(Feature::ray_query);
+    out.add(trace);
+    out.add({"test.copy", "copy", "copies", copy_ports, {}});
+    return out;
+  }();
+  return registry;
+}
+
+constexpr std::string_view traced = R"({ "dermis": 1, "name": "traced",
+  "settings": { "how": { "choice": ["trace", "copy"], "default": "trace", "requires": { "trace": ["ray_query", "scene"] } } },
+  "imports": {
+    "light": { "format": "rgba16f", "size": "view" },
+    "scene": { "acceleration_structure": "top_level", "optional": true },
+    "vertices": { "buffer": { "stride": 32, "count": 3 }, "optional": true },
+    "lights": { "buffer": { "stride": 16 }, "optional": true } },
+  "resources": { "out": { "format": "rgba16f", "size": "view" } },
+  "passes": [
+    { "pass": "trace", "kind": "test.trace", "when": "how == 'trace'",
+      "read": { "scene": "scene", "vertices": "vertices", "light": "light" }, "write": { "target": "out" } },
+    { "pass": "copy", "kind": "test.copy", "when": "how == 'copy'",
+      "read": { "light": "light" }, "write": { "target": "out" } } ],
+  "exports": ["out"] })";
+
+struct Read {
+  Diagnostics diagnostics;
+  std::optional<Graph> graph;
+};
+
+Read read(std::string text) {
+  Read out;
+  const auto document = parse_document("graph.json", std::move(text), out.diagnostics);
+  if (document) out.graph = read_graph(*document, kinds(), out.diagnostics);
+  return out;
+}
+
+std::string with(std::string_view from, std::string_view to) {
+  std::string text(traced);
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+struct Damage {
+  const char* law;
+  const char *from, *to;
+  DiagnosticId id;
+  const char* at; // first occurrence of this is where the diagnostic points
+  std::vector<std::string> words;
+};
+
+void PrintTo(const Damage& damage, std::ostream* out) {
+  *out << damage.to;
+}
+
+class DamagedHostResources : public ::testing::TestWithParam<Damage> {};
+
+TEST_P(DamagedHostResources, GiveOneDiagnosticAtTheDamage) {
+  const Damage& damage = GetParam();
+  const std::string text = with(damage.from, damage.to);
+  const size_t at = text.find(damage.at);
+  ASSERT_NE(at, std::string::npos);
+  const std::string before = text.substr(0, at);
+  const auto line = static_cast<uint32_t>(1 + std::count(before.begin(), before.end(), '\n'));
+  const auto column = static_cast<uint32_t>(at - (before.rfind('\n') + 1) + 1);
+  const Read result = read(text);
+  EXPECT_FALSE(result.graph);
+  expect_only(result.diagnostics, damage.id, line, column, damage.words);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Graph, DamagedHostResources,
+    ::testing::Values(Damage{"AnAccelerationStructureIsOfTheTopLevel",
+                             "\"top_level\"",
+                             "\"bottom_level\"",
+                             Id::invalid_value,
+                             "\"bottom_level\"",
+                             {"top_level"}},
+                      Damage{"NoGraphBuildsAnAccelerationStructure",
+                             "\"out\": { \"format\": \"rgba16f\", \"size\": \"view\" } }",
+                             "\"out\": { \"format\": \"rgba16f\", \"size\": \"view\" }, \"own\": { "
+                             "\"acceleration_structure\": \"top_level\" } }",
+                             Id::not_imported,
+                             "\"own\"",
+                             {"'own'", "no graph builds"}},
+                      Damage{"AnAccelerationStructureIsNoImage",
+                             "{ \"light\": \"light\" }",
+                             "{ \"light\": \"scene\" }",
+                             Id::usage_mismatch,
+                             "\"scene\" }, \"write\"",
+                             {"takes an image", "'scene' is an acceleration structure"}},
+                      Damage{"ABufferIsNoAccelerationStructure",
+                             "\"scene\": \"scene\"",
+                             "\"scene\": \"vertices\"",
+                             Id::usage_mismatch,
+                             "\"vertices\", \"vertices\"",
+                             {"takes an acceleration structure", "'vertices' is a buffer"}},
+                      Damage{"AnImportedBufferHasAStride",
+                             "\"stride\": 16",
+                             "\"count\": 16",
+                             Id::missing_key,
+                             "{ \"count\": 16",
+                             {"buffer 'lights'", "'stride'"}},
+                      Damage{"AnAccelerationStructureIsNotExported",
+                             "\"exports\": [\"out\"]",
+                             "\"exports\": [\"scene\", \"out\"]",
+                             Id::bad_export,
+                             "\"scene\", \"out\"",
+                             {"'scene' is an acceleration structure"}},
+                      Damage{"ARequirementIsAFeatureOrAnImport",
+                             "\"ray_query\", \"scene\"]",
+                             "\"ray_querry\"]",
+                             Id::bad_option_requires,
+                             "\"ray_querry\"",
+                             {"did you mean 'ray_query'?"}},
+                      Damage{"ARequiredImportIsOptional",
+                             "\"ray_query\", \"scene\"]",
+                             "\"light\"]",
+                             Id::bad_option_requires,
+                             "\"light\"]",
+                             {"may leave unbound"}},
+                      Damage{"OptionsThatRequireAreOptions",
+                             "\"requires\": { \"trace\"",
+                             "\"requires\": { \"trase\"",
+                             Id::bad_option_requires,
+                             "\"trase\"",
+                             {"did you mean 'trace'?"}},
+                      Damage{"OneOptionRequiresNothing",
+                             "[\"ray_query\", \"scene\"] }",
+                             "[\"ray_query\"], \"copy\": [\"scene\"] }",
+                             Id::bad_option_requires,
+                             "\"requires\"",
+                             {"every option"}},
+                      Damage{"AGraphRequiresFeaturesOnly",
+                             "\"name\": \"traced\"",
+                             "\"name\": \"traced\", \"requires\": [\"scene\"]",
+                             Id::invalid_value,
+                             "\"scene\"],\n",
+                             {"ray_query"}}),
+    [](const auto& one) { return one.param.law; });
+
+struct Compiled {
+  Diagnostics diagnostics;
+  std::optional<CompiledPlan> plan;
+  CompileInput input;
+};
+
+Compiled compiled(const Graph& graph, const DeviceProfile& device, std::vector<bool> bound = {}) {
+  Compiled out;
+  out.input.graph = &graph;
+  out.input.kinds = &kinds();
+  out.input.device = &device;
+  out.input.view_width = 64;
+  out.input.view_height = 64;
+  out.input.bound = std::move(bound);
+  out.plan = compile(out.input, out.diagnostics);
+  return out;
+}
+
+DeviceProfile without_rays() {
+  DeviceProfile device = generic_profile();
+  device.features = 0;
+  return device;
+}
+
+std::string only_pass(const Graph& graph, const CompiledPlan& compiled) {
+  EXPECT_EQ(compiled.plan.passes.size(), 1u);
+  return graph.passes[compiled.plan.passes.front().declared.value].name;
+}
+
+TEST(HostResources, AreTakenOverReadAtTheComputeStageAndHandedBack) {
+  const Read loaded = read(std::string(traced));
+  ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
+  const DeviceProfile device = generic_profile();
+  const Compiled result = compiled(*loaded.graph, device);
+  ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
+  const Plan& plan = result.plan->plan;
+  EXPECT_TRUE(verify(plan).empty());
+  EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "trace");
+  const auto barriers_of = [&](ResourceType type, bool from, bool to) {
+    return std::count_if(plan.barriers.begin(), plan.barriers.end(), [&](const PlanBarrier& barrier) {
+      return plan.resources[barrier.resource].type == type && barrier.from_host == from &&
+             barrier.to_host == to;
+    });
+  };
+  EXPECT_EQ(barriers_of(ResourceType::acceleration_structure, true, false), 1);
+  EXPECT_EQ(barriers_of(ResourceType::acceleration_structure, false, true), 1);
+  EXPECT_EQ(barriers_of(ResourceType::buffer, true, false), 1) << "the vertices";
+  EXPECT_EQ(barriers_of(ResourceType::buffer, false, true), 1);
+  EXPECT_EQ(barriers_of(ResourceType::buffer, true, true), 1) << "the lights, which no pass reads";
+  for (const PlanBarrier& barrier : plan.barriers) {
+    const PlanResource& resource = plan.resources[barrier.resource];
+    if (resource.type == ResourceType::image) continue;
+    EXPECT_EQ(barrier.old_layout, Layout::undefined);
+    EXPECT_EQ(barrier.new_layout, Layout::undefined);
+    if (!barrier.from_host || barrier.to_host) continue;
+    EXPECT_EQ(barrier.destination_stages, stage::compute_shader);
+    EXPECT_EQ(barrier.destination_access, resource.type == ResourceType::buffer
+                                              ? access::shader_storage_read
+                                              : access::acceleration_structure_read);
+  }
+  for (const PlanResource& resource : plan.resources)
+    if (resource.type != ResourceType::image) {
+      EXPECT_EQ(resource.first_instance, no_instance) << "the host's memory";
+      const std::string& name = loaded.graph->resources[resource.declared.value].name;
+      EXPECT_EQ(resource.bytes, name == "vertices" ? 96u : name == "lights" ? 16u : 0u) << name;
+    }
+}
+
+TEST(HostResources, ArePartOfASavedPlan) {
+  const Read loaded = read(std::string(traced));
+  ASSERT_TRUE(loaded.graph);
+  const DeviceProfile device = generic_profile();
+  const Compiled result = compiled(*loaded.graph, device);
+  ASSERT_TRUE(result.plan);
+  const std::string bytes = write_plan(saved_plan(result.input, result.plan->plan));
+  Diagnostics diagnostics;
+  const auto back = read_plan("plan", bytes, diagnostics);
+  ASSERT_TRUE(back) << all_messages(diagnostics);
+  EXPECT_EQ(write_plan(*back), bytes);
+  EXPECT_EQ(back->key.features, bit_of(Feature::ray_query));
+}
+
+TEST(Options, ThatTheDeviceCannotRunGiveWayToOneThatItCan) {
+  const Read loaded = read(std::string(traced));
+  ASSERT_TRUE(loaded.graph);
+  const DeviceProfile device = without_rays();
+  Compiled result = compiled(*loaded.graph, device);
+  ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
+  EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
+  EXPECT_EQ(result.plan->plan.setting_values[0].integer, 1);
+  const std::string text = plan_text(*loaded.graph, kinds(), *result.plan, {});
+  EXPECT_NE(text.find("'copy' instead of 'trace', which is not offered: the device lacks ray_query"),
+            std::string::npos)
+      << text;
+  tell_withheld(*loaded.graph, device, {}, result.diagnostics);
+  ASSERT_EQ(result.diagnostics.list.size(), 1u);
+  EXPECT_EQ(result.diagnostics.list[0].id, Id::option_withheld);
+}
+
+TEST(Options, ThatNeedAnImportGiveWayWhereItIsNotBound) {
+  const Read loaded = read(std::string(traced));
+  ASSERT_TRUE(loaded.graph);
+  const DeviceProfile device = generic_profile();
+  std::vector<bool> bound(loaded.graph->resources.size(), true);
+  bound[1] = false; // the scene
+  const Compiled result = compiled(*loaded.graph, device, bound);
+  ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
+  EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
+  const std::string text = plan_text(*loaded.graph, kinds(), *result.plan, {});
+  EXPECT_NE(text.find("not offered: 'scene' is not bound"), std::string::npos) << text;
+}
+
+TEST(Features, ThatAGraphRequiresAreNeededToRunIt) {
+  const Read loaded =
+      read(with("\"name\": \"traced\"", "\"name\": \"traced\",\n  \"requires\": [\"ray_query\"]"));
+  ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
+  const DeviceProfile device = without_rays();
+  const Compiled result = compiled(*loaded.graph, device);
+  EXPECT_FALSE(result.plan);
+  expect_only(result.diagnostics, Id::device_feature, 2, 3, {"'traced'", "ray_query"});
+}
+
+TEST(Features, ThatAKernelNeedsAreNeededToRunItsPass) {
+  const Read loaded = read(with(", \"requires\": { \"trace\": [\"ray_query\", \"scene\"] }", ""));
+  ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
+  const DeviceProfile device = without_rays();
+  const Compiled result = compiled(*loaded.graph, device);
+  EXPECT_FALSE(result.plan);
+  expect_only(result.diagnostics, Id::device_feature, 10, 15, {"pass 'trace'", "ray_query"});
+}
+
+} // namespace
+} // namespace dermis
