@@ -56,6 +56,49 @@ TEST_F(Merge, OfSamplesThatAgreeSaysTheSame) {
   EXPECT_GT(judged, 200);
 }
 
+// A path of a pixel and its image in a neighbour: what merging makes of the one alone and of the other alone
+// is the path's whole target, once with each weight: MIS weights sum to 1 at every path.
+TEST_F(Merge, CountsEachPathOnce) {
+  Reservoir nothing;
+  int judged = 0, with_jacobian = 0;
+  for (size_t i = 0; i + 2 < pixels.size(); ++i) {
+    const Domain &domain = pixels[i].domain, &beside = pixels[i + 2].domain;
+    if (domain.medium == 0 || beside.medium != domain.medium) continue;
+    for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
+      ReuseSettings settings{shift, Index::traced, confidence_cap};
+      Reservoir own = that_says(domain, 1);
+      own.weight = 1;
+      own.confidence = 3;
+      const double target = target_of(scene, domain, own);
+      const Shifted image = shift_path(scene, shift, domain, beside, own);
+      if (!(image.target > 0)) continue;
+      Reservoir other = image.path;
+      other.confidence = 5;
+      if (other.hits == 0 && shift != Shift::reconnection)
+        prepare(scene, shift, Index::traced, beside, other, random);
+      other.weight = image.jacobian; // 1 over that of the way back
+      Reservoir no_own = nothing, no_other = nothing;
+      no_own.confidence = own.confidence;
+      no_other.confidence = other.confidence;
+      const auto light = [&](const Reservoir& merged) { return luminance(resolve(scene, domain, merged)); };
+
+      const double temporal = light(merge_temporal(scene, settings, domain, own, beside, no_other, random)) +
+                              light(merge_temporal(scene, settings, domain, no_own, beside, other, random));
+      EXPECT_NEAR(temporal / target, 1, 1e-6);
+      const auto spatial = [&](const Reservoir& mine, const Reservoir& theirs) {
+        Spatial merge = spatial_begin(scene, settings, domain, mine, theirs.confidence, random);
+        spatial_add(scene, settings, domain, merge, beside, theirs, random);
+        return light(spatial_end(merge, random));
+      };
+      EXPECT_NEAR((spatial(own, no_other) + spatial(no_own, other)) / target, 1, 1e-6);
+      with_jacobian += std::abs(image.jacobian - 1) > 0.1;
+      ++judged;
+    }
+  }
+  EXPECT_GT(judged, 100);
+  EXPECT_GT(with_jacobian, 30);
+}
+
 TEST_F(Merge, WithNothingKeepsTheOwnSample) {
   for (const testing::Pixel& pixel : pixels) {
     if (pixel.domain.medium == 0) continue;
