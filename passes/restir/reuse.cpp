@@ -13,6 +13,22 @@ double part(double x, double y) {
   return x > 0 ? x / (x + y) : 0;
 }
 
+// A path as these lights light it in the pixel that it was shifted to.
+void relight(const Scene& scene, std::span<const Light> lights, const Domain& domain, Shifted& shifted) {
+  Reservoir& path = shifted.path;
+  if (!(shifted.jacobian > 0)) return;
+  path.irradiance = {};
+  shifted.target = 0;
+  if (path.light >= lights.size()) return;
+  const SurfacePoint x2 = scene.surface_at(scene.of, path.instance, path.primitive, path.barycentrics);
+  const Light& light = lights[path.light];
+  const Vector3 irradiance = light_irradiance(light, path.place, x2.position, x2.normal, x2.shading);
+  const double target = luminance(scattered(domain, length(x2.position - domain.position), irradiance));
+  if (!(target > 0) || !scene.visible(scene.of, x2, light_target(light, path.place, x2.position))) return;
+  path.irradiance = irradiance;
+  shifted.target = target;
+}
+
 } // namespace
 
 Reservoir draw_initial(const Scene& scene, const Domain& domain, Random& random) {
@@ -55,11 +71,13 @@ Reservoir merge_temporal(const Scene& scene, const ReuseSettings& settings, cons
   Stream stream;
 
   const double target = target_of(scene, domain, own);
-  const Shifted back = shift_path(scene, settings.shift, domain, previous_domain, own);
+  Shifted back = shift_path(scene, settings.shift, domain, previous_domain, own);
+  if (!scene.previous_lights.empty()) relight(scene, scene.previous_lights, previous_domain, back);
   const double own_mis = part(own.confidence * target, history.confidence * back.target * back.jacobian);
   stream_add(stream, own, target, own_mis * target * own.weight, own.confidence, random_unit(random));
 
-  const Shifted here = shift_path(scene, settings.shift, previous_domain, domain, history);
+  Shifted here = shift_path(scene, settings.shift, previous_domain, domain, history);
+  if (!scene.previous_lights.empty()) relight(scene, scene.lights, domain, here);
   const double there = here.jacobian > 0 ? target_of(scene, previous_domain, history) / here.jacobian : 0;
   const double mis = part(history.confidence * there, own.confidence * here.target);
   stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian,

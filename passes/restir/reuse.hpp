@@ -18,7 +18,9 @@ struct ReuseSettings {
 
 // Generalised balance heuristic over both (Lin et al. 2022, "Generalized resampled importance sampling", eq.
 // 35 with confidences): m_i(y) = c_i p_i(T_i^-1 y) |dT_i^-1/dy| / sum_j. `previous_domain` is the pixel of
-// the history. The history's confidence is capped at cap times the frame's.
+// the history. The history's confidence is capped at cap times the frame's. Where the scene had other lights
+// before, each path is lit by those of the frame it is looked at in: no light that went out lives on, none
+// that came is held back.
 Reservoir merge_temporal(const Scene& scene, const ReuseSettings& settings, const Domain& domain,
                          const Reservoir& current, const Domain& previous_domain, const Reservoir& previous,
                          Random& random);

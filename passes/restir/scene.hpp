@@ -26,6 +26,9 @@ struct Scene {
   // Is the way from the surface (off which rays are lifted) to the target free?
   bool (*visible)(const void* of, const SurfacePoint& from, const Vector3& target) = nullptr;
   std::span<const Light> lights; // shares of all sum to 1
+  // Of the frame before, one for one, where they were others; empty where they were the same. Only
+  // merge_temporal asks; surfaces stand where they stand now.
+  std::span<const Light> previous_lights{};
 };
 
 } // namespace dermis::restir

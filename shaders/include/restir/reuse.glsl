@@ -45,6 +45,26 @@ reservoir draw_initial(scatter_domain domain, inout random_state random) {
 // x / (x + y) for densities, 0 where both are.
 float restir_part(float x, float y) { return x > 0.0 ? x / (x + y) : 0.0; }
 
+#ifdef DERMIS_RESTIR_RELIGHT
+// Kernels that define DERMIS_RESTIR_RELIGHT before they include this define it: the same light in the frame before.
+light_source previous_light_at(uint index);
+
+// A path as a light of its number lights it in the pixel that it was shifted to.
+void relight(light_source light, scatter_domain domain, inout shifted_path shifted) {
+  if (!(shifted.jacobian > 0.0))
+    return;
+  shifted.target = 0.0;
+  surface_point x2 = surface_of(shifted.path);
+  vec3 irradiance = light_irradiance(light, shifted.path.place, x2.position, x2.normal, x2.shading);
+  float target = luminance(scattered(domain, length(x2.position - domain.position), irradiance));
+  shifted.path.irradiance = vec3(0.0);
+  if (!(target > 0.0) || !visible(x2, light_target(light, shifted.path.place, x2.position)))
+    return;
+  shifted.path.irradiance = irradiance;
+  shifted.target = target;
+}
+#endif
+
 // Generalised balance heuristic over frame and history.
 reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservoir current,
                          scatter_domain previous_domain, reservoir previous, inout random_state random) {
@@ -56,10 +76,18 @@ reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservo
 
   float target = target_of(domain, own);
   shifted_path back = shift_path(settings.shift, domain, previous_domain, own);
+#ifdef DERMIS_RESTIR_RELIGHT
+  if (back.path.light < light_count())
+    relight(previous_light_at(back.path.light), previous_domain, back);
+#endif
   float own_mis = restir_part(own.confidence * target, history.confidence * back.target * back.jacobian);
   stream_add(stream, own, target, own_mis * target * own.weight, own.confidence, random_unit(random));
 
   shifted_path here = shift_path(settings.shift, previous_domain, domain, history);
+#ifdef DERMIS_RESTIR_RELIGHT
+  if (here.path.light < light_count())
+    relight(light_at(here.path.light), domain, here);
+#endif
   float there = here.jacobian > 0.0 ? target_of(previous_domain, history) / here.jacobian : 0.0;
   float mis = restir_part(history.confidence * there, own.confidence * here.target);
   stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian, history.confidence,

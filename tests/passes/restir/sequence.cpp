@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 namespace dermis::restir::testing {
 
@@ -52,8 +53,9 @@ std::vector<Reservoir> spatial_pass(const Scene& scene, const SequenceSettings& 
 } // namespace
 
 SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettings& s, const Regions& regions,
-                            const std::vector<double>& truth, uint32_t seed) {
-  const Scene scene = triangles.access();
+                            const std::vector<double>& truth, uint32_t seed,
+                            const std::vector<Light>& lights) {
+  Scene scene = triangles.access();
   SequenceResult result;
   result.region_mean.assign(regions.pixels.size(), 0);
   const std::vector<Pixel> views[] = {look_at(triangles, s.width, s.height),
@@ -64,6 +66,9 @@ SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettin
              over_space = (static_cast<uint32_t>(s.reuse) & 2u) != 0;
   for (uint32_t f = 0; f < s.frames; ++f) {
     const uint32_t key = seed << 12 | f;
+    scene.previous_lights = {};
+    if (!lights.empty() && f == s.judged_from)
+      scene.previous_lights = std::exchange(scene.lights, std::span<const Light>(lights));
     const bool odd = f % 2 == 1 && s.jitter != 0;
     frame.pixels = views[odd];
     frame.reservoirs.assign(frame.pixels.size(), {});
@@ -88,7 +93,7 @@ SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettin
       frame.reservoirs =
           spatial_pass(scene, s, settings(Stage::spatial_second), frame, s.neighbours[1], 3, key);
     }
-    if (!odd) {
+    if (!odd && f >= s.judged_from) {
       judged += 1;
       const auto estimate = [&](uint32_t i) {
         return luminance(resolve(scene, frame.pixels[i].domain, frame.reservoirs[i]));

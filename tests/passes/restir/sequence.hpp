@@ -13,7 +13,8 @@ struct SequenceSettings {
   Reuse reuse = Reuse::spatiotemporal;
   Index index = Index::traced;
   uint32_t width = 16, height = 16, frames = 8;
-  double jitter = 0; // pixels that the camera stands to the right in odd frames, which are not judged
+  uint32_t judged_from = 0; // frames before it are not judged
+  double jitter = 0;        // pixels that the camera stands to the right in odd frames, which are not judged
   std::array<uint32_t, 2> neighbours{4, 2}; // of the two spatial passes (R11)
 };
 
@@ -22,9 +23,10 @@ struct SequenceResult {
   double last_square = 0; // mean over pixels of (estimate - truth)^2 in the last frame that is judged
 };
 
-// One sequence with an empty history. Regions and `truth` (luminance a pixel, or empty) are those of even
-// frames.
+// One sequence with an empty history. From frame judged_from on `lights` take the place of the scene's, where
+// there are any. Regions and `truth` (luminance a pixel, or empty) are those of even frames.
 SequenceResult run_sequence(const TriangleScene& scene, const SequenceSettings& settings,
-                            const Regions& regions, const std::vector<double>& truth, uint32_t seed);
+                            const Regions& regions, const std::vector<double>& truth, uint32_t seed,
+                            const std::vector<Light>& lights = {});
 
 } // namespace dermis::restir::testing

@@ -112,6 +112,35 @@ TEST_F(Unbiased, EveryShiftWithEveryReuse) {
     }
 }
 
+// The first frame after lights moved, one of them away to the other side: nothing of the old light is left,
+// none of the new is missing.
+TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
+  TriangleScene after = scene;
+  after.lights[0].position = {2.6, 1, 4};
+  after.lights[0].emission = {2, 6, 20};
+  after.lights[1].emission = {8, 4, 2};
+  testing::finish(after);
+  const auto truth = means_of(area_reference(after, pixels, regions, batches, 20000, 97));
+  const int tests = static_cast<int>(regions.pixels.size()) * 3;
+  for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
+    SequenceSettings settings = settings_of(shift, Reuse::spatiotemporal);
+    settings.judged_from = 8;
+    settings.frames = 9;
+    constexpr uint32_t changes = 96; // one judged frame each
+    std::vector<std::vector<double>> values(regions.pixels.size(), std::vector<double>(changes));
+    subsurface::parallel_for(changes, 1, 0, [&](size_t i) {
+      const auto result =
+          run_sequence(scene, settings, regions, {}, static_cast<uint32_t>(i + 301), after.lights);
+      for (size_t r = 0; r < values.size(); ++r)
+        values[r][i] = result.region_mean[r];
+    });
+    const Judged judged = judge(means_of(values), truth);
+    std::printf("lights moved, shift %u: %.2f sigma, %.2f %% off, 1 sigma is %.2f %%\n",
+                static_cast<unsigned>(shift), judged.worst, 100 * judged.largest, 100 * judged.spread);
+    EXPECT_LT(judged.worst, testing::three_sigma_limit(restarts - 1, tests));
+  }
+}
+
 // With drawn indices the sequence of shifts has a bias (supplement, section 6). It is printed; that it stays
 // small is what is asked of it.
 TEST_F(Unbiased, AlmostWhereIndicesAreDrawn) {
