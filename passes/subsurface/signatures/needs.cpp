@@ -18,6 +18,10 @@ constexpr PortNeed needs[] = {
     {"shares", tile, word},
     {"before", tile, word},
     {"reservoirs", pixel, reservoir},
+    {"vertices", 0, 0, 32}, // of the host's scene: an element
+    {"indices", 0, 0, word},
+    {"instances", 0, 0, 64},
+    {"lights", 0, 0, 64},
     {"light_range", tile, range},
     {"light_cells", cell, range},
     {"level_tiles", tile, range,
@@ -82,7 +86,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 12;
+constexpr size_t buffers = 16;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace
