@@ -2,6 +2,7 @@
 
 #include "integration/demo_engine/model/load_model.hpp"
 #include "integration/demo_engine/render/dermis_host.hpp"
+#include "integration/demo_engine/render/ray_placing.hpp"
 #include "integration/demo_engine/render/renderer.hpp"
 #include "integration/demo_engine/render/taa.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
@@ -178,6 +179,11 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
   clock.begin("read inputs");
   done = read_inputs(host, renderer, state, out.inputs); // before the graph updates the lighting in place
   if (!done) return done.error();
+  if (session.dermis && wants_rays(*session.dermis)) {
+    clock.begin("place rays");
+    done = place_rays(renderer, state);
+    if (!done) return done.error();
+  }
   clock.begin("record graph");
   done = run_commands(host, [&](VkCommandBuffer commands) -> Result<> {
     if (session.dermis) {

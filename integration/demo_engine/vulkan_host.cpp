@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <span>
+#include <string_view>
+#include <vector>
 
 namespace demo {
 namespace {
@@ -15,6 +19,21 @@ struct ExtensionFeatures {
   VkPhysicalDeviceMaintenance4Features maintenance4 = vulkan_struct<VkPhysicalDeviceMaintenance4Features>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES);
 };
+
+bool has_extensions(VkPhysicalDevice device, std::span<const char* const> wanted) {
+  uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> offered(count);
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, offered.data());
+  return std::all_of(wanted.begin(), wanted.end(), [&](std::string_view name) {
+    return std::any_of(offered.begin(), offered.end(),
+                       [&](const VkExtensionProperties& one) { return name == one.extensionName; });
+  });
+}
+
+constexpr const char* ray_extensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                          VK_KHR_RAY_QUERY_EXTENSION_NAME,
+                                          VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
 Result<> create_device(VulkanHost& host, bool as_vulkan_12) {
   auto features13 =
@@ -32,7 +51,19 @@ Result<> create_device(VulkanHost& host, bool as_vulkan_12) {
     features12.pNext = &extension_features.synchronization2;
   else
     features12.pNext = &features13;
+  auto structures = vulkan_struct<VkPhysicalDeviceAccelerationStructureFeaturesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR);
+  auto queries = vulkan_struct<VkPhysicalDeviceRayQueryFeaturesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR);
+  const bool rays = !as_vulkan_12 && has_extensions(host.physical_device, ray_extensions);
+  if (rays) {
+    queries.pNext = &structures;
+    features13.pNext = &queries;
+  }
   vkGetPhysicalDeviceFeatures2(host.physical_device, &features);
+  host.ray_query =
+      rays && structures.accelerationStructure && queries.rayQuery && features12.bufferDeviceAddress;
+  if (!host.ray_query) features13.pNext = nullptr;
   features.features.robustBufferAccess = VK_FALSE;
   features13.robustImageAccess = VK_FALSE;
   const bool fits =
@@ -58,6 +89,9 @@ Result<> create_device(VulkanHost& host, bool as_vulkan_12) {
   if (as_vulkan_12) {
     info.enabledExtensionCount = static_cast<uint32_t>(std::size(extensions));
     info.ppEnabledExtensionNames = extensions;
+  } else if (host.ray_query) {
+    info.enabledExtensionCount = static_cast<uint32_t>(std::size(ray_extensions));
+    info.ppEnabledExtensionNames = ray_extensions;
   }
   const VkResult created = vkCreateDevice(host.physical_device, &info, nullptr, &host.device);
   if (created != VK_SUCCESS) return vulkan_error("vkCreateDevice", created);

@@ -118,6 +118,9 @@ Result<Buffer> create_buffer(VulkanHost& host, uint64_t size, VkBufferUsageFlags
   auto allocate = vulkan_struct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
   allocate.allocationSize = needs.size;
   allocate.memoryTypeIndex = type;
+  auto flags = vulkan_struct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
+  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  if ((usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0) allocate.pNext = &flags;
   result = host.vk.vkAllocateMemory(host.device, &allocate, nullptr, &buffer.memory);
   if (result != VK_SUCCESS) return vulkan_error("vkAllocateMemory", result);
   result = host.vk.vkBindBufferMemory(host.device, buffer.buffer, buffer.memory, 0);

@@ -37,6 +37,8 @@ std::string declare_port(const Port& port, uint32_t binding) {
     if (port.glsl_type.substr(0, 9) == "writeonly")
       return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
     return fmt::format("layout({}, rgba16f) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
+  case Usage::acceleration_structure:
+    return fmt::format("layout({}) uniform {} {}_structure;\n", layout, port.glsl_type, port.name);
   case Usage::storage_buffer_read:
     return fmt::format("layout(std430, {}) readonly buffer {}_block {{ {} {}_data[]; }};\n", layout,
                        port.name, port.glsl_type, port.name);

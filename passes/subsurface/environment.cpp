@@ -74,6 +74,10 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.depth_decode[2] = static_cast<float>(decode.c);
   out.depth_decode[3] = static_cast<float>(decode.e);
   out.depth_unit = static_cast<float>(input.metres_per_unit * mm_per_metre);
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 4; ++c)
+      out.view_from_world[r][c] =
+          static_cast<float>(input.view_from_world[4 * r + c] * input.metres_per_unit * mm_per_metre);
   out.exposure = input.exposure;
   out.sample_units = input.sample_units;
   out.jitter[0] = static_cast<float>(input.jitter_px[0]);

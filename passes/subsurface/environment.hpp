@@ -76,8 +76,9 @@ struct FrameConstants {
   uint32_t sample_units;    // that subsurface.allot may spend
   float unused;             // rounds to 16 bytes
   int32_t bounds[4]; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
+  float view_from_world[3][4]; // rows; view position in mm = M * (world position in the host's units, 1)
 };
-static_assert(sizeof(FrameConstants) == 192);
+static_assert(sizeof(FrameConstants) == 240);
 
 // std430, one per profile id 0..255; entry 0 and undeclared ids have d = 0: light passes through.
 struct ProfileEntry {

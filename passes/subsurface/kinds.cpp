@@ -48,7 +48,9 @@ KindRegistry make_kinds() {
                                &sap_gather_layered_kind,
                                &brightness_kind,
                                &sap_halve_kind,
-                               &sap_gather_half_kind}) {
+                               &sap_gather_half_kind,
+                               &restir_initial_kind,
+                               &restir_resolve_kind}) {
     PassKind known = *kind;
     known.needs = needs_of(known.name);
     registry.add(known);

@@ -23,6 +23,7 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   uint sample_units;    // that subsurface.allot may spend
   float unused;
   ivec4 bounds; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
+  vec4 view_from_world[3]; // rows; view position in mm = M * (world position in the host's units, 1)
 } frame;
 
 struct profile_entry {

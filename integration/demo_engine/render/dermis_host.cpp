@@ -91,6 +91,25 @@ Result<Sources> read_sources(const DermisDesc& desc) {
   return sources;
 }
 
+// What rays see of the scene, by the name of the slot.
+enum class RayPart : uint8_t { none, structure, vertices, indices, instances, lights };
+
+RayPart ray_part_of(const dermis_slot& slot) {
+  const std::string_view name = slot.name;
+  if (slot.type == DERMIS_SLOT_ACCELERATION_STRUCTURE)
+    return name == "scene" ? RayPart::structure : RayPart::none;
+  if (slot.type != DERMIS_SLOT_BUFFER) return RayPart::none;
+  return name == "vertices"    ? RayPart::vertices
+         : name == "indices"   ? RayPart::indices
+         : name == "instances" ? RayPart::instances
+         : name == "lights"    ? RayPart::lights
+                               : RayPart::none;
+}
+
+bool is_rays(const dermis_slot& slot) {
+  return ray_part_of(slot) != RayPart::none;
+}
+
 Result<> query_slots(DermisHost& host) {
   uint32_t count = 0;
   dermis_result result = dermis_graph_slots(host.graph, &count, nullptr);
@@ -206,7 +225,7 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   if (!sources) return sources.error();
   DermisHandle host(new DermisHost);
   dermis_context_desc context = DERMIS_CONTEXT_DESC_INIT;
-  context.flags = DERMIS_CONTEXT_TIMINGS;
+  context.flags = DERMIS_CONTEXT_TIMINGS | (vulkan.ray_query ? DERMIS_CONTEXT_RAY_QUERY : 0);
   context.frames_in_flight = frames_in_flight;
   context.queue_family = vulkan.queue_family;
   context.instance = vulkan.instance;
@@ -221,6 +240,7 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   if (auto done = build_graph(*host, desc, *sources, {}); !done) return done.error();
   std::vector<std::string> unbound;
   for (const dermis_slot& slot : host->slots) {
+    if (vulkan.ray_query && is_rays(slot)) continue;
     const auto target = target_of(slot.name);
     if (target && (target != Target::sampling || desc.sampling) && (target != Target::skips || desc.skips))
       continue;
@@ -282,6 +302,11 @@ bool hands_out_light(const DermisHost& host) {
   return writes(host, Target::scattered);
 }
 
+bool wants_rays(const DermisHost& host) {
+  return std::any_of(host.slots.begin(), host.slots.end(),
+                     [](const dermis_slot& slot) { return slot.bound && is_rays(slot); });
+}
+
 bool hands_out_sampling(const DermisHost& host) {
   return writes(host, Target::sampling);
 }
@@ -298,6 +323,33 @@ Scattering scattering_of(const DermisHost& host) {
 const std::vector<std::string>& warnings_of(const DermisHost& host) {
   return host.warnings;
 }
+
+namespace {
+
+// This engine waits for its uploads and builds: nothing is left to wait for.
+void bind_rays(const dermis_slot& slot, const RayScene& rays, std::vector<dermis_buffer_binding>& buffers,
+               dermis_acceleration_structure_binding& structure) {
+  const RayPart part = ray_part_of(slot);
+  if (part == RayPart::structure) {
+    structure.slot = slot.id;
+    structure.structure = rays.top.handle;
+    structure.before.stages = structure.after.stages = ray_build_stages;
+    structure.before.access = structure.after.access = ray_build_access;
+    return;
+  }
+  const Buffer& buffer = part == RayPart::vertices    ? rays.vertices
+                         : part == RayPart::indices   ? rays.indices
+                         : part == RayPart::instances ? rays.instances
+                                                      : rays.lights;
+  dermis_buffer_binding& binding = buffers.emplace_back(dermis_buffer_binding DERMIS_BUFFER_BINDING_INIT);
+  binding.slot = slot.id;
+  binding.buffer = buffer.buffer;
+  binding.bytes = buffer.size / slot.stride * slot.stride;
+  binding.before.stages = binding.after.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+  binding.before.access = binding.after.access = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+}
+
+} // namespace
 
 Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,
                       VkCommandBuffer commands, uint64_t frame_index) {
@@ -322,7 +374,15 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
     binding.after = rests;
     bindings.push_back(binding);
   }
+  std::vector<dermis_buffer_binding> buffers;
+  dermis_acceleration_structure_binding structure = DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT;
+  for (const dermis_slot& slot : host.slots)
+    if (slot.bound && is_rays(slot)) bind_rays(slot, *renderer.rays, buffers, structure);
   dermis_frame frame = DERMIS_FRAME_INIT;
+  frame.buffers = buffers.data();
+  frame.buffer_count = static_cast<uint32_t>(buffers.size());
+  frame.structures = &structure;
+  frame.structure_count = structure.structure != VK_NULL_HANDLE ? 1 : 0;
   frame.command_buffer = commands;
   frame.bindings = bindings.data();
   frame.binding_count = static_cast<uint32_t>(bindings.size());

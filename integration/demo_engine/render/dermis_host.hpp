@@ -40,6 +40,7 @@ std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& ho
 // In place if the graph writes `lighting`, else apart if it writes `scattered_light`, else none.
 Scattering scattering_of(const DermisHost& host);
 bool hands_out_light(const DermisHost& host);
+bool wants_rays(const DermisHost& host); // buffers and acceleration structures are bound
 bool hands_out_sampling(const DermisHost& host);
 bool hands_out_skips(const DermisHost& host);
 const std::vector<std::string>& warnings_of(const DermisHost& host);

@@ -3,6 +3,7 @@
 // skin, the composite.
 
 #include "integration/demo_engine/render/frame_data.hpp"
+#include "integration/demo_engine/rays/ray_scene.hpp"
 #include "integration/demo_engine/render/scene_gpu.hpp"
 #include "integration/demo_engine/scene/scene_state.hpp"
 
@@ -70,6 +71,7 @@ struct Renderer {
   VkDescriptorSet lighting_set = VK_NULL_HANDLE, composite_set = VK_NULL_HANDLE;
   OwnedQueryPool queries;
   SceneGpu gpu;
+  std::unique_ptr<RayScene> rays; // null: not asked for
   std::vector<glm::dmat4> drawn_shadows, drawn_world; // what the shadow maps hold
 
   const Image& operator[](Target target) const { return targets[static_cast<size_t>(target)]; }

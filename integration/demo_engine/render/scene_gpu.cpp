@@ -114,7 +114,7 @@ Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& m
   for (const Object& object : scene.objects) {
     auto& index = made[static_cast<size_t>(object.shape)];
     if (!index) {
-      const Mesh mesh = make(object.shape, model);
+      Mesh mesh = make(object.shape, model);
       if (mesh.indices.empty())
         return Error{ErrorKind::usage,
                      "scene '" + scene.name +
@@ -123,6 +123,7 @@ Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& m
       if (!drawn) return drawn.error();
       index = static_cast<uint32_t>(gpu.meshes.size());
       gpu.meshes.push_back(drawn.take());
+      if (host.ray_query) gpu.shapes.push_back(std::move(mesh));
     }
     gpu.mesh_of.push_back(*index);
     gpu.maps_of.push_back(sets[object.shape == Shape::model ? 1 : 0]);

@@ -32,6 +32,7 @@ struct DrawnMesh {
 
 struct SceneGpu {
   std::vector<DrawnMesh> meshes;
+  std::vector<Mesh> shapes; // of meshes, where the device has ray queries
   std::vector<uint32_t> mesh_of;        // one an object
   std::vector<VkDescriptorSet> maps_of; // one an object
   Buffer materials;

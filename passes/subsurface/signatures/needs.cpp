@@ -5,8 +5,8 @@
 namespace dermis::subsurface {
 namespace {
 
-constexpr uint32_t pixel = 1, tile = 8, cell = 32; // sides of squares
-constexpr uint32_t word = 4, range = 16;           // bytes
+constexpr uint32_t pixel = 1, tile = 8, cell = 32;       // sides of squares
+constexpr uint32_t word = 4, range = 16, reservoir = 64; // bytes
 constexpr uint32_t dispatch = 16, levels = 9,
                    level_heads = 1024; // VkDispatchIndirectCommand and one word; bytes
 
@@ -17,6 +17,11 @@ constexpr PortNeed needs[] = {
     {"doubts", tile, word},
     {"shares", tile, word},
     {"before", tile, word},
+    {"reservoirs", pixel, reservoir},
+    {"vertices", 0, 0, 32}, // of the host's scene: an element
+    {"indices", 0, 0, word},
+    {"instances", 0, 0, 64},
+    {"lights", 0, 0, 64},
     {"light_range", tile, range},
     {"light_cells", cell, range},
     {"level_tiles", tile, range,
@@ -27,6 +32,7 @@ constexpr PortNeed needs[] = {
 
     {"lighting", pixel},
     {"depth", pixel},
+    {"normal", pixel},
     {"material", pixel},
     {"albedo", pixel},
     {"scatter_scale", pixel},
@@ -80,7 +86,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 11;
+constexpr size_t buffers = 16;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace

@@ -1,0 +1,52 @@
+// Rays through the host's scene, in compute. Include after the bindings.
+#ifndef DERMIS_RESTIR_RAYS_GLSL
+#define DERMIS_RESTIR_RAYS_GLSL
+
+#include "restir/surfaces.glsl"
+
+const uint ray_any = 0xffu; // mask of instances
+
+void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
+  hits.count = 0u;
+  if (!(ray.reach > 0.0))
+    return;
+  rayQueryEXT query;
+  rayQueryInitializeEXT(query, scene_structure, gl_RayFlagsNoOpaqueEXT, ray_any, ray.origin, 0.0, ray.direction,
+                        ray.reach);
+  while (rayQueryProceedEXT(query)) { // nothing is confirmed: every triangle is a candidate
+    probe_hit met;
+    met.instance = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false));
+    if (instances_data[met.instance].place.z != medium)
+      continue;
+    met.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+    met.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, false);
+    met.distance = rayQueryGetIntersectionTEXT(query, false);
+    uint at = min(hits.count, most_probe_hits - 1u);
+    if (hits.count == most_probe_hits && met.distance >= hits.hit[at].distance)
+      continue;
+    for (; at > 0u && hits.hit[at - 1u].distance > met.distance; --at)
+      hits.hit[at] = hits.hit[at - 1u];
+    hits.hit[at] = met;
+    hits.count = min(hits.count + 1u, most_probe_hits);
+  }
+}
+
+// Rays leave a surface this share of its distance from the world's origin above it, and of a unit: some roundings of
+// a position's coordinates.
+const float ray_lift = 2e-5;
+
+bool visible(surface_point from, vec3 target) {
+  float size = 1.0 + max(abs(from.position.x), max(abs(from.position.y), abs(from.position.z)));
+  vec3 origin = from.position + ray_lift * size * from.normal;
+  rayQueryEXT query;
+  rayQueryInitializeEXT(query, scene_structure, gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT, ray_any,
+                        origin, 0.0, target - origin, 1.0 - ray_lift);
+  while (rayQueryProceedEXT(query))
+    ;
+  return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
+}
+
+uint light_count() { return uint(lights_data.length()); }
+light_source light_at(uint index) { return lights_data[index]; }
+
+#endif

@@ -1,0 +1,35 @@
+#version 460
+// Paths camera - x1 - x2 - light: x2 by a probe ray, one place on one light, one shadow ray; of several the kept one is
+// drawn by resampling.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_ray_query : require
+#include "restir/instances.glsl"
+#include "restir/lights.glsl"
+#include "restir_initial.bindings.glsl"
+#include "environment.glsl"
+#include "tiles.glsl"
+
+int reservoir_row() { return textureSize(depth_image, 0).x; }
+
+#include "restir/rays.glsl"
+#include "restir/reuse.glsl"
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  scatter_domain domain = domain_of(pixel);
+  random_state random = random_state(uint(pixel.x) | uint(pixel.y) << 16, frame.frame_index, 0u);
+  reservoir_stream stream = stream_begin();
+  float share = 1.0 / float(settings.samples); // MIS weight of equal techniques
+  for (int i = 0; i < settings.samples; ++i) {
+    reservoir drawn = draw_initial(domain, random);
+    float target = target_of(domain, drawn);
+    stream_add(stream, drawn, target, share * target * drawn.weight, share, random_unit(random));
+  }
+  packed_reservoir packed = pack_reservoir(stream_end(stream));
+  for (uint i = 0u; i < 4u; ++i)
+    reservoirs_data[reservoir_place(pixel) + i] = packed.words[i];
+}

@@ -1,0 +1,218 @@
+// Scattering by rays on a driver that has them: tests/drivers/fetch.sh leaves one in build/drivers. Without
+// it the tests skip. The reference draws its points by area over the triangles: it shares no sampler with the
+// graph.
+#include "integration/demo_engine/engine.hpp"
+#include "integration/demo_engine/geometry/shapes.hpp"
+#include "passes/subsurface/profile.hpp"
+#include "tests/passes/restir/area_reference.hpp"
+
+#include "framegraph/text/document.hpp"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace demo {
+namespace {
+
+namespace restir = dermis::restir;
+
+const std::string source = DERMIS_SOURCE_DIR;
+
+RenderOptions back_lit(const std::string& technique, uint32_t samples, uint32_t frames) {
+  RenderOptions options;
+  options.scene = source + "/configs/scenes/back_lit.json";
+  options.roots = {source + "/configs"};
+  options.graph = source + "/configs/graphs/restir.json";
+  options.width = options.height = 64;
+  options.frames = frames;
+  options.validation = true;
+  options.settings = {{"technique", "\"" + technique + "\""}, {"samples", std::to_string(samples)}};
+  return options;
+}
+
+struct Rendering {
+  std::vector<FrameOutputs> frames;
+  std::vector<std::string> warnings;
+};
+
+Rendering rendered(const RenderOptions& options) {
+  Rendering out;
+  RenderCallbacks callbacks;
+  callbacks.on_start = [&](const RenderInfo& info) {
+    out.warnings = info.warnings;
+    return success();
+  };
+  callbacks.on_frame = [&](const FrameOutputs& frame) {
+    out.frames.push_back(frame);
+    return success();
+  };
+  const auto summary = render(options, callbacks);
+  if (!summary) {
+    ADD_FAILURE() << summary.error().text;
+    return {};
+  }
+  EXPECT_THAT(summary->validation_messages, testing::IsEmpty());
+  return out;
+}
+
+bool ran(const FrameOutputs& frame, const std::string& pass) {
+  return std::any_of(frame.dermis_times.begin(), frame.dermis_times.end(),
+                     [&](const PassTime& time) { return time.pass == pass; });
+}
+
+bool withheld(const Rendering& rendering) {
+  return std::any_of(rendering.warnings.begin(), rendering.warnings.end(), [](const std::string& warning) {
+    return warning.find("does not offer 'restir': the device lacks ray_query") != std::string::npos;
+  });
+}
+
+TEST(WithoutRayQueries, TheGraphFallsBackToThePyramidAndSaysSo) {
+  const Rendering rendering = rendered(back_lit("restir", 1, 1));
+  ASSERT_EQ(rendering.frames.size(), 1u);
+  if (!withheld(rendering)) GTEST_SKIP() << "this device has ray queries";
+  EXPECT_TRUE(ran(rendering.frames[0], "gather"));
+  EXPECT_FALSE(ran(rendering.frames[0], "draw"));
+}
+
+// The loader reads the variable each time an instance is made.
+struct WithRayQueries : testing::Test {
+  void SetUp() override {
+    const std::string driver = source + "/build/drivers/mesa25.json";
+    if (!std::filesystem::exists(driver))
+      GTEST_SKIP() << driver << " is not there: run tests/drivers/fetch.sh";
+    setenv("VK_DRIVER_FILES", driver.c_str(), 1);
+  }
+  void TearDown() override { unsetenv("VK_DRIVER_FILES"); }
+};
+
+double luminance(const FloatImage& image, size_t pixel) {
+  const float* rgb = image.texels.data() + pixel * image.channels;
+  return 0.2126 * double(rgb[0]) + 0.7152 * double(rgb[1]) + 0.0722 * double(rgb[2]);
+}
+
+restir::Vector3 vector_of(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+// back_lit.json in millimetres.
+restir::testing::TriangleScene triangles_of_scene(const restir::Vector3& d_mm) {
+  restir::testing::TriangleScene scene;
+  scene.d = {{}, d_mm};
+  const Mesh ball = make_sphere();
+  const auto add = [&](const glm::dvec3& position, double turn, const glm::dvec3& scale) {
+    glm::dmat4 world = glm::translate(glm::dmat4(1.0), 1000.0 * position);
+    world = glm::rotate(world, glm::radians(turn), glm::dvec3(0, 1, 0));
+    world = glm::scale(world, 1000.0 * scale);
+    std::vector<restir::Vector3> corners;
+    for (const uint32_t index : ball.indices)
+      corners.push_back(vector_of(glm::dvec3(world * glm::dvec4(ball.vertices[index].position, 1.0))));
+    restir::testing::add_instance(scene, 1, corners);
+  };
+  add({0.012, 0, 0}, 12, {0.024, 0.034, 0.0014});
+  add({-0.036, -0.012, 0}, 0, {0.012, 0.012, 0.012});
+  const auto light = [&](const glm::dvec3& position, const glm::dvec3& color, double intensity) {
+    restir::Light one;
+    one.position = vector_of(1000.0 * position);
+    one.emission = vector_of(1e6 * intensity * color);
+    scene.lights.push_back(one);
+  };
+  light({0.02, 0.03, -0.15}, {1.0, 0.95, 0.9}, 0.03);
+  light({-0.20, 0.10, 0.15}, {0.75, 0.86, 1.0}, 0.002);
+  restir::testing::finish(scene);
+  return scene;
+}
+
+// What the graph saw, as the reference wants it.
+std::vector<restir::testing::Pixel> pixels_of(const FrameOutputs& frame, const restir::Vector3& d_mm) {
+  std::vector<restir::testing::Pixel> pixels(frame.inputs.depth.texels.size());
+  const auto& clip = frame.camera.clip_from_view;
+  const auto& view = frame.camera.view_from_world;
+  const auto to_world = [&](const glm::dvec3& v) { // the rotation's transpose
+    return glm::dvec3(view[0] * v.x + view[4] * v.y + view[8] * v.z,
+                      view[1] * v.x + view[5] * v.y + view[9] * v.z,
+                      view[2] * v.x + view[6] * v.y + view[10] * v.z);
+  };
+  const uint32_t width = frame.inputs.depth.width, height = frame.inputs.depth.height;
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      const size_t i = size_t{y} * width + x;
+      const double depth = double(frame.inputs.depth.texels[i]);
+      if (frame.inputs.profile.texels[i] == 0 || !(depth > 0)) continue;
+      const double across = (2.0 * (x + 0.5) / width - 1.0) * depth / double(clip[0]);
+      const double up = (2.0 * (y + 0.5) / height - 1.0) * depth / double(clip[5]);
+      const glm::dvec3 from_eye = glm::dvec3(across, up, -depth) - glm::dvec3(view[3], view[7], view[11]);
+      const float* n = frame.inputs.normal.texels.data() + 3 * i;
+      restir::testing::Pixel& pixel = pixels[i];
+      pixel.domain = {vector_of(1000.0 * to_world(from_eye)),
+                      vector_of(glm::normalize(to_world(glm::dvec3(n[0], n[1], n[2])))), d_mm, 1};
+    }
+  return pixels;
+}
+
+restir::Vector3 skin_d() {
+  std::ifstream file(source + "/configs/profiles/skin.json");
+  std::stringstream text;
+  text << file.rdbuf();
+  dermis::Diagnostics diagnostics;
+  const auto document = dermis::parse_document("skin.json", text.str(), diagnostics);
+  const auto profile = document ? dermis::subsurface::read_profile(*document, diagnostics) : std::nullopt;
+  EXPECT_TRUE(profile);
+  return profile ? restir::Vector3{profile->d_mm[0], profile->d_mm[1], profile->d_mm[2]} : restir::Vector3{};
+}
+
+TEST_F(WithRayQueries, LightComesThroughAThinSheetAsMuchAsTheReferenceSays) {
+  constexpr uint32_t frames = 16, samples = 64;
+  const Rendering rays = rendered(back_lit("restir", samples, frames));
+  ASSERT_EQ(rays.frames.size(), frames);
+  ASSERT_FALSE(withheld(rays));
+  EXPECT_TRUE(ran(rays.frames[0], "draw"));
+  EXPECT_TRUE(ran(rays.frames[0], "resolve"));
+  EXPECT_FALSE(ran(rays.frames[0], "gather"));
+
+  const restir::Vector3 d = skin_d();
+  const auto scene = triangles_of_scene(d);
+  const auto pixels = pixels_of(rays.frames[0], d);
+  restir::testing::Regions regions; // the sheet's light comes through it, the lobe's from its own side
+  regions.pixels.resize(2);
+  const uint32_t width = rays.frames[0].inputs.depth.width;
+  for (uint32_t i = 0; i < pixels.size(); ++i)
+    if (pixels[i].domain.medium != 0) regions.pixels[i % width < width / 4 ? 1 : 0].push_back(i);
+  constexpr uint32_t batches = 16, points = 20000;
+  const auto reference = restir::testing::area_reference(scene, pixels, regions, batches, points, 7);
+
+  const Rendering pyramid = rendered(back_lit("sap", 1, 1));
+  ASSERT_EQ(pyramid.frames.size(), 1u);
+  for (size_t r = 0; r < regions.pixels.size(); ++r) {
+    ASSERT_GT(regions.pixels[r].size(), 50u);
+    const auto mean_over = [&](const FloatImage& image) {
+      double sum = 0;
+      for (const uint32_t pixel : regions.pixels[r])
+        sum += luminance(image, pixel);
+      return sum / double(regions.pixels[r].size());
+    };
+    std::vector<double> means;
+    for (const FrameOutputs& frame : rays.frames)
+      means.push_back(mean_over(frame.scattered));
+    const restir::testing::Mean drawn = restir::testing::mean_of(means);
+    const restir::testing::Mean wanted = restir::testing::mean_of(reference[r]);
+    const double flat = mean_over(pyramid.frames[0].scattered);
+    RecordProperty("region_" + std::to_string(r), std::to_string(drawn.mean) + " of " +
+                                                      std::to_string(wanted.mean) + ", sap " +
+                                                      std::to_string(flat));
+    // Three standard errors of both, and 2 %: the reference's facets are shaded flat, the graph's smoothly.
+    const double noise = 3 * std::hypot(drawn.sigma, wanted.sigma);
+    EXPECT_NEAR(drawn.mean, wanted.mean, noise + 0.02 * wanted.mean) << "region " << r << ", sap " << flat;
+    EXPECT_TRUE(r != 0 || flat < 0.5 * drawn.mean) << "screen space sees no light behind the sheet";
+  }
+}
+
+} // namespace
+} // namespace demo
