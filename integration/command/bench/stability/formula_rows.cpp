@@ -94,6 +94,45 @@ StabilityRow moving(std::string name, double level, uint64_t updates) {
   return made;
 }
 
+// Samples of a pixel whose spread they are to bring down to the target, in a closed loop: what is kept in
+// half floats says how many are taken, and those what is kept. Beside it the twin in fp64 with draws of the
+// same. Error: relative, of the mean number of samples.
+StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
+  struct Loop {
+    subsurface::MovingVariance moments;
+    double mean_count = 0, samples = 0;
+    int count = 0;
+  };
+  const subsurface::GuidanceSettings settings;
+  Loop kept, twin;
+  const auto frame = [&](Loop& loop, double draw, bool halves) {
+    const auto store = [&](double value) { return halves ? double(as_half(value)) : value; };
+    const bool begun = loop.moments.begun;
+    loop.count =
+        begun ? subsurface::clamped_samples(
+                    subsurface::wanted_samples(loop.moments.variance, loop.mean_count, settings), settings)
+              : static_cast<int>(settings.least);
+    loop.samples += loop.count;
+    loop.moments.add(1 + spread * draw / std::sqrt(double(loop.count)), settings.eta);
+    const double deviation = store(std::sqrt(loop.moments.variance));
+    loop.moments.variance = deviation * deviation;
+    loop.moments.mean = store(loop.moments.mean);
+    loop.mean_count =
+        store(begun ? loop.mean_count + settings.eta * (loop.count - loop.mean_count) : loop.count);
+  };
+  SplitMix64 random{11};
+  for (uint64_t i = 0; i < updates; ++i) {
+    const double even = static_cast<double>(random.next() >> 11) * 0x1p-53;
+    const double draw = std::sqrt(12.0) * (even - 0.5); // variance 1
+    frame(kept, draw, true);
+    frame(twin, draw, false);
+  }
+  StabilityRow made =
+      row(std::move(name), std::abs(kept.samples / twin.samples - 1), 0.02, std::isfinite(kept.samples));
+  made.frames = updates;
+  return made;
+}
+
 // A frozen mean would stay where it is: it must follow a step to within a step of a half float over (1 - eta)
 // / eta.
 StabilityRow following(std::string name, double eta, double bound) {
@@ -134,6 +173,8 @@ std::vector<StabilityRow> formula_rows(uint64_t updates) {
           moving("guidance_updates_bright", 1000, updates),
           moving("guidance_updates_at_1", 1, updates),
           moving("guidance_updates_faint", 1e-3, updates),
+          closed_loop("closed_loop_of_few_samples", 0.03, updates),
+          closed_loop("closed_loop_of_samples", 0.06, updates),
           following("half_mean_follows_eta_0.2", 0.2, half_step * 4),
           following("half_mean_follows_eta_0.05", 0.05, half_step * 19)};
 }
