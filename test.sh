@@ -12,7 +12,7 @@ usage="usage: ./test.sh [--full]
            sanitizer; 100,000 frames of the soak; the device tests on other drivers that are there; covered code
            (gcovr); 60 seconds a fuzz target; every bench"
 
-soak_frames=100000
+soak_processes=20 soak_frames=5000 # of each: a driver that forgets mappings runs out of them in one process
 full=no
 for argument in "$@"; do
   case "$argument" in
@@ -54,7 +54,13 @@ tsan() {
   build_preset tsan --target test_integration_static_library
   TSAN_OPTIONS=halt_on_error=1 build/tsan/tests/test_integration_static_library --gtest_filter='Threads.*'
 }
-soak() { DERMIS_SOAK_FRAMES=$soak_frames build/release/tests/test_integration_soak; }
+soak() {
+  local seed
+  for ((seed = 1; seed <= soak_processes; ++seed)); do
+    DERMIS_SOAK_SEED=$seed DERMIS_SOAK_FRAMES=$soak_frames build/release/tests/test_integration_soak ||
+      fail 1 "the soak failed with DERMIS_SOAK_SEED=$seed DERMIS_SOAK_FRAMES=$soak_frames"
+  done
+}
 other_drivers() { tests/drivers/run.sh; }
 coverage() { tests/coverage/run.sh; }
 benches() { build/release/dermis bench all --out build/bench; }

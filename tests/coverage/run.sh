@@ -21,12 +21,12 @@ if [[ ${1:-} != --report ]]; then
     build/coverage/tests/"$test" >build/coverage/"$test".log 2>&1 || { tail -n 30 build/coverage/"$test".log; exit 1; }
   done
 fi
-shared=(--root . build/coverage --exclude-throw-branches --exclude-unreachable-branches
+shared=(--root . --exclude-throw-branches --exclude-unreachable-branches
   --gcov-ignore-parse-errors -j "$(nproc)")
 failed=0
 for part in framegraph integration/abi; do
   out=build/coverage/${part//\//_}
-  gcovr "${shared[@]}" --filter "$part/" --json-summary "$out.json" --txt "$out.txt" \
+  gcovr "build/coverage/$part" "${shared[@]}" --filter "$part/" --json-summary "$out.json" --txt "$out.txt" \
     --fail-under-line $least_lines --fail-under-branch $least_branches || failed=1
   python3 - "$part" "$out.json" <<'PYTHON'
 import json, sys
