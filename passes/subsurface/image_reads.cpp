@@ -285,6 +285,17 @@ ImageReads probe(const PassKind& kind, const ReadsQuestion& question) {
   return {question.sampled_share * pixels * (light_reads(kind, question) + 3 + side * side * 11)};
 }
 
+// Material, depth, normal of the pixel. Rays and what they meet are in buffers: paths count as samples, not
+// as texels.
+ImageReads restir_initial(const PassKind& kind, const ReadsQuestion& question) {
+  return {3 + scale_read(kind, question), static_cast<double>(setting(kind, question, "samples"))};
+}
+
+// Material, and what the pixel's surface is.
+ImageReads restir_resolve(const PassKind& kind, const ReadsQuestion& question) {
+  return {4 + scale_read(kind, question)};
+}
+
 struct Entry {
   std::string_view kind;
   ImageReads (*reads)(const PassKind&, const ReadsQuestion&);
@@ -328,6 +339,8 @@ constexpr Entry entries[] = {
     {"subsurface.contrast", contrast},
     {"subsurface.afis_tiles", afis_tiles},
     {"clear", none},
+    {"restir.initial", restir_initial},
+    {"restir.resolve", restir_resolve},
 };
 
 } // namespace

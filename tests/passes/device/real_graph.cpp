@@ -156,12 +156,16 @@ struct Draft {
 
 } // namespace
 
-std::vector<std::string> shipped_graphs() {
+std::vector<std::string> graphs_of_images() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string file = entry.path().filename().string();
-    if (file.ends_with(".json") && !file.ends_with(".expect.json"))
-      names.push_back(entry.path().stem().string());
+    const std::string file = entry.path().filename().string(), name = entry.path().stem().string();
+    if (!file.ends_with(".json") || file.ends_with(".expect.json")) continue;
+    const Json imports = read_shipped(name)["imports"];
+    if (std::none_of(imports.begin(), imports.end(), [](const Json& declared) {
+          return declared.contains("buffer") || declared.contains("acceleration_structure");
+        }))
+      names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -175,7 +179,7 @@ std::optional<RealGraph> shipped_graph(const std::string& name, const KindRegist
 }
 
 std::optional<RealGraph> random_real_graph(uint64_t seed, const KindRegistry& kinds) {
-  const std::vector<std::string> files = shipped_graphs();
+  const std::vector<std::string> files = graphs_of_images();
   Draft draft{{seed}};
   std::string name;
   const size_t parts = 1 + draft.random.below(3);

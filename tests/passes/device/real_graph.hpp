@@ -17,8 +17,9 @@ struct RealGraph {
   Graph graph;
 };
 
-// Names of configs/graphs without ".json", sorted.
-std::vector<std::string> shipped_graphs();
+// Names of configs/graphs without ".json", sorted, but for graphs that import buffers or a scene: no picture
+// stands for those.
+std::vector<std::string> graphs_of_images();
 // As it ships, with the defaults of its settings. nullopt: the test has failed.
 std::optional<RealGraph> shipped_graph(const std::string& name, const KindRegistry& kinds);
 // The first part keeps its names, those of the others begin with "p1_", "p2_". They share imports, and the
