@@ -51,21 +51,43 @@ std::string CountedHost::open(const CountedInput& input) {
   desc.height = input.height;
   desc.profiles = &profile;
   desc.profile_count = 1;
-  dermis_report report = nullptr;
-  const dermis_result result = dermis_graph_create(context_, &desc, &graph_, &report);
-  const std::string text = dermis_report_text(report);
-  dermis_report_destroy(report);
-  if (result != DERMIS_OK) return text;
+  if (std::string problem = create(desc); !problem.empty()) return problem;
+  std::vector<std::string> others; // slots for what is no image
+  for (const dermis_slot& slot : slots())
+    if (slot.type != DERMIS_SLOT_IMAGE) others.emplace_back(slot.name);
+  if (!others.empty()) {
+    std::vector<const char*> unbound;
+    for (const std::string& name : others)
+      unbound.push_back(name.c_str());
+    desc.unbound = unbound.data();
+    desc.unbound_count = static_cast<uint32_t>(unbound.size());
+    dermis_graph_destroy(graph_);
+    graph_ = nullptr;
+    if (std::string problem = create(desc); !problem.empty()) return problem;
+  }
   return bind();
 }
 
-std::string CountedHost::bind() {
+std::string CountedHost::create(const dermis_graph_desc& desc) {
+  dermis_report report = nullptr;
+  const dermis_result result = dermis_graph_create(context_, &desc, &graph_, &report);
+  std::string text = dermis_report_text(report);
+  dermis_report_destroy(report);
+  return result == DERMIS_OK ? "" : text;
+}
+
+std::vector<dermis_slot> CountedHost::slots() const {
   uint32_t count = 0;
-  if (dermis_graph_slots(graph_, &count, nullptr) != DERMIS_OK) return dermis_last_error();
+  if (dermis_graph_slots(graph_, &count, nullptr) != DERMIS_OK) return {};
   std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
-  if (dermis_graph_slots(graph_, &count, slots.data()) != DERMIS_OK) return dermis_last_error();
+  return dermis_graph_slots(graph_, &count, slots.data()) == DERMIS_OK ? slots : std::vector<dermis_slot>();
+}
+
+std::string CountedHost::bind() {
+  const std::vector<dermis_slot> all = slots();
+  if (all.empty()) return dermis_last_error();
   for (std::vector<dermis_image_binding>& set : bindings_)
-    for (const dermis_slot& slot : slots) {
+    for (const dermis_slot& slot : all) {
       if (slot.bound == 0) continue;
       dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
       binding.slot = slot.id;

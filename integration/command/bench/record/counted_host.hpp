@@ -24,7 +24,8 @@ public:
   CountedHost(const CountedHost&) = delete;
   CountedHost& operator=(const CountedHost&) = delete;
 
-  // Every image that the graph can use is bound. Returns what went wrong, as text for people; "" for nothing.
+  // Every image that the graph can use is bound, neither buffers nor scenes. Returns what went wrong, as text
+  // for people; "" for nothing.
   std::string open(const CountedInput& input);
   // The next frame; images alternate between two sets, as those of hosts with two frames in flight do.
   dermis_result record_frame();
@@ -36,6 +37,8 @@ public:
 
 private:
   static constexpr uint32_t image_sets = 2;
+  std::string create(const dermis_graph_desc& desc);
+  std::vector<dermis_slot> slots() const; // empty: dermis_last_error() says why
   std::string bind();
 
   NullDevice device_;
