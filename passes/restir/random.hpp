@@ -2,25 +2,11 @@
 // Random numbers of a pixel: a key and a counter, no state beside, so that CPU and device draw the same bits.
 // shaders/include/restir/random.glsl mirrors these functions under the same names. Thread: one state each.
 
-#include <array>
+#include "passes/subsurface/hash.hpp"
+
 #include <cstdint>
 
 namespace dermis::restir {
-
-// pcg3d of Jarzynski & Olano 2020, "Hash functions for GPU rendering".
-constexpr std::array<uint32_t, 3> pcg3d(std::array<uint32_t, 3> v) {
-  for (uint32_t& one : v)
-    one = one * 1664525u + 1013904223u;
-  for (int round = 0; round < 2; ++round) {
-    v[0] += v[1] * v[2];
-    v[1] += v[2] * v[0];
-    v[2] += v[0] * v[1];
-    if (round == 0)
-      for (uint32_t& one : v)
-        one ^= one >> 16;
-  }
-  return v;
-}
 
 struct Random {
   uint32_t pixel = 0; // any number of its own for each pixel
@@ -33,7 +19,7 @@ inline constexpr uint32_t random_numbers_a_pass = 1024;
 
 // Uniform in (0, 1), 24 bits: the middle of a cell, so that neither 0 nor 1 ever comes.
 constexpr double random_unit(Random& random) {
-  return ((pcg3d({random.pixel, random.frame, random.count++})[0] >> 8) + 0.5) / 16777216.0;
+  return ((subsurface::pcg3d({random.pixel, random.frame, random.count++})[0] >> 8) + 0.5) / 16777216.0;
 }
 
 } // namespace dermis::restir

@@ -2,6 +2,8 @@
 // Points of samples: R2 in 32-bit fixed point, offsets by pcg3d16. Mirrors shaders/include/sequence.glsl
 // under the same names. Thread: any.
 
+#include "passes/subsurface/hash.hpp"
+
 #include <array>
 #include <cstdint>
 
@@ -9,18 +11,6 @@ namespace dermis::subsurface {
 
 // 1/g and 1/g^2 over 2^32, g^3 = g + 1 (R2, Roberts 2018).
 inline constexpr std::array<uint32_t, 2> r2_step = {3242174889u, 2447445414u};
-
-// Three hashes of 16 bits (pcg3d16, Jarzynski & Olano 2020, "Hash functions for GPU rendering").
-constexpr std::array<uint32_t, 3> pcg3d16(std::array<uint32_t, 3> v) {
-  for (uint32_t& one : v)
-    one = one * 1664525u + 1013904223u;
-  for (int round = 0; round < 2; ++round) {
-    v[0] += v[1] * v[2];
-    v[1] += v[2] * v[0];
-    v[2] += v[0] * v[1];
-  }
-  return {v[0] >> 16, v[1] >> 16, v[2] >> 16};
-}
 
 // The middle of a hash's cell, over 2^32.
 constexpr uint32_t offset_from_hash(uint32_t hash) {

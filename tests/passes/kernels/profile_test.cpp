@@ -1,10 +1,7 @@
 // The profiles as kernels evaluate them on a device, against the fp64 shapes that truths are made of.
-#include "framegraph/compile/compile.hpp"
-#include "framegraph/vulkan/device_profile.hpp"
-#include "framegraph/vulkan/executor.hpp"
 #include "passes/subsurface/environment.hpp"
 #include "passes/subsurface/profile.hpp"
-#include "tests/support/vulkan_fixture.hpp"
+#include "tests/passes/kernels/kernel_fixture.hpp"
 
 #include "test_profile.spv.h"
 
@@ -26,33 +23,10 @@ double survival_asked(uint32_t x) {
   return std::exp2(-(x / 16.0));
 }
 
-constexpr Port ports[] = {{"target", Usage::storage_image_write, false, "image2D", "", {}}};
-KindRegistry profile_kind() {
-  KindRegistry kinds;
-  kinds.add({"test.profile", "test_profile", "", ports, {}, DispatchShape::over_view, false});
-  return kinds;
-}
-
-Graph profile_graph() {
-  Graph graph;
-  ResourceDeclaration& values = graph.resources.emplace_back();
-  values.name = "values";
-  values.formats = {Format::rgba32f};
-  values.exported = true;
-  PassDeclaration& pass = graph.passes.emplace_back();
-  pass.name = "profile";
-  pass.kind = KindId{0};
-  PortBinding target;
-  target.port = 0;
-  target.resource = ResourceId{0};
-  graph.bind(pass, PortSide::write, target, {});
-  return graph;
-}
-
-class ProfileKernel : public dermis::testing::VulkanTest {
+class ProfileKernel : public dermis::testing::KernelTest {
 protected:
   void SetUp() override {
-    VulkanTest::SetUp();
+    KernelTest::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
     for (uint32_t i = 0; i < std::size(files); ++i) {
       Diagnostics diagnostics;
@@ -63,82 +37,10 @@ protected:
       ASSERT_TRUE(profile) << files[i];
       profiles.push_back({i + 1, *profile});
     }
-    evaluate();
-  }
-
-  void evaluate() {
-    vulkan::DeviceInput host;
-    host.get_instance_proc_addr = get_instance_proc_addr;
-    host.instance = instance;
-    host.physical = physical;
-    host.device = device;
-    host.queue_family = queue_family;
-    vulkan::Device dermis_device;
-    const vulkan::Error made = vulkan::make_device(host, dermis_device);
-    ASSERT_FALSE(made) << made.text;
-    const DeviceProfile profile = vulkan::device_profile(dermis_device);
-    const Graph graph = profile_graph();
-    const KindRegistry kinds = profile_kind();
-    CompileInput compiled;
-    compiled.graph = &graph;
-    compiled.kinds = &kinds;
-    compiled.device = &profile;
-    compiled.view_width = width;
-    compiled.view_height = height;
-    compiled.bound.assign(1, true);
-    Diagnostics diagnostics;
-    const auto plan = compile(compiled, diagnostics);
-    ASSERT_TRUE(plan);
-
     const std::vector<ProfileEntry> entries = make_profile_table(profiles, false);
     const std::vector<RadialRow> radial = make_radial_table(profiles);
-    const float nothing[4] = {};
-    using vulkan::EnvironmentType;
-    const auto buffer = [](auto& table) {
-      const auto bytes = std::as_bytes(std::span(table));
-      return vulkan::EnvironmentBinding{EnvironmentType::storage_buffer, bytes.size(), bytes};
-    };
-    const vulkan::EnvironmentBinding environment[] = {
-        {EnvironmentType::uniform_buffer, sizeof(FrameConstants), {}},
-        buffer(entries),
-        buffer(nothing),
-        {EnvironmentType::linear_sampler, 0, {}},
-        buffer(nothing),
-        buffer(radial),
-        {EnvironmentType::counters, sizeof(FrameCounters), {}},
-    };
-    const vulkan::KernelCode kernel[] = {{"test_profile", test_profile_spirv}};
-    vulkan::ExecutorInput input;
-    input.device = &dermis_device;
-    input.graph = &graph;
-    input.kinds = &kinds;
-    input.plan = &plan->plan;
-    input.kernels = kernel;
-    input.environment = environment;
-    std::unique_ptr<vulkan::Executor> executor;
-    const vulkan::Error error = vulkan::Executor::create(input, executor);
-    ASSERT_FALSE(error) << error.text;
-
-    const dermis::testing::TestImage image =
-        make_image(VK_FORMAT_R32G32B32A32_SFLOAT, width, height, VK_IMAGE_USAGE_STORAGE_BIT);
-    transition(image, VK_IMAGE_LAYOUT_GENERAL);
-    constexpr vulkan::HostState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
-                                        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                        VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-    const vulkan::HostImage bound[] = {{image.image, image.view, at_rest, at_rest}};
-    FrameConstants constants{};
-    constants.rect[2] = width;
-    constants.rect[3] = height;
-    vulkan::FrameInput frame;
-    frame.command_buffer = begin_commands();
-    frame.images = bound;
-    frame.frame_constants = std::as_bytes(std::span(&constants, 1));
-    frame.rectangle = {0, 0, width, height};
-    frame.frame_index = 1;
-    executor->record(frame);
-    submit(frame.command_buffer);
-    values = dermis::testing::values_of<float>(download(image, VK_IMAGE_LAYOUT_GENERAL));
-    wait();
+    values = answers_of({"test_profile", test_profile_spirv}, width, height,
+                        {std::as_bytes(std::span(entries)), std::as_bytes(std::span(radial))});
   }
 
   double at(size_t profile, uint32_t row, uint32_t x, size_t channel) const {

@@ -88,7 +88,7 @@ TEST(Reservoir, AnyWordsMakeACleanReservoir) {
   for (int i = 0; i < 100000; ++i) {
     PackedReservoir words;
     for (uint32_t& word : words)
-      word = pcg3d({random.pixel, random.frame, random.count++})[1];
+      word = subsurface::pcg3d({random.pixel, random.frame, random.count++})[1];
     EXPECT_TRUE(is_clean(unpack_reservoir(words)));
   }
 }

@@ -1,11 +1,6 @@
 // The GLSL of ReSTIR on a device against its twins in fp64: the same questions, the same random bits.
-#include "framegraph/compile/compile.hpp"
-#include "framegraph/vulkan/device_profile.hpp"
-#include "framegraph/vulkan/executor.hpp"
 #include "passes/restir/reuse.hpp"
-#include "passes/subsurface/environment.hpp"
-#include "passes/subsurface/profile.hpp"
-#include "tests/support/vulkan_fixture.hpp"
+#include "tests/passes/kernels/kernel_fixture.hpp"
 
 #include "test_restir.spv.h"
 
@@ -18,8 +13,6 @@ constexpr uint32_t cases = 512, rows = 40;
 // fp32 has 6e-8 a step. What follows from a handful of them, with exp and log of the driver (within 1e-6),
 // agrees to 1e-5; positions and offsets lose up to a factor of their size over the distance.
 constexpr double relative = 1e-5;
-
-constexpr Port ports[] = {{"target", Usage::storage_image_write, false, "image2D", "", {}}};
 
 // test_restir.comp's sheets.
 constexpr double sheets[] = {0, -0.4, -1}, sheet_size = 64;
@@ -64,95 +57,12 @@ Domain pixel_on_sheet(Random& random) {
           1};
 }
 
-class RestirKernel : public dermis::testing::VulkanTest {
+class RestirKernel : public dermis::testing::KernelTest {
 protected:
   void SetUp() override {
-    VulkanTest::SetUp();
+    KernelTest::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
-    evaluate();
-  }
-
-  void evaluate() {
-    vulkan::DeviceInput host;
-    host.get_instance_proc_addr = get_instance_proc_addr;
-    host.instance = instance;
-    host.physical = physical;
-    host.device = device;
-    host.queue_family = queue_family;
-    vulkan::Device dermis_device;
-    const vulkan::Error made = vulkan::make_device(host, dermis_device);
-    ASSERT_FALSE(made) << made.text;
-    const DeviceProfile profile = vulkan::device_profile(dermis_device);
-    KindRegistry kinds;
-    kinds.add({"test.restir", "test_restir", "", ports, {}, DispatchShape::over_view, false});
-    Graph graph;
-    ResourceDeclaration& image_declared = graph.resources.emplace_back();
-    image_declared.name = "answers";
-    image_declared.formats = {Format::rgba32f};
-    image_declared.exported = true;
-    PassDeclaration& pass = graph.passes.emplace_back();
-    pass.name = "restir";
-    pass.kind = KindId{0};
-    PortBinding target;
-    target.port = 0;
-    target.resource = ResourceId{0};
-    graph.bind(pass, PortSide::write, target, {});
-    CompileInput compiled;
-    compiled.graph = &graph;
-    compiled.kinds = &kinds;
-    compiled.device = &profile;
-    compiled.view_width = cases;
-    compiled.view_height = rows;
-    compiled.bound.assign(1, true);
-    Diagnostics diagnostics;
-    const auto plan = compile(compiled, diagnostics);
-    ASSERT_TRUE(plan);
-
-    const float nothing[64] = {};
-    using vulkan::EnvironmentType;
-    const auto bytes = std::as_bytes(std::span(nothing));
-    const vulkan::EnvironmentBinding unused = {EnvironmentType::storage_buffer, bytes.size(), bytes};
-    const vulkan::EnvironmentBinding environment[] = {
-        {EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
-        unused,
-        unused,
-        {EnvironmentType::linear_sampler, 0, {}},
-        unused,
-        unused,
-        {EnvironmentType::counters, sizeof(subsurface::FrameCounters), {}},
-    };
-    const vulkan::KernelCode kernel[] = {{"test_restir", test_restir_spirv}};
-    vulkan::ExecutorInput input;
-    input.device = &dermis_device;
-    input.graph = &graph;
-    input.kinds = &kinds;
-    input.plan = &plan->plan;
-    input.kernels = kernel;
-    input.environment = environment;
-    std::unique_ptr<vulkan::Executor> executor;
-    const vulkan::Error error = vulkan::Executor::create(input, executor);
-    ASSERT_FALSE(error) << error.text;
-
-    const dermis::testing::TestImage image =
-        make_image(VK_FORMAT_R32G32B32A32_SFLOAT, cases, rows, VK_IMAGE_USAGE_STORAGE_BIT);
-    transition(image, VK_IMAGE_LAYOUT_GENERAL);
-    constexpr vulkan::HostState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
-                                        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                        VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-    const vulkan::HostImage bound[] = {{image.image, image.view, at_rest, at_rest}};
-    subsurface::FrameConstants constants{};
-    constants.rect[2] = cases;
-    constants.rect[3] = rows;
-    vulkan::FrameInput frame;
-    frame.command_buffer = begin_commands();
-    frame.images = bound;
-    frame.frame_constants = std::as_bytes(std::span(&constants, 1));
-    frame.rectangle = {0, 0, cases, rows};
-    frame.frame_index = 1;
-    executor->record(frame);
-    submit(frame.command_buffer);
-    answers = dermis::testing::values_of<float>(download(image, VK_IMAGE_LAYOUT_GENERAL));
-    wait();
+    answers = answers_of({"test_restir", test_restir_spirv}, cases, rows);
   }
 
   double at(uint32_t x, uint32_t row, size_t channel) const {
