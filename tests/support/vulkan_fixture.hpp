@@ -48,6 +48,17 @@ protected:
   // What validation said since the last call, and forgets it: for tests that provoke.
   std::vector<std::string> take_messages();
 
+  // What the library is told of a host's device; Input: vulkan::DeviceInput, which this file does not know.
+  template <typename Input> Input device_input() const {
+    Input input;
+    input.get_instance_proc_addr = get_instance_proc_addr;
+    input.instance = instance;
+    input.physical = physical;
+    input.device = device;
+    input.queue_family = queue_family;
+    return input;
+  }
+
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;

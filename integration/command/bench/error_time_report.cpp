@@ -187,20 +187,15 @@ std::string text_of_error_time(const Report& report) {
                    {"setting"},       {"ms", true},    {"RMSE", true}, {"PSNR dB", true},
                    {"largest", true}, {"reads", true}, {"front"}};
   std::string last;
-  ReportTable rows = report.table;
-  for (size_t i = 0; i < rows.rows.size(); ++i) {
-    const auto text = [&](const char* key) { return std::get<std::string>(rows.at(i, key)); };
-    const auto number = [&](const char* key, int digits) {
-      const auto* value = std::get_if<double>(&rows.at(i, key));
-      return value != nullptr ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
-    };
-    const std::string here = text("scene") + text("framing") + number("d_px", 3);
+  for (size_t i = 0; i < report.table.rows.size(); ++i) {
+    const auto text = [&](const char* key, int digits = 0) { return report.table.text_at(i, key, digits); };
+    const std::string here = text("scene") + text("framing") + text("d_px", 3);
     if (!last.empty() && here != last) table.rows.emplace_back();
     last = here;
-    table.rows.push_back({text("scene"), text("framing"), number("d_px", 2), text("technique"),
-                          text("setting"), number("device_ms", 2), number("rmse", 5), number("psnr_db", 2),
-                          number("max_error", 4), number("reads_per_pixel", 1),
-                          std::get<bool>(rows.at(i, "on_pareto_front")) ? "*" : ""});
+    table.rows.push_back({text("scene"), text("framing"), text("d_px", 2), text("technique"), text("setting"),
+                          text("device_ms", 2), text("rmse", 5), text("psnr_db", 2), text("max_error", 4),
+                          text("reads_per_pixel", 1),
+                          std::get<bool>(report.table.at(i, "on_pareto_front")) ? "*" : ""});
   }
   return format_table(table);
 }

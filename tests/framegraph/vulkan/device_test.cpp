@@ -72,15 +72,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL forgetful(VkInstance instance, const ch
 
 class DeviceTest : public ExecutorTest {
 protected:
-  vulkan::DeviceInput input() const {
-    vulkan::DeviceInput in;
-    in.get_instance_proc_addr = get_instance_proc_addr;
-    in.instance = instance;
-    in.physical = physical;
-    in.device = device;
-    in.queue_family = queue_family;
-    return in;
-  }
+  vulkan::DeviceInput input() const { return device_input<vulkan::DeviceInput>(); }
 };
 
 TEST_F(DeviceTest, EveryMissingFunctionIsNamedAtOnce) {

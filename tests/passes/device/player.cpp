@@ -80,12 +80,7 @@ std::string processor() {
 void DevicePlayer::SetUp() {
   VulkanTest::SetUp();
   if (IsSkipped() || HasFatalFailure()) return;
-  vulkan::DeviceInput input;
-  input.get_instance_proc_addr = get_instance_proc_addr;
-  input.instance = instance;
-  input.physical = physical;
-  input.device = device;
-  input.queue_family = queue_family;
+  auto input = device_input<vulkan::DeviceInput>();
   input.labels = true; // names in messages of the validation layer
   const vulkan::Error error = vulkan::make_device(input, dermis_device);
   ASSERT_FALSE(error) << error.text;

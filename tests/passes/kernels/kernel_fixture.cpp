@@ -42,12 +42,7 @@ std::vector<float> KernelTest::answers_of(const vulkan::KernelCode& kernel, uint
 
 void KernelTest::run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t height,
                      const KernelTables& tables, std::vector<float>& answers) {
-  vulkan::DeviceInput host;
-  host.get_instance_proc_addr = get_instance_proc_addr;
-  host.instance = instance;
-  host.physical = physical;
-  host.device = device;
-  host.queue_family = queue_family;
+  const auto host = device_input<vulkan::DeviceInput>();
   vulkan::Device dermis_device;
   const vulkan::Error made = vulkan::make_device(host, dermis_device);
   ASSERT_FALSE(made) << made.text;

@@ -253,20 +253,14 @@ std::string text_of(const Report& report) {
                    {"guidance"},      {"samples", true},     {"most", true},   {"ms", true},
                    {"PSNR dB", true}, {"accumulated", true}, {"flicker", true}};
   std::string last;
-  ReportTable rows = report.table;
-  for (size_t i = 0; i < rows.rows.size(); ++i) {
-    const auto text = [&](const char* key) { return std::get<std::string>(rows.at(i, key)); };
-    const auto number = [&](const char* key, int digits) {
-      const auto* value = std::get_if<double>(&rows.at(i, key));
-      return value != nullptr ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
-    };
+  for (size_t i = 0; i < report.table.rows.size(); ++i) {
+    const auto text = [&](const char* key, int digits = 0) { return report.table.text_at(i, key, digits); };
     const std::string here = text("scene") + text("framing");
     if (!last.empty() && here != last) table.rows.emplace_back();
     last = here;
     table.rows.push_back({text("scene"), text("framing"), text("technique"), text("setting"),
-                          text("guidance"), number("mean_spp", 2), number("peak_spp", 2),
-                          number("mean_ms", 2), number("psnr_db_frame", 2), number("psnr_db_accumulated", 2),
-                          number("flicker", 5)});
+                          text("guidance"), text("mean_spp", 2), text("peak_spp", 2), text("mean_ms", 2),
+                          text("psnr_db_frame", 2), text("psnr_db_accumulated", 2), text("flicker", 5)});
   }
   return format_table(table);
 }

@@ -62,10 +62,20 @@ bool is_baseline(std::string_view technique) {
                       [&](std::string_view name) { return technique.starts_with(name); });
 }
 
-ReportValue& ReportTable::at(size_t row, std::string_view key) {
+const ReportValue& ReportTable::at(size_t row, std::string_view key) const {
   const auto column =
       std::find_if(columns.begin(), columns.end(), [&](const ReportColumn& one) { return one.key == key; });
   return rows[row][static_cast<size_t>(column - columns.begin())];
+}
+ReportValue& ReportTable::at(size_t row, std::string_view key) {
+  return const_cast<ReportValue&>(std::as_const(*this).at(row, key));
+}
+
+std::string ReportTable::text_at(size_t row, std::string_view key, int digits) const {
+  const ReportValue& value = at(row, key);
+  if (const auto* words = std::get_if<std::string>(&value)) return *words;
+  const auto* number = std::get_if<double>(&value);
+  return number != nullptr ? fmt::format("{:.{}f}", *number, digits) : "-";
 }
 
 std::vector<std::pair<std::string, std::string>> machine_facts(const std::string& command,

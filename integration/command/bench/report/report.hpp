@@ -25,6 +25,9 @@ struct ReportTable {
   std::vector<std::vector<ReportValue>> rows; // each as long as `columns`
 
   ReportValue& at(size_t row, std::string_view key); // the column must exist
+  const ReportValue& at(size_t row, std::string_view key) const;
+  // As printed for people: words as they are, numbers with so many digits, "-" where there is nothing.
+  std::string text_at(size_t row, std::string_view key, int digits = 0) const;
 };
 
 struct PlotPoint {
