@@ -1,4 +1,4 @@
-#include "integration/demo_engine/engine.hpp"
+#include "tests/integration/demo_engine/rendering.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,22 +48,8 @@ struct Engine : testing::Test {
     return options;
   }
 
-  // Frames of a rendering that must succeed without a word from the validation layer.
   static std::vector<FrameOutputs> frames_of(const RenderOptions& options) {
-    std::vector<FrameOutputs> frames;
-    RenderCallbacks callbacks;
-    callbacks.on_frame = [&](const FrameOutputs& frame) {
-      frames.push_back(frame);
-      return success();
-    };
-    const auto summary = render(options, callbacks);
-    if (!summary) {
-      ADD_FAILURE() << summary.error().text;
-      return {};
-    }
-    EXPECT_THAT(summary->validation_messages, testing::IsEmpty());
-    EXPECT_EQ(frames.size(), options.frames);
-    return frames;
+    return rendered(options).frames;
   }
   static Error refused(const RenderOptions& options) {
     const auto summary = render(options, {});

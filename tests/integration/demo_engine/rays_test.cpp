@@ -1,9 +1,9 @@
 // Scattering by rays on a driver that has them: tests/drivers/fetch.sh leaves one in build/drivers. Without
 // it the tests skip. The reference draws its points by area over the triangles: it shares no sampler with the
 // graph.
-#include "integration/demo_engine/engine.hpp"
 #include "integration/demo_engine/geometry/shapes.hpp"
 #include "passes/subsurface/profile.hpp"
+#include "tests/integration/demo_engine/rendering.hpp"
 #include "tests/passes/restir/area_reference.hpp"
 
 #include "framegraph/text/document.hpp"
@@ -36,31 +36,6 @@ RenderOptions back_lit(const std::string& technique, uint32_t samples, uint32_t 
   options.validation = true;
   options.settings = {{"technique", "\"" + technique + "\""}, {"samples", std::to_string(samples)}};
   return options;
-}
-
-struct Rendering {
-  std::vector<FrameOutputs> frames;
-  std::vector<std::string> warnings;
-};
-
-Rendering rendered(const RenderOptions& options) {
-  Rendering out;
-  RenderCallbacks callbacks;
-  callbacks.on_start = [&](const RenderInfo& info) {
-    out.warnings = info.warnings;
-    return success();
-  };
-  callbacks.on_frame = [&](const FrameOutputs& frame) {
-    out.frames.push_back(frame);
-    return success();
-  };
-  const auto summary = render(options, callbacks);
-  if (!summary) {
-    ADD_FAILURE() << summary.error().text;
-    return {};
-  }
-  EXPECT_THAT(summary->validation_messages, testing::IsEmpty());
-  return out;
 }
 
 bool ran(const FrameOutputs& frame, const std::string& pass) {
