@@ -146,6 +146,31 @@ TEST_F(Outcomes, TooManyAreRefusedAtTheChoiceThatIsOneTooMuch) {
   EXPECT_EQ(diagnostics.list.back().where.line, 2u);
 }
 
+// 10 ms in any case, typically off by .1 of that; a unit of samples takes 1 us and is never off.
+TEST(Units, LeaveTwoTypicalDeviationsOfTheBudgetFree) {
+  CostModel costs({{"fixed work", 10000, 0, 0.1}, {"samples", 0, 1, 0}});
+  Outcome outcome;
+  outcome.takes_samples = true;
+  PassLoad work, samples;
+  work.cost = costs.add("fixed work");
+  samples.cost = costs.add("samples");
+  samples.groups = PassLoad::Groups::sample_units;
+  outcome.passes = {work, samples};
+
+  const double budget_ms = 20;
+  FrameLoad load;
+  load.sample_units = units_within(outcome, costs, load, budget_ms, false);
+  const Estimate filled = estimate(outcome, costs, load);
+  EXPECT_NEAR(filled.ms + 2 * filled.spread_ms, budget_ms, 0.002) << "to a unit: as many as fit";
+  EXPECT_NEAR(static_cast<double>(load.sample_units), 8000, 2);
+  // By the meter nothing deviates.
+  EXPECT_NEAR(units_within(outcome, costs, {}, budget_ms, true), 10000, 2);
+  // Where the rest takes all, none are given.
+  EXPECT_EQ(units_within(outcome, costs, {}, 11.9, false), 0u);
+  outcome.takes_samples = false;
+  EXPECT_EQ(units_within(outcome, costs, {}, budget_ms, false), UINT32_MAX);
+}
+
 TEST_F(Outcomes, CurvesThatDoNotGrowAreRefused) {
   Diagnostics other;
   const auto document = parse_document("errors.json",
