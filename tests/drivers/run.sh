@@ -12,6 +12,10 @@ shift || true
 suites=("$@")
 [[ $# -gt 0 ]] || suites=(framegraph_vulkan passes_kernels passes_device integration_abi integration_embedding
   integration_demo_engine laws)
+for suite in "${suites[@]}"; do
+  [[ -x $build/tests/test_$suite ]] ||
+    { echo "run.sh: there is no suite '$suite': $build/tests/test_$suite is not built" >&2; exit 2; }
+done
 seconds=1800       # a suite
 memory=$((8 << 20)) # KiB that a suite may take: a driver gone astray must not take the machine with it
 swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
