@@ -96,7 +96,7 @@ TEST(Ear, IsClosedOutwardAndThinEnoughForLightToComeThrough) {
   EXPECT_GT(agreeing_triangles(mesh), 0.995);
   const Bounds bounds = bounds_of(mesh);
   EXPECT_NEAR(bounds.high.y - bounds.low.y, 0.064, 0.004); // metres
-  // Along the view of its scenes the sheet is 2 to 5 mm thick over most of its outline.
+  // Along the view of its scenes the sheet is 2 to 5 mm thick but at rim and lobe.
   size_t inside = 0, thin = 0;
   for (float x = -1.6f; x < 1.6f; x += 0.1f)
     for (float y = -2.9f; y < 2.9f; y += 0.1f) {
@@ -107,7 +107,7 @@ TEST(Ear, IsClosedOutwardAndThinEnoughForLightToComeThrough) {
       ++inside;
       if (thickness > 0.2f && thickness < 0.5f) ++thin;
     }
-  EXPECT_GT(static_cast<double>(thin) / static_cast<double>(inside), 0.7);
+  EXPECT_GT(static_cast<double>(thin) / static_cast<double>(inside), 0.6);
 }
 
 TEST(Shapes, FaceOutwardAndStandOnTheirFoot) {

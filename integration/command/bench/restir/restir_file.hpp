@@ -10,7 +10,7 @@
 namespace dermis::tools {
 
 struct RayReferenceSize { // of a pixel
-  uint32_t samples = 256, frames = 64;
+  uint32_t samples = 64, frames = 32;
 };
 
 struct RestirFile {
