@@ -1,6 +1,7 @@
 // Devices that lack something, refuse something, or hand out memory that cannot be used: what the call says
 // then.
 
+#include "framegraph/vulkan/function_table.hpp"
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
@@ -20,6 +21,7 @@ using testing::Not;
 // what they share is static; tests of this file run one by one.
 struct Lack {
   const char* function = ""; // that the loader does not know
+  const char* renamed = "";  // of the device, that it knows with "KHR" behind alone
   uint32_t api_version = VK_API_VERSION_1_3;
   std::vector<const char*> extensions;
   VkQueueFlags queue_flags = VK_QUEUE_COMPUTE_BIT;
@@ -50,8 +52,17 @@ VKAPI_ATTR VkResult VKAPI_CALL some_extensions(VkPhysicalDevice, const char*, ui
   *count = static_cast<uint32_t>(lack.extensions.size());
   return VK_SUCCESS;
 }
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less_of_device(VkDevice device, const char* name) {
+  const std::string_view asked = name;
+  if (asked == lack.function) return nullptr;
+  const bool extended = asked.ends_with("KHR") && asked.substr(0, asked.size() - 3) == lack.renamed;
+  if (asked == lack.renamed) return nullptr;
+  return full<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr")(device, extended ? lack.renamed : name);
+}
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less(VkInstance instance, const char* name) {
   if (std::strcmp(name, lack.function) == 0) return nullptr;
+  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&less_of_device);
   if (std::strcmp(name, "vkGetPhysicalDeviceProperties") == 0)
     return reinterpret_cast<PFN_vkVoidFunction>(&less_properties);
   if (std::strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties") == 0)
@@ -116,6 +127,45 @@ TEST_F(PoorDevice, ThatCannotBeAskedLacksEverythingAndNothingIsCalled) {
   }
   lack.function = "vkEnumerateDeviceExtensionProperties";
   EXPECT_EQ(create(), DERMIS_OK) << "Vulkan 1.3 has all that is needed: " << dermis_last_error();
+}
+
+#define DERMIS_NAME(name) #name,
+constexpr const char* instance_functions[] = {DERMIS_INSTANCE_FUNCTIONS(DERMIS_NAME)};
+constexpr const char* device_functions[] = {DERMIS_DEVICE_FUNCTIONS(DERMIS_NAME)};
+constexpr const char* label_functions[] = {DERMIS_LABEL_FUNCTIONS(DERMIS_NAME)};
+#undef DERMIS_NAME
+
+TEST_F(PoorDevice, WithoutOneOfTheFunctionsIsRefusedByItsName) {
+  for (const char* name : instance_functions) {
+    if (std::string_view(name) == "vkGetPhysicalDeviceProperties")
+      continue; // without it nothing is asked, above
+    lack.function = name;
+    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << name;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(name));
+  }
+  for (const char* name : device_functions) {
+    lack.function = name;
+    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << name;
+    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("1 needed function:"), HasSubstr(name)));
+    lack.function = "";
+    lack.renamed = name;
+    EXPECT_EQ(create(), DERMIS_OK) << name << " of an extension: " << dermis_last_error();
+    host.destroy();
+    lack.renamed = "";
+  }
+}
+
+TEST_F(PoorDevice, WithoutLabelsIsRefusedWhereTheyAreAskedForAlone) {
+  for (const char* name : label_functions) {
+    lack.function = name;
+    EXPECT_EQ(create(), DERMIS_OK) << dermis_last_error();
+    host.destroy();
+    dermis_context_desc desc = host.context_desc();
+    desc.get_instance_proc_addr = less;
+    desc.flags |= DERMIS_CONTEXT_LABELS;
+    EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_UNSUPPORTED) << name;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(name));
+  }
 }
 
 TEST_F(PoorDevice, WhoseQueueCannotComputeIsRefused) {
