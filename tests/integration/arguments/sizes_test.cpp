@@ -237,6 +237,8 @@ TEST_F(StructSizes, OfSourcesProfilesAndFormatsAreThoseOfTheHeader) {
     return create();
   });
   desc.format_count = 0;
+  expect_input_law<dermis_source>(desc.source,
+                                  [](const dermis_source* given) { return dermis_validate(given, nullptr); });
   for (const size_t size : {size_t{0}, sizeof(dermis_source) - 1, sizeof(dermis_source) + 1}) {
     desc.source.struct_size = size; // a member of other structs never grows
     EXPECT_EQ(create(), DERMIS_ERROR_ARGUMENT) << size;
