@@ -10,8 +10,6 @@
 #include "environment.glsl"
 #include "tiles.glsl"
 
-int reservoir_row() { return textureSize(depth_image, 0).x; }
-
 #include "restir/rays.glsl"
 #include "restir/reuse.glsl"
 
@@ -21,15 +19,15 @@ void main() {
   if (!listed_pixel(pixel, copy_only))
     return;
   scatter_domain domain = domain_of(pixel);
-  random_state random = random_state(uint(pixel.x) | uint(pixel.y) << 16, frame.frame_index, 0u);
+  random_state random = random_of(pixel, random_numbers_of_samples);
   reservoir_stream stream = stream_begin();
   float share = 1.0 / float(settings.samples); // MIS weight of equal techniques
   for (int i = 0; i < settings.samples; ++i) {
     reservoir drawn = draw_initial(domain, random);
-    float target = target_of(domain, drawn);
+    float target = has_sample(drawn) ? target_of(domain, surface_of(drawn), drawn) : 0.0;
     stream_add(stream, drawn, target, share * target * drawn.weight, share, random_unit(random));
   }
   packed_reservoir packed = pack_reservoir(stream_end(stream));
   for (uint i = 0u; i < 4u; ++i)
-    reservoirs_data[reservoir_place(pixel) + i] = packed.words[i];
+    reservoirs_data[4u * element_of(texel_of(pixel)) + i] = packed.words[i];
 }

@@ -1,5 +1,5 @@
 #version 460
-// Light that the kept path of each pixel brings.
+// Light that the kept path of each pixel brings; where light does not scatter, the pixel's own.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "restir/instances.glsl"
@@ -7,8 +7,7 @@
 #include "environment.glsl"
 #include "tiles.glsl"
 #include "half.glsl"
-
-int reservoir_row() { return textureSize(depth_image, 0).x; }
+#include "pixel_light.glsl"
 
 #include "restir/surfaces.glsl"
 #include "restir/reuse.glsl"
@@ -24,11 +23,15 @@ void main() {
   if (!listed_pixel(pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
-  if (texelFetch(material_image, texel, 0).r == 0u)
+  uint id = texelFetch(material_image, texel, 0).r;
+  if (id == 0u)
     return;
+  scatter_domain domain = domain_of(pixel);
   packed_reservoir packed;
   for (uint i = 0u; i < 4u; ++i)
-    packed.words[i] = reservoirs_data[reservoir_place(pixel) + i];
-  vec3 light = resolve(domain_of(pixel), unpack_reservoir(packed));
+    packed.words[i] = reservoirs_data[4u * element_of(texel) + i];
+  vec3 came = texture_light(texel, resolve(domain, unpack_reservoir(packed))); // the albedo at x2 is not known
+  vec3 direct = mix(vec3(1.0), profile_direct(id), greaterThan(domain.d, vec3(0.0)));
+  vec3 light = mix(came, pixel_light(texel), direct);
   imageStore(scattered_image, texel, vec4(round_to_half(light), 1.0));
 }

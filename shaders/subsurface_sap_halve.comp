@@ -30,7 +30,7 @@ void read_pixels(texel_block block, ivec2 first) {
     child_light[i] = vec4(0.0);
     if (pixel_profile[i] != 0u && pixel_depth[i] > 0.0) {
       children[i] = block_surface(pixel, i, child_light[i].a);
-      child_light[i].rgb = sap_pixel_light(texel_of(pixel));
+      child_light[i].rgb = pixel_light(texel_of(pixel));
     }
   }
 }

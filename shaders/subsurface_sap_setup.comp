@@ -45,7 +45,7 @@ void main() {
     vec4 light = vec4(0.0);
     uvec4 bits = uvec4(0u);
     if (id != 0u) {
-      light.rgb = sap_pixel_light(texel);
+      light.rgb = pixel_light(texel);
       if (depth > 0.0) {
         patch_neighbours around = patch_neighbours(
             vec2(depth_of_profile(here - 1, id), depth_of_profile(here - ring_width, id)),

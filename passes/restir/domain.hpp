@@ -4,6 +4,7 @@
 
 #include "passes/restir/vector.hpp"
 
+#include <array>
 #include <cstdint>
 
 namespace dermis::restir {
@@ -40,5 +41,16 @@ Vector3 probe_axis(const Vector3& normal, uint32_t axis);
 inline Vector3 scattered(const Domain& domain, double r, const Vector3& irradiance) {
   return scattering_profile(domain.d, r) * irradiance;
 }
+
+// A unit vector as a point of [-1, 1]^2 (Cigolle et al. 2014, "A Survey of Efficient Representations for
+// Independent Unit Vectors": the octahedron), and back.
+std::array<double, 2> fold_normal(const Vector3& normal);
+Vector3 unfold_normal(const std::array<double, 2>& folded);
+
+// What a pixel of the frame before is remembered by: single floats, the normal in 16 bits for each of two
+// coordinates, 5e-5 rad. All zero: nothing.
+using PackedDomain = std::array<uint32_t, 8>;
+PackedDomain pack_domain(const Domain& domain);
+Domain unpack_domain(const PackedDomain& words);
 
 } // namespace dermis::restir

@@ -14,7 +14,8 @@ struct Random {
   uint32_t count = 0; // numbers drawn; passes of one frame begin at multiples of random_numbers_a_pass
 };
 
-// More than any pass draws: the key of its next number is no other pass's.
+// More than a pass draws: the key of its next number is no other pass's. (Kernels that draw many samples
+// begin behind all others: random.glsl.)
 inline constexpr uint32_t random_numbers_a_pass = 1024;
 
 // Uniform in (0, 1), 24 bits: the middle of a cell, so that neither 0 nor 1 ever comes.

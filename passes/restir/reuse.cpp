@@ -1,6 +1,7 @@
 #include "passes/restir/reuse.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace dermis::restir {
 
@@ -129,6 +130,13 @@ Vector3 resolve(const Scene& scene, const Domain& domain, const Reservoir& reser
 double search_radius(const Vector3& d, double footprint) {
   const double px = search_in_d * std::max({d[0], d[1], d[2]}) / footprint;
   return px >= least_search_px ? std::min(px, most_search_px) : least_search_px; // NaN: the least
+}
+
+std::array<int, 2> neighbour_offset(double radius, Random& random) {
+  const double r = radius * std::sqrt(random_unit(random));
+  const double angle = 2 * std::numbers::pi * random_unit(random);
+  return {static_cast<int>(std::lround(r * std::cos(angle))),
+          static_cast<int>(std::lround(r * std::sin(angle)))};
 }
 
 } // namespace dermis::restir

@@ -49,4 +49,7 @@ Vector3 resolve(const Scene& scene, const Domain& domain, const Reservoir& reser
 // x1, in d's unit) shows it, in [5, 30] (supplement, section 5).
 double search_radius(const Vector3& d, double footprint);
 
+// From a pixel to a neighbour, x and y, uniform over the disc.
+std::array<int, 2> neighbour_offset(double radius, Random& random);
+
 } // namespace dermis::restir

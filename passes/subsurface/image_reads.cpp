@@ -291,9 +291,22 @@ ImageReads restir_initial(const PassKind& kind, const ReadsQuestion& question) {
   return {3 + scale_read(kind, question), static_cast<double>(setting(kind, question, "samples"))};
 }
 
-// Material, and what the pixel's surface is.
+// Those of the pixel, its depth and normal once more, and the velocity; what was before is in buffers.
+ImageReads restir_temporal(const PassKind& kind, const ReadsQuestion& question) {
+  return {5 + scale_read(kind, question) + one_if(kind, question, "velocity", PortSide::read)};
+}
+
+// Those of the pixel and its depth once more; of a neighbour its material, then all of it.
+ImageReads restir_spatial(const PassKind& kind, const ReadsQuestion& question) {
+  const auto neighbours = static_cast<double>(setting(kind, question, "neighbours"));
+  return {4 + scale_read(kind, question) + neighbours * (4 + scale_read(kind, question))};
+}
+
+// Material, what the pixel's surface is, and its light.
 ImageReads restir_resolve(const PassKind& kind, const ReadsQuestion& question) {
-  return {4 + scale_read(kind, question)};
+  const bool textured = setting(kind, question, "texturing") != 0;
+  return {5 + scale_read(kind, question) +
+          (textured ? 2 * one_if(kind, question, "albedo", PortSide::read) : 0)};
 }
 
 struct Entry {
@@ -341,6 +354,8 @@ constexpr Entry entries[] = {
     {"clear", none},
     {"restir.initial", restir_initial},
     {"restir.resolve", restir_resolve},
+    {"restir.temporal", restir_temporal},
+    {"restir.spatial", restir_spatial},
 };
 
 } // namespace

@@ -50,7 +50,9 @@ KindRegistry make_kinds() {
                                &sap_halve_kind,
                                &sap_gather_half_kind,
                                &restir_initial_kind,
-                               &restir_resolve_kind}) {
+                               &restir_resolve_kind,
+                               &restir_temporal_kind,
+                               &restir_spatial_kind}) {
     PassKind known = *kind;
     known.needs = needs_of(known.name);
     registry.add(known);

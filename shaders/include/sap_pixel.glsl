@@ -5,19 +5,9 @@
 
 #include "half.glsl"
 #include "patch.glsl"
+#include "pixel_light.glsl"
 #include "radius.glsl"
-#include "sanitise.glsl"
 #include "sap.glsl"
-
-// Light that can scatter.
-vec3 sap_pixel_light(ivec2 texel) {
-  vec3 light = clean_light(texelFetch(lighting_image, texel, 0).rgb);
-  if (settings.texturing != TEXTURING_POST && has_albedo()) {
-    vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-    light *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
-  }
-  return light;
-}
 
 // The surface behind a pixel at a depth above 0, and the fourth root of its area over its cross-section.
 sap_texel sap_pixel_surface(ivec2 pixel, uint id, float depth, patch_neighbours around, out float area_root) {

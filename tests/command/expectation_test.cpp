@@ -141,6 +141,8 @@ TEST_F(Expectations, ErrorsInTheFileAreLocated) {
   says(R"({ "dermis_expect": 2, "cases": [] })", ":1:20: error[D0110");
   says(R"({ "dermis_expect": 1, "cases": [] })", "D01");
   says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "expects": {} } ] })", "did you mean 'expect'?");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "device": { "lacks": ["rays"] } } ] })",
+       "there is no feature 'rays'");
   says(R"({ "dermis_expect": 1, "cases": [ { "case": "a" }, { "case": "a" } ] })",
        "two cases are called 'a'");
   says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "size": [0, 4] } ] })", "D0106");

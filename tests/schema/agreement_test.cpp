@@ -286,7 +286,7 @@ TEST(Schema, OfExpectationsAgreesWithTheParserOnMutatedFiles) {
       parse(R"({ "$schema": "x", "dermis_expect": 1, "note": "n", "cases": [ { "case": "all", "note": "n",
     "size": [640, 360], "overlays": ["a.json"], "set": { "a": true, "b": 1.5, "c": "x", "d": 3 }, "unbound": ["u"],
     "host_formats": { "x": "rgba16f" },
-    "device": { "unsupported_formats": ["r32f"], "max_image_dimension": 4096, "note": "n" },
+    "device": { "unsupported_formats": ["r32f"], "lacks": ["ray_query"], "max_image_dimension": 4096, "note": "n" },
     "expect": { "passes": ["p"], "culled": { "q": "why" }, "barriers": 1, "batches": 2, "transient_bytes": 3,
                 "history_bytes": 4, "diagnostics": ["D0301"], "note": "n" } } ] })"));
   expect_agreement("configs/schema/expectation.schema.json", read_expectation_text, files, 6000);

@@ -47,6 +47,16 @@ struct CaseReader {
     return found;
   }
 
+  void feature(NodeId node, ExpectedCase& out) {
+    const auto name = read_string(document, node, "'lacks'", diagnostics);
+    ok &= name.has_value();
+    if (!name) return;
+    if (const std::optional<Feature> found = feature_from_name(*name))
+      out.lacks |= bit_of(*found);
+    else
+      refuse(node, fmt::format("'lacks': there is no feature '{}'", *name));
+  }
+
   // Values as --set takes them; the graph decides what they mean.
   std::vector<NamedValue> settings(NodeId object) {
     std::vector<NamedValue> out;
@@ -99,6 +109,10 @@ struct CaseReader {
       for (const NodeId one : children(document, formats))
         if (const auto found = format(one, "'unsupported_formats'"))
           out.unsupported_formats.push_back(*found);
+    if (const NodeId lacks = object.array("lacks", 0, static_cast<size_t>(Feature::count), Need::optional);
+        lacks.valid())
+      for (const NodeId one : children(document, lacks))
+        feature(one, out);
     if (const auto side = object.integer("max_image_dimension", 1, most_side, Need::optional))
       out.max_image_dimension = static_cast<uint32_t>(*side);
     ok &= object.finish();

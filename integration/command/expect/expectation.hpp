@@ -33,6 +33,7 @@ struct ExpectedCase {
   std::vector<std::string> unbound; // optional imports and exports
   std::map<std::string, Format> host_formats;
   std::vector<Format> unsupported_formats; // of the device
+  Features lacks = 0;                      // the device
   std::optional<uint32_t> max_image_dimension;
   std::optional<Facts> facts; // absent: nothing is stated yet
   NodeId node, facts_node;    // of the case; of its "expect", invalid if there is none

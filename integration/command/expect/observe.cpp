@@ -12,6 +12,7 @@ namespace {
 
 DeviceProfile device_of(const ExpectedCase& inputs) {
   DeviceProfile device = generic_profile();
+  device.features &= ~inputs.lacks;
   if (inputs.max_image_dimension) device.max_image_dimension = *inputs.max_image_dimension;
   device.supports = [all = device.supports, without = inputs.unsupported_formats](Format format,
                                                                                   uint32_t vk_usage) {

@@ -5,8 +5,8 @@
 namespace dermis::subsurface {
 namespace {
 
-constexpr uint32_t pixel = 1, tile = 8, cell = 32;       // sides of squares
-constexpr uint32_t word = 4, range = 16, reservoir = 64; // bytes
+constexpr uint32_t pixel = 1, tile = 8, cell = 32;                    // sides of squares
+constexpr uint32_t word = 4, range = 16, reservoir = 64, domain = 32; // bytes
 constexpr uint32_t dispatch = 16, levels = 9,
                    level_heads = 1024; // VkDispatchIndirectCommand and one word; bytes
 
@@ -18,6 +18,12 @@ constexpr PortNeed needs[] = {
     {"shares", tile, word},
     {"before", tile, word},
     {"reservoirs", pixel, reservoir},
+    {"reservoirs_before", pixel, reservoir},
+    {"merged", pixel, reservoir},
+    {"domains_before", pixel, domain},
+    {"domains", pixel, domain},
+    {"lights_before", 0, 0, 64},
+    {"lights_kept", 0, 0, 64},
     {"vertices", 0, 0, 32}, // of the host's scene: an element
     {"indices", 0, 0, word},
     {"instances", 0, 0, 64},
@@ -86,7 +92,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 16;
+constexpr size_t buffers = 22;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace

@@ -21,7 +21,8 @@ extern const PassKind probe_kind;                                       // probe
 extern const PassKind accumulate_kind;                                  // accumulate_signature.cpp
 extern const PassKind clear_kind;                                       // clear_signature.cpp
 
-extern const PassKind restir_initial_kind, restir_resolve_kind;         // restir_signatures.cpp
+extern const PassKind restir_initial_kind, restir_temporal_kind, restir_spatial_kind,
+    restir_resolve_kind; // restir_signatures.cpp
 
 // Ports that several kinds declare with the same meaning.
 namespace port {

@@ -12,6 +12,11 @@ struct scatter_domain {
   uint medium;   // profile id; 0: none
 };
 
+// 32 bytes; the normal in 16 bits for each of two coordinates.
+struct packed_domain {
+  uvec4 words[2];
+};
+
 const float restir_pi = 3.14159265358979;
 const float probe_share = 0.999;            // of a channel's energy that probes reach
 const float reach_in_d = 19.8602213973662; // where it lies: 1 - probe_share = (e^-r + 3 e^(-r/3)) / 4
@@ -56,6 +61,32 @@ vec3 probe_axis(vec3 normal, uint axis) {
 
 // Light of this irradiance at distance r that reaches x1: diffuse light before albedo.
 vec3 scattered(scatter_domain domain, float r, vec3 irradiance) { return scattering_profile(domain.d, r) * irradiance; }
+
+// A unit vector on a square: the octahedron's faces (Cigolle et al. 2014, "A Survey of Efficient Representations for
+// Independent Unit Vectors").
+vec2 fold_normal(vec3 n) {
+  vec2 flat_part = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+  vec2 side = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(flat_part, vec2(0.0)));
+  return n.z >= 0.0 ? flat_part : (1.0 - abs(flat_part.yx)) * side;
+}
+vec3 unfold_normal(vec2 p) {
+  vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  vec2 side = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
+  if (n.z < 0.0)
+    n.xy = (1.0 - abs(p.yx)) * side;
+  return normalize(n);
+}
+
+packed_domain pack_domain(scatter_domain domain) {
+  packed_domain packed;
+  packed.words[0] = uvec4(floatBitsToUint(domain.position), domain.medium);
+  packed.words[1] = uvec4(floatBitsToUint(domain.d), packSnorm2x16(fold_normal(domain.normal)));
+  return packed;
+}
+scatter_domain unpack_domain(packed_domain packed) {
+  return scatter_domain(uintBitsToFloat(packed.words[0].xyz), unfold_normal(unpackSnorm2x16(packed.words[1].w)),
+                        uintBitsToFloat(packed.words[1].xyz), packed.words[0].w);
+}
 
 float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 

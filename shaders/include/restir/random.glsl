@@ -11,6 +11,7 @@ struct random_state {
   uint count; // numbers drawn; passes of one frame begin at multiples of random_numbers_a_pass
 };
 const uint random_numbers_a_pass = 1024u;
+const uint random_numbers_of_samples = 4u * random_numbers_a_pass; // where restir.initial begins: it may draw more
 
 // Uniform in (0, 1), 24 bits.
 float random_unit(inout random_state random) {

@@ -45,50 +45,49 @@ reservoir draw_initial(scatter_domain domain, inout random_state random) {
 // x / (x + y) for densities, 0 where both are.
 float restir_part(float x, float y) { return x > 0.0 ? x / (x + y) : 0.0; }
 
-#ifdef DERMIS_RESTIR_RELIGHT
-// Kernels that define DERMIS_RESTIR_RELIGHT before they include this define it: the same light in the frame before.
-light_source previous_light_at(uint index);
+// Two paths, each with the pixel that it is of and its target there, and their images in each other's. Loops over both,
+// as above: once is compiled once.
+struct exchange {
+  scatter_domain domain[2];
+  reservoir path[2];
+  float target[2];
+  shifted_path image[2]; // of path i in domain 1 - i
+};
 
-// A path as a light of its number lights it in the pixel that it was shifted to.
-void relight(light_source light, scatter_domain domain, inout shifted_path shifted) {
-  if (!(shifted.jacobian > 0.0))
-    return;
-  shifted.target = 0.0;
-  surface_point x2 = surface_of(shifted.path);
-  vec3 irradiance = light_irradiance(light, shifted.path.place, x2.position, x2.normal, x2.shading);
-  float target = luminance(scattered(domain, length(x2.position - domain.position), irradiance));
-  shifted.path.irradiance = vec3(0.0);
-  if (!(target > 0.0) || !visible(x2, light_target(light, shifted.path.place, x2.position)))
-    return;
-  shifted.path.irradiance = irradiance;
-  shifted.target = target;
+// `first`: the first path that has to be prepared; 0 or 1.
+void exchange_paths(reuse_settings settings, uint first, bool over_time, inout exchange both,
+                    inout random_state random) {
+  for (uint i = 0u; i < 2u; ++i) {
+    both.target[i] = 0.0;
+    both.image[i] = shifted_path(both.path[i], 0.0, 0.0);
+    if (!has_sample(both.path[i]))
+      continue;
+    surface_point x2 = surface_of(both.path[i]);
+    if (i >= first)
+      prepare(settings.shift, settings.index, both.domain[i], x2, both.path[i], random);
+    both.target[i] = target_of(both.domain[i], x2, both.path[i]);
+    both.image[i] =
+        shift_path(settings.shift, over_time && i == 0u, both.domain[i], both.domain[1u - i], x2, both.path[i]);
+  }
 }
-#endif
 
 // Generalised balance heuristic over frame and history.
 reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservoir current,
                          scatter_domain previous_domain, reservoir previous, inout random_state random) {
-  reservoir own = sanitised(current), history = sanitised(previous);
-  history.confidence = min(history.confidence, settings.cap * own.confidence);
-  prepare(settings.shift, settings.index, domain, own, random);
-  prepare(settings.shift, settings.index, previous_domain, history, random);
+  exchange both;
+  both.domain = scatter_domain[2](domain, previous_domain);
+  both.path = reservoir[2](sanitised(current), sanitised(previous));
+  both.path[1].confidence = min(both.path[1].confidence, settings.cap * both.path[0].confidence);
+  exchange_paths(settings, 0u, true, both, random);
+  reservoir own = both.path[0], history = both.path[1];
+  shifted_path back = both.image[0], here = both.image[1];
   reservoir_stream stream = stream_begin();
 
-  float target = target_of(domain, own);
-  shifted_path back = shift_path(settings.shift, domain, previous_domain, own);
-#ifdef DERMIS_RESTIR_RELIGHT
-  if (back.path.light < light_count())
-    relight(previous_light_at(back.path.light), previous_domain, back);
-#endif
+  float target = both.target[0];
   float own_mis = restir_part(own.confidence * target, history.confidence * back.target * back.jacobian);
   stream_add(stream, own, target, own_mis * target * own.weight, own.confidence, random_unit(random));
 
-  shifted_path here = shift_path(settings.shift, previous_domain, domain, history);
-#ifdef DERMIS_RESTIR_RELIGHT
-  if (here.path.light < light_count())
-    relight(light_at(here.path.light), domain, here);
-#endif
-  float there = here.jacobian > 0.0 ? target_of(previous_domain, history) / here.jacobian : 0.0;
+  float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
   float mis = restir_part(history.confidence * there, own.confidence * here.target);
   stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian, history.confidence,
              random_unit(random));
@@ -109,25 +108,29 @@ spatial_merge spatial_begin(reuse_settings settings, scatter_domain domain, rese
   spatial.stream = stream_begin();
   spatial.own = sanitised(own);
   spatial.neighbours = max(neighbours, 0.0);
-  prepare(settings.shift, settings.index, domain, spatial.own, random);
-  spatial.own_target = target_of(domain, spatial.own);
+  spatial.own_target = 0.0;
+  if (has_sample(spatial.own)) {
+    surface_point x2 = surface_of(spatial.own);
+    prepare(settings.shift, settings.index, domain, x2, spatial.own, random);
+    spatial.own_target = target_of(domain, x2, spatial.own);
+  }
   spatial.own_mis = restir_part(spatial.own.confidence, spatial.neighbours);
   return spatial;
 }
 
 void spatial_add(reuse_settings settings, scatter_domain domain, inout spatial_merge spatial,
                  scatter_domain neighbour_domain, reservoir neighbour, inout random_state random) {
-  reservoir other = sanitised(neighbour);
+  exchange both;
+  both.domain = scatter_domain[2](domain, neighbour_domain);
+  both.path = reservoir[2](spatial.own, sanitised(neighbour));
+  exchange_paths(settings, 1u, false, both, random);
+  reservoir other = both.path[1];
+  shifted_path back = both.image[0], here = both.image[1];
   float own_confidence = spatial.own.confidence;
   float share = restir_part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
-  prepare(settings.shift, settings.index, neighbour_domain, other, random);
-
-  shifted_path back = shift_path(settings.shift, domain, neighbour_domain, spatial.own);
   spatial.own_mis += share * restir_part(own_confidence * spatial.own_target,
                                          spatial.neighbours * back.target * back.jacobian);
-
-  shifted_path here = shift_path(settings.shift, neighbour_domain, domain, other);
-  float there = here.jacobian > 0.0 ? target_of(neighbour_domain, other) / here.jacobian : 0.0;
+  float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
   float mis = share * restir_part(spatial.neighbours * there, own_confidence * here.target);
   stream_add(spatial.stream, here.path, here.target, mis * here.target * other.weight * here.jacobian,
              other.confidence, random_unit(random));
@@ -142,13 +145,22 @@ reservoir spatial_end(inout spatial_merge spatial, inout random_state random) {
 // The pixel's estimate: scattered diffuse light before albedo.
 vec3 resolve(scatter_domain domain, reservoir r) {
   r = sanitised(r);
-  return r.weight * contribution_of(domain, r);
+  if (!has_sample(r))
+    return vec3(0.0);
+  return r.weight * contribution_of(domain, surface_of(r), r);
 }
 
 // How far neighbours are looked for, pixels; `footprint`: of a pixel across the view at x1, in d's unit.
 float search_radius(vec3 d, float footprint) {
   float px = 2.0 * max(d.r, max(d.g, d.b)) / footprint;
   return px >= 5.0 ? min(px, 30.0) : 5.0;
+}
+
+// From the pixel to a neighbour, uniform over the disc.
+ivec2 neighbour_offset(float radius, inout random_state random) {
+  float r = radius * sqrt(random_unit(random));
+  float angle = 2.0 * restir_pi * random_unit(random);
+  return ivec2(round(r * vec2(cos(angle), sin(angle))));
 }
 
 #endif

@@ -19,6 +19,11 @@ struct shifted_path {
   float target;   // in the new pixel
 };
 
+#ifdef DERMIS_RESTIR_RELIGHT
+// Kernels that define DERMIS_RESTIR_RELIGHT before they include this define it: the same light in the frame before.
+light_source previous_light_at(uint index);
+#endif
+
 uint shift_of_stage(uint shift, uint stage) {
   if (shift != shift_sequential)
     return shift;
@@ -46,19 +51,25 @@ float replay_jacobian(float from_density, uint from_hits, float to_density, uint
 
 surface_point surface_of(reservoir path) { return surface_at(path.instance, path.primitive, path.barycentrics); }
 
-vec3 contribution_of(scatter_domain domain, reservoir path) {
+vec3 contribution_of(scatter_domain domain, surface_point x2, reservoir path) {
   if (!has_sample(path))
     return vec3(0.0);
-  return scattered(domain, length(surface_of(path).position - domain.position), path.irradiance);
+  return scattered(domain, length(x2.position - domain.position), path.irradiance);
 }
-float target_of(scatter_domain domain, reservoir path) { return luminance(contribution_of(domain, path)); }
+float target_of(scatter_domain domain, surface_point x2, reservoir path) {
+  return luminance(contribution_of(domain, x2, path));
+}
+
+// Functions below are handed x2, the surface_of the path, and shift_path lights it at one place: each reading of a
+// surface and each ray that a kernel has once only is one that a driver compiles once only.
 
 shifted_path reconnect(scatter_domain to, surface_point x2, reservoir path) {
   path.hits = 0u;
-  return shifted_path(path, 1.0, luminance(scattered(to, length(x2.position - to.position), path.irradiance)));
+  return shifted_path(path, 1.0, target_of(to, x2, path));
 }
 
-shifted_path replay(uint shift, scatter_domain to, reservoir path) {
+// Leaves the path without light; `x2` becomes where it leads.
+shifted_path replay(uint shift, scatter_domain to, reservoir path, inout surface_point x2) {
   shifted_path result = shifted_path(path, 0.0, 0.0);
   if (path.hits == 0u)
     return result;
@@ -67,34 +78,43 @@ shifted_path replay(uint shift, scatter_domain to, reservoir path) {
   if (hits.count == 0u)
     return result;
   probe_hit hit = hits.hit[picked_hit(path.numbers.pick, hits.count)];
-  surface_point y2 = surface_at(hit.instance, hit.primitive, hit.barycentrics);
-  if (shift == shift_hybrid && connectable(to, y2.position, y2.normal)) // would not come back so
+  x2 = surface_at(hit.instance, hit.primitive, hit.barycentrics);
+  if (shift == shift_hybrid && connectable(to, x2.position, x2.normal)) // would not come back so
     return result;
-  result.path.density = probe_pdf(to, y2.position, y2.normal);
+  result.path.density = probe_pdf(to, x2.position, x2.normal);
   result.jacobian = replay_jacobian(path.density, path.hits, result.path.density, hits.count);
   result.path.hits = hits.count;
   result.path.instance = hit.instance;
   result.path.primitive = hit.primitive;
   result.path.barycentrics = hit.barycentrics;
-  result.path.irradiance = vec3(0.0);
-  if (!(result.jacobian > 0.0) || path.light >= light_count())
-    return result;
-  light_source light = light_at(path.light);
-  vec3 irradiance = light_irradiance(light, path.place, y2.position, y2.normal, y2.shading);
-  float target = luminance(scattered(to, length(y2.position - to.position), irradiance));
-  if (target > 0.0 && visible(y2, light_target(light, path.place, y2.position))) {
-    result.path.irradiance = irradiance;
-    result.target = target;
-  }
   return result;
+}
+
+// A path as the light of its number, of this frame or of the one before, lights it in the pixel that it was shifted to.
+void relight(bool before, scatter_domain domain, surface_point x2, inout shifted_path shifted) {
+  shifted.path.irradiance = vec3(0.0);
+  shifted.target = 0.0;
+  if (!(shifted.jacobian > 0.0) || shifted.path.light >= light_count())
+    return;
+  light_source light = light_at(shifted.path.light);
+#ifdef DERMIS_RESTIR_RELIGHT
+  if (before)
+    light = previous_light_at(shifted.path.light);
+#endif
+  vec3 irradiance = light_irradiance(light, shifted.path.place, x2.position, x2.normal, x2.shading);
+  float target = luminance(scattered(domain, length(x2.position - domain.position), irradiance));
+  if (target > 0.0 && visible(x2, light_target(light, shifted.path.place, x2.position))) {
+    shifted.path.irradiance = irradiance;
+    shifted.target = target;
+  }
 }
 
 // Finds the random numbers that `shift` will replay by probabilistic inversion in the path's own pixel; once for each
 // path and pass. Where none lead there, hits stays 0 and no replay succeeds.
-void prepare(uint shift, uint index, scatter_domain domain, inout reservoir path, inout random_state random) {
+void prepare(uint shift, uint index, scatter_domain domain, surface_point x2, inout reservoir path,
+             inout random_state random) {
   if (!has_sample(path) || path.hits > 0u)
     return;
-  surface_point x2 = surface_of(path);
   float technique = random_unit(random);
   float within = random_unit(random);
   if (!replays(shift, domain, x2) || !invert_point(domain, x2.position, x2.normal, technique, path.numbers))
@@ -111,19 +131,27 @@ void prepare(uint shift, uint index, scatter_domain domain, inout reservoir path
     path.hits = hits.count;
 }
 
-// `shift` is none of a sequence: ask shift_of_stage first.
-shifted_path shift_path(uint shift, scatter_domain from, scatter_domain to, reservoir path) {
+// `shift` is none of a sequence: ask shift_of_stage first. `before`: into the frame before; with
+// DERMIS_RESTIR_RELIGHT paths are lit by the lights of the frame that they come to.
+shifted_path shift_path(uint shift, bool before, scatter_domain from, scatter_domain to, surface_point x2, reservoir path) {
   shifted_path none = shifted_path(path, 0.0, 0.0);
   if (!has_sample(path) || from.medium != to.medium)
     return none;
-  if (shift == shift_delayed)
-    return replay(shift, to, path);
-  surface_point x2 = surface_of(path);
-  if (replays(shift, from, x2))
-    return replay(shift, to, path);
-  if (shift == shift_hybrid && !connectable(to, x2.position, x2.normal))
+  bool replayed = replays(shift, from, x2);
+  if (!replayed && shift == shift_hybrid && !connectable(to, x2.position, x2.normal))
     return none;
-  return reconnect(to, x2, path);
+  shifted_path image = none;
+  if (replayed)
+    image = replay(shift, to, path, x2);
+  else
+    image = reconnect(to, x2, path);
+  bool relit = replayed;
+#ifdef DERMIS_RESTIR_RELIGHT
+  relit = true;
+#endif
+  if (relit)
+    relight(before, to, x2, image);
+  return image;
 }
 
 #endif

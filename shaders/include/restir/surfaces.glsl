@@ -4,6 +4,7 @@
 
 #include "environment.glsl"
 #include "profile.glsl"
+#include "restir/random.glsl"
 #include "restir/scene.glsl"
 #include "radius.glsl"
 #include "sanitise.glsl"
@@ -59,6 +60,11 @@ scatter_domain domain_of(ivec2 pixel) {
                         find_profile(id, scale).d.rgb / mm_per_world_unit(), id);
 }
 
-uint reservoir_place(ivec2 pixel) { return 4u * uint(texel_of(pixel).y * reservoir_row() + texel_of(pixel).x); }
+// Of a texel in buffers that have an element a pixel.
+uint element_of(ivec2 texel) { return uint(texel.y * textureSize(depth_image, 0).x + texel.x); }
+
+random_state random_of(ivec2 pixel, uint first) {
+  return random_state(uint(pixel.x) | uint(pixel.y) << 16, frame.frame_index, first);
+}
 
 #endif

@@ -1,9 +1,8 @@
-// Scattering by rays on a driver that has them: tests/drivers/fetch.sh leaves one in build/drivers. Without
-// it the tests skip. The reference draws its points by area over the triangles: it shares no sampler with the
-// graph.
+// Scattering by rays. The reference draws its points by area over the triangles: it shares no sampler with
+// the graph.
 #include "integration/demo_engine/geometry/shapes.hpp"
 #include "passes/subsurface/profile.hpp"
-#include "tests/integration/demo_engine/rendering.hpp"
+#include "tests/integration/demo_engine/ray_queries.hpp"
 #include "tests/passes/restir/area_reference.hpp"
 
 #include "framegraph/text/document.hpp"
@@ -14,8 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -24,23 +21,10 @@ namespace {
 
 namespace restir = dermis::restir;
 
-const std::string source = DERMIS_SOURCE_DIR;
-
 RenderOptions back_lit(const std::string& technique, uint32_t samples, uint32_t frames) {
-  RenderOptions options;
-  options.scene = source + "/configs/scenes/back_lit.json";
-  options.roots = {source + "/configs"};
-  options.graph = source + "/configs/graphs/restir.json";
-  options.width = options.height = 64;
-  options.frames = frames;
-  options.validation = true;
-  options.settings = {{"technique", "\"" + technique + "\""}, {"samples", std::to_string(samples)}};
-  return options;
-}
-
-bool ran(const FrameOutputs& frame, const std::string& pass) {
-  return std::any_of(frame.dermis_times.begin(), frame.dermis_times.end(),
-                     [&](const PassTime& time) { return time.pass == pass; });
+  return by_rays(
+      source + "/configs/scenes/back_lit.json", 64, frames,
+      {{"technique", "\"" + technique + "\""}, {"samples", std::to_string(samples)}, {"reuse", "\"none\""}});
 }
 
 bool withheld(const Rendering& rendering) {
@@ -55,22 +39,6 @@ TEST(WithoutRayQueries, TheGraphFallsBackToThePyramidAndSaysSo) {
   if (!withheld(rendering)) GTEST_SKIP() << "this device has ray queries";
   EXPECT_TRUE(ran(rendering.frames[0], "gather"));
   EXPECT_FALSE(ran(rendering.frames[0], "draw"));
-}
-
-// The loader reads the variable each time an instance is made.
-struct WithRayQueries : testing::Test {
-  void SetUp() override {
-    const std::string driver = source + "/build/drivers/mesa25.json";
-    if (!std::filesystem::exists(driver))
-      GTEST_SKIP() << driver << " is not there: run tests/drivers/fetch.sh";
-    setenv("VK_DRIVER_FILES", driver.c_str(), 1);
-  }
-  void TearDown() override { unsetenv("VK_DRIVER_FILES"); }
-};
-
-double luminance(const FloatImage& image, size_t pixel) {
-  const float* rgb = image.texels.data() + pixel * image.channels;
-  return 0.2126 * double(rgb[0]) + 0.7152 * double(rgb[1]) + 0.0722 * double(rgb[2]);
 }
 
 restir::Vector3 vector_of(const glm::dvec3& v) {

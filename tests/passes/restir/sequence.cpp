@@ -1,7 +1,6 @@
 #include "tests/passes/restir/sequence.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 namespace dermis::restir::testing {
@@ -33,11 +32,8 @@ std::vector<Reservoir> spatial_pass(const Scene& scene, const SequenceSettings& 
     std::vector<uint32_t> others;
     double confidences = 0;
     for (uint32_t n = 0; n < neighbours; ++n) {
-      const double r = radius * std::sqrt(random_unit(random));
-      const double phi = 2 * std::numbers::pi * random_unit(random);
-      const uint32_t other =
-          moved(s, frame, domain.medium, i, static_cast<int>(std::lround(r * std::cos(phi))),
-                static_cast<int>(std::lround(r * std::sin(phi))));
+      const auto [x, y] = neighbour_offset(radius, random);
+      const uint32_t other = moved(s, frame, domain.medium, i, x, y);
       if (other == no_pixel || other == i) continue;
       others.push_back(other);
       confidences += frame.reservoirs[other].confidence;

@@ -41,7 +41,13 @@ const Light sheet_lights[] = {
     {{3, 2, 5}, LightType::point, {}, 0.5, {}, 1, {8, 9, 10}, 0.5},
     {{1, 1, -4}, LightType::parallelogram, {2, 0, 0}, 0.5, {0, 2, 0}, 4, {4, 3, 2}, 1},
 };
-const Scene sheet_scene = {nullptr, trace_sheets, point_on_sheet, seen_from_sheet, sheet_lights};
+// Each moved and took another colour.
+const Light sheet_lights_before[] = {
+    {{2.5, 2, 5}, LightType::point, {}, 0.5, {}, 1, {10, 8, 9}, 0.5},
+    {{0.5, 1, -4}, LightType::parallelogram, {2, 0, 0}, 0.5, {0, 2, 0}, 4, {2, 4, 3}, 1},
+};
+const Scene sheet_scene = {nullptr,         trace_sheets, point_on_sheet,
+                           seen_from_sheet, sheet_lights, sheet_lights_before};
 
 Vector3 three(Random& random) {
   Vector3 v;
@@ -264,6 +270,36 @@ TEST_F(RestirKernel, PacksTheSameWords) {
       EXPECT_EQ(at(x, row, first + 1), words[i] >> 16) << "case " << x << ", word " << i;
     }
   }
+}
+
+TEST_F(RestirKernel, RemembersAPixelByTheSameWords) {
+  ASSERT_FALSE(answers.empty());
+  for (uint32_t x = 0; x < cases; ++x) {
+    const Domain domain = question(x).domain;
+    const PackedDomain words = pack_domain(domain);
+    const auto word_of = [&](uint32_t row, size_t first) {
+      return static_cast<uint32_t>(at(x, row, first)) | static_cast<uint32_t>(at(x, row, first + 1)) << 16;
+    };
+    EXPECT_EQ(word_of(33, 0), words[0]);
+    EXPECT_EQ(word_of(33, 2), words[3]);
+    EXPECT_EQ(word_of(34, 0), words[4]);
+    const Vector3 normal = unpack_domain(words).normal, found = three_at(x, 35);
+    EXPECT_LT(length(found - normal), 1e-4) << "case " << x; // a step of 16 bits, where rounding differs
+    EXPECT_LT(length(found - domain.normal), 1e-4) << "case " << x;
+    EXPECT_EQ(at(x, 35, 3), domain.medium);
+  }
+}
+
+TEST_F(RestirKernel, LooksForNeighboursAtTheSamePlaces) {
+  ASSERT_FALSE(answers.empty());
+  int same = 0;
+  for (uint32_t x = 0; x < cases; ++x) {
+    Random random{x, 3, 0};
+    const auto near = neighbour_offset(5, random), far = neighbour_offset(30, random);
+    same += at(x, 36, 0) == near[0] && at(x, 36, 1) == near[1] && at(x, 36, 2) == far[0] &&
+            at(x, 36, 3) == far[1];
+  }
+  EXPECT_GE(same, static_cast<int>(cases) * 99 / 100); // rounding at a border between pixels
 }
 
 TEST_F(RestirKernel, TakesNothingThatIsNotANumber) {

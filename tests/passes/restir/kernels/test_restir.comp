@@ -2,6 +2,7 @@
 // What the functions of shaders/include/restir say of case x, one answer a row; rows 0 to 8 are what they were asked, so
 // that the twins are asked the same. Rows 17 on pass paths over three sheets of surface.
 #extension GL_GOOGLE_include_directive : require
+#define DERMIS_RESTIR_RELIGHT
 #include "environment.glsl"
 #include "restir/reuse.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -35,6 +36,13 @@ light_source light_at(uint index) {
     return light_source(vec3(3.0, 2.0, 5.0), light_point, vec3(0.0), 0.5, vec3(0.0), 1.0, vec3(8.0, 9.0, 10.0), 0.5);
   return light_source(vec3(1.0, 1.0, -4.0), light_parallelogram, vec3(2.0, 0.0, 0.0), 0.5, vec3(0.0, 2.0, 0.0), 4.0,
                       vec3(4.0, 3.0, 2.0), 1.0);
+}
+
+light_source previous_light_at(uint index) {
+  light_source light = light_at(index);
+  light.emission = light.emission.brg;
+  light.position.x -= 0.5;
+  return light;
 }
 
 vec3 three(inout random_state random) {
@@ -166,6 +174,19 @@ void main() {
     packed_words.words[at / 4u][at % 4u] = words[uint(pixel.x) / 10u % 4u];
     reservoir s = unpack_reservoir(packed_words);
     result = vec4(has_sample(s), s.weight, s.confidence, s.hits);
+  }
+
+  // What a pixel is remembered by, and where a neighbour is looked for.
+  if (row == 33 || row == 34 || row == 35) {
+    packed_domain kept = pack_domain(domain);
+    result = row == 33 ? halves(kept.words[0].x, kept.words[0].w) : halves(kept.words[1].x, kept.words[1].w);
+    if (row == 35)
+      result = vec4(unpack_domain(kept).normal, unpack_domain(kept).medium);
+  }
+  if (row == 36) {
+    random = random_state(uint(pixel.x), 3u, 0u);
+    ivec2 near = neighbour_offset(5.0, random);
+    result = vec4(near, neighbour_offset(30.0, random));
   }
   imageStore(target, pixel, result);
 }

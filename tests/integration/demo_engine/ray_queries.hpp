@@ -1,0 +1,50 @@
+#pragma once
+// Renderings on a driver that has ray queries: tests/drivers/fetch.sh leaves one in build/drivers. Without it
+// these tests skip.
+
+#include "tests/integration/demo_engine/rendering.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace demo {
+
+inline const std::string source = DERMIS_SOURCE_DIR;
+
+// The loader reads the variable each time an instance is made.
+struct WithRayQueries : testing::Test {
+  void SetUp() override {
+    const std::string driver = source + "/build/drivers/mesa25.json";
+    if (!std::filesystem::exists(driver))
+      GTEST_SKIP() << driver << " is not there: run tests/drivers/fetch.sh";
+    setenv("VK_DRIVER_FILES", driver.c_str(), 1);
+  }
+  void TearDown() override { unsetenv("VK_DRIVER_FILES"); }
+};
+
+inline RenderOptions by_rays(const std::string& scene, uint32_t side, uint32_t frames,
+                             std::vector<std::pair<std::string, std::string>> settings) {
+  RenderOptions options;
+  options.scene = scene;
+  options.roots = {source + "/configs"};
+  options.graph = source + "/configs/graphs/restir.json";
+  options.width = options.height = side;
+  options.frames = frames;
+  options.validation = true;
+  options.settings = std::move(settings);
+  return options;
+}
+
+inline bool ran(const FrameOutputs& frame, const std::string& pass) {
+  return std::any_of(frame.dermis_times.begin(), frame.dermis_times.end(),
+                     [&](const PassTime& time) { return time.pass == pass; });
+}
+
+inline double luminance(const FloatImage& image, size_t pixel) {
+  const float* rgb = image.texels.data() + pixel * image.channels;
+  return 0.2126 * double(rgb[0]) + 0.7152 * double(rgb[1]) + 0.0722 * double(rgb[2]);
+}
+
+} // namespace demo
