@@ -157,7 +157,28 @@ struct Session {
   Clock::time_point start;
 };
 
-Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t frame_index) {
+Result<> read_pictures(const Session& session, FrameOutputs& out) {
+  VulkanHost& host = session.host;
+  Renderer& renderer = session.renderer;
+  auto done = success();
+  if (session.dermis && hands_out_light(*session.dermis)) {
+    done = read(host, renderer[Target::scattered], 3, out.scattered);
+    if (!done) return done;
+  }
+  if (session.dermis && hands_out_sampling(*session.dermis)) {
+    done = read(host, renderer[Target::sampling], 4, out.sampling);
+    if (!done) return done;
+  }
+  if (session.dermis && hands_out_skips(*session.dermis)) {
+    done = read(host, renderer[Target::skips], 2, out.skips);
+    if (!done) return done;
+  }
+  done = read(host, session.taa ? taa_result(*session.taa) : renderer[Target::color], 3, out.color);
+  if (done) out.display = tonemap(out.color);
+  return done;
+}
+
+Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t frame_index, bool pictures) {
   VulkanHost& host = session.host;
   Renderer& renderer = session.renderer;
   const SceneState state = state_at(session.scene, frame, renderer.view);
@@ -176,9 +197,11 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
     return success();
   });
   if (!done) return done.error();
-  clock.begin("read inputs");
-  done = read_inputs(host, renderer, state, out.inputs); // before the graph updates the lighting in place
-  if (!done) return done.error();
+  if (pictures) {
+    clock.begin("read inputs");
+    done = read_inputs(host, renderer, state, out.inputs); // before the graph updates the lighting in place
+    if (!done) return done.error();
+  }
   if (session.dermis && wants_rays(*session.dermis)) {
     clock.begin("place rays");
     done = place_rays(renderer, state);
@@ -196,22 +219,11 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
     return success();
   });
   if (!done) return done.error();
-  clock.begin("read pictures");
-  if (session.dermis && hands_out_light(*session.dermis)) {
-    done = read(host, renderer[Target::scattered], 3, out.scattered);
+  if (pictures) {
+    clock.begin("read pictures");
+    done = read_pictures(session, out);
     if (!done) return done.error();
   }
-  if (session.dermis && hands_out_sampling(*session.dermis)) {
-    done = read(host, renderer[Target::sampling], 4, out.sampling);
-    if (!done) return done.error();
-  }
-  if (session.dermis && hands_out_skips(*session.dermis)) {
-    done = read(host, renderer[Target::skips], 2, out.skips);
-    if (!done) return done.error();
-  }
-  done = read(host, session.taa ? taa_result(*session.taa) : renderer[Target::color], 3, out.color);
-  if (!done) return done.error();
-  out.display = tonemap(out.color);
   clock.end();
   if (renderer.queries.host)
     out.host_times = {{"shadows", elapsed_ms(renderer, at_start, after_shadows)},
@@ -297,7 +309,9 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
         ++summary.reloads;
         summary.refused_reloads += *taken ? 0 : 1;
       }
-    auto frame = render_frame(session, options.first_frame + i, uint64_t{i} + 1);
+    const uint32_t number = options.first_frame + i;
+    const bool pictures = !options.pictures_of || options.pictures_of(number);
+    auto frame = render_frame(session, number, uint64_t{i} + 1, pictures);
     if (!frame) return frame.error();
     ++summary.frames;
     if (callbacks.on_frame)

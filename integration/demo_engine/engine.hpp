@@ -60,6 +60,8 @@ struct RenderOptions {
   // Texts that the graph is reloaded with before a frame, one after the other; those with errors leave it as
   // it is. May be empty. The graph must include nothing.
   std::function<std::vector<std::string>(uint32_t frame)> reloads = {};
+  // Are a frame's inputs and pictures read back? Empty: of every frame. The others come without them.
+  std::function<bool(uint32_t frame)> pictures_of = {};
   NamedText calibration; // JSON of an earlier run's RenderSummary::calibration; "": the library's own
 };
 

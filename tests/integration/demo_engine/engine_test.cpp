@@ -215,6 +215,27 @@ TEST_F(Engine, AGraphThatWantsWhatTheEngineLacksIsNamed) {
   EXPECT_THAT(refused(options).text, HasSubstr("scatter_scale"));
 }
 
+TEST_F(Engine, FramesWithoutPicturesRunAllTheSame) {
+  RenderOptions options = small();
+  options.graph = shipped + "graphs/skin.json";
+  options.frames = 3;
+  const auto all = frames_of(options);
+  options.pictures_of = [](uint32_t frame) { return frame == 2; };
+  const auto last = frames_of(options);
+  ASSERT_EQ(last.size(), 3u);
+  ASSERT_EQ(all.size(), 3u);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_TRUE(last[i].inputs.lighting.texels.empty());
+    EXPECT_TRUE(last[i].scattered.texels.empty());
+    EXPECT_TRUE(last[i].color.texels.empty());
+    EXPECT_EQ(last[i].choice->outcome, all[i].choice->outcome);
+    EXPECT_EQ(last[i].dermis_times.size(), all[i].dermis_times.size());
+  }
+  EXPECT_EQ(last[2].inputs.lighting.texels, all[2].inputs.lighting.texels);
+  EXPECT_EQ(last[2].scattered.texels, all[2].scattered.texels);
+  EXPECT_EQ(last[2].color.texels, all[2].color.texels);
+}
+
 TEST_F(Engine, ASettingOfTheGraphIsSetByName) {
   RenderOptions options = small();
   options.graph = shipped + "graphs/burley.json";

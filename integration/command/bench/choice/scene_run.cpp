@@ -27,6 +27,10 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
   engine.budget_ms = request.budget_ms;
   engine.metered = request.metered;
   engine.calibration = request.calibration;
+  const auto compared = [&](uint32_t frame) {
+    return request.error_every > 0 && frame % request.error_every == request.error_every - 1;
+  };
+  engine.pictures_of = compared;
   SceneRun run;
   std::vector<CaptureProfile> profiles;
   demo::RenderCallbacks callbacks;
@@ -41,9 +45,7 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
     if (interrupted()) return stopped();
     RunFrame& out = run.frames.emplace_back();
     out.choice = frame.choice.value_or(demo::FrameChoice{});
-    const bool compare =
-        request.error_every > 0 && frame.frame % request.error_every == request.error_every - 1;
-    if (!compare || frame.scattered.texels.empty()) return demo::success();
+    if (!compared(frame.frame) || frame.scattered.texels.empty()) return demo::success();
     const auto captured = captured_frame(frame, profiles);
     if (!captured) return captured.error();
     const auto reference =
