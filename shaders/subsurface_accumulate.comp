@@ -54,9 +54,9 @@ bool sharp_history(previous_place place, uint id, float tolerance, out accumulat
 // count 0 where the surface was not to be seen.
 accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   accumulated_light found = accumulated_light(vec3(0.0), 0.0);
-  if (!history_usable())
+  if (!(history_usable() && depth > 0.0))
     return found;
-  previous_place place = has_velocity()
+  previous_place place = has_velocity() && depth > 0.0
                              ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
                              : place_before(vec2(pixel), depth);
   float tolerance = depth_tolerance(place.depth, rise);

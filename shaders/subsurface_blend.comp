@@ -17,12 +17,13 @@ void main() {
     return;
   ivec2 texel = texel_of(pixel);
   vec4 light = texelFetch(scattered_image, texel, 0);
-  int count = 0;
-  if (!copy_only && light.a < settings.below) {
+  int count = !copy_only && light.a < settings.below ? settings.samples : 0;
+  if (count > 0) {
     sap_texel own = sap_unpack(texelFetch(surface_image, texel, 0));
-    if (own.id != 0u) {
+    if (own.id == 0u) {
+      count = 0;
+    } else {
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), frame.frame_index);
-      count = settings.samples;
       vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count, settings.lod_bias);
       light.rgb = round_to_half(mix(light.rgb, sampled, settings.share));
     }

@@ -36,9 +36,9 @@ struct guide_state {
 
 guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
   guide_state state = guide_state(sqrt(settings.sigma2_target), first_count, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), true);
-  if (!history_usable())
+  if (!(history_usable() && depth > 0.0))
     return state;
-  previous_place place = has_velocity()
+  previous_place place = has_velocity() && depth > 0.0
                              ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
                              : place_before(vec2(pixel), depth);
   history_taps taps = find_history(place, id, depth_tolerance(place.depth, rise));

@@ -35,7 +35,7 @@ float trust(float off, float tolerance, float odds) {
 }
 
 history_taps taps_of(ivec2 pixel, sap_texel own) {
-  previous_place place = has_velocity()
+  previous_place place = has_velocity() && own.depth > 0.0
                              ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
                              : place_before(vec2(pixel), own.depth);
   float rise = length(own.slope) * sap_footprint(own.depth);
@@ -74,7 +74,7 @@ void main() {
     vec4 all = texelFetch(brightness_image, ivec2(0), 0); // brightness, odds that patterns agree, their tolerance
     float pattern = brightness(light.rgb) - all.r, agreement = all.g / (1.0 + all.g);
     bool lit = is_lit(light.rgb), turn = is_turn(pixel >> 3, light.a);
-    if (history_usable()) {
+    if (history_usable() && own.depth > 0.0) {
       history_taps taps = taps_of(pixel, own);
       lost = taps.weight == vec4(0.0);
       if (!lost)

@@ -319,4 +319,16 @@ struct BenchSkipOptions {
 };
 ExitCode bench_skip(const Session& session, const BenchSkipOptions& options);
 
+struct BenchRestirOptions {
+  std::string file = shipped("tests/benchmark/restir.json"); // what is measured
+  Size size{96, 96};
+  std::string json, csv, html;             // files to write; "": none
+  std::string head;                        // folder of the head scan; "": its scene is left out
+  std::vector<std::string> scenes, shifts; // only these; empty: all
+  std::string cache = "build/bench_truth"; // folder for references; "": none is kept
+  bool quick = false;
+};
+ExitCode bench_restir(const Session& session, const BenchRestirOptions& options);
+std::string why_no_restir(); // what this machine lacks for it; "": nothing
+
 } // namespace dermis::tools

@@ -37,7 +37,7 @@ vec3 level_light(int level, ivec2 at) {
 float sap_area(sap_texel t, vec2 pixel) {
   vec2 rise = t.slope * sap_footprint(t.depth); // mm a pixel
   float zoom = is_perspective() ? t.depth : 1.0;
-  vec3 ray = is_perspective() ? view_position(pixel, t.depth) / t.depth : vec3(0.0, 0.0, -1.0);
+  vec3 ray = mix(vec3(0.0, 0.0, -1.0), view_position(pixel, t.depth) / t.depth, bvec3(is_perspective()));
   vec3 along_x = rise.x * ray + vec3(frame.ray_scale.x * zoom, 0.0, 0.0);
   vec3 along_y = rise.y * ray + vec3(0.0, frame.ray_scale.y * zoom, 0.0);
   float cross_section = abs(frame.ray_scale.x * frame.ray_scale.y) * zoom * zoom;

@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 // Suites that measure for minutes; their own tests run them small: bench_*_test.cpp, choice_test.cpp.
 const std::vector<std::string> too_long = {
-    "bench all",   "bench error-time", "bench budget",     "bench stability", "bench skip",
-    "bench truth", "bench dynamic",    "bench supplement", "bench compile",   "bench record"};
+    "bench all",     "bench error-time", "bench budget",  "bench stability", "bench skip",  "bench truth",
+    "bench dynamic", "bench supplement", "bench compile", "bench record",    "bench restir"};
 
 // What makes an example short, or end at all.
 const std::map<std::string, std::string> shortened = {

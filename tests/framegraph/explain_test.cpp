@@ -109,6 +109,33 @@ TEST(PlanText, SaysForWhomABarrierStandsEarlierThanNeeded) {
               HasSubstr("waits for point 1 of the async queue, behind 'middle'"));
 }
 
+TEST(PlanText, SaysWhyWhatTheCallerAskedForIsSo) {
+  auto b = sample();
+  b.pass("watch", "test.probe", {{"a", "light"}}, {});
+  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b)), HasSubstr("runs: its kind has side effects"));
+  CompileInput input = b.input();
+  input.cull = false;
+  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b, input)), HasSubstr("runs: culling is switched off"));
+  input = b.input();
+  input.order = PassOrder::random;
+  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b, input)), HasSubstr("in an order drawn at random"));
+}
+
+TEST(PlanText, HasWordsForEveryReasonAndNameOfRandomGraphs) {
+  for (uint64_t seed = 0; seed < 60; ++seed) {
+    const auto b = random_graph(seed);
+    CompileInput drawn = b.input(), whole = b.input();
+    drawn.order = PassOrder::random;
+    drawn.order_seed = seed;
+    whole.cull = false;
+    for (const CompileInput& input : {b.input(), drawn, whole}) {
+      const auto json = plan_json(b.graph, b.kinds, compiled(b, input));
+      EXPECT_THAT(json, ::testing::Not(HasSubstr("\"text\": \"\""))) << seed;
+      EXPECT_THAT(json, ::testing::Not(HasSubstr("unknown"))) << seed;
+    }
+  }
+}
+
 TEST(PlanDot, DrawsPassesAndResourcesAndEscapesNames) {
   auto b = sample();
   b.graph.passes[0].name = "say \"hi\"";

@@ -188,6 +188,32 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_cache(verb, options.cache);
       },
       true);
+  add_verb<BenchRestirOptions>(
+      bench, invocation, "restir",
+      "Light by rays with every reuse and shift that the graph offers, and what screen space misses; needs "
+      "ray "
+      "queries. Equal time: mean square error times device time, over the same without reuse, since the "
+      "error of "
+      "independent samples falls as one over their number",
+      "dermis bench restir --json build/restir.json --html build/restir.html", bench_restir,
+      [](CLI::App& verb, BenchRestirOptions& options) {
+        add_size(verb, options.size);
+        add_report_files(verb, options.json, &options.csv, options.html,
+                         "File for a page with the rows and pictures");
+        verb.add_option("--head", options.head, "Folder of the head scan (LeePerrySmith.glb and its maps)")
+            ->type_name("DIR");
+        verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--shifts", options.shifts, "Only these shifts, separated by commas")
+            ->type_name("NAME")
+            ->delimiter(',');
+        verb.add_option("--file", options.file, "What is measured [tests/benchmark/restir.json]")
+            ->type_name("FILE");
+        add_quick(verb, options.quick, {"--size"});
+        add_cache(verb, options.cache);
+      },
+      true);
   add_verb<BenchSupplementOptions>(
       bench, invocation, "supplement", "Table 1 of the supplement on control variates, from many runs",
       "dermis bench supplement --json build/supplement.json", bench_supplement,

@@ -31,6 +31,7 @@ struct Suite {
   bool has_quick;        // takes --quick
   std::string_view line; // options beyond the files, as a person would give them
   ExitCode (*run)(const Session&, const BenchAllOptions&, const Files&);
+  std::string (*why_not)() = nullptr; // what this machine lacks for it; "": nothing. null: needs nothing
 };
 
 template <class Options> Options with_files(const Files& files) {
@@ -101,13 +102,24 @@ constexpr Suite suites[] = {
        options.quick = all.quick;
        return bench_dynamic(session, options);
      }},
+    {"restir", "Light by rays, reuse by reuse, and what screen space misses", true, true, true, "",
+     [](const Session& session, const BenchAllOptions& all, const Files& files) {
+       auto options = with_files<BenchRestirOptions>(files);
+       options.csv = files.csv;
+       options.head = all.head;
+       options.cache = all.cache;
+       options.quick = all.quick;
+       return bench_restir(session, options);
+     },
+     why_no_restir},
 };
 
 struct Outcome {
   std::string suite, line; // that makes its files alone
   int64_t exit_code = 0;
   double seconds = 0;
-  bool written = false; // its files are those of this run
+  bool written = false;      // its files are those of this run
+  std::string left_out = {}; // why it was not run; "": it was
 };
 
 std::string line_of(const Suite& suite, const BenchAllOptions& options) {
@@ -134,7 +146,7 @@ std::vector<Outcome> read_index(const std::string& file) {
         seconds.valid())
       found.push_back({std::string(document->text(name)), std::string(document->text(line)),
                        (*document)[code].integer, (*document)[seconds].real,
-                       written.valid() && (*document)[written].integer != 0});
+                       written.valid() && (*document)[written].integer != 0, ""});
   }
   return found;
 }
@@ -149,12 +161,14 @@ std::string index_json(const std::vector<Outcome>& outcomes) {
         .member("exit_code", one.exit_code)
         .member("seconds", one.seconds)
         .member("written", one.written)
+        .member("left_out", one.left_out)
         .close();
   out.close().close();
   return std::move(out).finish();
 }
 
 std::string state_text(const Outcome& one) {
+  if (!one.left_out.empty()) return "left out: " + one.left_out;
   return !one.written ? "failed" : one.exit_code == 0 ? "done" : "done; rows miss what they should hold";
 }
 
@@ -172,7 +186,7 @@ std::string index_html(const Session& session, const std::vector<Outcome>& outco
     if (at == outcomes.end() || !at->written) {
       body += fmt::format(
           "<tr><td class=t>{}<td class=t>{}<td class=t><td class=t>{}<td data-v=''>&ndash;<td class=t>\n",
-          suite.name, suite.what, at == outcomes.end() ? "not measured" : "failed");
+          suite.name, suite.what, at == outcomes.end() ? "not measured" : html_text(state_text(*at)));
       continue;
     }
     const std::string csv = suite.rows_as_table ? fmt::format(" <a href='{}.csv'>CSV</a>", suite.name) : "";
@@ -190,6 +204,26 @@ bool are_there(const Files& files) {
     return file.empty() || std::filesystem::is_regular_file(file);
   };
   return exists(files.json) && exists(files.csv) && exists(files.html);
+}
+
+// What a suite leaves out for the machine's sake is no failure.
+ExitCode run_suite(const Session& session, const Suite& suite, const BenchAllOptions& options,
+                   const Files& files, Outcome& outcome) {
+  Session of_suite = session;
+  of_suite.quiet = session.quiet || session.json; // its table is none of our answer
+  of_suite.json = false;
+  of_suite.command = outcome.line;
+  const auto start = std::chrono::steady_clock::now();
+  std::error_code ignored; // what a run that fails leaves there would be taken for its own
+  for (const std::string& file : {files.json, files.csv, files.html})
+    if (!file.empty()) std::filesystem::remove(file, ignored);
+  if (suite.why_not != nullptr) outcome.left_out = suite.why_not();
+  if (!outcome.left_out.empty()) return ExitCode::ok;
+  const ExitCode code = suite.run(of_suite, options, files);
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.exit_code = static_cast<int64_t>(code);
+  outcome.written = are_there(files);
+  return code;
 }
 
 std::string unknown_suite(const std::vector<std::string>& asked) {
@@ -246,19 +280,8 @@ ExitCode bench_all(const Session& session, const BenchAllOptions& options) {
       continue;
     }
     say(session, fmt::format("{} of {}: {}\n", number, total, name));
-    Session of_suite = session;
-    of_suite.quiet = session.quiet || session.json; // its table is none of our answer
-    of_suite.json = false;
-    of_suite.command = outcome.line;
-    const auto start = std::chrono::steady_clock::now();
-    std::error_code ignored; // what a run that fails leaves there would be taken for its own
-    for (const std::string& file : {files.json, files.csv, files.html})
-      if (!file.empty()) std::filesystem::remove(file, ignored);
-    const ExitCode code = suite.run(of_suite, options, files);
+    const ExitCode code = run_suite(session, suite, options, files, outcome);
     if (code == ExitCode::interrupted) return code;
-    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    outcome.exit_code = static_cast<int64_t>(code);
-    outcome.written = are_there(files);
     worst = std::max(worst, code);
     say(session, fmt::format("  {}, {}\n", state_text(outcome), format_duration(outcome.seconds)));
     if (before != outcomes.end()) outcomes.erase(before);

@@ -18,9 +18,6 @@
 namespace dermis::tools {
 namespace {
 
-// Metres from the bottom of the shoulders to the crown: .24 m from chin to crown.
-constexpr double head_height = 0.426;
-
 demo::Error stopped() {
   return {demo::ErrorKind::environment, "stopped"};
 }
@@ -53,10 +50,7 @@ bool asked_for(const std::vector<std::string>& only, const std::string& name) {
 std::string why_not(const ErrorTimeBench& bench, const SceneRequest& scene) {
   const BenchErrorTimeOptions& options = bench.options;
   if (scene.study && !options.study) return "only with --study";
-  if (!scene.model) return "";
-  if (options.head.empty()) return "no model was given (--head FOLDER)";
-  const std::string mesh = (std::filesystem::path(options.head) / "LeePerrySmith.glb").string();
-  return std::filesystem::exists(mesh) ? "" : fmt::format("there is no '{}'", mesh);
+  return scene.model ? why_no_head(options.head) : "";
 }
 
 demo::Result<> add_subjects(ErrorTimeBench& bench) {
@@ -65,11 +59,8 @@ demo::Result<> add_subjects(ErrorTimeBench& bench) {
   const auto skin = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;
   if (!skin)
     return demo::Error{demo::ErrorKind::input, format_for_people(diagnostics, diagnostics.list.front())};
-  SubjectOptions options{bench.options.size.width, bench.options.size.height, {}};
-  const std::filesystem::path head = bench.options.head;
-  options.model = {(head / "LeePerrySmith.glb").string(), (head / "Map-COL.jpg").string(),
-                   (head / "Infinite-Level_02_Tangent_SmoothUV.jpg").string(),
-                   (head / "Map-SPEC.jpg").string(), head_height};
+  const SubjectOptions options{bench.options.size.width, bench.options.size.height,
+                               head_model(bench.options.head)};
   Progress progress(progress_style(bench.session.quiet, false), "scenes", "scene", bench.file.scenes.size());
   uint64_t done = 0;
   for (const SceneRequest& scene : bench.file.scenes) {

@@ -8,9 +8,11 @@ namespace dermis::tools {
 namespace {
 
 constexpr Size small{96, 54};
-constexpr uint32_t few_pixels = 64;    // that have a truth, of a frame
-constexpr uint32_t more_frames = 2;    // of a sequence, beyond those for histories to begin
-constexpr uint32_t few_judged = 4;     // frames of a budget
+constexpr uint32_t few_pixels = 64; // that have a truth, of a frame
+constexpr uint32_t more_frames = 2; // of a sequence, beyond those for histories to begin
+constexpr uint32_t few_judged = 4;  // frames of a budget
+constexpr Size few_rays{32, 32};
+constexpr RayReferenceSize rough_reference{16, 4};
 constexpr uint64_t few_updates = 1000; // of values in half floats
 // One of each way to scatter.
 constexpr std::string_view few_techniques[] = {"sap", "sap_residual", "burley", "afis_guided", "separable"};
@@ -63,6 +65,11 @@ BenchSkipOptions quickened(BenchSkipOptions options) {
   return options;
 }
 
+BenchRestirOptions quickened(BenchRestirOptions options) {
+  if (options.quick) options.size = few_rays;
+  return options;
+}
+
 void quicken(ErrorTimeFile& file) {
   file.repetitions = file.warm_up = file.least_repetitions = 1;
   file.subset = std::min(file.subset, few_pixels);
@@ -74,6 +81,14 @@ void quicken(DynamicFile& file) {
   file.subset = std::min(file.subset, few_pixels);
   for (SequenceRequest& scene : file.scenes)
     scene.frames = std::min(scene.frames, file.counted + more_frames);
+}
+
+void quicken(RestirFile& file) {
+  file.settle = file.frames = more_frames;
+  file.repetitions = 1;
+  file.reference = rough_reference;
+  file.samples.resize(1);
+  file.scenes.resize(1);
 }
 
 void quicken(LawFile& file) {

@@ -5,6 +5,7 @@
 #include "integration/command/bench/dynamic/dynamic_file.hpp"
 #include "integration/command/bench/laws/law_file.hpp"
 #include "integration/command/bench/plan_file.hpp"
+#include "integration/command/bench/restir/restir_file.hpp"
 #include "integration/command/verbs.hpp"
 
 #include <string>
@@ -19,9 +20,11 @@ BenchDynamicOptions quickened(BenchDynamicOptions options);
 BenchStabilityOptions quickened(BenchStabilityOptions options);
 BenchBudgetOptions quickened(BenchBudgetOptions options);
 BenchSkipOptions quickened(BenchSkipOptions options);
+BenchRestirOptions quickened(BenchRestirOptions options);
 void quicken(ErrorTimeFile& file);
 void quicken(DynamicFile& file);
 void quicken(LawFile& file);
+void quicken(RestirFile& file);
 void quicken(std::vector<TechniqueRequest>& techniques); // the first setting of some
 
 // What pages and rows of such a run say of themselves.

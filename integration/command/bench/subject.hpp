@@ -56,6 +56,11 @@ CapturedFrame generate_scene(const std::string& scene, const std::string& framin
 // changed until the median is within 2 % of it. Errors: those of demo::render.
 demo::Result<Subject> render_subject(const SceneRequest& request, const SubjectOptions& options);
 
+// The scan in the folder that --head names, from the bottom of the shoulders to the crown; "": none.
+demo::ModelOptions head_model(const std::string& folder);
+// Why it cannot be shown; "" when it can.
+std::string why_no_head(const std::string& folder);
+
 // The light before scattering of each, exposed and tonemapped, at most 480 pixels wide.
 ReportPictures scene_pictures(std::span<const Subject> subjects);
 

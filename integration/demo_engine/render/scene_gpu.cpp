@@ -1,6 +1,7 @@
 #include "integration/demo_engine/render/scene_gpu.hpp"
 
 #include "integration/demo_engine/geometry/bust.hpp"
+#include "integration/demo_engine/geometry/ear.hpp"
 #include "integration/demo_engine/geometry/shapes.hpp"
 #include "integration/demo_engine/render/frame_data.hpp"
 
@@ -19,6 +20,8 @@ Mesh make(Shape shape, const Model& model) {
   switch (shape) {
   case Shape::bust:
     return make_bust();
+  case Shape::ear:
+    return make_ear();
   case Shape::knot:
     return make_knot();
   case Shape::candle:
@@ -109,7 +112,7 @@ Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& m
                   sampled.layout, sampler);
   }
 
-  std::array<std::optional<uint32_t>, 7> made{}; // by shape
+  std::array<std::optional<uint32_t>, 8> made{}; // by shape
   std::vector<MaterialData> materials;
   for (const Object& object : scene.objects) {
     auto& index = made[static_cast<size_t>(object.shape)];

@@ -30,7 +30,8 @@ constexpr ValueRange intensities = {0.0, 1e6};
 
 constexpr std::array<string_view, 2> projections = {"perspective", "orthographic"};
 constexpr std::array<string_view, 3> light_types = {"directional", "point", "spot"};
-constexpr std::array<string_view, 7> shapes = {"bust", "knot", "candle", "sphere", "plane", "box", "model"};
+constexpr std::array<string_view, 8> shapes = {"bust",   "ear",   "knot", "candle",
+                                               "sphere", "plane", "box",  "model"};
 constexpr std::array<string_view, 6> patterns = {"plain", "skin", "jade", "wax", "plaster", "checker"};
 
 struct SceneReader {

@@ -33,7 +33,7 @@ struct Light {
   bool shadow = true;
 };
 
-enum class Shape : uint8_t { bust, knot, candle, sphere, plane, box, model };
+enum class Shape : uint8_t { bust, ear, knot, candle, sphere, plane, box, model };
 enum class Pattern : uint32_t { plain, skin, jade, wax, plaster, checker }; // values as in gbuffer.frag
 
 struct Object {

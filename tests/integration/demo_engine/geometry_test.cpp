@@ -1,4 +1,5 @@
 #include "integration/demo_engine/geometry/bust.hpp"
+#include "integration/demo_engine/geometry/ear.hpp"
 #include "integration/demo_engine/geometry/shapes.hpp"
 #include "integration/demo_engine/geometry/surface_nets.hpp"
 
@@ -87,6 +88,26 @@ TEST(Bust, HasATipOfTheNoseThatCastsAShadowAndThinEars) {
     if (thickness > 0.0f) thinnest = std::min(thinnest, thickness);
   }
   EXPECT_LT(thinnest, 0.8f);
+}
+
+TEST(Ear, IsClosedOutwardAndThinEnoughForLightToComeThrough) {
+  const Mesh mesh = make_ear();
+  EXPECT_EQ(open_edges(mesh), 0u);
+  EXPECT_GT(agreeing_triangles(mesh), 0.995);
+  const Bounds bounds = bounds_of(mesh);
+  EXPECT_NEAR(bounds.high.y - bounds.low.y, 0.064, 0.004); // metres
+  // Along the view of its scenes the sheet is 2 to 5 mm thick but at rim and lobe.
+  size_t inside = 0, thin = 0;
+  for (float x = -1.6f; x < 1.6f; x += 0.1f)
+    for (float y = -2.9f; y < 2.9f; y += 0.1f) {
+      float thickness = 0.0f;
+      for (float z = -1.4f; z < 1.6f; z += 0.01f)
+        if (ear_distance(glm::vec3(x, y, z)) < 0.0f) thickness += 0.01f;
+      if (thickness == 0.0f) continue;
+      ++inside;
+      if (thickness > 0.2f && thickness < 0.5f) ++thin;
+    }
+  EXPECT_GT(static_cast<double>(thin) / static_cast<double>(inside), 0.6);
 }
 
 TEST(Shapes, FaceOutwardAndStandOnTheirFoot) {

@@ -217,6 +217,67 @@ TEST_F(HostMemory, AViewThatCannotBeMadeLeavesNothing) {
   EXPECT_EQ(host.record(view, 1), DERMIS_OK) << dermis_last_error();
 }
 
+// A view of its own each time: what a list once took it keeps.
+TEST_F(HostMemory, ARefusedListOfCommandsIsAFrameThatNeverWas) {
+  make_graph();
+  const dermis_frame frame = host.frame_at(1);
+  for (uint64_t number = 1;; ++number) {
+    dermis_view view = nullptr;
+    ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+    uint32_t count = 1;
+    const dermis_command* commands = nullptr;
+    heap.calls = 0;
+    heap.refused = number;
+    const dermis_result result = dermis_view_commands(view, &frame, &count, &commands);
+    heap.refused = 0;
+    if (result != DERMIS_OK) {
+      ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
+      EXPECT_EQ(count, 0u);
+      EXPECT_EQ(commands, nullptr);
+      EXPECT_EQ(dermis_view_commands(view, &frame, &count, &commands), DERMIS_OK) << dermis_last_error();
+    }
+    EXPECT_GT(count, 10u);
+    dermis_view_destroy(view);
+    if (result == DERMIS_OK) {
+      EXPECT_GT(number, 5u) << "a list takes some";
+      break;
+    }
+  }
+}
+
+// What asks and changes nothing: refused, it can be asked again.
+TEST_F(HostMemory, ARefusedQuestionCanBeAskedAgain) {
+  make_graph();
+  uint32_t count = 0;
+  size_t size = 0;
+  dermis_memory memory = DERMIS_MEMORY_INIT;
+  const std::function<dermis_result()> questions[] = {
+      [&] { return dermis_graph_describe(host.graph, DERMIS_DESCRIBE_JSON, &size, nullptr); },
+      [&] { return dermis_graph_describe(host.graph, DERMIS_DESCRIBE_DOT, &size, nullptr); },
+      [&] { return dermis_graph_describe(host.graph, DERMIS_DESCRIBE_TEXT, &size, nullptr); },
+      [&] { return dermis_graph_calibration(host.graph, &size, nullptr); },
+      [&] { return dermis_graph_memory(host.graph, &memory); },
+      [&] { return dermis_graph_heaps(host.graph, &count, nullptr); },
+      [&] { return dermis_graph_slots(host.graph, &count, nullptr); },
+      [&] { return dermis_graph_histories(host.graph, &count, nullptr); },
+  };
+  uint64_t refusals = 0;
+  for (const auto& ask : questions)
+    for (uint64_t number = 1;; number += number < 100 ? 1 : 61) {
+      const uint64_t blocks = heap.blocks;
+      heap.calls = 0;
+      heap.refused = number;
+      const dermis_result result = ask();
+      heap.refused = 0;
+      ASSERT_EQ(heap.blocks, blocks) << "allocation " << number;
+      if (result == DERMIS_OK) break;
+      ++refusals;
+      ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
+    }
+  EXPECT_GT(refusals, 50u);
+  still_records();
+}
+
 TEST_F(HostMemory, ARecordedFrameNeedsNone) {
   make_graph();
   heap.calls = 0;

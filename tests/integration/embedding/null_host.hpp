@@ -27,7 +27,8 @@ public:
   // The next frame of the graph, or of a view of it.
   dermis_result record();
   dermis_result record(dermis_view view, uint64_t index) const;
-  void destroy(); // graph, then context
+  dermis_frame frame_at(uint64_t index) const; // with the images of make_bindings
+  void destroy();                              // graph, then context
 
   NullDevice device;
   dermis_context context = nullptr;
@@ -35,7 +36,6 @@ public:
   uint64_t last_frame = 0; // recorded last
 
 private:
-  dermis_frame frame_at(uint64_t index) const;
   std::vector<dermis_image_binding> bindings_;
 };
 

@@ -17,14 +17,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 
 namespace dermis::tools {
 namespace {
-
-// Metres from the bottom of the shoulders to the crown: .24 m from chin to crown.
-constexpr double head_height = 0.426;
 
 struct Measured {
   std::vector<FrameLight> light;                   // a frame each
@@ -174,16 +170,10 @@ void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicT
 }
 
 demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
-  demo::ModelOptions model;
-  if (!bench.options.head.empty()) {
-    const std::filesystem::path head = bench.options.head;
-    model = {(head / "LeePerrySmith.glb").string(), (head / "Map-COL.jpg").string(),
-             (head / "Infinite-Level_02_Tangent_SmoothUV.jpg").string(), (head / "Map-SPEC.jpg").string(),
-             head_height};
-  }
   SequenceRequest wanted = request;
   if (bench.options.frames > 0) wanted.frames = bench.options.frames;
-  auto rendered = render_sequence(wanted, bench.options.size.width, bench.options.size.height, model);
+  auto rendered = render_sequence(wanted, bench.options.size.width, bench.options.size.height,
+                                  head_model(bench.options.head));
   if (!rendered) return rendered.error();
   const Sequence sequence = rendered.take();
 

@@ -1,0 +1,183 @@
+// Frames and environments that an executor refuses: each is told by what is wrong, and the next right frame
+// runs.
+#include "tests/framegraph/vulkan/executor_fixture.hpp"
+
+#include <functional>
+#include <gmock/gmock.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::Each;
+using ::testing::FloatEq;
+using ::testing::HasSubstr;
+
+// What a frame is made of, so that each part can be made wrong.
+struct Frame {
+  vulkan::FrameInput input;
+  std::vector<vulkan::HostImage> images;
+  std::vector<SettingValue> settings;
+  std::vector<std::byte> constants;
+};
+
+struct RefusedFrames : ExecutorTest {
+  static constexpr uint32_t side = 16;
+  SmallGraph graph;
+  TestImage result;
+
+  void SetUp() override {
+    ExecutorTest::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    graph.setting("bias", 1);
+    graph.import("light", Format::r32f);
+    graph.exported("result");
+    graph.follow(graph.pass("add", "test.add", {{"a", "light"}}, {{"target", "result"}}), "bias", "bias");
+    make_executor(graph, side, side);
+    bind(graph, "light", std::vector<float>(side * side, 2.0f));
+    result = bind(graph, "result", {});
+  }
+  // A right one, of which `change` makes a wrong one.
+  vulkan::RecordResult record(const std::function<void(Frame&)>& change) {
+    Frame one;
+    one.images = images;
+    one.settings = {{SettingType::real, 0, 1.0}};
+    const SmallFrame values{{0, 0, side, side}, 0, {}};
+    const auto bytes = std::as_bytes(std::span(&values, 1));
+    one.constants.assign(bytes.begin(), bytes.end());
+    one.input.command_buffer = begin_commands();
+    one.input.rectangle = {0, 0, side, side};
+    one.input.frame_index = frame_index + 1;
+    change(one);
+    one.input.images = one.images;
+    one.input.settings = one.settings;
+    one.input.frame_constants = one.constants;
+    return executor->record(one.input);
+  }
+};
+
+TEST_F(RefusedFrames, SayWhatIsWrongAndLeaveTheExecutorAsItWas) {
+  frame_index = 4;
+  ASSERT_FALSE(frame());
+  const auto light = static_cast<size_t>(graph.slot("light")),
+             out = static_cast<size_t>(graph.slot("result"));
+  const std::pair<const char*, std::function<void(Frame&)>> changes[] = {
+      {"command buffer is null", [](Frame& f) { f.input.command_buffer = VK_NULL_HANDLE; }},
+      {"frame_index must grow", [](Frame& f) { f.input.frame_index = 5; }},
+      {"frame_index must grow", [](Frame& f) { f.input.frame_index = 0; }},
+      {"render rectangle",
+       [](Frame& f) {
+         f.input.rectangle = {0, 0, side, 0};
+       }},
+      {"render rectangle",
+       [](Frame& f) {
+         f.input.rectangle = {1, 0, side, side};
+       }},
+      {"render rectangle",
+       [](Frame& f) {
+         f.input.rectangle = {0, UINT32_MAX, 1, 2};
+       }},
+      {"frame_constants has more bytes", [](Frame& f) { f.constants.resize(sizeof(SmallFrame) + 1); }},
+      {"the slot is not bound", [=](Frame& f) { f.images[light].image = VK_NULL_HANDLE; }},
+      {"the slot is not bound", [](Frame& f) { f.images.clear(); }},
+      {"the binding has no view", [=](Frame& f) { f.images[light].view = VK_NULL_HANDLE; }},
+      {"after.layout", [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"after.layout", [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_PREINITIALIZED; }},
+  };
+  for (const auto& [said, change] : changes) {
+    const vulkan::RecordResult refused = record(change);
+    EXPECT_EQ(refused.kind, vulkan::ErrorKind::argument) << said;
+    EXPECT_THAT(refused.text, HasSubstr(said));
+  }
+  settings.clear();
+  ASSERT_FALSE(frame()) << "the next right frame runs";
+  EXPECT_THAT(read(result), Each(FloatEq(3.0f)));
+}
+
+// One value for each setting of the graph, or none.
+TEST_F(RefusedFrames, OfFewerSettingsThanTheGraphHasAreRefused) {
+  SmallGraph two;
+  two.setting("bias", 1);
+  two.setting("other", 2);
+  two.exported("result");
+  two.pass("fill", "test.fill", {}, {{"target", "result"}});
+  executor.reset();
+  images.clear();
+  make_executor(two, side, side);
+  bind(two, "result", {});
+  const vulkan::RecordResult refused = record([](Frame&) {});
+  EXPECT_EQ(refused.kind, vulkan::ErrorKind::argument);
+  EXPECT_THAT(refused.text, HasSubstr("settings has fewer values"));
+}
+
+TEST_F(RefusedFrames, BuffersOfTheHostAreRefusedBySizeAndPlace) {
+  SmallGraph with;
+  ResourceDeclaration& weights = with.buffer("weights", 1);
+  weights.origin = Origin::imported;
+  with.exported("result");
+  with.image("black");
+  with.pass("fill", "test.fill", {}, {{"target", "black"}});
+  with.pass("add", "test.add", {{"a", "black"}, {"weights", "weights"}}, {{"target", "result"}});
+  executor.reset();
+  images.clear();
+  make_executor(with, side, side);
+  bind(with, "result", {});
+  const auto slot = static_cast<size_t>(with.slot("weights"));
+  const PlanResource* planned = nullptr;
+  for (const PlanResource& one : executor->plan().resources)
+    if (one.type == ResourceType::buffer) planned = &one;
+  ASSERT_NE(planned, nullptr);
+  const uint64_t bytes = planned->bytes;
+  const VkPhysicalDeviceLimits& limits = dermis_device.properties.limits;
+  const auto some_buffer = reinterpret_cast<VkBuffer>(uintptr_t{8}); // refused before it is looked at
+  std::vector<vulkan::HostBuffer> buffers(slot + 1);
+  const auto refused = [&](const vulkan::HostBuffer& binding) {
+    buffers[slot] = binding;
+    return record([&](Frame& f) {
+      f.settings.clear();
+      f.input.buffers = buffers;
+    });
+  };
+  EXPECT_THAT(refused({}).text, HasSubstr("the slot is not bound"));
+  EXPECT_THAT(refused({some_buffer, 0, bytes - 1, {}, {}}).text, HasSubstr("fewer bytes"));
+  EXPECT_THAT(refused({some_buffer, 0, uint64_t{limits.maxStorageBufferRange} + 1, {}, {}}).text,
+              HasSubstr("more than the device binds"));
+  const vulkan::RecordResult aside = refused({some_buffer, 1, bytes, {}, {}});
+  if (limits.minStorageBufferOffsetAlignment > 1) {
+    EXPECT_THAT(aside.text, HasSubstr("minStorageBufferOffsetAlignment"));
+    EXPECT_EQ(aside.slot, static_cast<int32_t>(slot));
+  }
+  EXPECT_THAT(record([](Frame& f) { f.settings.clear(); }).text, HasSubstr("the slot is not bound"));
+}
+
+TEST_F(ExecutorTest, EnvironmentsThatNoDeviceCanBindAreRefused) {
+  SmallGraph g;
+  g.exported("result");
+  g.pass("fill", "test.fill", {}, {{"target", "result"}});
+  const Plan plan = g.compile(profile, 16, 16);
+  static const std::byte table[8]{};
+  const uint64_t too_many = uint64_t{dermis_device.properties.limits.maxUniformBufferRange} + 1;
+  using enum vulkan::EnvironmentType;
+  const std::pair<const char*, std::vector<vulkan::EnvironmentBinding>> wrong[] = {
+      {"binding 0 has 0 bytes", {{storage_buffer, 0, {}}}},
+      {"bytes, 1 to", {{uniform_buffer, too_many, {}}}},
+      {"binding 1: counters are 32-bit words", {{uniform_buffer, 16, {}}, {counters, 6, {}}}},
+      {"one binding holds them", {{counters, 4, {}}, {counters, 4, {}}}},
+      {"binding 0 has 4 bytes, its contents 8", {{storage_buffer, 4, table}}},
+  };
+  for (const auto& [said, environment] : wrong) {
+    vulkan::ExecutorInput input;
+    input.device = &dermis_device;
+    input.graph = &g.graph;
+    input.kinds = &small_kinds();
+    input.plan = &plan;
+    input.kernels = small_kernels();
+    input.environment = environment;
+    const vulkan::Error error = vulkan::Executor::create(input, executor);
+    EXPECT_EQ(error.kind, vulkan::ErrorKind::argument) << said;
+    EXPECT_THAT(error.text, HasSubstr(said));
+    EXPECT_EQ(executor, nullptr);
+  }
+}
+
+} // namespace
+} // namespace dermis::testing

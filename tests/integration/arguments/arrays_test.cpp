@@ -1,0 +1,135 @@
+// What is asked for in two calls: how much there is, then all of it, or as much as there is room for.
+
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+
+struct TwoCalls : testing::Test {
+  NullHost host;
+  dermis_view view = nullptr;
+  void SetUp() override {
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+    ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.record(view, 1), DERMIS_OK) << dermis_last_error();
+  }
+};
+
+constexpr unsigned char untouched = 0xa5;
+
+template <class T> std::vector<std::byte> bytes_of(const T& value) {
+  const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+  return {bytes, bytes + sizeof value};
+}
+
+template <class T> void expect_array_law(const std::function<dermis_result(uint32_t*, T*)>& ask) {
+  uint32_t count = 0;
+  ASSERT_EQ(ask(&count, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_GT(count, 0u);
+  const uint32_t all = count;
+  EXPECT_EQ(ask(nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("count is NULL"));
+  for (uint32_t space = 0; space <= all + 1; ++space) {
+    std::vector<T> items(all + 1);
+    std::memset(items.data(), untouched, items.size() * sizeof(T));
+    items[0].struct_size = sizeof(T);
+    count = space;
+    EXPECT_EQ(ask(&count, items.data()), space < all ? DERMIS_INCOMPLETE : DERMIS_OK)
+        << space << " of " << all;
+    EXPECT_EQ(count, all);
+    for (uint32_t i = 0; i < items.size(); ++i) {
+      if (i < space && i < all) {
+        EXPECT_EQ(items[i].struct_size, sizeof(T)) << i;
+      } else if (i > 0) {
+        EXPECT_THAT(bytes_of(items[i]), Each(std::byte{untouched})) << i << ": there is room for " << space;
+      }
+    }
+  }
+  T item{};
+  item.struct_size = sizeof(size_t);
+  count = 1;
+  EXPECT_EQ(ask(&count, &item), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("struct_size"));
+}
+
+TEST_F(TwoCalls, FillNoMoreOfAnArrayThanThereIsRoomFor) {
+  expect_array_law<dermis_requirement>([&](uint32_t* count, dermis_requirement* items) {
+    return dermis_query_requirements(NullDevice::loader(), host.device.instance(), host.device.physical(),
+                                     count, items);
+  });
+  expect_array_law<dermis_slot>(
+      [&](uint32_t* count, dermis_slot* items) { return dermis_graph_slots(host.graph, count, items); });
+  expect_array_law<dermis_memory_request>([&](uint32_t* count, dermis_memory_request* items) {
+    return dermis_graph_heaps(host.graph, count, items);
+  });
+  expect_array_law<dermis_pass_timing>([&](uint32_t* count, dermis_pass_timing* items) {
+    return dermis_graph_timings(host.graph, 1, count, items);
+  });
+  expect_array_law<dermis_pass_timing>(
+      [&](uint32_t* count, dermis_pass_timing* items) { return dermis_view_timings(view, 1, count, items); });
+  expect_array_law<dermis_history>([&](uint32_t* count, dermis_history* items) {
+    return dermis_graph_histories(host.graph, count, items);
+  });
+  expect_array_law<dermis_history>(
+      [&](uint32_t* count, dermis_history* items) { return dermis_view_histories(view, count, items); });
+}
+
+void expect_text_law(const std::function<dermis_result(size_t*, char*)>& ask) {
+  EXPECT_EQ(ask(nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("size is NULL"));
+  size_t size = 0;
+  ASSERT_EQ(ask(&size, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_GT(size, 2u);
+  const size_t all = size;
+  for (const size_t space : {size_t{0}, size_t{1}, all - 1}) {
+    std::string text(all, static_cast<char>(untouched));
+    size = space;
+    EXPECT_EQ(ask(&size, text.data()), DERMIS_INCOMPLETE) << space;
+    EXPECT_EQ(size, all);
+    EXPECT_EQ(text, std::string(all, static_cast<char>(untouched))) << "nothing is cut";
+  }
+  std::string text(all + 1, static_cast<char>(untouched));
+  size = all + 1;
+  ASSERT_EQ(ask(&size, text.data()), DERMIS_OK);
+  EXPECT_EQ(size, all);
+  EXPECT_EQ(std::strlen(text.c_str()), all - 1) << "the final 0 is counted";
+}
+
+TEST_F(TwoCalls, WriteATextWholeOrNotAtAll) {
+  for (const dermis_describe_format format :
+       {DERMIS_DESCRIBE_JSON, DERMIS_DESCRIBE_DOT, DERMIS_DESCRIBE_TEXT})
+    expect_text_law(
+        [&](size_t* size, char* text) { return dermis_graph_describe(host.graph, format, size, text); });
+  expect_text_law([&](size_t* size, char* text) { return dermis_graph_calibration(host.graph, size, text); });
+  expect_text_law(
+      [&](size_t* size, char* text) { return dermis_export_pass_kinds(host.context, size, text); });
+}
+
+TEST_F(TwoCalls, AskForFramesThatWereRecorded) {
+  uint32_t count = 0;
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  for (const uint64_t later : {uint64_t{2}, ~uint64_t{0}}) {
+    EXPECT_EQ(dermis_graph_timings(host.graph, later, &count, nullptr), DERMIS_ERROR_ARGUMENT);
+    EXPECT_THAT(dermis_last_error(), HasSubstr("the newest recorded frame is 1"));
+    EXPECT_EQ(dermis_view_timings(view, later, &count, nullptr), DERMIS_ERROR_ARGUMENT);
+    EXPECT_EQ(dermis_graph_choice(host.graph, later, &choice), DERMIS_ERROR_ARGUMENT);
+    EXPECT_THAT(dermis_last_error(), HasSubstr("the newest recorded frame is 1"));
+    EXPECT_EQ(dermis_view_choice(view, later, &choice), DERMIS_ERROR_ARGUMENT);
+  }
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,325 @@
+// Devices that lack something, refuse something, or hand out memory that cannot be used: what the call says
+// then.
+
+#include "framegraph/vulkan/function_table.hpp"
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+// A physical device that is less than the one that runs nothing. Vulkan's functions have no user pointer, so
+// what they share is static; tests of this file run one by one.
+struct Lack {
+  const char* function = ""; // that the loader does not know
+  const char* renamed = "";  // of the device, that it knows with "KHR" behind alone
+  uint32_t api_version = VK_API_VERSION_1_3;
+  std::vector<const char*> extensions;
+  VkQueueFlags queue_flags = VK_QUEUE_COMPUTE_BIT;
+  VkResult enumeration = VK_SUCCESS;
+};
+Lack lack;
+
+template <class Function> Function full(const char* name) {
+  return reinterpret_cast<Function>(NullDevice::loader()(nullptr, name));
+}
+
+VKAPI_ATTR void VKAPI_CALL less_properties(VkPhysicalDevice device, VkPhysicalDeviceProperties* out) {
+  full<PFN_vkGetPhysicalDeviceProperties>("vkGetPhysicalDeviceProperties")(device, out);
+  out->apiVersion = lack.api_version;
+}
+VKAPI_ATTR void VKAPI_CALL less_families(VkPhysicalDevice device, uint32_t* count,
+                                         VkQueueFamilyProperties* out) {
+  full<PFN_vkGetPhysicalDeviceQueueFamilyProperties>("vkGetPhysicalDeviceQueueFamilyProperties")(device,
+                                                                                                 count, out);
+  if (out != nullptr) out->queueFlags = lack.queue_flags;
+}
+VKAPI_ATTR VkResult VKAPI_CALL some_extensions(VkPhysicalDevice, const char*, uint32_t* count,
+                                               VkExtensionProperties* out) {
+  if (lack.enumeration != VK_SUCCESS) return lack.enumeration;
+  if (out != nullptr)
+    for (uint32_t i = 0; i < lack.extensions.size(); ++i)
+      std::strcpy(out[i].extensionName, lack.extensions[i]);
+  *count = static_cast<uint32_t>(lack.extensions.size());
+  return VK_SUCCESS;
+}
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less_of_device(VkDevice device, const char* name) {
+  const std::string_view asked = name;
+  if (asked == lack.function) return nullptr;
+  const bool extended = asked.ends_with("KHR") && asked.substr(0, asked.size() - 3) == lack.renamed;
+  if (asked == lack.renamed) return nullptr;
+  return full<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr")(device, extended ? lack.renamed : name);
+}
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less(VkInstance instance, const char* name) {
+  if (std::strcmp(name, lack.function) == 0) return nullptr;
+  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&less_of_device);
+  if (std::strcmp(name, "vkGetPhysicalDeviceProperties") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&less_properties);
+  if (std::strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&less_families);
+  if (std::strcmp(name, "vkEnumerateDeviceExtensionProperties") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&some_extensions);
+  return NullDevice::loader()(instance, name);
+}
+
+struct PoorDevice : testing::Test {
+  NullHost host;
+  void SetUp() override { lack = {}; }
+  dermis_result create() {
+    dermis_context_desc desc = host.context_desc();
+    desc.get_instance_proc_addr = less;
+    return host.make_context(desc);
+  }
+  std::vector<dermis_requirement> requirements() const {
+    uint32_t count = 0;
+    EXPECT_EQ(
+        dermis_query_requirements(less, host.device.instance(), host.device.physical(), &count, nullptr),
+        DERMIS_OK);
+    std::vector<dermis_requirement> items(count, dermis_requirement DERMIS_REQUIREMENT_INIT);
+    EXPECT_EQ(
+        dermis_query_requirements(less, host.device.instance(), host.device.physical(), &count, items.data()),
+        DERMIS_OK);
+    return items;
+  }
+};
+
+TEST_F(PoorDevice, OfAnOlderVulkanIsRefusedAndAskedForNoFeatureOfANewer) {
+  lack.api_version = VK_API_VERSION_1_1;
+  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
+  EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("VK_API_VERSION_1_2"), HasSubstr("synchronization2")));
+  EXPECT_EQ(host.context, nullptr);
+  for (const dermis_requirement& item : requirements())
+    EXPECT_EQ(item.present, 0u) << item.name;
+}
+
+TEST_F(PoorDevice, OfVulkan12NeedsTheTwoExtensionsThat13Has) {
+  lack.api_version = VK_API_VERSION_1_2;
+  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
+  EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME),
+                                         HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME)));
+  lack.extensions = {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME};
+  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
+  EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME),
+                                         Not(HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME))));
+  lack.enumeration = VK_ERROR_OUT_OF_HOST_MEMORY;
+  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << "what cannot be asked for is not there";
+  lack.enumeration = VK_SUCCESS;
+  lack.extensions.push_back(VK_KHR_MAINTENANCE_4_EXTENSION_NAME);
+  for (const dermis_requirement& item : requirements())
+    EXPECT_TRUE(item.present == 1 || item.required == 0) << item.name;
+}
+
+TEST_F(PoorDevice, ThatCannotBeAskedLacksEverythingAndNothingIsCalled) {
+  for (const char* function : {"vkGetPhysicalDeviceProperties", "vkGetPhysicalDeviceFeatures2"}) {
+    lack.function = function;
+    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << function;
+    EXPECT_THAT(dermis_last_error(), HasSubstr("synchronization2"));
+  }
+  lack.function = "vkEnumerateDeviceExtensionProperties";
+  EXPECT_EQ(create(), DERMIS_OK) << "Vulkan 1.3 has all that is needed: " << dermis_last_error();
+}
+
+#define DERMIS_NAME(name) #name,
+constexpr const char* instance_functions[] = {DERMIS_INSTANCE_FUNCTIONS(DERMIS_NAME)};
+constexpr const char* device_functions[] = {DERMIS_DEVICE_FUNCTIONS(DERMIS_NAME)};
+constexpr const char* label_functions[] = {DERMIS_LABEL_FUNCTIONS(DERMIS_NAME)};
+#undef DERMIS_NAME
+
+TEST_F(PoorDevice, WithoutOneOfTheFunctionsIsRefusedByItsName) {
+  for (const char* name : instance_functions) {
+    if (std::string_view(name) == "vkGetPhysicalDeviceProperties")
+      continue; // without it nothing is asked, above
+    lack.function = name;
+    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << name;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(name));
+  }
+  for (const char* name : device_functions) {
+    lack.function = name;
+    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << name;
+    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("1 needed function:"), HasSubstr(name)));
+    lack.function = "";
+    lack.renamed = name;
+    EXPECT_EQ(create(), DERMIS_OK) << name << " of an extension: " << dermis_last_error();
+    host.destroy();
+    lack.renamed = "";
+  }
+}
+
+TEST_F(PoorDevice, WithoutLabelsIsRefusedWhereTheyAreAskedForAlone) {
+  for (const char* name : label_functions) {
+    lack.function = name;
+    EXPECT_EQ(create(), DERMIS_OK) << dermis_last_error();
+    host.destroy();
+    dermis_context_desc desc = host.context_desc();
+    desc.get_instance_proc_addr = less;
+    desc.flags |= DERMIS_CONTEXT_LABELS;
+    EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_UNSUPPORTED) << name;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(name));
+  }
+}
+
+TEST_F(PoorDevice, WhoseQueueCannotComputeIsRefused) {
+  lack.queue_flags = VK_QUEUE_GRAPHICS_BIT;
+  EXPECT_EQ(create(), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("queue family 0 has no compute"));
+  EXPECT_EQ(host.context, nullptr);
+}
+
+TEST_F(PoorDevice, WithTheExtensionsForRaysIsAskedForTheirFeatures) {
+  lack.extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_RAY_QUERY_EXTENSION_NAME};
+  for (const dermis_requirement& item : requirements()) {
+    if (item.kind == DERMIS_REQUIREMENT_DEVICE_EXTENSION && item.required == 0) {
+      EXPECT_EQ(item.present, 1u) << item.name;
+    }
+    if (std::strcmp(item.name, "rayQuery") == 0) {
+      EXPECT_EQ(item.present, 0u) << "the device does not say so";
+    }
+  }
+}
+
+// ---- results of Vulkan
+
+TEST(VulkanResults, BecomeTheDocumentedResultsAndAreNamed) {
+  struct Case {
+    VkResult given;
+    dermis_result expected;
+    const char* said;
+  };
+  const Case cases[] = {
+      {VK_ERROR_OUT_OF_HOST_MEMORY, DERMIS_ERROR_MEMORY, "VK_ERROR_OUT_OF_HOST_MEMORY"},
+      {VK_ERROR_OUT_OF_DEVICE_MEMORY, DERMIS_ERROR_DEVICE_MEMORY, "VK_ERROR_OUT_OF_DEVICE_MEMORY"},
+      {VK_ERROR_OUT_OF_POOL_MEMORY, DERMIS_ERROR_DEVICE_MEMORY, "VK_ERROR_OUT_OF_POOL_MEMORY"},
+      {VK_ERROR_FRAGMENTED_POOL, DERMIS_ERROR_DEVICE_MEMORY, "VK_ERROR_FRAGMENTED_POOL"},
+      {VK_ERROR_FRAGMENTATION, DERMIS_ERROR_DEVICE_MEMORY, "VK_ERROR_FRAGMENTATION"},
+      {VK_ERROR_FEATURE_NOT_PRESENT, DERMIS_ERROR_UNSUPPORTED, "VK_ERROR_FEATURE_NOT_PRESENT"},
+      {VK_ERROR_FORMAT_NOT_SUPPORTED, DERMIS_ERROR_UNSUPPORTED, "VK_ERROR_FORMAT_NOT_SUPPORTED"},
+      {VK_ERROR_MEMORY_MAP_FAILED, DERMIS_ERROR_VULKAN, "VK_ERROR_MEMORY_MAP_FAILED"},
+      {VK_ERROR_TOO_MANY_OBJECTS, DERMIS_ERROR_VULKAN, "VK_ERROR_TOO_MANY_OBJECTS"},
+      {VK_ERROR_INITIALIZATION_FAILED, DERMIS_ERROR_VULKAN, "VK_ERROR_INITIALIZATION_FAILED"},
+      {VK_ERROR_INVALID_SHADER_NV, DERMIS_ERROR_VULKAN, "VK_ERROR_INVALID_SHADER_NV"},
+      {VK_ERROR_UNKNOWN, DERMIS_ERROR_VULKAN, "VK_ERROR_UNKNOWN"},
+      {VK_NOT_READY, DERMIS_ERROR_VULKAN, "VK_NOT_READY"},
+      {VK_TIMEOUT, DERMIS_ERROR_VULKAN, "VK_TIMEOUT"},
+      {VK_INCOMPLETE, DERMIS_ERROR_VULKAN, "VK_INCOMPLETE"},
+      {VK_ERROR_SURFACE_LOST_KHR, DERMIS_ERROR_VULKAN, "-1000000000"},
+      {VK_ERROR_DEVICE_LOST, DERMIS_ERROR_DEVICE_LOST, "VK_ERROR_DEVICE_LOST"},
+  };
+  for (const Case& one : cases) {
+    NullHost host;
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
+    host.device.fail_creation(3, one.given);
+    EXPECT_EQ(host.make_graph(), one.expected) << one.said;
+    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(one.said), HasSubstr("failed ("))) << one.said;
+    EXPECT_EQ(host.device.alive(), 0u) << one.said;
+    EXPECT_EQ(host.graph, nullptr);
+  }
+}
+
+TEST(VulkanResults, OfAViewMadeForABoundImageAreToldAndTheFrameCanBeRecordedAgain) {
+  NullHost host;
+  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
+  ASSERT_EQ(host.make_graph(), DERMIS_OK);
+  host.make_bindings();
+  host.give_up_views();
+  for (uint64_t nth = 1; nth <= 2; ++nth) {
+    host.device.fail_creation(nth, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+    EXPECT_EQ(host.record(), DERMIS_ERROR_DEVICE_MEMORY);
+    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("vkCreateImageView"), HasSubstr("bindings[")));
+    host.device.fail_creation(0, VK_SUCCESS);
+  }
+  EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  NullHost lost;
+  ASSERT_EQ(lost.make_context(lost.context_desc()), DERMIS_OK);
+  ASSERT_EQ(lost.make_graph(), DERMIS_OK);
+  lost.make_bindings();
+  lost.give_up_views();
+  lost.device.fail_creation(1, VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(lost.record(), DERMIS_ERROR_DEVICE_LOST);
+  EXPECT_EQ(lost.record(), DERMIS_ERROR_DEVICE_LOST) << "it is remembered";
+}
+
+// ---- memory that the host hands out
+
+struct BadBlocks {
+  enum class Fault { none, no_memory, misaligned, unmapped } fault = Fault::none;
+  uint64_t alive = 0;
+  uint64_t taken = 0, bad_at = 0; // number of the block, from 1
+
+  static VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request,
+                                   dermis_memory_block* block) {
+    BadBlocks& blocks = *static_cast<BadBlocks*>(user);
+    static std::vector<std::byte> mapped(size_t{1} << 24);
+    const bool bad = ++blocks.taken == blocks.bad_at;
+    ++blocks.alive;
+    block->memory =
+        bad && blocks.fault == Fault::no_memory ? VK_NULL_HANDLE : reinterpret_cast<VkDeviceMemory>(8);
+    block->offset = bad && blocks.fault == Fault::misaligned ? request->alignment / 2 : 0;
+    block->mapped = bad && blocks.fault == Fault::unmapped ? nullptr : mapped.data();
+    return VK_SUCCESS;
+  }
+  static void DERMIS_CALL give_back(void* user, const dermis_memory_block*) {
+    --static_cast<BadBlocks*>(user)->alive;
+  }
+};
+
+TEST(HostsDeviceMemory, ThatCannotBeUsedIsRefusedAndGoesBack) {
+  const std::pair<BadBlocks::Fault, const char*> faults[] = {
+      {BadBlocks::Fault::no_memory, "gave no memory"},
+      {BadBlocks::Fault::misaligned, "no multiple of"},
+      {BadBlocks::Fault::unmapped, "gave memory that is not mapped"},
+  };
+  for (const auto& [fault, said] : faults) {
+    uint32_t refusals = 0;
+    for (uint64_t nth = 1;; ++nth) {
+      BadBlocks blocks;
+      blocks.fault = fault;
+      blocks.bad_at = nth;
+      dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
+      allocator.take = BadBlocks::take;
+      allocator.give_back = BadBlocks::give_back;
+      allocator.user = &blocks;
+      NullHost host;
+      dermis_context_desc desc = host.context_desc();
+      desc.device_allocator = &allocator;
+      ASSERT_EQ(host.make_context(desc), DERMIS_OK) << dermis_last_error();
+      const dermis_result result = host.make_graph();
+      if (result == DERMIS_ERROR_VULKAN) {
+        ++refusals;
+        EXPECT_THAT(dermis_last_error(), HasSubstr(said)) << nth;
+        // A block without memory has nothing to give back.
+        EXPECT_EQ(blocks.alive, fault == BadBlocks::Fault::no_memory ? 1u : 0u) << nth;
+      } else {
+        EXPECT_EQ(result, DERMIS_OK) << dermis_last_error();
+        host.destroy();
+        EXPECT_EQ(blocks.alive, 0u) << nth;
+      }
+      if (nth > blocks.taken) break;
+    }
+    EXPECT_GE(refusals, 1u) << said;
+  }
+}
+
+TEST(HostsDeviceMemory, HalfAnAllocatorIsRefused) {
+  NullHost host;
+  dermis_context_desc desc = host.context_desc();
+  dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
+  desc.device_allocator = &allocator;
+  EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.take is NULL"));
+  allocator.take = BadBlocks::take;
+  EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.give_back is NULL"));
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,225 @@
+// Every field of a description that can be wrong: the message names it, and nothing is made.
+
+#include "framegraph/text/limits.hpp"
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::HasSubstr;
+
+// A description with one of everything, and its arrays.
+struct Description {
+  std::string graph = read_text("configs/graphs/burley.json"), skin = read_text("configs/profiles/skin.json"),
+              overlay = read_text("configs/overlays/accumulate.json");
+  std::vector<dermis_profile> profiles{2, dermis_profile DERMIS_PROFILE_INIT};
+  std::vector<dermis_slot_format> formats{1, dermis_slot_format DERMIS_SLOT_FORMAT_INIT};
+  std::vector<dermis_source> overlays{1, dermis_source DERMIS_SOURCE_INIT};
+  std::vector<const char*> unbound{"albedo", "scatter_scale"};
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+
+  Description() {
+    for (uint32_t i = 0; i < 2; ++i) {
+      profiles[i].id = i + 1;
+      profiles[i].source = source_of(skin, nullptr);
+    }
+    formats[0].name = "depth";
+    formats[0].format = VK_FORMAT_R32_SFLOAT;
+    overlays[0] = source_of(overlay, nullptr);
+    desc.source = source_of(graph, nullptr);
+    desc.width = desc.height = 16;
+    desc.profiles = profiles.data();
+    desc.profile_count = 2;
+    desc.unbound = unbound.data();
+    desc.unbound_count = 2;
+    desc.formats = formats.data();
+    desc.format_count = 1;
+    desc.overlays = overlays.data();
+    desc.overlay_count = 1;
+  }
+  Description(const Description&) = delete;
+  Description& operator=(const Description&) = delete;
+};
+
+struct Fields : testing::Test {
+  NullHost host;
+  void SetUp() override {
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+  }
+};
+
+TEST_F(Fields, OfAGraphThatAreWrongAreNamedOneByOne) {
+  using Change = std::function<void(Description&)>;
+  const std::pair<const char*, Change> changes[] = {
+      {"desc.reserved is 1", [](auto& d) { d.desc.reserved = 1; }},
+      {"desc.reserved_too is 1", [](auto& d) { d.desc.reserved_too = 1; }},
+      {"desc.source.text is NULL", [](auto& d) { d.desc.source.text = nullptr; }},
+      {"desc.source.length is 0", [](auto& d) { d.desc.source.length = 0; }},
+      {"at most", [](auto& d) { d.desc.source.length = limits::file_bytes + 1; }},
+      {"the size is 0x16", [](auto& d) { d.desc.width = 0; }},
+      {"the size is 16x16385", [](auto& d) { d.desc.height = 16385; }},
+      {"desc.profiles is NULL and its count is 2", [](auto& d) { d.desc.profiles = nullptr; }},
+      {"desc.profiles[1].id is 0", [](auto& d) { d.profiles[1].id = 0; }},
+      {"desc.profiles[1].id is 256", [](auto& d) { d.profiles[1].id = 256; }},
+      {"desc.profiles[1].id is 1, which an earlier entry has", [](auto& d) { d.profiles[1].id = 1; }},
+      {"desc.profiles[0].reserved is 2", [](auto& d) { d.profiles[0].reserved = 2; }},
+      {"desc.profiles[0].source.text is NULL", [](auto& d) { d.profiles[0].source.text = nullptr; }},
+      {"desc.profiles[1].struct_size", [](auto& d) { d.profiles[1].struct_size += 8; }},
+      {"desc.unbound is NULL and its count is 2", [](auto& d) { d.desc.unbound = nullptr; }},
+      {"desc.unbound[1] is NULL", [](auto& d) { d.unbound[1] = nullptr; }},
+      {"desc.formats is NULL and its count is 1", [](auto& d) { d.desc.formats = nullptr; }},
+      {"desc.formats[0].name is NULL", [](auto& d) { d.formats[0].name = nullptr; }},
+      {"desc.formats[0].reserved is 3", [](auto& d) { d.formats[0].reserved = 3; }},
+      {"which no graph can declare (slot 'depth')",
+       [](auto& d) { d.formats[0].format = VK_FORMAT_UNDEFINED; }},
+      {"which no graph can declare", [](auto& d) { d.formats[0].format = VK_FORMAT_ASTC_4x4_SRGB_BLOCK; }},
+      {"desc.overlays is NULL and its count is 1", [](auto& d) { d.desc.overlays = nullptr; }},
+      {"desc.overlays[0].text is NULL", [](auto& d) { d.overlays[0].text = nullptr; }},
+      {"desc.overlays[0].struct_size", [](auto& d) { d.overlays[0].struct_size = 1; }},
+  };
+  for (const auto& [said, change] : changes) {
+    Description wrong;
+    change(wrong);
+    auto made = reinterpret_cast<dermis_graph>(uintptr_t{8});
+    EXPECT_EQ(dermis_graph_create(host.context, &wrong.desc, &made, nullptr), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+    EXPECT_EQ(made, nullptr) << said;
+    EXPECT_EQ(host.device.alive(), 0u) << said;
+  }
+  const Description right;
+  EXPECT_EQ(dermis_graph_create(host.context, &right.desc, &host.graph, nullptr), DERMIS_OK)
+      << dermis_last_error();
+  EXPECT_EQ(dermis_graph_create(host.context, nullptr, &host.graph, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("desc is NULL"));
+  EXPECT_EQ(dermis_graph_create(host.context, &right.desc, nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("graph is NULL"));
+}
+
+// Sources without a name are named by what they are.
+TEST_F(Fields, OfTextsThatAreWrongAreToldByTheirPlace) {
+  const std::string broken = "{ \"dermis\": 1, }", not_a_profile = "{ \"scale\": 1 }";
+  const std::pair<const char*, std::function<void(Description&)>> changes[] = {
+      {"profile 2:1:", [&](auto& d) { d.profiles[1].source = source_of(broken, nullptr); }},
+      {"profile 1:1:", [&](auto& d) { d.profiles[0].source = source_of(not_a_profile, nullptr); }},
+      {"mine.json:1:", [&](auto& d) { d.profiles[0].source = source_of(not_a_profile, "mine.json"); }},
+      {"overlay 0:1:", [&](auto& d) { d.overlays[0] = source_of(broken, nullptr); }},
+      {"graph.json:1:", [&](auto& d) { d.desc.source = source_of(broken, "graph.json"); }},
+  };
+  for (const auto& [place, change] : changes) {
+    Description wrong;
+    change(wrong);
+    dermis_report report = nullptr;
+    EXPECT_EQ(dermis_graph_create(host.context, &wrong.desc, &host.graph, &report), DERMIS_ERROR_CONFIG)
+        << place;
+    EXPECT_THAT(dermis_report_text(report), HasSubstr(place));
+    EXPECT_GT(dermis_report_count(report), 0u);
+    dermis_report_destroy(report);
+    EXPECT_EQ(host.graph, nullptr);
+  }
+}
+
+TEST_F(Fields, OfCallsOnAGraphThatAreNullAreNamed) {
+  ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+  const auto refused = [](dermis_result result, const char* said) {
+    EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+  };
+  refused(dermis_graph_reload(host.graph, nullptr, nullptr), "dermis_graph_reload: source is NULL");
+  const dermis_source empty = DERMIS_SOURCE_INIT;
+  refused(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: source.text is NULL");
+  refused(dermis_graph_resize(host.graph, 0, 1, nullptr), "dermis_graph_resize: the size is 0x1");
+  refused(dermis_graph_set_setting(host.graph, nullptr, "1", nullptr), "name is NULL");
+  refused(dermis_graph_set_setting(host.graph, "samples", nullptr, nullptr), "json is NULL");
+  refused(dermis_graph_set_budget(host.graph, nullptr, nullptr), "budget is NULL");
+  refused(dermis_graph_set_budget(nullptr, nullptr, nullptr), "graph is NULL");
+  refused(dermis_graph_memory(host.graph, nullptr), "memory is NULL");
+  refused(dermis_graph_choice(host.graph, 0, nullptr), "choice is NULL");
+  refused(dermis_graph_choice(nullptr, 0, nullptr), "graph is NULL");
+  refused(dermis_graph_calibration(nullptr, nullptr, nullptr), "graph is NULL");
+  refused(dermis_graph_heaps(nullptr, nullptr, nullptr), "graph is NULL");
+  refused(dermis_register_pass_kind(host.context, nullptr), "kind is NULL");
+  dermis_report report = nullptr;
+  ASSERT_EQ(dermis_graph_set_setting(host.graph, "samples", "{}", &report), DERMIS_ERROR_CONFIG);
+  refused(dermis_report_message(report, 0, nullptr), "message is NULL");
+  dermis_message message = DERMIS_MESSAGE_INIT;
+  refused(dermis_report_message(report, dermis_report_count(report), &message), "index is 1");
+  dermis_report_destroy(report);
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  EXPECT_EQ(dermis_graph_choice(host.graph, 0, &choice), DERMIS_NOT_READY) << "no frame was recorded";
+  refused(dermis_frame_discard(host.graph, 1),
+          "frame_index is 1, expected that of the frame recorded last, 0");
+}
+
+TEST_F(Fields, OfABudgetsTablesThatAreWrongChangeNothing) {
+  ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+  const std::string broken = "{ \"dermis_errors\": 1, }";
+  const dermis_source bad = source_of(broken, nullptr);
+  const dermis_source empty = DERMIS_SOURCE_INIT;
+  for (const dermis_source* dermis_budget::*table : {&dermis_budget::errors, &dermis_budget::calibration}) {
+    const std::string name = table == &dermis_budget::errors ? "errors" : "calibration";
+    dermis_budget budget = DERMIS_BUDGET_INIT;
+    budget.milliseconds = 1;
+    budget.*table = &empty;
+    EXPECT_EQ(dermis_graph_set_budget(host.graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT);
+    EXPECT_THAT(dermis_last_error(), HasSubstr("dermis_graph_set_budget: " + name + ".text is NULL"));
+    budget.*table = &bad;
+    EXPECT_EQ(dermis_graph_set_budget(host.graph, &budget, nullptr), DERMIS_ERROR_CONFIG);
+    EXPECT_THAT(dermis_last_error(), HasSubstr(name + ":1:"));
+  }
+}
+
+// Each setting of a graph that has all types of them, given what it does not take.
+TEST_F(Fields, OfSettingsTakeTheirTypeAndRangeAlone) {
+  const std::string text = R"({ "dermis": 1, "name": "settings",
+    "settings": { "on": { "bool": true }, "count": { "int": 4, "min": 1, "max": 9 },
+                  "share": { "real": 0.5, "min": 0, "max": 1 },
+                  "how": { "enum": ["fast", "good"], "default": "fast" } },
+    "imports": { "light": { "format": "rgba16f", "size": "view" } }, "passes": [], "exports": ["light"] })";
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(text, "settings.json");
+  desc.width = desc.height = 16;
+  dermis_report report = nullptr;
+  ASSERT_EQ(dermis_graph_create(host.context, &desc, &host.graph, &report), DERMIS_OK)
+      << dermis_report_text(report);
+  dermis_report_destroy(report);
+  struct Case {
+    const char *name, *json, *said; // said: null where it is taken
+  };
+  const Case cases[] = {
+      {"on", "false", nullptr},
+      {"on", "0", "expects true or false, found 0"},
+      {"count", "9", nullptr},
+      {"count", "10", "expects an integer in 1..9, found 10"},
+      {"count", "0", "expects an integer in 1..9, found 0"},
+      {"count", "2.5", "expects an integer, found 2.5"},
+      {"share", "1", nullptr},
+      {"share", "0.25", nullptr},
+      {"share", "1.5", "expects a number in 0..1, found 1.5"},
+      {"share", "-1e-3", "expects a number in 0..1, found -1e-3"},
+      {"share", "true", "expects a number, found true"},
+      {"how", "\"good\"", nullptr},
+      {"how", "\"best\"", "expects one of \"fast\", \"good\", found \"best\""},
+      {"how", "1", "expects a string, found 1"},
+      {"how", "", "setting how:1:1"},
+      {"on", "[", "setting on:1:"},
+  };
+  for (const Case& one : cases) {
+    const dermis_result result = dermis_graph_set_setting(host.graph, one.name, one.json, nullptr);
+    EXPECT_EQ(result, one.said == nullptr ? DERMIS_OK : DERMIS_ERROR_CONFIG) << one.name << " = " << one.json;
+    if (one.said != nullptr) {
+      EXPECT_THAT(dermis_last_error(), HasSubstr(one.said));
+    }
+  }
+  EXPECT_EQ(dermis_graph_set_setting(host.graph, "hwo", "1", nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("it has 'on', 'count', 'share', 'how'"));
+}
+
+} // namespace
+} // namespace dermis::abi_test

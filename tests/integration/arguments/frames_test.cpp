@@ -1,0 +1,213 @@
+// Frames that cannot be recorded: the message names the field, the graph is as it was, and the frame can be
+// recorded again once it is right.
+
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr float nan_value = NAN;
+
+struct Frames : testing::Test {
+  NullHost host;
+  void SetUp() override {
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  }
+};
+
+using Bindings = std::vector<dermis_image_binding>;
+using Change = std::function<void(dermis_frame&, Bindings&)>;
+
+TEST_F(Frames, WithAWrongFieldAreRefusedByItsName) {
+  const std::pair<const char*, Change> changes[] = {
+      {"command_buffer is NULL", [](auto& f, auto&) { f.command_buffer = nullptr; }},
+      {"flags is 0x4", [](auto& f, auto&) { f.flags = 4; }},
+      {"frame_index is 1", [](auto& f, auto&) { f.frame_index = 1; }},
+      {"less than frame_index", [](auto& f, auto&) { f.completed_frame_index = 2; }},
+      {"with 2 frames in flight", [](auto& f, auto&) { f.frame_index = 4; }},
+      {"delta_seconds", [](auto& f, auto&) { f.delta_seconds = nan_value; }},
+      {"delta_seconds", [](auto& f, auto&) { f.delta_seconds = -1; }},
+      {"metres_per_unit", [](auto& f, auto&) { f.metres_per_unit = INFINITY; }},
+      {"metres_per_unit", [](auto& f, auto&) { f.metres_per_unit = -1; }},
+      {"exposure", [](auto& f, auto&) { f.exposure = nan_value; }},
+      {"exposure", [](auto& f, auto&) { f.exposure = -2; }},
+      {"jitter", [](auto& f, auto&) { f.jitter_x = nan_value; }},
+      {"jitter", [](auto& f, auto&) { f.jitter_y = INFINITY; }},
+      {"depth_kind is -1", [](auto& f, auto&) { f.depth_kind = static_cast<dermis_depth_kind>(-1); }},
+      {"a matrix has an element", [](auto& f, auto&) { f.view_from_world[15] = nan_value; }},
+      {"a matrix has an element", [](auto& f, auto&) { f.previous_clip_from_view[0] = nan_value; }},
+      {"a matrix has an element", [](auto& f, auto&) { f.previous_view_from_world[7] = INFINITY; }},
+      {"rect_width is 0", [](auto& f, auto&) { f.rect_x = 1; }},
+      {"rect_width is 0", [](auto& f, auto&) { f.rect_y = 1; }},
+      {"rect_width is 0", [](auto& f, auto&) { f.rect_height = 1; }},
+      {"is not inside the allocated size 64x64",
+       [](auto& f, auto&) {
+         f.rect_width = 1;
+         f.rect_height = 65;
+       }},
+      {"bounds are given", [](auto& f, auto&) { f.bounds_x = 1; }},
+      {"bounds are given", [](auto& f, auto&) { f.bounds_y = 1; }},
+      {"bounds are given", [](auto& f, auto&) { f.bounds_width = 1; }},
+      {"bounds are given", [](auto& f, auto&) { f.bounds_height = 1; }},
+      {"a format unknown to graphs", [](auto&, auto& b) { b[0].format = VK_FORMAT_ASTC_4x4_SRGB_BLOCK; }},
+      {"is 64x63, the graph needs at least 64x64", [](auto&, auto& b) { b[0].height = 63; }},
+      {"is PREINITIALIZED", [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_PREINITIALIZED; }},
+      {"is UNDEFINED, to which", [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"before.layout", [](auto&, auto& b) { b[0].before.layout = VK_IMAGE_LAYOUT_MAX_ENUM; }},
+      {"after.layout", [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_MAX_ENUM; }},
+      {"but no stages", [](auto&, auto& b) { b[0].after.stages = 0; }},
+      {"the device has 1 families", [](auto&, auto& b) { b[0].before.queue_family = 1; }},
+      {"layer_count 0, which means all layers", [](auto&, auto& b) { b[0].layer = 1; }},
+      {"a second time", [](auto&, auto& b) { b[1].slot = b[0].slot; }},
+      {"clip_from_view", [](auto& f, auto&) { f.clip_from_view[1] = 1; }},
+  };
+  const dermis_frame good = host.frame_at(2);
+  const uint64_t commands = host.device.commands();
+  for (const auto& [said, change] : changes) {
+    dermis_frame frame = good;
+    Bindings bound(good.bindings, good.bindings + good.binding_count);
+    change(frame, bound);
+    frame.bindings = bound.data();
+    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+  }
+  EXPECT_EQ(host.device.commands(), commands) << "nothing was recorded";
+  EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+}
+
+TEST_F(Frames, WithAMatrixThatIsStoredByColumnsAreToldSo) {
+  dermis_frame frame = host.frame_at(2);
+  const float by_rows[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1f, 0, 0, -1, 0};
+  for (size_t i = 0; i < 16; ++i)
+    frame.clip_from_view[i % 4 * 4 + i / 4] = by_rows[i];
+  EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("it is stored column by column"));
+  std::copy(by_rows, by_rows + 16, frame.clip_from_view);
+  frame.clip_from_view[1] = 1; // wrong, too, but not in this way
+  EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), Not(HasSubstr("column by column;")));
+  std::copy(by_rows, by_rows + 16, frame.clip_from_view);
+  EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_OK) << dermis_last_error();
+}
+
+TEST_F(Frames, AreTakenBackOnceAndNotAcrossAReload) {
+  const auto refused = [&](uint64_t index, const char* said) {
+    EXPECT_EQ(dermis_frame_discard(host.graph, index), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+  };
+  ASSERT_EQ(host.record(), DERMIS_OK);
+  refused(1, "expected that of the frame recorded last, 2");
+  EXPECT_EQ(dermis_frame_discard(host.graph, 2), DERMIS_OK);
+  refused(1, "which can be taken back once and alone");
+  // The first frame of a reloaded graph, after the next reload.
+  ASSERT_EQ(host.reload(), DERMIS_OK);
+  host.last_frame = 1;
+  ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(host.reload(), DERMIS_OK);
+  refused(2, "the graph was reloaded or resized since frame 2");
+  EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+}
+
+// ---- what hosts in C++ throw, and what they deliver
+
+VkResult DERMIS_CALL take_and_throw(void*, const dermis_memory_request*, dermis_memory_block*) {
+  throw 1;
+}
+void DERMIS_CALL give_back_nothing(void*, const dermis_memory_block*) {}
+
+TEST(ThrowingHosts, AreToldByTheResultOfTheCall) {
+  dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
+  allocator.take = take_and_throw;
+  allocator.give_back = give_back_nothing;
+  NullHost host;
+  dermis_context_desc desc = host.context_desc();
+  desc.device_allocator = &allocator;
+  ASSERT_EQ(host.make_context(desc), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(host.make_graph(), DERMIS_ERROR_VULKAN);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("the host's allocator failed (VK_ERROR_UNKNOWN"));
+  EXPECT_EQ(host.device.alive(), 0u);
+}
+
+struct Delivered {
+  const char* text = nullptr;
+  size_t length = 0;
+};
+uint32_t DERMIS_CALL deliver(void* user, const char*, dermis_source* source) {
+  const Delivered& delivered = *static_cast<Delivered*>(user);
+  source->text = delivered.text;
+  source->length = delivered.length;
+  return 1;
+}
+
+TEST(IncludedFiles, ThatCannotBeReadAreErrorsOfTheGraph) {
+  NullHost host;
+  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+  const std::string text =
+      "{ \"dermis\": 1, \"name\": \"a\", \"passes\": [ { \"include\": \"part.json\" } ] }";
+  const std::pair<Delivered, const char*> cases[] = {
+      {{nullptr, 3}, "the host delivers no text"},
+      {{"{}", size_t{1} << 40}, "the host delivers 1099511627776 bytes, at most"},
+  };
+  for (auto [delivered, said] : cases) {
+    dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+    desc.source = source_of(text, "a.json");
+    desc.width = desc.height = 16;
+    desc.include = deliver;
+    desc.include_user = &delivered;
+    EXPECT_EQ(dermis_graph_create(host.context, &desc, &host.graph, nullptr), DERMIS_ERROR_CONFIG);
+    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+  }
+}
+
+// ---- kinds of passes of the host
+
+TEST(HostsKinds, BeyondWhatAContextHoldsAreRefused) {
+  NullHost host;
+  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+  dermis_port port = DERMIS_PORT_INIT;
+  port.name = "picture";
+  dermis_kind_setting setting = DERMIS_KIND_SETTING_INIT;
+  setting.name = "on";
+  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
+  kind.name = "studio.one";
+  kind.ports = &port;
+  kind.port_count = 1;
+  kind.record = [](void*, const dermis_pass_call*) {};
+  const auto refused = [&](const char* said) {
+    EXPECT_EQ(dermis_register_pass_kind(host.context, &kind), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+  };
+  kind.setting_count = 1;
+  refused("kind.settings is NULL, setting_count is 1");
+  kind.settings = &setting;
+  setting.type = static_cast<dermis_kind_setting_type>(3);
+  refused("kind.settings[0].type is 3, expected 0..2");
+  kind.setting_count = 33;
+  refused("setting_count 33, at most");
+  kind.setting_count = 0;
+  dermis_result result = DERMIS_OK;
+  uint32_t taken = 0;
+  for (std::string name; result == DERMIS_OK && taken < 100000; taken += result == DERMIS_OK ? 1 : 0) {
+    name = "studio.kind" + std::to_string(taken);
+    kind.name = name.c_str();
+    result = dermis_register_pass_kind(host.context, &kind);
+  }
+  EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("the context has " + std::to_string(taken) + " kinds already"));
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,262 @@
+// The promises of the header's STRUCTS paragraph, for every struct that crosses the border: what a caller may
+// state as its size, and what the library makes of the part that only one side knows.
+
+#include "integration/abi/sized_struct.hpp"
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr size_t room = 2 * abi::largest_struct_size;
+constexpr size_t newer_by = 16; // bytes of fields that a later header might add
+
+// A struct with room behind it, as a caller with a newer header has.
+template <class T> class Sized {
+public:
+  explicit Sized(const T& value) {
+    std::memcpy(bytes_, &value, sizeof value);
+    state(sizeof value);
+  }
+  void state(size_t size) { std::memcpy(bytes_, &size, sizeof size); }
+  void tail(unsigned char value) { std::memset(bytes_ + sizeof(T), value, newer_by); }
+  std::vector<std::byte> read_tail() const { return {bytes_ + sizeof(T), bytes_ + sizeof(T) + newer_by}; }
+  T* get() { return reinterpret_cast<T*>(bytes_); }
+
+private:
+  alignas(T) std::byte bytes_[room]{};
+};
+
+template <class T> using Call = std::function<dermis_result(T*)>;
+
+template <class T> void expect_wrong_sizes_refused(Sized<T>& given, const Call<T>& call) {
+  for (const size_t size : {size_t{0}, sizeof(size_t), abi::first_version_size<T> - 1,
+                            abi::largest_struct_size + 1, ~size_t{0}}) {
+    given.state(size);
+    EXPECT_EQ(call(given.get()), DERMIS_ERROR_ARGUMENT) << size;
+    ASSERT_NE(dermis_last_error(), nullptr);
+    EXPECT_THAT(dermis_last_error(), HasSubstr("struct_size")) << size;
+  }
+}
+
+// A struct that the library reads.
+template <class T> void expect_input_law(const T& value, const Call<T>& call) {
+  Sized<T> given(value);
+  expect_wrong_sizes_refused(given, call);
+  given.state(sizeof(T) + newer_by);
+  EXPECT_EQ(call(given.get()), DERMIS_OK) << dermis_last_error();
+  given.tail(1);
+  EXPECT_EQ(call(given.get()), DERMIS_ERROR_VERSION);
+  given.tail(0);
+  given.state(abi::first_version_size<T>);
+  EXPECT_EQ(call(given.get()), DERMIS_OK) << "of the first header: " << dermis_last_error();
+}
+
+// A struct that the library fills.
+template <class T> void expect_output_law(const T& value, const Call<T>& call) {
+  Sized<T> given(value);
+  expect_wrong_sizes_refused(given, call);
+  given.state(sizeof(T) + newer_by);
+  given.tail(0xff);
+  EXPECT_EQ(call(given.get()), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(given.read_tail(), testing::Each(std::byte{0})) << "what the library does not know is zero";
+  given.state(abi::first_version_size<T>);
+  given.tail(0xff);
+  EXPECT_EQ(call(given.get()), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(given.read_tail(), testing::Each(std::byte{0xff}))
+      << "nothing is written behind the stated size";
+}
+
+struct StructSizes : testing::Test {
+  NullHost host;
+  void SetUp() override {
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  }
+};
+
+void DERMIS_CALL record_nothing(void*, const dermis_pass_call*) {}
+void* DERMIS_CALL take_nothing(void*, size_t, size_t) {
+  return nullptr;
+}
+void DERMIS_CALL release_nothing(void*, void*, size_t, size_t) {}
+
+TEST_F(StructSizes, OfAContextFollowTheLaw) {
+  expect_input_law<dermis_context_desc>(host.context_desc(), [](const dermis_context_desc* desc) {
+    dermis_context made = nullptr;
+    const dermis_result result = dermis_context_create(desc, &made);
+    dermis_context_destroy(made);
+    return result;
+  });
+}
+
+TEST_F(StructSizes, OfAGraphAViewAndABudgetFollowTheLaw) {
+  const std::string text = read_text("configs/graphs/burley.json");
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(text, "burley.json");
+  desc.width = desc.height = 16;
+  expect_input_law<dermis_graph_desc>(desc, [&](const dermis_graph_desc* given) {
+    dermis_graph made = nullptr;
+    const dermis_result result = dermis_graph_create(host.context, given, &made, nullptr);
+    dermis_graph_destroy(made);
+    return result;
+  });
+  expect_input_law<dermis_view_desc>(DERMIS_VIEW_DESC_INIT, [&](const dermis_view_desc* given) {
+    dermis_view made = nullptr;
+    const dermis_result result = dermis_view_create(host.graph, given, &made, nullptr);
+    dermis_view_destroy(made);
+    return result;
+  });
+  expect_input_law<dermis_budget>(DERMIS_BUDGET_INIT, [&](const dermis_budget* given) {
+    return dermis_graph_set_budget(host.graph, given, nullptr);
+  });
+}
+
+TEST_F(StructSizes, OfAKindItsPortsAndItsSettingsFollowTheLaw) {
+  uint32_t number = 0; // names are taken once
+  dermis_port port = DERMIS_PORT_INIT;
+  port.name = "picture";
+  port.usage = DERMIS_PORT_STORAGE_IMAGE_UPDATE;
+  dermis_kind_setting setting = DERMIS_KIND_SETTING_INIT;
+  setting.name = "on";
+  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
+  kind.ports = &port;
+  kind.settings = &setting;
+  kind.port_count = kind.setting_count = 1;
+  kind.record = record_nothing;
+  dermis_graph_destroy(host.graph);
+  host.graph = nullptr;
+  std::string name;
+  const auto add = [&](dermis_pass_kind* given) {
+    name = "studio.kind" + std::to_string(++number);
+    given->name = name.c_str();
+    return dermis_register_pass_kind(host.context, given);
+  };
+  expect_input_law<dermis_pass_kind>(kind, add);
+  expect_input_law<dermis_port>(port, [&](const dermis_port* given) {
+    kind.ports = given;
+    const dermis_result result = add(&kind);
+    kind.ports = &port;
+    return result;
+  });
+  expect_input_law<dermis_kind_setting>(setting, [&](const dermis_kind_setting* given) {
+    kind.settings = given;
+    return add(&kind);
+  });
+}
+
+TEST_F(StructSizes, OfAllocatorsFollowTheLaw) {
+  dermis_context_desc desc = host.context_desc();
+  const auto create = [&] {
+    dermis_context made = nullptr;
+    const dermis_result result = dermis_context_create(&desc, &made);
+    dermis_context_destroy(made);
+    return result;
+  };
+  dermis_device_allocator device = DERMIS_DEVICE_ALLOCATOR_INIT;
+  device.take = [](void*, const dermis_memory_request*, dermis_memory_block*) { return VK_ERROR_UNKNOWN; };
+  device.give_back = [](void*, const dermis_memory_block*) {};
+  expect_input_law<dermis_device_allocator>(device, [&](const dermis_device_allocator* given) {
+    desc.device_allocator = given;
+    return create();
+  });
+  desc.device_allocator = nullptr;
+  dermis_allocator memory = DERMIS_ALLOCATOR_INIT;
+  memory.allocate = take_nothing;
+  memory.release = release_nothing;
+  Sized<dermis_allocator> given(memory); // with which nothing can be made: its own law stops at the refusals
+  desc.allocator = given.get();
+  expect_wrong_sizes_refused<dermis_allocator>(given, [&](const dermis_allocator*) { return create(); });
+  given.state(sizeof(dermis_allocator) + newer_by);
+  given.tail(1);
+  EXPECT_EQ(create(), DERMIS_ERROR_VERSION);
+}
+
+TEST_F(StructSizes, OfAFrameAndItsBindingsFollowTheLaw) {
+  uint64_t frame_index = host.last_frame;
+  expect_input_law<dermis_frame>(host.frame_at(1), [&](dermis_frame* frame) {
+    frame->frame_index = frame_index + 1;
+    frame->completed_frame_index = frame_index;
+    const dermis_result result = dermis_graph_record(host.graph, frame);
+    if (result == DERMIS_OK) ++frame_index;
+    return result;
+  });
+  // One binding in front of as many wrong ones as the graph has slots: a size that is right gets further.
+  dermis_frame frame = host.frame_at(frame_index + 1);
+  dermis_image_binding binding = frame.bindings[0];
+  binding.slot = 1000;
+  frame.binding_count = 1;
+  Sized<dermis_image_binding> given(binding);
+  frame.bindings = given.get();
+  expect_wrong_sizes_refused<dermis_image_binding>(
+      given, [&](dermis_image_binding*) { return dermis_graph_record(host.graph, &frame); });
+  given.state(sizeof(dermis_image_binding) + newer_by);
+  EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("slot is 1000"));
+  given.tail(1);
+  EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_VERSION);
+}
+
+TEST_F(StructSizes, OfSourcesProfilesAndFormatsAreThoseOfTheHeader) {
+  const std::string text = read_text("configs/graphs/burley.json"),
+                    skin = read_text("configs/profiles/skin.json");
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(text, "burley.json");
+  desc.width = desc.height = 16;
+  const auto create = [&] {
+    dermis_graph made = nullptr;
+    const dermis_result result = dermis_graph_create(host.context, &desc, &made, nullptr);
+    dermis_graph_destroy(made);
+    return result;
+  };
+  dermis_profile profile = DERMIS_PROFILE_INIT;
+  profile.id = 1;
+  profile.source = source_of(skin, "skin.json");
+  desc.profile_count = 1;
+  expect_input_law<dermis_profile>(profile, [&](const dermis_profile* given) {
+    desc.profiles = given;
+    return create();
+  });
+  desc.profile_count = 0;
+  dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
+  format.name = "depth";
+  format.format = VK_FORMAT_R32_SFLOAT;
+  desc.format_count = 1;
+  expect_input_law<dermis_slot_format>(format, [&](const dermis_slot_format* given) {
+    desc.formats = given;
+    return create();
+  });
+  desc.format_count = 0;
+  expect_input_law<dermis_source>(desc.source,
+                                  [](const dermis_source* given) { return dermis_validate(given, nullptr); });
+  for (const size_t size : {size_t{0}, sizeof(dermis_source) - 1, sizeof(dermis_source) + 1}) {
+    desc.source.struct_size = size; // a member of other structs never grows
+    EXPECT_EQ(create(), DERMIS_ERROR_ARGUMENT) << size;
+    EXPECT_THAT(dermis_last_error(), HasSubstr("DERMIS_SOURCE_INIT"));
+  }
+}
+
+TEST_F(StructSizes, OfWhatIsToldFollowTheLaw) {
+  expect_output_law<dermis_memory>(DERMIS_MEMORY_INIT,
+                                   [&](dermis_memory* out) { return dermis_graph_memory(host.graph, out); });
+  expect_output_law<dermis_choice>(
+      DERMIS_CHOICE_INIT, [&](dermis_choice* out) { return dermis_graph_choice(host.graph, 1, out); });
+  dermis_report report = nullptr;
+  ASSERT_EQ(dermis_graph_set_setting(host.graph, "nothing", "1", &report), DERMIS_ERROR_ARGUMENT);
+  expect_output_law<dermis_message>(
+      DERMIS_MESSAGE_INIT, [&](dermis_message* out) { return dermis_report_message(report, 0, out); });
+  dermis_report_destroy(report);
+}
+
+} // namespace
+} // namespace dermis::abi_test
