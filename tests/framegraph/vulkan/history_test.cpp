@@ -162,6 +162,42 @@ TEST_F(ReplacedHistory, TheSameGraphMadeAnewGoesOnCounting) {
   }
 }
 
+TEST_F(ReplacedHistory, ABufferGoesOnAsImagesDo) {
+  // Tiles that the frame before listed count one more in `light`.
+  SmallGraph g;
+  g.import("light", Format::r32f).exported = true;
+  g.buffer("classes", 0).history.frames = 1;
+  g.buffer("tiles", 1);
+  g.buffer("arguments", 3);
+  g.pass("list", "test.list", {{"classes", "classes@-1"}}, {{"tiles", "tiles"}, {"arguments", "arguments"}});
+  g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}}, {{"target", "light"}});
+  g.pass("classes", "test.classes", {}, {{"classes", "classes"}});
+  const auto first_tiles_show = [&](const TestImage& light, float expected) {
+    const std::vector<float> texels = read(light);
+    for (uint32_t y = 0; y < side; ++y)
+      for (uint32_t x = 0; x < side; ++x)
+        ASSERT_EQ(texels[y * side + x], (y / 8 * (side / 8) + x / 8) % 3 == 0 ? expected : 0.0f) << x << ' ' << y;
+  };
+  make_executor(g, side, side);
+  const TestImage light = bind(g, "light", std::vector<float>(size_t{side} * side, 0.0f));
+  ASSERT_FALSE(frame());
+  first_tiles_show(light, 0); // a new buffer is zero
+  ASSERT_FALSE(frame());
+  first_tiles_show(light, 1);
+  take_over(g, side, side);
+  EXPECT_TRUE(executor->history_state(0, false, replaced.get()).valid);
+  for (const float expected : {2.0f, 3.0f}) {
+    ASSERT_FALSE(frame());
+    first_tiles_show(light, expected);
+    wait();
+    replaced.reset();
+  }
+  take_over(g, side, side / 2); // of another size: as new
+  EXPECT_FALSE(executor->history_state(0, false, replaced.get()).valid);
+  wait();
+  replaced.reset();
+}
+
 TEST_F(ReplacedHistory, OfAnotherSizeItGoesOnOnlyWhereItIsToBeRescaled) {
   for (const bool rescale : {false, true}) {
     SmallGraph g = counter();
