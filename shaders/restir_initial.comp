@@ -29,5 +29,5 @@ void main() {
   }
   packed_reservoir packed = pack_reservoir(stream_end(stream));
   for (uint i = 0u; i < 4u; ++i)
-    reservoirs_data[4u * element_of(texel_of(pixel)) + i] = packed.words[i];
+    reservoirs_data[4u * element_of(pixel) + i] = packed.words[i];
 }

@@ -29,7 +29,7 @@ void main() {
   scatter_domain domain = domain_of(pixel);
   packed_reservoir packed;
   for (uint i = 0u; i < 4u; ++i)
-    packed.words[i] = reservoirs_data[4u * element_of(texel) + i];
+    packed.words[i] = reservoirs_data[4u * element_of(pixel) + i];
   vec3 came = texture_light(texel, resolve(domain, unpack_reservoir(packed))); // the albedo at x2 is not known
   vec3 direct = mix(vec3(1.0), profile_direct(id), greaterThan(domain.d, vec3(0.0)));
   vec3 light = mix(came, pixel_light(texel), direct);

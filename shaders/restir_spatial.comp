@@ -16,7 +16,7 @@ const uint most_neighbours = 8u;
 reservoir reservoir_of(ivec2 pixel) {
   packed_reservoir packed;
   for (uint i = 0u; i < 4u; ++i)
-    packed.words[i] = reservoirs_data[4u * element_of(texel_of(pixel)) + i];
+    packed.words[i] = reservoirs_data[4u * element_of(pixel) + i];
   return unpack_reservoir(packed);
 }
 
@@ -56,5 +56,5 @@ void main() {
     spatial_add(reuse, domain, spatial, domain_of(neighbours[i]), reservoir_of(neighbours[i]), random);
   packed_reservoir merged = pack_reservoir(spatial_end(spatial, random));
   for (uint i = 0u; i < 4u; ++i)
-    merged_data[4u * element_of(texel_of(pixel)) + i] = merged.words[i];
+    merged_data[4u * element_of(pixel) + i] = merged.words[i];
 }

@@ -34,10 +34,12 @@ void keep_lights() {
   }
 }
 
+uint element_before(ivec2 pixel) { return uint(pixel.y * frame.previous_rect.z + pixel.x); }
+
 scatter_domain domain_before(ivec2 pixel) {
   packed_domain packed;
   for (uint i = 0u; i < 2u; ++i)
-    packed.words[i] = domains_before_data[2u * element_of(previous_texel(pixel)) + i];
+    packed.words[i] = domains_before_data[2u * element_before(pixel) + i];
   return unpack_domain(packed);
 }
 
@@ -87,7 +89,7 @@ void main() {
   bool copy_only;
   if (!listed_pixel(pixel, copy_only))
     return;
-  uint element = element_of(texel_of(pixel));
+  uint element = element_of(pixel);
   scatter_domain domain = domain_of(pixel);
   packed_domain kept = pack_domain(domain);
   for (uint i = 0u; i < 2u; ++i)
@@ -99,7 +101,7 @@ void main() {
   ivec2 past;
   if (domain.medium != 0u && find_past(pixel, domain.medium, random_unit(random), past)) {
     for (uint i = 0u; i < 4u; ++i)
-      before.words[i] = reservoirs_before_data[4u * element_of(previous_texel(past)) + i];
+      before.words[i] = reservoirs_before_data[4u * element_before(past) + i];
     reuse_settings reuse = reuse_settings(shift_of_stage(uint(settings.shift), stage_temporal), index_traced, settings.cap);
     own = pack_reservoir(merge_temporal(reuse, domain, unpack_reservoir(own), domain_before(past), unpack_reservoir(before),
                                         random));

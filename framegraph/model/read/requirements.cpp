@@ -53,8 +53,14 @@ bool read_need(GraphReader& reader, NodeId node, const std::string& what, Option
 
 bool read_option_needs(GraphReader& reader, NodeId entry, SettingDeclaration& setting) {
   const std::string_view key = reader.document.key(entry);
+  const std::string what = fmt::format("a requirement of the option '{}' of setting '{}'", key, setting.name);
+  if (!expect_kind(reader.document, entry, fmt::format("'requires' of the option '{}'", key), NodeKind::array,
+                   reader.diagnostics))
+    return false;
   const auto option = std::find(setting.options.begin(), setting.options.end(), key);
   if (option == setting.options.end()) {
+    for (const NodeId node : children(reader.document, entry))
+      (void)read_string(reader.document, node, what, reader.diagnostics);
     const std::vector<std::string_view> words(setting.options.begin(), setting.options.end());
     reader
         .error(DiagnosticId::bad_option_requires, reader.document.where_key(entry),
@@ -63,10 +69,6 @@ bool read_option_needs(GraphReader& reader, NodeId entry, SettingDeclaration& se
         .suggestion = did_you_mean(key, words);
     return false;
   }
-  const std::string what = fmt::format("a requirement of the option '{}' of setting '{}'", key, setting.name);
-  if (!expect_kind(reader.document, entry, fmt::format("'requires' of the option '{}'", key), NodeKind::array,
-                   reader.diagnostics))
-    return false;
   bool ok = true;
   OptionNeeds& needs = setting.needs[static_cast<size_t>(option - setting.options.begin())];
   for (const NodeId node : children(reader.document, entry))

@@ -320,7 +320,7 @@ typedef struct dermis_graph_desc {
   {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0, NULL, 0, 0, NULL, NULL}
 
 /* Checks a graph, which includes no other file, without a device. *report (may be NULL) gets the messages. Thread: any.
- * Errors: ARGUMENT, CONFIG, MEMORY. */
+ * Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source, dermis_report* report);
 /* Parses, checks, compiles and allocates. *graph is NULL on failure. *report (may be NULL) gets the messages and
  * is to be destroyed also on success. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY,

@@ -6,9 +6,10 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr std::string_view reservoirs_doc = "four elements a pixel, row by row: docs/restir.md";
-constexpr std::string_view domains_doc =
-    "two elements a pixel, row by row: what it fixed of its paths; 0 where nothing was written";
+constexpr std::string_view reservoirs_doc =
+    "four elements a pixel of the render rectangle, row by row: docs/restir.md";
+constexpr std::string_view domains_doc = "two elements a pixel of the render rectangle, row by row: what it "
+                                         "fixed of its paths; 0 where nothing was written";
 constexpr std::string_view kept_lights_doc = "as `lights`, as many as there is room for";
 
 constexpr Port normal{"normal",

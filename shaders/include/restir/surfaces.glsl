@@ -60,8 +60,8 @@ scatter_domain domain_of(ivec2 pixel) {
                         find_profile(id, scale).d.rgb / mm_per_world_unit(), id);
 }
 
-// Of a texel in buffers that have an element a pixel.
-uint element_of(ivec2 texel) { return uint(texel.y * textureSize(depth_image, 0).x + texel.x); }
+// Of a pixel of the rectangle in buffers that have an element for each: row by row, however large the host's images are.
+uint element_of(ivec2 pixel) { return uint(pixel.y * frame.rect.z + pixel.x); }
 
 random_state random_of(ivec2 pixel, uint first) {
   return random_state(uint(pixel.x) | uint(pixel.y) << 16, frame.frame_index, first);

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <unistd.h>
 
 namespace demo {
 namespace {
@@ -155,6 +156,32 @@ TEST_F(WithRayQueries, LightComesThroughAThinSheetAsMuchAsTheReferenceSays) {
     EXPECT_NEAR(drawn.mean, wanted.mean, noise + 0.02 * wanted.mean) << "region " << r << ", sap " << flat;
     EXPECT_TRUE(r != 0 || flat < 0.5 * drawn.mean) << "screen space sees no light behind the sheet";
   }
+}
+
+// Of a profile in which red alone scatters: the other channels are the pixel's own light, whoever scatters.
+TEST_F(WithRayQueries, ChannelsThatDoNotScatterKeepTheirLight) {
+  const std::string profile =
+      std::filesystem::temp_directory_path() / ("dermis_red_" + std::to_string(getpid()) + ".json");
+  std::ofstream(profile) << R"({ "dermis_profile": 1, "name": "red", "source": "made up",
+    "dmfp_mm": [3.673, 0, 0], "albedo": [0.44, 0.22, 0.13] })";
+  RenderOptions rays = back_lit("restir", 1, 1), pyramid = back_lit("sap", 1, 1);
+  rays.profile = pyramid.profile = profile;
+  const Rendering by_rays = rendered(rays), by_pyramid = rendered(pyramid);
+  std::filesystem::remove(profile);
+  ASSERT_EQ(by_rays.frames.size(), 1u);
+  ASSERT_EQ(by_pyramid.frames.size(), 1u);
+  EXPECT_TRUE(ran(by_rays.frames[0], "resolve"));
+  const FloatImage& found = by_rays.frames[0].color; // what combine wrote, times albedo
+  const FloatImage& wanted = by_pyramid.frames[0].color;
+  size_t lit = 0, red_differs = 0;
+  for (size_t i = 0; i < found.texels.size(); i += 3) {
+    EXPECT_EQ(found.texels[i + 1], wanted.texels[i + 1]) << "pixel " << i / 3;
+    EXPECT_EQ(found.texels[i + 2], wanted.texels[i + 2]) << "pixel " << i / 3;
+    lit += found.texels[i + 1] > 0.01f;
+    red_differs += found.texels[i] != wanted.texels[i];
+  }
+  EXPECT_GT(lit, 20u);
+  EXPECT_GT(red_differs, 100u);
 }
 
 } // namespace

@@ -29,7 +29,7 @@ uint32_t tier(uint32_t quick, uint32_t full) {
 
 std::vector<std::string> shifts() { // of tests that judge a frame after something changed
   if (tier(0, 1) != 0) return {"delayed", "reconnection", "hybrid", "sequential"};
-  return {"delayed"};
+  return {"reconnection"}; // whose paths keep the light that they had, but for what restir.temporal does
 }
 
 struct Way { // that paths are reused

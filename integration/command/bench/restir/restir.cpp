@@ -79,6 +79,10 @@ demo::Result<RestirRow> measure_variant(Bench& bench, const SceneRequest& scene,
         return demo::success();
       });
   if (!done) return done.error();
+  for (const std::string& credit : *done)
+    if (const std::pair<std::string, std::string> fact{"credit", credit};
+        std::find(bench.report.facts.begin(), bench.report.facts.end(), fact) == bench.report.facts.end())
+      bench.report.facts.push_back(fact);
   row.error = mean_of(errors);
   row.device_ms = median_of(times);
   return row;
