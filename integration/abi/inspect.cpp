@@ -6,6 +6,9 @@
 #include "integration/abi/graph.hpp"
 #include "integration/abi/two_call.hpp"
 
+#include <algorithm>
+#include <map>
+
 namespace dermis::abi {
 namespace {
 
@@ -28,18 +31,33 @@ dermis_slot describe_slot(const Slot& slot, uint32_t id) {
   return out;
 }
 
+// What transients would take side by side, by the memory types that they allow. Packing puts each at the end
+// of another, rounded up to its own alignment, so that sizes rounded up to the largest of the heap are never
+// less.
+using BytesByTypes = std::map<uint32_t, uint64_t>;
+BytesByTypes unaliased_bytes(const Plan& plan) {
+  BytesByTypes sums;
+  for (const Placement& placement : plan.placements) {
+    if (placement.persistent) continue;
+    const Heap& heap = plan.heaps[placement.heap];
+    sums[heap.memory_type_bits] += (placement.size + heap.alignment - 1) / heap.alignment * heap.alignment;
+  }
+  return sums;
+}
+
 dermis_memory describe_view_memory(const Program& program) {
   dermis_memory out = DERMIS_MEMORY_INIT;
+  BytesByTypes most; // of the variants, of which one runs in a frame
   for (const Variant& variant : program.variants) {
     const Plan& plan = variant.compiled->plan;
-    uint64_t unaliased = 0;
-    for (const Placement& placement : plan.placements)
-      if (!placement.persistent) unaliased += placement.size;
-    out.transient_unaliased_bytes = std::max(out.transient_unaliased_bytes, unaliased);
+    for (const auto& [types, bytes] : unaliased_bytes(plan))
+      most[types] = std::max(most[types], bytes);
     out.transient_bytes = std::max(out.transient_bytes, plan.transient_bytes);
     out.history_bytes += plan.history_bytes;
     out.constant_bytes += variant.executor->constant_bytes();
   }
+  for (const auto& [types, bytes] : most)
+    out.transient_unaliased_bytes += bytes;
   if (program.heap_pool) out.transient_bytes = program.heap_pool->bytes();
   return out;
 }

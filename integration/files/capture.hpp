@@ -58,7 +58,8 @@ struct CapturedFrame {
   Image depth;                    // 1: view depth, metres; 0: nothing there
   std::vector<uint8_t> profile;   // id, 0: no subsurface scattering
   Image albedo, normal, specular; // 3, optional
-  Image velocity;                 // 2, optional: now - previous position, pixels, +x right, +y down
+  // 2, optional: now - previous position, pixels, +x right, +y down; not in files a third, view depth, units
+  Image velocity;
   Image scatter_scale;            // 1, optional: multiplies d
   // Optional, both or none: way of the light from behind through the material, metres (1), and its irradiance
   // on the far side, linear (3).

@@ -29,6 +29,22 @@ TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
   EXPECT_THAT(outcome.out, HasSubstr("0 of 11 rows do not hold"));
 }
 
+TEST_F(BenchStability, LeadsHistoryAstrayWhereARatioIsNotOne) {
+  const std::string rows = path("rows.json");
+  const Outcome outcome = run({"bench", "stability", "--techniques", "sap_residual", "--cases",
+                               "red_comes,velocity_in_stripes,velocity_of_depth_in_stripes", "--updates",
+                               "1000", "--json", rows});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
+  ASSERT_EQ(document["rows"].size(), 3u);
+  for (const auto& row : document["rows"]) {
+    if (row["case"] == "red_comes")
+      EXPECT_GT(row["max_abs_error"], 1.0) << "a wrong ratio was learned: " << row;
+    else
+      EXPECT_EQ(row["max_abs_error"], 0.0) << row;
+  }
+}
+
 TEST_F(BenchStability, RefusesNamesThatNothingHas) {
   const Outcome outcome =
       run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"});

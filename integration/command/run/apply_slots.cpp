@@ -17,14 +17,18 @@ struct Fillable {
   std::vector<Format> formats;
 };
 
-std::vector<Fillable> fillable_slots() {
+// A velocity of three channels has the change of depth.
+std::vector<Fillable> fillable_slots(const CapturedFrame& frame) {
+  const std::vector<Format> velocity = frame.velocity.channels == 3
+                                           ? std::vector{Format::rgba32f, Format::rgba16f}
+                                           : std::vector{Format::rg32f, Format::rg16f};
   return {
       {"lighting", {Format::rgba32f, Format::rgba16f, Format::b10g11r11f}},
       {"depth", {Format::r32f}},
       {"normal", {Format::rgba32f, Format::rgba16f}},
       {"material", {Format::r8_uint}},
       {"albedo", {Format::rgba32f, Format::rgba16f, Format::rgba8_srgb}},
-      {"velocity", {Format::rg32f, Format::rg16f}},
+      {"velocity", velocity},
       {"scatter_scale", {Format::r32f, Format::r16f}},
       {"specular", {Format::rgba32f, Format::rgba16f}},
       {"thickness", {Format::r32f, Format::r16f}},
@@ -74,7 +78,7 @@ std::string names_of(std::span<const Format> formats) {
 
 SlotChoice choose_slots(const Graph& graph, const CapturedFrame& frame) {
   SlotChoice choice;
-  const std::vector<Fillable> fillable = fillable_slots();
+  const std::vector<Fillable> fillable = fillable_slots(frame);
   for (const ResourceDeclaration& declared : graph.resources) {
     const bool imported = declared.origin == Origin::imported;
     if (!imported && !declared.exported) continue;

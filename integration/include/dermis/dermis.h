@@ -393,7 +393,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
 typedef struct dermis_memory {
   size_t struct_size;
   uint64_t transient_bytes;         /* image and buffer heaps that live within a frame */
-  uint64_t transient_unaliased_bytes; /* the same without sharing memory */
+  uint64_t transient_unaliased_bytes; /* each alone, rounded up to the alignment of its heap: never less */
   uint64_t history_bytes;
   uint64_t constant_bytes;          /* frame constants, profile and kernel tables */
 } dermis_memory;

@@ -51,5 +51,6 @@ void fill_light(CapturedFrame& frame, float value);
 std::vector<StabilityCase> light_cases();
 std::vector<StabilityCase> shape_cases();
 std::vector<StabilityCase> time_cases();
+std::vector<StabilityCase> motion_cases();
 
 } // namespace dermis::tools

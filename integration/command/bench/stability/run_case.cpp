@@ -62,6 +62,10 @@ demo::Result<std::vector<std::vector<float>>> run_all(TechniqueRun& run, const S
 
 demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const StabilityCase& asked,
                                                    const std::string& name) {
+  if (asked.needs_history) {
+    if (auto once = run.scatter(asked.given(0)); !once) return once.error();
+    if (run.history_bytes() == 0) return std::optional<StabilityRow>();
+  }
   std::vector<std::vector<float>> wanted;
   if (asked.same_as) {
     auto sound = run_all(run, asked, asked.same_as, false);
@@ -70,7 +74,6 @@ demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const Stab
   }
   const auto found = run_all(run, asked, asked.given, true);
   if (!found) return found.error();
-  if (asked.needs_history && run.history_bytes() == 0) return std::optional<StabilityRow>();
   StabilityRow row;
   row.name = asked.name;
   row.technique = name;

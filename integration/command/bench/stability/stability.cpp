@@ -39,7 +39,7 @@ bool asked_for(const std::vector<std::string>& only, std::string_view name) {
 
 std::vector<StabilityCase> cases_asked_for(const std::vector<std::string>& only) {
   std::vector<StabilityCase> asked;
-  for (const auto& list : {light_cases(), shape_cases(), time_cases()})
+  for (const auto& list : {light_cases(), shape_cases(), time_cases(), motion_cases()})
     for (const StabilityCase& one : list)
       if (asked_for(only, one.name)) asked.push_back(one);
   return asked;

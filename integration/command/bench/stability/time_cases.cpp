@@ -11,8 +11,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr double furnace = 2e-3; // as in light_cases.cpp
-constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
-                infinity = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 using Level = std::function<double(uint32_t frame)>;
 
@@ -30,22 +29,6 @@ StabilityCase levels(std::string_view name, uint32_t frames, Level level, double
   made.wanted = level;
   made.scale = scale;
   made.bound = bound;
-  return made;
-}
-
-StabilityCase velocity(std::string_view name, float value) {
-  StabilityCase made;
-  made.name = name;
-  made.frames = 4;
-  made.given = [value](uint32_t) {
-    CapturedFrame frame = sound_frame();
-    frame.velocity = Image::sized(stability_side, stability_side, 2);
-    std::fill(frame.velocity.values.begin(), frame.velocity.values.end(), value);
-    return frame;
-  };
-  made.wanted = [](uint32_t) { return 1.0; };
-  made.bound = furnace;
-  made.needs_history = true;
   return made;
 }
 
@@ -126,10 +109,7 @@ std::vector<StabilityCase> time_cases() {
     out.description.exposure = 1 / level;
     return out;
   };
-  return {velocity("velocity_nan", nan),
-          velocity("velocity_infinity", infinity),
-          velocity("velocity_1e6_px", 1e6f),
-          poisoned(),
+  return {poisoned(),
           levels(
               "dark_then_flash", 34, [](uint32_t frame) { return frame < 30 ? 0.0 : 1.0; }, 1),
           levels(
