@@ -46,11 +46,12 @@ const float largest_depth_mm = 1e9; // a thousand kilometres: sky and infinite f
 
 bool is_perspective() { return (frame.flags & 1u) != 0u; }
 
-// View distance in mm from a value of the depth import; 0 where there is nothing. Both decodings are cheaper than a branch
-// over the whole dispatch, which some drivers compile a kernel anew for at each bind.
+// View distance in mm from a value of the depth import; 0 where there is nothing. Both decodings are cheaper than a
+// branch over the whole dispatch, which some drivers compile a kernel anew for at each bind.
 float view_depth(float value) {
   float distance = value * frame.depth_unit;
-  float decoded = (frame.depth_decode.x * value + frame.depth_decode.y) / (frame.depth_decode.z * value + frame.depth_decode.w);
+  float decoded =
+      (frame.depth_decode.x * value + frame.depth_decode.y) / (frame.depth_decode.z * value + frame.depth_decode.w);
   float depth = (frame.flags & 2u) != 0u ? distance : decoded;
   return depth > 0.0 && depth < largest_depth_mm ? depth : 0.0; // NaN and Inf compare false
 }

@@ -176,7 +176,8 @@ TEST_F(ReplacedHistory, ABufferGoesOnAsImagesDo) {
     const std::vector<float> texels = read(light);
     for (uint32_t y = 0; y < side; ++y)
       for (uint32_t x = 0; x < side; ++x)
-        ASSERT_EQ(texels[y * side + x], (y / 8 * (side / 8) + x / 8) % 3 == 0 ? expected : 0.0f) << x << ' ' << y;
+        ASSERT_EQ(texels[y * side + x], (y / 8 * (side / 8) + x / 8) % 3 == 0 ? expected : 0.0f)
+            << x << ' ' << y;
   };
   make_executor(g, side, side);
   const TestImage light = bind(g, "light", std::vector<float>(size_t{side} * side, 0.0f));

@@ -232,8 +232,8 @@ TEST_F(Engine, AGraphThatWantsWhatTheEngineLacksIsNamed) {
   EXPECT_THAT(refused(options).text, HasSubstr("scatter_scale"));
 }
 
-// Mesa's software driver compiles a kernel again at each bind where a branch hangs on uniform values alone, and keeps the
-// code: frames take milliseconds and memory that are not theirs.
+// Mesa's software driver compiles a kernel again at each bind where a branch hangs on uniform values alone,
+// and keeps the code: frames take milliseconds and memory that are not theirs.
 TEST_F(Engine, KernelsAreCompiledInTheFirstFrames) {
   for (const char* graph : {"afis_guided", "hybrid", "sap_blend", "sap_residual", "skin"}) {
     SCOPED_TRACE(graph);
