@@ -171,8 +171,8 @@ law('light and dark can be read, are as wide as the window and are drawn', async
 law('the index leads to the page of each suite and back to nothing that is missing', async () => {
   const { page, problems, close } = await open(index);
   assert.deepEqual(await page.locator('tbody tr td:first-child').allTextContents(),
-    ['record', 'skip', 'truth', 'supplement', 'compile', 'stability', 'budget', 'error-time', 'dynamic']);
-  assert.equal(await page.locator('tbody tr', { hasText: 'not measured' }).count(), 7);
+    ['record', 'skip', 'truth', 'supplement', 'compile', 'stability', 'budget', 'error-time', 'dynamic', 'restir']);
+  assert.equal(await page.locator('tbody tr', { hasText: 'not measured' }).count(), 8);
   await page.locator('a', { hasText: /^skip$/ }).click();
   assert.equal(await page.title(), 'Frames that do not need all of a graph');
   assert.match(await page.locator('dl').textContent(), /the figures say nothing/);
