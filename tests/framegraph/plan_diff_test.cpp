@@ -4,6 +4,7 @@
 #include "framegraph/explain/plan_diff.hpp"
 #include "framegraph/text/document.hpp"
 #include "tests/framegraph/random_graph.hpp"
+#include "tests/framegraph/saved_graph.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,13 +19,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-SavedPlan saved(const CompileInput& input) {
-  Diagnostics diagnostics;
-  const auto compiled = compile(input, diagnostics);
-  EXPECT_TRUE(compiled) << format_as_json(diagnostics);
-  return compiled ? saved_plan(input, compiled->plan) : SavedPlan{};
-}
 
 const PlanDiffSection& section(const PlanDiff& diff, std::string_view name) {
   static const PlanDiffSection none;

@@ -3,6 +3,7 @@
 #include "framegraph/serial/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/random_graph.hpp"
+#include "tests/framegraph/saved_graph.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,13 +15,6 @@ namespace dermis::testing {
 namespace {
 
 using ::testing::HasSubstr;
-
-SavedPlan saved(const CompileInput& input) {
-  Diagnostics diagnostics;
-  const auto compiled = compile(input, diagnostics);
-  EXPECT_TRUE(compiled) << format_as_json(diagnostics);
-  return compiled ? saved_plan(input, compiled->plan) : SavedPlan{};
-}
 
 std::string file_of(uint64_t seed) {
   const GraphBuilder builder = random_graph(seed);

@@ -27,6 +27,18 @@ void add_cache(CLI::App& verb, std::string& cache) {
   verb.add_option("--cache", cache, "Folder that keeps references [build/bench_truth]")->type_name("DIR");
 }
 
+void add_head(CLI::App& verb, std::string& head) {
+  verb.add_option("--head", head, "Folder of the head scan (LeePerrySmith.glb and its maps)")
+      ->type_name("DIR");
+}
+
+// Those of a kind ("scenes") to which what is measured is narrowed.
+void add_only(CLI::App& verb, const std::string& kind, std::vector<std::string>& names) {
+  verb.add_option("--" + kind, names, "Only these " + kind + ", separated by commas")
+      ->type_name("NAME")
+      ->delimiter(',');
+}
+
 } // namespace
 
 void add_bench_verbs(CLI::App& app, Invocation& invocation) {
@@ -84,15 +96,10 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         add_report_files(verb, options.json, &options.csv, options.html,
                          "File for a page with plots and pictures");
-        verb.add_option("--head", options.head, "Folder of the head scan (LeePerrySmith.glb and its maps)")
-            ->type_name("DIR");
+        add_head(verb, options.head);
         verb.add_flag("--study", options.study, "Also the framings that study one head");
-        verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
-        verb.add_option("--techniques", options.techniques, "Only these techniques, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
+        add_only(verb, "scenes", options.scenes);
+        add_only(verb, "techniques", options.techniques);
         verb.add_option("--file", options.file, "What is measured [tests/benchmark/error_time.json]")
             ->type_name("FILE");
         add_quick(verb, options.quick, {"--size"});
@@ -125,9 +132,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, BenchStabilityOptions& options) {
         verb.add_option("--file", options.file, "Techniques [tests/benchmark/stability.json]")
             ->type_name("FILE");
-        verb.add_option("--cases", options.cases, "Only these cases, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
+        add_only(verb, "cases", options.cases);
         verb.add_option("--techniques", options.techniques,
                         "Only these techniques, or formula; separated by commas")
             ->type_name("NAME")
@@ -173,15 +178,9 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_report_files(verb, options.json, &options.csv, options.html, "File for a page with plots");
         verb.add_option("--head", options.head, "Folder of the head scan, which takes the bust's place")
             ->type_name("DIR");
-        verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
-        verb.add_option("--framings", options.framings, "Only these framings, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
-        verb.add_option("--techniques", options.techniques, "Only these techniques, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
+        add_only(verb, "scenes", options.scenes);
+        add_only(verb, "framings", options.framings);
+        add_only(verb, "techniques", options.techniques);
         verb.add_option("--file", options.file, "What is measured [tests/benchmark/dynamic.json]")
             ->type_name("FILE");
         add_quick(verb, options.quick, {"--size", "--frames"});
@@ -200,14 +199,9 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         add_report_files(verb, options.json, &options.csv, options.html,
                          "File for a page with the rows and pictures");
-        verb.add_option("--head", options.head, "Folder of the head scan (LeePerrySmith.glb and its maps)")
-            ->type_name("DIR");
-        verb.add_option("--scenes", options.scenes, "Only these scenes, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
-        verb.add_option("--shifts", options.shifts, "Only these shifts, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
+        add_head(verb, options.head);
+        add_only(verb, "scenes", options.scenes);
+        add_only(verb, "shifts", options.shifts);
         verb.add_option("--file", options.file, "What is measured [tests/benchmark/restir.json]")
             ->type_name("FILE");
         add_quick(verb, options.quick, {"--size"});

@@ -2,7 +2,7 @@
 // recorded again once it is right.
 
 #include "tests/integration/abi/sources.hpp"
-#include "tests/integration/embedding/null_host.hpp"
+#include "tests/integration/embedding/recorded_frame.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,15 +18,7 @@ using testing::Not;
 
 constexpr float nan_value = NAN;
 
-struct Frames : testing::Test {
-  NullHost host;
-  void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-    host.make_bindings();
-    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-  }
-};
+struct Frames : RecordedFrame {};
 
 using Bindings = std::vector<dermis_image_binding>;
 using Change = std::function<void(dermis_frame&, Bindings&)>;

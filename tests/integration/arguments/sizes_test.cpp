@@ -3,7 +3,7 @@
 
 #include "integration/abi/sized_struct.hpp"
 #include "tests/integration/abi/sources.hpp"
-#include "tests/integration/embedding/null_host.hpp"
+#include "tests/integration/embedding/recorded_frame.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -75,15 +75,7 @@ template <class T> void expect_output_law(const T& value, const Call<T>& call) {
       << "nothing is written behind the stated size";
 }
 
-struct StructSizes : testing::Test {
-  NullHost host;
-  void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-    host.make_bindings();
-    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-  }
-};
+struct StructSizes : RecordedFrame {};
 
 void DERMIS_CALL record_nothing(void*, const dermis_pass_call*) {}
 void* DERMIS_CALL take_nothing(void*, size_t, size_t) {

@@ -2,7 +2,7 @@
 // leaves nothing behind.
 
 #include "tests/framegraph/test_tier.hpp"
-#include "tests/integration/embedding/null_host.hpp"
+#include "tests/integration/embedding/recorded_frame.hpp"
 
 #include <gtest/gtest.h>
 
@@ -92,15 +92,7 @@ void fail_each(const std::function<dermis_result()>& change, const std::function
   EXPECT_GT(failures, 50u);
 }
 
-struct Allocation : ::testing::Test {
-  NullHost host;
-  void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-    host.make_bindings();
-    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-  }
-};
+struct Allocation : RecordedFrame {};
 
 TEST_F(Allocation, RecordingTakesNoHostMemory) {
   for (int i = 0; i < 4; ++i) {
