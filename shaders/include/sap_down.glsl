@@ -28,7 +28,8 @@ sap_texel children[SAP_LAYERS * side * side]; // one layer behind the other
 vec4 child_light[SAP_LAYERS * side * side];
 const int child_count = SAP_LAYERS * children_a_layer; // of a parent
 #if SAP_LAYERS > 1
-const float least_seed_part = 0.5; // what has less left is no seed of the second layer
+// What has less left is no seed of the second layer: it lies on the first one's surface, bent.
+const float least_seed_part = 0.9;
 float child_left[child_count];     // what no layer of the parent at hand has taken yet
 #endif
 

@@ -97,7 +97,7 @@ TEST(Sap, ASecondLayerKeepsLightApartThatOneLayerMixesAcrossAFence) {
   const double one = error_of(scattered(1), truth).rmse, two = error_of(scattered(2), truth).rmse;
   RecordProperty("one", std::to_string(one));
   RecordProperty("two", std::to_string(two));
-  EXPECT_LE(two, 0.8 * one); // measured .74
+  EXPECT_LE(two, 0.3 * one); // measured .25; .74 where a child with half of its weight left is a seed
   for (const float value : {0.0123f, 0.7f}) {
     scene.paint([&](uint32_t, uint32_t) { return value; });
     for (const float light : scattered(2))

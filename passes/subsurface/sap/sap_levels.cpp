@@ -13,7 +13,8 @@ constexpr double hysteresis = 1.02;    // the first of equals stays the seed
 constexpr double nearest_share = 0.25; // a plane is not extrapolated nearer than this share of its depth
 constexpr size_t children_a_layer = 16, no_child = 2 * children_a_layer;
 constexpr size_t central[8] = {5, 6, 9, 10, 21, 22, 25, 26}; // of the first layer, of the second
-constexpr double least_seed_part = 0.5; // what has less left is no seed of the second layer
+// What has less left is no seed of the second layer: it lies on the first one's surface, bent.
+constexpr double least_seed_part = 0.9;
 
 template <class Real> Real binomial(size_t child) {
   child %= children_a_layer;
