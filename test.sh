@@ -4,15 +4,19 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 # shellcheck source=.ci/common.sh
 source .ci/common.sh
+# shellcheck source=.ci/kept_steps.sh
+source .ci/kept_steps.sh
 
 usage="usage: ./test.sh [--full]
   Runs the tests, then each fuzz target for 10 seconds (where clang is installed or can be).
   --full   hours, told step by step: 10,000 random graphs where the quick run tries 1,500, and mutations over them;
            the tests again with address and undefined-behaviour sanitizers; the threaded ones with the thread
-           sanitizer; 100,000 frames of the soak; the device tests on other drivers that are there; covered code
-           (gcovr); 60 seconds a fuzz target; every bench"
+           sanitizer; 100,000 frames of the soak; 400 random graphs of the real kinds on a device; the device tests on
+           other drivers that are there; covered code (gcovr); 60 seconds a fuzz target; every bench. A run that was
+           stopped goes on with the step that it was in, as long as the sources stay as they are"
 
 soak_processes=20 soak_frames=5000 # of each: a driver that forgets mappings runs out of them in one process
+graph_chunks=10 chunk_graphs=40
 full=no
 for argument in "$@"; do
   case "$argument" in
@@ -30,17 +34,37 @@ fi
 optional_packages+=("${interface_packages[@]}" chromium) # chromium opens the viewer's page in a test
 install_packages
 
-# Runs a step, a function of its name with '_' for ' ', and keeps how long it took. What a step leaves out it says with
-# the exit code 77.
-times=()
+# Runs a step: a function of its name's words with '_' between, given the number behind them, if there is one. What a
+# step leaves out it says with the exit code 77.
+times=() # "step <tab> seconds <tab> what is to be told of it"
 step() {
-  local name=$1 begin=$SECONDS rc=0 told
+  local name=$1 begin=$SECONDS rc=0 words=${1% [0-9]*} number='' seconds=''
+  [[ $words == "$name" ]] || number=${name##* }
+  [[ $full == no ]] || seconds=$(kept_step "$name")
+  if [[ -n $seconds ]]; then
+    say "== $name: passed before, in $seconds s"
+    times+=("$name"$'\t'"$seconds"$'\tpassed before')
+    return
+  fi
   say "== $name"
-  "${name// /_}" || rc=$?
-  told=$(printf '%-20s %4d min %02d s' "$name" $(((SECONDS - begin) / 60)) $(((SECONDS - begin) % 60)))
-  [[ $rc -ne 77 ]] || told+=", skipped"
-  times+=("$told")
+  "${words// /_}" "$number" || rc=$?
   [[ $rc -eq 0 || $rc -eq 77 ]] || fail 1 "$name: failed"
+  seconds=$((SECONDS - begin))
+  times+=("$name"$'\t'"$seconds"$'\t'"$([[ $rc -eq 0 ]] || say skipped)")
+  if [[ $full == yes && $rc -eq 0 ]]; then keep_step "$name" "$seconds"; fi
+}
+
+# A line for each step, those that differ by their number as one; then all.
+tell_times() {
+  printf '%s\n' "${times[@]}" | awk -F '\t' '
+    function told(seconds) { return sprintf("%4d min %02d s", seconds / 60, seconds % 60) }
+    { sub(/ [0-9]+$/, "", $1)
+      if (!($1 in seconds)) order[++steps] = $1
+      seconds[$1] += $2; all += $2; parts[$1]++; if ($3 != "") { note[$1] = $3; noted[$1]++ } }
+    END { for (i = 1; i <= steps; ++i) { one = order[i]
+            printf "%-20s %s%s%s\n", one, told(seconds[one]), noted[one] ? ", " note[one] : "",
+              noted[one] && noted[one] < parts[one] ? " in parts" : "" }
+          printf "%-20s %s\n", "all", told(all) }'
 }
 
 tests_of() { # preset
@@ -49,21 +73,33 @@ tests_of() { # preset
     fail 1 "tests failed in '$1'; the log: build/$1/Testing/Temporary/LastTest.log"
 }
 release() { tests_of release; }
-asan() { tests_of asan; }
+# Sanitizers and other drivers see no more in the tenth thousand of graphs, at many times the time.
+quick() { (unset DERMIS_TESTS_FULL && "$@"); }
+asan() { quick tests_of asan; }
 tsan() {
   build_preset tsan --target test_integration_static_library
   TSAN_OPTIONS=halt_on_error=1 build/tsan/tests/test_integration_static_library --gtest_filter='Threads.*'
 }
-soak() {
-  local seed
-  for ((seed = 1; seed <= soak_processes; ++seed)); do
-    DERMIS_SOAK_SEED=$seed DERMIS_SOAK_FRAMES=$soak_frames build/release/tests/test_integration_soak ||
-      fail 1 "the soak failed with DERMIS_SOAK_SEED=$seed DERMIS_SOAK_FRAMES=$soak_frames"
-  done
+built() { build_preset release --target "$@" >/dev/null; } # after an earlier run something else may have been
+soak() { # seed
+  built test_integration_soak
+  DERMIS_SOAK_SEED=$1 DERMIS_SOAK_FRAMES=$soak_frames build/release/tests/test_integration_soak ||
+    fail 1 "the soak failed with DERMIS_SOAK_SEED=$1 DERMIS_SOAK_FRAMES=$soak_frames"
 }
-other_drivers() { tests/drivers/run.sh; }
+random_graphs() { # chunk, from 1
+  built test_passes_device
+  DERMIS_FUZZ_SEED=$((($1 - 1) * chunk_graphs)) DERMIS_FUZZ_GRAPHS=$chunk_graphs \
+    build/release/tests/test_passes_device --gtest_filter='DeviceFuzz.*'
+}
+other_drivers() {
+  build_preset release >/dev/null
+  quick tests/drivers/run.sh
+}
 coverage() { tests/coverage/run.sh; }
-benches() { build/release/dermis bench all --out build/bench; }
+benches() {
+  built dermis
+  build/release/dermis bench all --out build/bench
+}
 fuzzers() { # and the plans of another compiler
   if [[ $fuzz == no ]]; then
     say "skipped, these packages are not installed and this user cannot install them: ${fuzz_packages[*]}"
@@ -77,9 +113,14 @@ fuzzers() { # and the plans of another compiler
 }
 
 steps=(release fuzzers)
-[[ $full == no ]] || steps=(release asan tsan soak "other drivers" coverage fuzzers benches)
+if [[ $full == yes ]]; then
+  open_kept_steps
+  mapfile -t soaks < <(seq -f 'soak %g' "$soak_processes")
+  mapfile -t chunks < <(seq -f 'random graphs %g' "$graph_chunks")
+  steps=(release asan tsan "${soaks[@]}" "${chunks[@]}" "other drivers" coverage fuzzers benches)
+fi
 for one in "${steps[@]}"; do
   step "$one"
 done
-printf '%s\n' "${times[@]}"
-say "All tests passed: $(printf '%s, ' "${steps[@]}" | sed 's/, $//'), in $((SECONDS / 60)) min"
+tell_times
+say "All tests passed."

@@ -5,7 +5,7 @@
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/graph_truth.hpp"
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/passes/device/fuzz_seeds.hpp"
 #include "tests/passes/device/player.hpp"
 
 #include <fmt/format.h>
@@ -157,12 +157,9 @@ protected:
 };
 
 TEST_F(DeviceFuzz, WhatTheCompilerDecidesShowsInNoBitOfAnyRandomGraph) {
-  const char* const first = std::getenv("DERMIS_FUZZ_SEED");
-  const uint64_t begin = first != nullptr ? std::strtoull(first, nullptr, 10) : 0;
-  const char* const number = std::getenv("DERMIS_FUZZ_GRAPHS");
-  const uint64_t graphs = number != nullptr ? std::strtoull(number, nullptr, 10) : seeds_of_tier(8, 400);
+  const FuzzSeeds seeds = fuzz_seeds(8);
   Totals totals;
-  for (uint64_t seed = begin; seed < begin + graphs && !HasFailure(); ++seed)
+  for (uint64_t seed = seeds.begin; seed < seeds.end && !HasFailure(); ++seed)
     try_graph(seed, totals);
   const std::string told = fmt::format(
       "{} graphs of {} passes, {} interpreted against what they mean; {} plans, {} of them unlike the "
@@ -172,7 +169,7 @@ TEST_F(DeviceFuzz, WhatTheCompilerDecidesShowsInNoBitOfAnyRandomGraph) {
       totals.lent, totals.frames, totals.cuts, totals.pictures, HasFailure() ? "a finding" : "no finding");
   RecordProperty("totals", told);
   std::printf("%s\n", told.c_str());
-  EXPECT_EQ(totals.graphs, graphs);
+  EXPECT_EQ(totals.graphs, seeds.end - seeds.begin);
   EXPECT_GT(totals.shared, totals.graphs); // the law sees what sharing does
 }
 

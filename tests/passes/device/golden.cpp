@@ -3,7 +3,6 @@
 #include "framegraph/serial/sha256.hpp"
 #include "integration/demo_engine/pixel_format.hpp"
 
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -54,22 +53,6 @@ std::vector<float> light_of(const Played& played) {
         if (i % 4 != 3) out.push_back(values[i]);
     }
   return out;
-}
-
-void keep_floats(const std::string& path, const std::vector<float>& values) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(values.data()),
-             static_cast<std::streamsize>(values.size() * sizeof(float)));
-}
-
-std::vector<float> kept_floats(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  const std::string all = bytes.str();
-  std::vector<float> values(all.size() / sizeof(float));
-  std::memcpy(values.data(), all.data(), values.size() * sizeof(float));
-  return values;
 }
 
 std::string golden_hash(const std::string& driver, const std::string& graph) {

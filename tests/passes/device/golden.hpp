@@ -13,8 +13,6 @@ std::string hash_of(const Played& played);
 
 // Light of all frames as floats, rgb, slot by slot: of golden_show's formats, halves and floats.
 std::vector<float> light_of(const Played& played);
-void keep_floats(const std::string& path, const std::vector<float>& values);
-std::vector<float> kept_floats(const std::string& path); // empty where there is no file
 
 // That of frames of `graph`; "" where it is not in the table.
 std::string golden_hash(const std::string& driver, const std::string& graph);

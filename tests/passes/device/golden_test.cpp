@@ -1,11 +1,10 @@
 // The same inputs give the same bits: run after run, however many threads the driver has, in whatever order
 // passes are recorded; and, of a driver and version that is in the table, the bits that are kept there.
 #include "tests/passes/device/golden.hpp"
+#include "tests/passes/device/kept_pictures.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <unistd.h>
@@ -82,26 +81,19 @@ TEST_P(Golden, FramesAreTheSameHoweverManyThreadsTheDriverHas) {
 // pixels may be further off than 1 of the 16 or more samples that a pixel has, times the contrast of the
 // light, which is .625.
 TEST_P(Golden, FramesAreThoseOfAnotherDriverButForRoundingAndFewSamples) {
-  const char* const folder = std::getenv("DERMIS_PICTURES");
-  if (folder == nullptr)
+  const KeptPictures kept = kept_pictures();
+  if (kept.folder.empty())
     GTEST_SKIP() << "DERMIS_PICTURES names no folder with frames of another driver (tests/drivers/run.sh)";
   constexpr double rounding = 1.0 / 2048, contrast = 0.625, samples = 16;
-  const std::string path = fmt::format("{}/{}.floats", folder, GetParam());
+  const std::string path = fmt::format("{}/{}.floats", kept.folder, GetParam());
   const std::vector<float> here = light_of(frames());
-  if (std::getenv("DERMIS_PICTURES_KEEP") != nullptr) return keep_floats(path, here);
+  if (kept.keep) return keep_floats(path, here);
   const std::vector<float> there = kept_floats(path);
   ASSERT_EQ(here.size(), there.size()) << path;
-  std::vector<double> off;
-  for (size_t i = 0; i < here.size(); ++i)
-    off.push_back(std::abs(double(here[i]) - double(there[i])));
-  std::sort(off.begin(), off.end());
-  const auto percentile = [&](double share) {
-    return off[static_cast<size_t>(share * double(off.size() - 1))];
-  };
-  std::printf("pictures\t%s\t%s\tmedian %.2g\tp99 %.2g\tp99.9 %.2g\tmost %.2g\n", driver().c_str(),
-              GetParam().c_str(), percentile(0.5), percentile(0.99), percentile(0.999), off.back());
-  EXPECT_LE(percentile(0.5), 4 * rounding);
-  EXPECT_LE(percentile(0.999), contrast / samples);
+  const std::vector<double> off = differences(here, there);
+  std::printf("pictures\t%s\t%s\t%s\n", driver().c_str(), GetParam().c_str(), told_percentiles(off).c_str());
+  EXPECT_LE(percentile(off, 0.5), 4 * rounding);
+  EXPECT_LE(percentile(off, 0.999), contrast / samples);
 }
 
 } // namespace

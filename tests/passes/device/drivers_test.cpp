@@ -1,0 +1,108 @@
+// Random graphs of the real pass kinds on two drivers: both show the host the same light, but for rounding.
+#include "tests/passes/device/fuzz_seeds.hpp"
+#include "tests/passes/device/kept_pictures.hpp"
+#include "tests/passes/device/player.hpp"
+
+#include "framegraph/text/diagnostic.hpp"
+#include "framegraph/vulkan/create_infos.hpp"
+#include "integration/demo_engine/pixel_format.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace dermis::testing {
+namespace {
+
+constexpr float half_most = 65504.0f;
+constexpr double most_parts = 3; // of a random graph
+
+float brightest(const std::vector<float>& light) {
+  float most = 0;
+  for (size_t i = 0; i < light.size(); ++i)
+    if (i % 4 != 3 && light[i] > most) most = std::min(light[i], half_most);
+  return most;
+}
+
+class BetweenDrivers : public DevicePlayer {
+protected:
+  // Light of all frames, rgb, slot by slot, in units of the brightest that histories may know of.
+  std::vector<float> light_of(const RealGraph& graph, const Show& show, const Played& played) {
+    std::vector<float> out;
+    float unit = 0;
+    for (size_t f = 0; f < played.size(); ++f) {
+      const float shown = brightest(show.frames[f].pictures.at("lighting"));
+      unit = show.frames[f].cut ? shown : std::max(unit, shown);
+      for (const auto& [slot, texels] : played[f]) {
+        if (slot != "lighting" && !slot.ends_with("scattered_light")) continue;
+        const uint32_t resource = resource_of(graph.graph, slot);
+        const auto* format = demo::find_pixel_format(vulkan::vk_format(show.formats[resource]));
+        const std::vector<float> values = demo::decode_texels(*format, texels);
+        for (size_t i = 0; i < values.size(); ++i)
+          if (i % 4 != 3) out.push_back(values[i] / (unit > 0 ? unit : 1.0f)); // a view may be dark
+      }
+    }
+    return out;
+  }
+
+  static uint32_t resource_of(const Graph& graph, const std::string& name) {
+    uint32_t found = 0;
+    while (graph.resources[found].name != name)
+      ++found;
+    return found;
+  }
+
+  std::vector<float> light_of_seed(uint64_t seed, std::string& name) {
+    const auto graph = random_real_graph(seed, kinds);
+    if (!graph) return {};
+    name = graph->name;
+    const Show show = random_show(seed, graph->graph);
+    Diagnostics diagnostics;
+    const auto compiled = compile(compile_input(*graph, show), diagnostics);
+    EXPECT_TRUE(compiled) << format_as_json(diagnostics);
+    return compiled ? light_of(*graph, show, play(*graph, show, compiled->plan, false))
+                    : std::vector<float>{};
+  }
+};
+
+// Bounds in units of the brightest light. Roundings to a half are 2^-11 of it at most; a graph's parts store,
+// filter and take exponentials one behind the other, up to four of them each, as in Golden. Few pixels take a
+// sample in the texel beside: at most one of a hundred in any graph, and one of a thousand of all.
+TEST_F(BetweenDrivers, LightOfRandomGraphsIsThatOfAnotherDriverButForRoundingAndFewSamples) {
+  const KeptPictures kept = kept_pictures();
+  if (kept.folder.empty())
+    GTEST_SKIP() << "DERMIS_PICTURES names no folder with light of another driver (tests/drivers/run.sh)";
+  const FuzzSeeds seeds = fuzz_seeds(24);
+  constexpr double rounding = 1.0 / 2048;
+  std::vector<double> all;
+  for (uint64_t seed = seeds.begin; seed < seeds.end; ++seed) {
+    std::string name;
+    const std::vector<float> here = light_of_seed(seed, name);
+    SCOPED_TRACE(fmt::format("seed {}: {}", seed, name));
+    const std::string path = fmt::format("{}/random_{}.floats", kept.folder, seed);
+    if (kept.keep) {
+      keep_floats(path, here);
+      continue;
+    }
+    const std::vector<float> there = kept_floats(path);
+    ASSERT_EQ(here.size(), there.size()) << path;
+    const std::vector<double> off = differences(here, there);
+    std::printf("seed\t%llu\t%s\t%s\n", static_cast<unsigned long long>(seed), name.c_str(),
+                told_percentiles(off).c_str());
+    std::fflush(stdout); // slow drivers may be stopped
+    const auto parts = static_cast<double>(1 + std::count(name.begin(), name.end(), '+'));
+    EXPECT_LE(percentile(off, 0.5), 4 * rounding);
+    EXPECT_LE(percentile(off, 0.99), 4 * rounding * parts);
+    all.insert(all.end(), off.begin(), off.end());
+  }
+  if (kept.keep) return;
+  std::sort(all.begin(), all.end());
+  std::printf("pictures\t%s\t%llu random graphs\t%s\n", driver().c_str(),
+              static_cast<unsigned long long>(seeds.end - seeds.begin), told_percentiles(all).c_str());
+  EXPECT_LE(percentile(all, 0.999), 4 * rounding * most_parts);
+}
+
+} // namespace
+} // namespace dermis::testing
