@@ -126,6 +126,7 @@ Result<> run_scene(Session& session, const SceneState& state, uint32_t frame, Ph
   const bool again = session.kept && is_kept(*session.kept, frame);
   clock.begin("record scene");
   auto done = run_commands(session.host, [&](VkCommandBuffer commands) {
+    record_new_times(session.renderer, commands);
     if (again)
       record_kept(*session.kept, session.renderer, commands, frame);
     else
@@ -189,7 +190,7 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
       auto recorded = record_graph(*session.dermis, renderer, state, commands, frame_index);
       if (!recorded) return recorded;
     }
-    record_composite(renderer, commands);
+    if (wanted.pictures || session.taa) record_composite(renderer, commands);
     if (session.taa) record_taa(*session.taa, renderer, commands, state);
     clock.begin("run graph");
     return success();
@@ -239,10 +240,12 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   auto usage = kept_stage ? usage_for_keeping() : std::array<VkImageUsageFlags, target_count>{};
   DermisHandle dermis;
   if (!options.graph.empty()) {
-    auto made = create_dermis_host(host, {options.graph, info.profiles, options.settings, options.width,
-                                          options.height, options.overlays, options.include, options.shaders,
-                                          options.budget_ms, options.metered, options.calibration,
-                                          options.sampling, options.skips});
+    auto made =
+        create_dermis_host(host,
+                           {options.graph, info.profiles, options.settings, options.width, options.height,
+                            options.overlays, options.include, options.shaders, options.budget_ms,
+                            options.metered, options.calibration, options.sampling, options.skips},
+                           &stage.slots);
     if (!made) return made.error();
     dermis = made.take();
     const auto of_graph = usage_for_graph(*dermis);

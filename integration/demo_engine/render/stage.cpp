@@ -84,6 +84,7 @@ Result<> load_stage(Stage& stage, const RenderOptions& options) {
   auto host = create_vulkan_host(host_options);
   if (!host) return host.error();
   stage.host = host.take();
+  stage.slots = {}; // other devices may have others
   stage.made_for = options;
   return success();
 }

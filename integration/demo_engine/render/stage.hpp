@@ -2,6 +2,7 @@
 // What frames are rendered on: made bit by bit, and anew where another call wants another.
 
 #include "integration/demo_engine/engine.hpp"
+#include "integration/demo_engine/render/dermis_host.hpp"
 #include "integration/demo_engine/render/kept_frames.hpp"
 
 #include <memory>
@@ -18,6 +19,7 @@ struct Stage {
   RendererDesc desc;
   std::unique_ptr<Renderer> renderer;
   KeptFrames kept;
+  KnownSlots slots;
 };
 
 // Loads scene and model and finds a device, unless the stage was made for the same ones. Errors: input,
