@@ -44,7 +44,9 @@ TEST_F(Choice, IsASentenceForPeople) {
 
 TEST_F(Choice, CalibrateWritesWhatValidateAcceptsAndRenderTakes) {
   const std::string file = path("calibration.json");
-  const Outcome made = run({"calibrate", graph, "--size", "64x36", "--frames", "2", "--out", file});
+  const std::string overlay = write("few.json", techniques_alone);
+  const Outcome made =
+      run({"calibrate", graph, "--overlay", overlay, "--size", "64x36", "--frames", "2", "--out", file});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("costs on"));
   const Outcome checked = run({"validate", file});

@@ -39,6 +39,12 @@ private:
   std::filesystem::path folder_;
 };
 
+// An overlay on configs/graphs/skin.json whose budget chooses among its four techniques and no steps of
+// theirs, which makes calibrating it short.
+inline constexpr const char* techniques_alone = R"({ "dermis_overlay": 1, "edits": [
+  { "set": "/settings/variant", "to": { "choice": ["base", "smooth", "half"], "default": "smooth" } },
+  { "set": "/settings/taps", "to": { "choice": ["11", "17", "25"], "default": "25" } } ] })";
+
 // Variables under which the Khronos layer checks everything that the command asks of the driver,
 // synchronization included; what it finds goes to standard output.
 std::vector<std::string> validation_environment();

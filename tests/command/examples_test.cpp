@@ -20,9 +20,14 @@ const std::vector<std::string> too_long = {
 
 // What makes an example short, or end at all.
 const std::map<std::string, std::string> shortened = {
-    {"", "--subset 16"},          {"render", "--subset 16"},   {"watch", "--rounds 1 --frames 1 --subset 16"},
-    {"capture", "--frames 2"},    {"calibrate", "--frames 2"}, {"report-bug", "--count 1"},
+    {"", "--subset 16"},
+    {"render", "--subset 16"},
+    {"watch", "--rounds 1 --frames 1 --subset 16"},
+    {"capture", "--frames 2"},
+    {"calibrate", "--frames 2 --overlay few.json"},
+    {"report-bug", "--count 1"},
     {"reference", "--subset 16"},
+    {"sheet", "--graphs sap --profiles skin"},
 };
 
 class Examples : public CommandTest {
@@ -75,6 +80,7 @@ protected:
 
 TEST_F(Examples, OfEveryVerbRunAsTheyStand) {
   // What they take as there.
+  write("few.json", techniques_alone);
   ASSERT_EQ(
       shell("dermis capture configs/scenes/bust.json --out capture --size 64x36 --frames 2\n"
             "dermis plan save configs/graphs/burley.json --out before.plan\n"

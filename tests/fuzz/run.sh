@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs every fuzz target for some seconds from its committed corpus, the shipped files and a dictionary.
+# Runs every fuzz target for some seconds from its committed corpus, the shipped files and a dictionary; as many at a
+# time as there are processors.
 # usage: run.sh [SECONDS [TARGET...]]; exit code 1: a finding, kept in build/fuzz/findings
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
@@ -9,16 +10,15 @@ shift || true
 targets=("$@")
 [[ ${#targets[@]} -gt 0 ]] || targets=(graph overlay profile scene capture exr plan)
 
-declare -A shipped=([graph]=configs/graphs [overlay]=configs/overlays [profile]=configs/profiles [scene]=configs/scenes)
 findings=build/fuzz/findings
 mkdir -p "$findings"
-failed=()
-for target in "${targets[@]}"; do
-  grown=build/fuzz/corpus/$target # what earlier runs found stays for the next
-  mkdir -p "$grown"
-  folders=("$grown" "tests/fuzz/corpus/$target")
-  [[ -z ${shipped[$target]:-} ]] || folders+=("${shipped[$target]}")
-  log=build/fuzz/$target.log
+run_one() { # target, seconds, folder of findings
+  local target=$1 seconds=$2 findings=$3 grown=build/fuzz/corpus/$1 log=build/fuzz/$1.log runs covered
+  mkdir -p "$grown" # what earlier runs found stays for the next
+  local folders=("$grown" "tests/fuzz/corpus/$target")
+  case $target in
+    graph | overlay | profile | scene) folders+=("configs/${target}s") ;;
+  esac
   if build/fuzz/fuzz/fuzz_"$target" -max_total_time="$seconds" -timeout=5 -rss_limit_mb=2048 -max_len=65536 \
     -dict=tests/fuzz/keys.dict -artifact_prefix="$findings/$target-" -print_final_stats=1 -verbosity=1 \
     "${folders[@]}" >"$log" 2>&1; then
@@ -28,7 +28,8 @@ for target in "${targets[@]}"; do
   else
     printf 'fuzz %-10s FINDING, kept in %s; the log: %s\n' "$target" "$findings" "$log"
     tail -n 30 "$log"
-    failed+=("$target")
+    return 1
   fi
-done
-[[ ${#failed[@]} -eq 0 ]]
+}
+export -f run_one
+printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I{} bash -c 'run_one "$@"' run {} "$seconds" "$findings" || exit 1

@@ -51,11 +51,13 @@ protected:
     }
     return mean;
   }
-  static ErrorFigures error_of(const CapturedFrame& frame, const std::vector<float>& light) {
+  static Reference truth_of(const CapturedFrame& frame) {
     Session quiet;
     quiet.quiet = true;
-    const auto reference = make_reference(quiet, frame, "truth", 1024, "");
-    return still_error(light, *reference).figures;
+    return *make_reference(quiet, frame, "truth", 1024, "");
+  }
+  static ErrorFigures error_of(const Reference& truth, const std::vector<float>& light) {
+    return still_error(light, truth).figures;
   }
   static CapturedFrame textured(uint32_t width, uint32_t height, double d_px,
                                 const std::string& framing = "plane") {
@@ -70,8 +72,9 @@ TEST_F(TruthSuite, StratifiedSamplesConvergeFasterThanTheRootOfTheirNumber) {
   // an image of edges, discs and texture. A thousand pixels leave either error uncertain by some 4 %, the
   // slope by .03.
   const CapturedFrame frame = textured(192, 128, 4);
-  const double few = error_of(frame, scatter(frame, "burley", {{"samples", "8"}})).rmse;
-  const double many = error_of(frame, scatter(frame, "burley", {{"samples", "64"}})).rmse;
+  const Reference truth = truth_of(frame);
+  const double few = error_of(truth, scatter(frame, "burley", {{"samples", "8"}})).rmse;
+  const double many = error_of(truth, scatter(frame, "burley", {{"samples", "64"}})).rmse;
   EXPECT_NEAR(std::log(many / few) / std::log(8.0), -0.70, 0.06) << few << " " << many;
 }
 
@@ -79,22 +82,25 @@ TEST_F(TruthSuite, FramesOfSamplesAverageOutUntilTheBiasOfTheirNormalisationIsLe
   // 32 independent frames lower the noise to .18 of one frame's; what normalising by the sum of weights adds
   // is below another .07 of it.
   const CapturedFrame frame = textured(128, 96, 4);
-  const double one = error_of(frame, scatter(frame, "burley", {{"samples", "16"}})).rmse;
-  const double mean = error_of(frame, scatter(frame, "burley", {{"samples", "16"}}, 32)).rmse;
+  const Reference truth = truth_of(frame);
+  const double one = error_of(truth, scatter(frame, "burley", {{"samples", "16"}})).rmse;
+  const double mean = error_of(truth, scatter(frame, "burley", {{"samples", "16"}}, 32)).rmse;
   EXPECT_LE(mean / one, 0.25) << one << " " << mean;
   EXPECT_GE(mean / one, 0.10) << "frames that repeat or cancel each other are not independent";
 }
 
 TEST_F(TruthSuite, BiasOfNormalisingByTheSumShrinksWithTheNumberOfSamples) {
   const CapturedFrame frame = textured(96, 64, 4);
-  const double few = error_of(frame, scatter(frame, "burley", {{"samples", "8"}}, 64)).rmse;
-  const double many = error_of(frame, scatter(frame, "burley", {{"samples", "64"}}, 64)).rmse;
+  const Reference truth = truth_of(frame);
+  const double few = error_of(truth, scatter(frame, "burley", {{"samples", "8"}}, 64)).rmse;
+  const double many = error_of(truth, scatter(frame, "burley", {{"samples", "64"}}, 64)).rmse;
   EXPECT_LT(many, few / 2) << few << " " << many;
 }
 
 TEST_F(TruthSuite, ThePyramidFollowsTheTruthWhereDVariesEightfold) {
   const CapturedFrame frame = textured(256, 96, 16, "varying");
-  const ErrorFigures error = error_of(frame, scatter(frame, "sap", {{"variant", "smooth"}}));
+  const Reference truth = truth_of(frame);
+  const ErrorFigures error = error_of(truth, scatter(frame, "sap", {{"variant", "smooth"}}));
   EXPECT_LE(error.rmse, 3e-3);
   EXPECT_LE(error.max_error, 1.5e-2);
 }
@@ -102,8 +108,9 @@ TEST_F(TruthSuite, ThePyramidFollowsTheTruthWhereDVariesEightfold) {
 TEST_F(TruthSuite, ThePyramidFollowsTheTruthAtEveryD) {
   for (const double d_px : {2.0, 4.0, 8.0, 16.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
-    const ErrorFigures sap = error_of(frame, scatter(frame, "sap", {{"variant", "smooth"}}));
-    const ErrorFigures separable = error_of(frame, scatter(frame, "separable", {{"taps", "25"}}));
+    const Reference truth = truth_of(frame);
+    const ErrorFigures sap = error_of(truth, scatter(frame, "sap", {{"variant", "smooth"}}));
+    const ErrorFigures separable = error_of(truth, scatter(frame, "separable", {{"taps", "25"}}));
     EXPECT_LE(sap.rmse, 2e-3) << d_px;
     EXPECT_LE(sap.max_error, 1.5e-2) << d_px;
     EXPECT_LE(sap.rmse, 0.35 * separable.rmse) << d_px;
@@ -114,8 +121,9 @@ TEST_F(TruthSuite, AtHalfResolutionThePyramidStillFollowsTheTruthBetterThanAFewT
   // Measured at 640x360: 3.5, 2.7, 2.2 and 1.8e-3; separable with 11 taps 7 to 17e-3.
   for (const double d_px : {2.0, 4.0, 8.0, 16.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
-    const ErrorFigures half = error_of(frame, scatter(frame, "skin", {{"variant", "half"}}));
-    const ErrorFigures separable = error_of(frame, scatter(frame, "separable", {{"taps", "11"}}));
+    const Reference truth = truth_of(frame);
+    const ErrorFigures half = error_of(truth, scatter(frame, "skin", {{"variant", "half"}}));
+    const ErrorFigures separable = error_of(truth, scatter(frame, "separable", {{"taps", "11"}}));
     EXPECT_LE(half.rmse, 4e-3) << d_px;
     EXPECT_LE(half.max_error, 5e-2) << d_px;
     EXPECT_LE(half.rmse, 0.6 * separable.rmse) << d_px;
@@ -127,8 +135,9 @@ TEST_F(TruthSuite, ThePublishedSeparableKernelStaysWithinItsDocumentedFloor) {
   // that.
   for (const double d_px : {1.0, 2.0, 4.0, 8.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
-    const double published = error_of(frame, scatter(frame, "separable_jimenez", {{"taps", "25"}})).rmse;
-    const double fitted = error_of(frame, scatter(frame, "separable", {{"taps", "25"}})).rmse;
+    const Reference truth = truth_of(frame);
+    const double published = error_of(truth, scatter(frame, "separable_jimenez", {{"taps", "25"}})).rmse;
+    const double fitted = error_of(truth, scatter(frame, "separable", {{"taps", "25"}})).rmse;
     EXPECT_LE(published, 0.0174 * 1.2) << d_px;
     EXPECT_GT(published, 1.2 * fitted) << d_px << " px: what the fit is for";
   }
@@ -138,9 +147,10 @@ TEST_F(TruthSuite, OddSizesFollowTheTruthUpToTheLastPixel) {
   const bool full = dermis::testing::seeds_of_tier(0, 1) != 0;
   const uint32_t width = full ? 1919 : 239, height = full ? 1079 : 135;
   const CapturedFrame frame = textured(width, height, 4);
+  const Reference truth = truth_of(frame);
   for (const auto& [graph, most] : {std::pair{"sap", 2e-3}, {"separable", 1.2e-2}, {"burley", 1.5e-2}}) {
     const std::vector<float> light = scatter(frame, graph, {});
-    EXPECT_LE(error_of(frame, light).rmse, most) << graph;
+    EXPECT_LE(error_of(truth, light).rmse, most) << graph;
     for (const uint32_t y : {0u, height - 1})
       for (const uint32_t x : {0u, width - 1})
         EXPECT_TRUE(std::isfinite(light[3 * (size_t{y} * width + x)])) << graph;
