@@ -1,11 +1,9 @@
 #include "integration/demo_engine/engine.hpp"
 
-#include "integration/demo_engine/model/load_model.hpp"
 #include "integration/demo_engine/render/dermis_host.hpp"
 #include "integration/demo_engine/render/ray_placing.hpp"
-#include "integration/demo_engine/render/renderer.hpp"
+#include "integration/demo_engine/render/stage.hpp"
 #include "integration/demo_engine/render/taa.hpp"
-#include "integration/demo_engine/scene/read_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -36,46 +34,6 @@ Result<> check(const RenderOptions& options) {
                  fmt::format("{} frames from frame {} were asked for; expected 1 to {}, from 0 to {}",
                              options.frames, options.first_frame, most_frames, most_frames)};
   return success();
-}
-
-Result<Scene> load(const std::string& path, const std::vector<std::string>& roots) {
-  dermis::Diagnostics diagnostics;
-  auto scene = read_scene(path, diagnostics, roots);
-  if (scene) return *scene;
-  std::string text;
-  for (const dermis::Diagnostic& one : diagnostics.list) {
-    if (!text.empty()) text += '\n';
-    text += dermis::format_for_people(diagnostics, one);
-  }
-  return Error{ErrorKind::input, text};
-}
-
-// A model takes the place of the bust in scenes that were not made for one.
-void put_in_place(Scene& scene) {
-  const auto is = [](Shape shape) { return [shape](const Object& object) { return object.shape == shape; }; };
-  if (std::any_of(scene.objects.begin(), scene.objects.end(), is(Shape::model))) return;
-  const auto bust = std::find_if(scene.objects.begin(), scene.objects.end(), is(Shape::bust));
-  if (bust == scene.objects.end()) return;
-  bust->shape = Shape::model;
-  bust->pattern = Pattern::plain;
-  bust->albedo = glm::dvec3(1.0); // the map has it
-}
-
-void move_camera(Scene& scene, const CameraPlace& place) {
-  const auto point = [](const std::array<double, 3>& p) {
-    return Curve<glm::dvec3>(glm::dvec3(p[0], p[1], p[2]));
-  };
-  scene.camera.orthographic = false;
-  scene.camera.position = point(place.position);
-  scene.camera.target = point(place.target);
-  scene.camera.vertical_fov = Curve<double>(place.vertical_fov);
-}
-
-void zoom_in(Camera& camera, double zoom) {
-  for (auto& key : camera.vertical_fov.keys)
-    key.value = 2.0 * glm::degrees(std::atan(std::tan(0.5 * glm::radians(key.value)) / zoom));
-  for (auto& key : camera.height.keys)
-    key.value /= zoom;
 }
 
 std::array<float, 16> rows_of(const glm::dmat4& m) {
@@ -154,8 +112,31 @@ struct Session {
   DermisHost* dermis; // may be null
   Taa* taa;           // may be null
   const Scene& scene;
+  KeptFrames* kept; // null: none are
   Clock::time_point start;
 };
+
+// What of a frame is read back.
+struct Wanted {
+  bool inputs = true, pictures = true;
+};
+
+// Renders the scene, or brings back what it left when it was rendered before.
+Result<> run_scene(Session& session, const SceneState& state, uint32_t frame, PhaseClock& clock) {
+  const bool again = session.kept && is_kept(*session.kept, frame);
+  clock.begin("record scene");
+  auto done = run_commands(session.host, [&](VkCommandBuffer commands) {
+    record_new_times(session.renderer, commands);
+    if (again)
+      record_kept(*session.kept, session.renderer, commands, frame);
+    else
+      record_scene(session.renderer, commands, state);
+    clock.begin("run scene");
+    return success();
+  });
+  if (!done || again || !session.kept) return done;
+  return keep_frame(*session.kept, session.renderer, frame);
+}
 
 Result<> read_pictures(const Session& session, FrameOutputs& out) {
   VulkanHost& host = session.host;
@@ -178,26 +159,22 @@ Result<> read_pictures(const Session& session, FrameOutputs& out) {
   return done;
 }
 
-Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t frame_index, bool pictures) {
+Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t frame_index, Wanted wanted) {
   VulkanHost& host = session.host;
   Renderer& renderer = session.renderer;
   const SceneState state = state_at(session.scene, frame, renderer.view);
   set_frame(renderer, state, session.dermis ? scattering_of(*session.dermis) : Scattering::none);
   FrameOutputs out;
   PhaseClock clock{session.start, out.phases};
-  clock.begin("record scene");
   out.frame = frame;
   out.seconds = state.seconds;
   out.cut = state.cut;
   out.exposure = static_cast<float>(session.scene.exposure);
   out.camera = camera_of(session.scene, state);
-  auto done = run_commands(host, [&](VkCommandBuffer commands) {
-    record_scene(renderer, commands, state);
-    clock.begin("run scene");
-    return success();
-  });
+  const bool drawn = !session.kept || !is_kept(*session.kept, frame);
+  auto done = run_scene(session, state, frame, clock);
   if (!done) return done.error();
-  if (pictures) {
+  if (wanted.inputs) {
     clock.begin("read inputs");
     done = read_inputs(host, renderer, state, out.inputs); // before the graph updates the lighting in place
     if (!done) return done.error();
@@ -213,19 +190,19 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
       auto recorded = record_graph(*session.dermis, renderer, state, commands, frame_index);
       if (!recorded) return recorded;
     }
-    record_composite(renderer, commands);
+    if (wanted.pictures || session.taa) record_composite(renderer, commands);
     if (session.taa) record_taa(*session.taa, renderer, commands, state);
     clock.begin("run graph");
     return success();
   });
   if (!done) return done.error();
-  if (pictures) {
+  if (wanted.pictures) {
     clock.begin("read pictures");
     done = read_pictures(session, out);
     if (!done) return done.error();
   }
   clock.end();
-  if (renderer.queries.host)
+  if (renderer.queries.host && drawn)
     out.host_times = {{"shadows", elapsed_ms(renderer, at_start, after_shadows)},
                       {"gbuffer", elapsed_ms(renderer, after_shadows, after_gbuffer)},
                       {"lighting", elapsed_ms(renderer, after_gbuffer, after_lighting)},
@@ -243,64 +220,56 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
 
 } // namespace
 
-Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks) {
+Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks,
+                             Stage* kept_stage) {
   const Clock::time_point start = Clock::now();
   if (auto done = check(options); !done) return done.error();
-  auto scene = load(options.scene, options.roots);
-  if (!scene) return scene.error();
-  if (options.camera) move_camera(*scene, *options.camera);
-  zoom_in(scene->camera, options.zoom);
-  if (options.frames_per_second > 0) scene->frames_per_second = options.frames_per_second;
-  Model model;
-  if (!options.model.mesh.empty()) {
-    auto loaded = load_model(options.model, options.roots);
-    if (!loaded) return loaded.error();
-    model = loaded.take();
-    put_in_place(*scene);
-  }
-  HostOptions host_options;
-  host_options.validation = options.validation;
-  host_options.device = options.device;
-  auto host = create_vulkan_host(host_options);
-  if (!host) return host.error();
+  Stage own;
+  Stage& stage = kept_stage ? *kept_stage : own;
+  if (auto done = load_stage(stage, options); !done) return done.error();
+  VulkanHost& host = *stage.host;
 
   RenderInfo info;
-  info.scene = scene->name;
-  info.device = (*host)->properties.deviceName;
-  info.credits = model.credits;
-  info.warnings = model.warnings;
-  for (const SceneProfile& profile : scene->profiles)
+  info.scene = stage.scene->name;
+  info.device = host.properties.deviceName;
+  info.credits = stage.model.credits;
+  info.warnings = stage.model.warnings;
+  for (const SceneProfile& profile : stage.scene->profiles)
     info.profiles.push_back({static_cast<uint32_t>(info.profiles.size()) + 1, profile.name,
                              options.profile.empty() ? profile.file : options.profile});
-  RendererDesc desc;
-  desc.view = {options.width, options.height, options.reversed_depth, options.jitter || options.taa};
+  auto usage = kept_stage ? usage_for_keeping() : std::array<VkImageUsageFlags, target_count>{};
   DermisHandle dermis;
   if (!options.graph.empty()) {
-    auto made = create_dermis_host(**host, {options.graph, info.profiles, options.settings, options.width,
-                                            options.height, options.overlays, options.include,
-                                            options.shaders, options.budget_ms, options.metered,
-                                            options.calibration, options.sampling, options.skips});
+    auto made =
+        create_dermis_host(host,
+                           {options.graph, info.profiles, options.settings, options.width, options.height,
+                            options.overlays, options.include, options.shaders, options.budget_ms,
+                            options.metered, options.calibration, options.sampling, options.skips},
+                           &stage.slots);
     if (!made) return made.error();
     dermis = made.take();
-    desc.more_usage = usage_for_graph(*dermis);
+    const auto of_graph = usage_for_graph(*dermis);
+    for (size_t i = 0; i < target_count; ++i)
+      usage[i] |= of_graph[i];
     for (const std::string& warning : warnings_of(*dermis))
       info.warnings.push_back(warning);
   }
-  auto renderer = create_renderer(**host, *scene, model, desc);
-  if (!renderer) return renderer.error();
+  if (auto done = furnish_stage(stage, options, usage); !done) return done.error();
   std::unique_ptr<Taa> taa;
   if (options.taa) {
-    auto made = create_taa(**renderer);
+    auto made = create_taa(*stage.renderer);
     if (!made) return made.error();
     taa = made.take();
   }
-  info.triangles = (*renderer)->gpu.triangles;
+  info.triangles = stage.renderer->gpu.triangles;
   info.load_seconds = seconds_since(start);
   if (callbacks.on_start)
     if (auto done = callbacks.on_start(info); !done) return done.error();
 
   RenderSummary summary;
-  Session session{**host, **renderer, dermis.get(), taa.get(), *scene, start};
+  Session session{host,      *stage.renderer, dermis.get(),
+                  taa.get(), *stage.scene,    kept_stage ? &stage.kept : nullptr,
+                  start};
   for (uint32_t i = 0; i < options.frames; ++i) {
     if (dermis && options.reloads)
       for (const std::string& text : options.reloads(options.first_frame + i)) {
@@ -310,16 +279,18 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
         summary.refused_reloads += *taken ? 0 : 1;
       }
     const uint32_t number = options.first_frame + i;
-    const bool pictures = !options.pictures_of || options.pictures_of(number);
-    auto frame = render_frame(session, number, uint64_t{i} + 1, pictures);
+    Wanted wanted;
+    wanted.pictures = !options.pictures_of || options.pictures_of(number);
+    wanted.inputs = options.inputs_of ? options.inputs_of(number) : wanted.pictures;
+    auto frame = render_frame(session, number, uint64_t{i} + 1, wanted);
     if (!frame) return frame.error();
     ++summary.frames;
     if (callbacks.on_frame)
       if (auto done = callbacks.on_frame(*frame); !done) return done.error();
   }
   if (dermis) summary.calibration = graph_calibration(*dermis);
-  const std::lock_guard lock((*host)->log.mutex);
-  summary.validation_messages = (*host)->log.messages;
+  const std::lock_guard lock(host.log.mutex);
+  summary.validation_messages = host.log.messages;
   return summary;
 }
 

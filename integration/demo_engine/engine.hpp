@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,12 +20,14 @@ struct ModelOptions {
   std::string mesh;                     // .glb or .gltf; "" = none
   std::string albedo, normal, specular; // image files; "" = none
   double height_metres = 0.0;           // scales the model to this height; 0 = as in the file (metres)
+  bool operator==(const ModelOptions&) const = default;
 };
 
 // A perspective camera that takes the place of the scene's and stays where it is.
 struct CameraPlace {
   std::array<double, 3> position{}, target{}; // metres
   double vertical_fov = 25.0;                 // degrees, 1..150
+  bool operator==(const CameraPlace&) const = default;
 };
 
 struct NamedText {
@@ -60,8 +63,9 @@ struct RenderOptions {
   // Texts that the graph is reloaded with before a frame, one after the other; those with errors leave it as
   // it is. May be empty. The graph must include nothing.
   std::function<std::vector<std::string>(uint32_t frame)> reloads = {};
-  // Are a frame's inputs and pictures read back? Empty: of every frame. The others come without them.
+  // Are a frame's pictures read back? Empty: of every frame. The others come without them.
   std::function<bool(uint32_t frame)> pictures_of = {};
+  std::function<bool(uint32_t frame)> inputs_of = {}; // the same of its inputs; empty: as of its pictures
   NamedText calibration; // JSON of an earlier run's RenderSummary::calibration; "": the library's own
 };
 
@@ -181,9 +185,20 @@ struct RenderCallbacks {
   std::function<Result<>(const FrameOutputs&)> on_frame; // may be empty; an error ends the rendering with it
 };
 
-// Runs on the calling thread (loading uses two more). Errors: input (scene, model, graph, profile; the text
-// holds all located messages), usage (size, frames), environment (no driver, no memory), internal.
-Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks);
+// A device, a scene that is loaded on it, and its frames as graphs are given them, up to a gigabyte of them: kept
+// from one call of render() to the next, so that only the graph begins anew. Belongs to one thread.
+struct Stage;
+struct StageDeleter {
+  void operator()(Stage* stage) const;
+};
+using StageHandle = std::unique_ptr<Stage, StageDeleter>;
+StageHandle make_stage();
+
+// Runs on the calling thread (loading uses two more). With a stage, frames that it keeps are the same bits as if
+// they were rendered, and `host_times` has no times for them; it is made anew where a call asks for another device,
+// scene, model, camera or size. Errors: input (scene, model, graph, profile; the text holds all located messages),
+// usage (size, frames), environment (no driver, no memory), internal.
+Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks, Stage* stage = nullptr);
 
 // Filmic curve after Narkowicz 2016, "ACES Filmic Tone Mapping Curve", then the sRGB curve; 8 bits a channel.
 std::vector<uint8_t> tonemap(const FloatImage& linear_rgb);

@@ -212,6 +212,26 @@ Result<> use_shaders(DermisHost& host, const DermisDesc& desc) {
   return success();
 }
 
+// Slots that this engine does not fill. Errors: input (the graph requires one of them).
+Result<std::vector<std::string>> find_unbound(const DermisHost& host, const DermisDesc& desc, bool rays) {
+  std::vector<std::string> unbound;
+  for (const dermis_slot& slot : host.slots) {
+    if (rays && is_rays(slot)) continue;
+    const auto target = target_of(slot.name);
+    if (target && (target != Target::sampling || desc.sampling) && (target != Target::skips || desc.skips))
+      continue;
+    if (slot.required)
+      return Error{
+          ErrorKind::input,
+          fmt::format("graph '{}' wants '{}' bound, which the demo engine does not make; it offers "
+                      "lighting, depth, normal, material, albedo, velocity, thickness, back_lighting and "
+                      "scattered_light",
+                      desc.graph_file, slot.name)};
+    unbound.emplace_back(slot.name);
+  }
+  return unbound;
+}
+
 } // namespace
 
 void DermisHostDeleter::operator()(DermisHost* host) const {
@@ -220,7 +240,7 @@ void DermisHostDeleter::operator()(DermisHost* host) const {
   delete host;
 }
 
-Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc) {
+Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc, KnownSlots* known) {
   auto sources = read_sources(desc);
   if (!sources) return sources.error();
   DermisHandle host(new DermisHost);
@@ -235,23 +255,20 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   const dermis_result made = dermis_context_create(&context, &host->context);
   if (made != DERMIS_OK) return dermis_error("dermis_context_create", made);
 
-  // The slots are known only when the graph is there: a first one tells their names, a second one is built
-  // for the formats of this engine and without what it cannot bind.
-  if (auto done = build_graph(*host, desc, *sources, {}); !done) return done.error();
+  const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.skips;
+  if (!whole) known = nullptr;
   std::vector<std::string> unbound;
-  for (const dermis_slot& slot : host->slots) {
-    if (vulkan.ray_query && is_rays(slot)) continue;
-    const auto target = target_of(slot.name);
-    if (target && (target != Target::sampling || desc.sampling) && (target != Target::skips || desc.skips))
-      continue;
-    if (slot.required)
-      return Error{
-          ErrorKind::input,
-          fmt::format("graph '{}' wants '{}' bound, which the demo engine does not make; it offers "
-                      "lighting, depth, normal, material, albedo, velocity, thickness, back_lighting and "
-                      "scattered_light",
-                      desc.graph_file, slot.name)};
-    unbound.emplace_back(slot.name);
+  if (known && known->graph == sources->graph) {
+    host->slot_names = known->names;
+    unbound = known->unbound;
+  } else {
+    // The slots are known only when the graph is there: a first one tells their names, a second one is built
+    // for the formats of this engine and without what it cannot bind.
+    if (auto done = build_graph(*host, desc, *sources, {}); !done) return done.error();
+    auto found = find_unbound(*host, desc, vulkan.ray_query);
+    if (!found) return found.error();
+    unbound = found.take();
+    if (known) *known = {sources->graph, host->slot_names, unbound};
   }
   if (auto done = build_graph(*host, desc, *sources, unbound); !done) return done.error();
   for (const auto& [name, json] : desc.settings) {

@@ -31,9 +31,17 @@ struct DermisHostDeleter {
 };
 using DermisHandle = std::unique_ptr<DermisHost, DermisHostDeleter>;
 
+// The slots of a graph that was built before, so that it need not be built to learn of them.
+struct KnownSlots {
+  std::string graph; // its text; "": none
+  std::vector<std::string> names, unbound;
+};
+
 // Reads graph and profile files, builds the graph, names the slots that this engine cannot fill as unbound.
-// Errors: input (with all messages of the report), environment (the device lacks something), internal.
-Result<DermisHandle> create_dermis_host(VulkanHost& host, const DermisDesc& desc);
+// `known` may be null; of a graph that is one file alone it is read and written. Errors: input (with all
+// messages of the report), environment (the device lacks something), internal.
+Result<DermisHandle> create_dermis_host(VulkanHost& host, const DermisDesc& desc,
+                                        KnownSlots* known = nullptr);
 
 // What the graph adds to each target's usage.
 std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& host);

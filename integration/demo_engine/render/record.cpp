@@ -187,10 +187,13 @@ void set_frame(Renderer& renderer, const SceneState& state, Scattering scatterin
   std::memcpy(renderer.frame_buffer.mapped, &data, sizeof(data));
 }
 
+void record_new_times(Renderer& renderer, VkCommandBuffer commands) {
+  if (renderer.queries.host)
+    renderer.host->vk.vkCmdResetQueryPool(commands, renderer.queries.handle, 0, timestamp_count);
+}
+
 void record_scene(Renderer& renderer, VkCommandBuffer commands, const SceneState& state) {
   const VulkanHost& host = *renderer.host;
-  if (renderer.queries.host)
-    host.vk.vkCmdResetQueryPool(commands, renderer.queries.handle, 0, timestamp_count);
   stamp(renderer, commands, at_start);
   record_shadows(renderer, commands, state);
   stamp(renderer, commands, after_shadows);

@@ -232,12 +232,13 @@ Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene&
 double elapsed_ms(Renderer& renderer, Timestamp from, Timestamp to) {
   if (!renderer.queries.host) return 0.0;
   VulkanHost& host = *renderer.host;
-  std::array<uint64_t, timestamp_count> ticks{};
-  const VkResult result =
-      host.vk.vkGetQueryPoolResults(host.device, renderer.queries.handle, 0, timestamp_count, sizeof(ticks),
-                                    ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT);
-  if (result != VK_SUCCESS) return 0.0;
-  const uint64_t passed = (ticks[to] - ticks[from]) & host.timestamp_mask;
+  std::array<uint64_t, 2> ticks{};
+  for (size_t i = 0; i < 2; ++i)
+    if (host.vk.vkGetQueryPoolResults(host.device, renderer.queries.handle, i == 0 ? from : to, 1,
+                                      sizeof(uint64_t), &ticks[i], sizeof(uint64_t),
+                                      VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
+      return 0.0;
+  const uint64_t passed = (ticks[1] - ticks[0]) & host.timestamp_mask;
   return static_cast<double>(passed) * static_cast<double>(host.properties.limits.timestampPeriod) * 1e-6;
 }
 

@@ -2,8 +2,8 @@
 // The deferred renderer: shadow maps, G-buffer, lighting, and, after whatever happens to the light under the
 // skin, the composite.
 
-#include "integration/demo_engine/render/frame_data.hpp"
 #include "integration/demo_engine/rays/ray_scene.hpp"
+#include "integration/demo_engine/render/frame_data.hpp"
 #include "integration/demo_engine/render/scene_gpu.hpp"
 #include "integration/demo_engine/scene/scene_state.hpp"
 
@@ -71,7 +71,7 @@ struct Renderer {
   VkDescriptorSet lighting_set = VK_NULL_HANDLE, composite_set = VK_NULL_HANDLE;
   OwnedQueryPool queries;
   SceneGpu gpu;
-  std::unique_ptr<RayScene> rays; // null: not asked for
+  std::unique_ptr<RayScene> rays;                     // null: not asked for
   std::vector<glm::dmat4> drawn_shadows, drawn_world; // what the shadow maps hold
 
   const Image& operator[](Target target) const { return targets[static_cast<size_t>(target)]; }
@@ -83,11 +83,13 @@ Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene&
 
 // Fills the frame's constants; the device must be idle.
 void set_frame(Renderer& renderer, const SceneState& state, Scattering scattering);
+// Forgets the timestamps of the frame before; at the beginning of each frame.
+void record_new_times(Renderer& renderer, VkCommandBuffer commands);
 // Shadow maps (those that changed), G-buffer, lighting. Afterwards all targets rest.
 void record_scene(Renderer& renderer, VkCommandBuffer commands, const SceneState& state);
 // Writes `color` from the others. All targets rest before and after.
 void record_composite(Renderer& renderer, VkCommandBuffer commands);
-// Milliseconds between two timestamps of the last frame; 0 without timestamps. The device must be idle.
+// Milliseconds between two timestamps of the last frame; 0 without them. The device must be idle.
 double elapsed_ms(Renderer& renderer, Timestamp from, Timestamp to);
 
 } // namespace demo

@@ -15,7 +15,7 @@ struct Rendering {
   std::vector<std::string> warnings;
 };
 
-inline Rendering rendered(const RenderOptions& options) {
+inline Rendering rendered(const RenderOptions& options, Stage* stage = nullptr) {
   Rendering out;
   RenderCallbacks callbacks;
   callbacks.on_start = [&](const RenderInfo& info) {
@@ -26,7 +26,7 @@ inline Rendering rendered(const RenderOptions& options) {
     out.frames.push_back(frame);
     return success();
   };
-  const auto summary = render(options, callbacks);
+  const auto summary = render(options, callbacks, stage);
   if (!summary) {
     ADD_FAILURE() << summary.error().text;
     return {};

@@ -108,13 +108,14 @@ struct Bench {
   SceneRunRequest request;
   std::vector<std::vector<NamedValue>> sets; // one for each outcome
   Progress& progress;
+  SharedScene shared = {};
   uint64_t done = 0;
   std::string device = {};
   Report report = {};
 };
 
 demo::Result<SceneRun> run_counted(Bench& bench) {
-  auto run = run_scene(bench.session, bench.request);
+  auto run = run_scene(bench.session, bench.request, bench.shared);
   bench.progress.update(++bench.done);
   return run;
 }
@@ -258,6 +259,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
     bench.request.frames = warm_up + judged;
     bench.request.frames_per_second = stretch.frames_per_second;
     bench.request.error_every = std::max(1u, judged / compared);
+    bench.shared = {};
     if (!std::filesystem::exists(bench.request.scene)) {
       report.notes.push_back(fmt::format("scene {}: there is no '{}'", scene, bench.request.scene));
       continue;

@@ -1,6 +1,5 @@
 #include "integration/command/bench/choice/scene_run.hpp"
 
-#include "integration/command/bench/reference.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/run/rendered_frame.hpp"
 
@@ -15,7 +14,8 @@ demo::Error stopped() {
 
 } // namespace
 
-demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& request) {
+demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& request,
+                                 SharedScene& shared) {
   demo::RenderOptions engine;
   engine.scene = request.scene;
   engine.graph = request.graph;
@@ -31,6 +31,7 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
     return request.error_every > 0 && frame % request.error_every == request.error_every - 1;
   };
   engine.pictures_of = compared;
+  engine.inputs_of = [&](uint32_t frame) { return compared(frame) && !shared.references.contains(frame); };
   SceneRun run;
   std::vector<CaptureProfile> profiles;
   demo::RenderCallbacks callbacks;
@@ -46,19 +47,23 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
     RunFrame& out = run.frames.emplace_back();
     out.choice = frame.choice.value_or(demo::FrameChoice{});
     if (!compared(frame.frame) || frame.scattered.texels.empty()) return demo::success();
-    const auto captured = captured_frame(frame, profiles);
-    if (!captured) return captured.error();
-    const auto reference =
-        make_reference(session, *captured, fmt::format("{} frame {}", request.scene, frame.frame),
-                       request.subset, request.cache);
-    if (!reference) return stopped();
-    if (reference->population > 0)
-      out.rmse = measure_error(frame.scattered.texels, reference->light, reference->pixels,
-                               reference->exposure, reference->population)
+    auto known = shared.references.find(frame.frame);
+    if (known == shared.references.end()) {
+      const auto captured = captured_frame(frame, profiles);
+      if (!captured) return captured.error();
+      auto made = make_reference(session, *captured, fmt::format("{} frame {}", request.scene, frame.frame),
+                                 request.subset, request.cache);
+      if (!made) return stopped();
+      known = shared.references.emplace(frame.frame, std::move(*made)).first;
+    }
+    const Reference& reference = known->second;
+    if (reference.population > 0)
+      out.rmse = measure_error(frame.scattered.texels, reference.light, reference.pixels, reference.exposure,
+                               reference.population)
                      .rmse;
     return demo::success();
   };
-  const auto summary = demo::render(engine, callbacks);
+  const auto summary = demo::render(engine, callbacks, shared.stage.get());
   if (interrupted()) return stopped();
   if (!summary) return summary.error();
   return run;
