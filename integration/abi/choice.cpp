@@ -154,7 +154,7 @@ dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   out.technique = outcome.technique < 0
                       ? ""
                       : chooser.errors.techniques[static_cast<size_t>(outcome.technique)].name.c_str();
-  out.why = choice::why_text(frame.decision.why);
+  out.why = choice::why_text(frame.decision);
   out.next_better = better ? program.outcomes[frame.decision.next_better].name.c_str() : "";
   out.next_better_missing_ms = static_cast<float>(frame.decision.missing_ms);
   out.budget_ms = static_cast<float>(frame.budget_ms);
@@ -182,6 +182,7 @@ dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   out.probed_rmse = static_cast<float>(probed.rmse);
   out.probed_rmse_low = static_cast<float>(probed.low);
   out.probed_rmse_high = static_cast<float>(probed.high);
+  out.through_rms = static_cast<float>(subsurface::through_rms(frame.counters));
   return out;
 }
 

@@ -20,7 +20,7 @@ choice::ErrorModel default_errors() {
   Diagnostics diagnostics;
   const auto document = parse_document("errors", std::string(choice::default_errors_text()), diagnostics);
   auto read = document ? choice::read_error_model(*document, diagnostics) : std::nullopt;
-  return read ? std::move(*read) : choice::ErrorModel{"", {{1, 1}}, {}};
+  return read ? std::move(*read) : choice::ErrorModel{"", {{1, 1}}, {}, 0};
 }
 
 choice::Calibration default_calibration() {
@@ -78,6 +78,9 @@ void learn_error(Chooser& chooser, const choice::Outcome& outcome,
                  const subsurface::FrameCounters& counters) {
   const subsurface::ProbedError probed = subsurface::probed_error(counters);
   if (probed.tiles == 0 || counters.scattering_tiles == 0) return;
+  // The probe's truth is the screen's: what rays find beyond it is no error.
+  if (outcome.technique >= 0 && chooser.errors.techniques[static_cast<size_t>(outcome.technique)].by_rays)
+    return;
   const double expected = expected_rmse(chooser.errors, outcome, mean_d_px(counters), counters.sample_units,
                                         counters.wanted_units);
   observe_error(chooser.found, outcome.technique, probed.rmse, expected);
@@ -158,7 +161,7 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
                    choice::DecisionState& state) noexcept {
   choice::FrameLoad load{view_tiles, view_tiles, 0, 0,
                          view_blocks}; // nothing counted yet: all of the view may scatter
-  double d_px = assumed_d_px;
+  double d_px = assumed_d_px, through = 0;
   uint64_t scattering = view_tiles;
   if (chooser.counted) {
     load = load_of(chooser.counters, view_tiles, view_blocks);
@@ -170,6 +173,7 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
     load.copied_tiles = grown(load.copied_tiles);
     scattering = grown(chooser.counters.scattering_tiles);
     if (scattering > 0) d_px = subsurface::mean_d_px(chooser.counters);
+    through = subsurface::through_rms(chooser.counters);
   }
   const auto wanted = static_cast<uint32_t>(expected_units(chooser.wanted, d_px) * double(scattering));
   const double filled_ms = chooser.budget_ms / choice::entry_margin;
@@ -185,7 +189,9 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
         chooser.metered ? metered(outcome, chooser.costs, load) : estimate(outcome, chooser.costs, load);
     const double rmse =
         expected_rmse(chooser.errors, outcome, d_px, static_cast<uint32_t>(load.sample_units), wanted);
-    forecasts[i] = {cost.ms, cost.spread_ms, rmse * error_factor(chooser.found, outcome.technique)};
+    const double seen = rmse * error_factor(chooser.found, outcome.technique);
+    const double missed = missed_rmse(chooser.errors, outcome.technique, through);
+    forecasts[i] = {cost.ms, cost.spread_ms, std::hypot(seen, missed), missed};
   }
   FrameChoice frame;
   frame.program = program.serial;

@@ -128,6 +128,7 @@ struct FrameChoice {
   uint32_t sample_units = 0, wanted_units = 0; // taken; that would be without a budget
   uint32_t probed_tiles = 0;                   // 0: the frame's error is not known
   double probed_rmse = 0, probed_rmse_low = 0, probed_rmse_high = 0;
+  double through_rms = 0; // light through thin parts, exposed; 0: none, or not counted
   std::string miss; // why it took longer than the budget; "": it did not
 };
 

@@ -1,5 +1,6 @@
 #include "passes/choice/decide.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dermis::choice {
@@ -47,6 +48,17 @@ void find_next_better(std::span<const Forecast> forecasts, double budget_ms, Dec
   }
 }
 
+double seen_square(const Forecast& forecast) {
+  return forecast.rmse * forecast.rmse - forecast.missed_rmse * forecast.missed_rmse;
+}
+
+bool tipped_by_thin_parts(std::span<const Forecast> forecasts, double budget_ms, uint32_t outcome) {
+  const Forecast& now = forecasts[outcome];
+  return std::any_of(forecasts.begin(), forecasts.end(), [&](const Forecast& other) {
+    return bound_ms(other) <= budget_ms && seen_square(other) < seen_square(now) && other.rmse > now.rmse;
+  });
+}
+
 Decision choose(std::span<const Forecast> forecasts, double budget_ms, const DecisionState& state) {
   const uint32_t best = best_within(forecasts, budget_ms, 1.0);
   if (best == UINT32_MAX) return {fastest(forecasts), Why::nothing_fits};
@@ -61,9 +73,7 @@ Decision choose(std::span<const Forecast> forecasts, double budget_ms, const Dec
   return {better, Why::better_fits};
 }
 
-} // namespace
-
-const char* why_text(Why why) {
+const char* text_of(Why why) {
   switch (why) {
   case Why::no_budget:
     return "no budget is set";
@@ -83,9 +93,30 @@ const char* why_text(Why why) {
   return "";
 }
 
+} // namespace
+
+const char* why_text(const Decision& decision) {
+  if (!decision.thin_parts) return text_of(decision.why);
+  switch (decision.why) {
+  case Why::first_frame:
+    return "least error that fits, for light through thin parts; nothing ran before";
+  case Why::fits_best:
+    return "least error that fits, for light through thin parts";
+  case Why::better_fits:
+    return "less error than before fits now, for light through thin parts";
+  case Why::no_budget:
+  case Why::over_budget:
+  case Why::nothing_fits:
+  case Why::held:
+    break;
+  }
+  return text_of(decision.why);
+}
+
 Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds, DecisionState& state) {
   Decision decision = choose(forecasts, budget_ms, state);
   find_next_better(forecasts, budget_ms, decision);
+  decision.thin_parts = tipped_by_thin_parts(forecasts, budget_ms, decision.outcome);
   const bool first = state.outcome == UINT32_MAX;
   const bool switched = !first && decision.outcome != state.outcome;
   const double passed = seconds > 0 ? seconds : usual_frame;

@@ -11,6 +11,7 @@ namespace dermis::choice {
 struct Forecast {
   double ms = 0, spread_ms = 0; // device time, and its typical deviation
   double rmse = 0;              // expected error
+  double missed_rmse = 0;       // part of it: light through thin parts that it does not see
 };
 
 enum class Why : uint8_t {
@@ -22,7 +23,6 @@ enum class Why : uint8_t {
   nothing_fits, // every outcome is over budget: the fastest
   held,         // another is better, but not by enough, or the last switch is too near
 };
-const char* why_text(Why why); // static, for people
 
 // Room that an outcome needs in a budget before it is switched to. What fills a budget with samples leaves as
 // much, so that it is neither kept out nor pushed out by its own samples.
@@ -33,8 +33,11 @@ struct Decision {
   Why why = Why::first_frame;
   uint32_t next_better =
       UINT32_MAX;        // the fastest outcome with less error that does not fit; none: UINT32_MAX
-  double missing_ms = 0; // what the budget lacks for it
+  double missing_ms = 0;   // what the budget lacks for it
+  bool thin_parts = false; // but for light through them another outcome that fits would have less error
 };
+
+const char* why_text(const Decision& decision); // static, for people
 
 // What a decision remembers of earlier ones. Plain data: a copy is another history.
 struct DecisionState {

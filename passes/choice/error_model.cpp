@@ -11,6 +11,7 @@ namespace dermis::choice {
 namespace {
 
 constexpr size_t most_points = 64, most_techniques = 256, most_kinds = 16;
+constexpr double largest_through = 10; // times the light that a slab lets through
 constexpr double least_d_px = 1e-3, largest_d_px = 1e4, least_rmse = 1e-9, largest_rmse = 1e3;
 
 std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner, std::string_view key,
@@ -91,6 +92,8 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
   root.any("dermis_errors");
   model.scenes = root.string("scenes").value_or("");
   model.unscattered = read_curve(document, root, "unscattered", diagnostics);
+  model.unscattered_through =
+      root.number("unscattered_through", 0, largest_through, Need::optional).value_or(0);
   const NodeId techniques = root.array("techniques", 0, most_techniques);
   if (techniques.valid())
     for (const NodeId node : children(document, techniques)) {
@@ -103,6 +106,8 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
         for (const NodeId kind : children(document, kinds))
           technique.kinds.push_back(read_kind(document, kind, what, diagnostics));
       technique.curve = read_curve(document, object, "rmse", diagnostics);
+      technique.through = object.number("through", 0, largest_through, Need::optional).value_or(0);
+      technique.by_rays = object.boolean("by_rays", Need::optional).value_or(false);
       object.finish();
     }
   root.finish();
@@ -138,6 +143,11 @@ double expected_rmse(const ErrorModel& model, int32_t technique, double d_px) {
     return curve[i - 1].rmse * std::pow(curve[i].rmse / curve[i - 1].rmse, part);
   }
   return curve.back().rmse;
+}
+
+double missed_rmse(const ErrorModel& model, int32_t technique, double through_rms) {
+  return through_rms *
+         (technique < 0 ? model.unscattered_through : model.techniques[static_cast<size_t>(technique)].through);
 }
 
 } // namespace dermis::choice

@@ -30,12 +30,15 @@ struct TechniqueError {
   std::string name;              // for people: "separable 25"
   std::vector<KindMatch> kinds;  // a graph that runs passes like all of these
   std::vector<ErrorPoint> curve; // d_px grows; at least one
+  double through = 0;            // of the light that comes through thin parts, how much it is off by
+  bool by_rays = false;          // the curve is against a truth by rays, not against that of the screen
 };
 
 struct ErrorModel {
   std::string scenes;                  // that the curves were measured on, for people
   std::vector<ErrorPoint> unscattered; // where no technique runs
   std::vector<TechniqueError> techniques;
+  double unscattered_through = 0; // as TechniqueError::through
 };
 
 // Reads `"dermis_errors": 1`. nullopt with errors in `diagnostics`. Thread: any.
@@ -51,5 +54,8 @@ int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& 
 
 // Straight between points on logarithmic axes, constant beyond the ends. technique -1: unscattered.
 double expected_rmse(const ErrorModel& model, int32_t technique, double d_px);
+// What the curve does not know of: light through thin parts, of which there is `through_rms` (as
+// subsurface::through_rms).
+double missed_rmse(const ErrorModel& model, int32_t technique, double through_rms);
 
 } // namespace dermis::choice

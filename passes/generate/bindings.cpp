@@ -117,7 +117,8 @@ std::string shared_constants() {
       "const float change_least_pixels = {:.1f}; // temporal/accumulate.hpp\n"
       "const float change_most = {:.1f};\n"
       "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
-      "const float counter_log2_steps = {:.1f};\n\n#endif\n",
+      "const float counter_log2_steps = {:.1f};\n"
+      "const float through_square_steps = {:.1f};\n\n#endif\n",
       subsurface::copy_below_d_px, subsurface::flat_reach_d, subsurface::flat_tolerance,
       subsurface::flat_most_reach, subsurface::flat_cell_side, subsurface::probe_most_reach,
       choice::allot_gain[0], choice::allot_gain[1], choice::allot_gain[2], choice::allot_stay,
@@ -131,7 +132,8 @@ std::string shared_constants() {
       subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
       subsurface::reproject_largest_velocity, subsurface::reproject_depth_share,
       subsurface::reproject_slope_pixels, subsurface::reproject_least_weight, subsurface::change_least_pixels,
-      subsurface::change_most, subsurface::counter_log2_shift, subsurface::counter_log2_steps);
+      subsurface::change_most, subsurface::counter_log2_shift, subsurface::counter_log2_steps,
+      subsurface::through_square_steps);
 }
 
 } // namespace

@@ -86,6 +86,11 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   return true;
 }
 
+double through_rms(const FrameCounters& counters) {
+  const double tiles = double(counters.scattering_tiles) + counters.copied_tiles + counters.flat_tiles;
+  return tiles > 0 ? std::sqrt(double(counters.through_steps) / (double(through_square_steps) * tiles)) : 0;
+}
+
 double mean_d_px(const FrameCounters& counters) {
   if (counters.scattering_tiles == 0) return 0;
   constexpr double half_step = 0.5; // that rounding down takes off

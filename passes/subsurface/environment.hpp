@@ -42,13 +42,19 @@ struct FrameCounters {
   // all tiles would.
   std::array<uint32_t, 3> sampled_tiles{};
   uint32_t sample_units = 0, wanted_units = 0;
-  // Of subsurface.probe: tiles that it looked at; of each, as bits of floats, the sum of squared errors and
-  // the pixels that it was made of, both times the tiles that it stands for.
-  uint32_t probe_count = 0, unused = 0;
+  uint32_t probe_count = 0; // of subsurface.probe: tiles that it looked at
+  // Of subsurface.thin_parts: over tiles with subsurface, the mean square of the exposed light that comes
+  // through, at most 1, in steps of 1 / through_square_steps.
+  uint32_t through_steps = 0;
+  // Of each probed tile, as bits of floats, the sum of squared errors and the pixels that it was made of, both
+  // times the tiles that it stands for.
   std::array<std::array<uint32_t, 2>, most_probes> probes{};
 };
 inline constexpr float counter_log2_shift = 8;  // d from 1/256 pixel
 inline constexpr float counter_log2_steps = 16; // an octave; the sum of 4 M tiles fits 32 bits
+inline constexpr float through_square_steps = 1023; // the sum of 4 M tiles fits 32 bits
+// Light that comes through thin parts, root mean square over the tiles with subsurface, exposed luminance.
+double through_rms(const FrameCounters& counters);
 // Geometric mean of d over the scattering tiles, pixels; 0 where there are none.
 double mean_d_px(const FrameCounters& counters);
 

@@ -238,6 +238,11 @@ ImageReads transmission(const PassKind& kind, const ReadsQuestion& question) {
   return {4 + scale_read(kind, question)};
 }
 
+// Material, light behind, thickness.
+ImageReads thin_parts(const PassKind& kind, const ReadsQuestion& question) {
+  return {3 + scale_read(kind, question)};
+}
+
 // Scattered light, albedo; material only in tiles with holes.
 ImageReads combine(const PassKind& kind, const ReadsQuestion& question) {
   return {1 + one_if(kind, question, "albedo", PortSide::read)};
@@ -340,6 +345,7 @@ constexpr Entry entries[] = {
     {"subsurface.pyramid_down", pyramid_down},
     {"subsurface.pyramid_gather", pyramid_gather},
     {"subsurface.transmission", transmission},
+    {"subsurface.thin_parts", thin_parts},
     {"subsurface.afis", afis},
     {"subsurface.guided", guided},
     {"subsurface.blend", blend},

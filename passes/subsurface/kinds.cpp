@@ -49,6 +49,7 @@ KindRegistry make_kinds() {
                                &brightness_kind,
                                &sap_halve_kind,
                                &sap_gather_half_kind,
+                               &thin_parts_kind,
                                &restir_initial_kind,
                                &restir_resolve_kind,
                                &restir_temporal_kind,

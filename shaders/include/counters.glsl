@@ -11,7 +11,8 @@ layout(std430, set = 1, binding = 6) buffer counter_block {
   uint sampled_tiles[3];
   uint sample_units;
   uint wanted_units;
-  uint probe_count, unused;
+  uint probe_count;
+  uint through_steps;
   uvec2 probes[32];
 } counters;
 

@@ -1,5 +1,6 @@
 // dermis bench restir: what it measures with, and its rows. Rays need the driver of tests/drivers/fetch.sh;
 // without it those tests skip.
+#include "integration/command/bench/restir/claims.hpp"
 #include "integration/command/bench/restir/regions.hpp"
 #include "integration/command/bench/restir/restir_file.hpp"
 #include "integration/command/bench/restir/variants.hpp"
@@ -93,6 +94,37 @@ TEST(RestirRegions, TellWhereLightComesThroughAndHowMuchOfItIsThere) {
   EXPECT_NEAR(error.all.mse, (0.5625 + 1) / 3, 1e-6);
   const std::vector<LightError> two = {error, LightError()};
   EXPECT_NEAR(mean_of(two).through.light, 0.125, 1e-6);
+}
+
+RestirRow row_of(const std::string& reuse, const std::string& shift, double mse) {
+  RestirRow row{"restir", "1 path", {reuse, shift}, 1};
+  row.error.all.mse = mse;
+  return row;
+}
+
+TEST(RestirClaims, NeighboursDoNotCostHistoryHalvesAndASequenceIsNoWorseThanItsParts) {
+  std::vector<RestirRow> rows = {row_of("none", "", 1),
+                                 row_of("spatial", "reconnection", 1.2),
+                                 row_of("spatial", "delayed", 0.5),
+                                 row_of("spatial", "sequential", 1.25),
+                                 row_of("spatiotemporal", "reconnection", 0.2),
+                                 row_of("spatiotemporal", "delayed", 0.3),
+                                 row_of("spatiotemporal", "sequential", 0.4)};
+  expect_of_reuse(rows);
+  EXPECT_FALSE(rows[0].mse_at_most);
+  const std::vector<double> at_most = {1.1, 1.1, 1.32, 0.5, 0.25, 0.33};
+  for (size_t i = 0; i < at_most.size(); ++i)
+    EXPECT_NEAR(rows[i + 1].mse_at_most.value_or(0), at_most[i], 1e-12) << i;
+  std::vector<RestirRow> alone = {row_of("none", "", 1), row_of("spatial", "sequential", 2)};
+  expect_of_reuse(alone); // of a sequence whose parts were not measured nothing is expected
+  EXPECT_FALSE(alone[1].mse_at_most);
+}
+
+TEST(RestirClaims, RowsThatErrMoreAreCounted) {
+  ReportTable table;
+  table.columns = {{"holds", "holds"}};
+  table.rows = {{true}, {false}, {ReportValue()}, {false}};
+  EXPECT_EQ(rows_that_err_more(table), 2u);
 }
 
 struct BenchRestir : test::CommandTest {

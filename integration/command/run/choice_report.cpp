@@ -33,6 +33,7 @@ std::string describe_choice(const demo::FrameChoice& choice) {
     text += choice.probed_tiles > 1 ? fmt::format(", {:.1e} probed ({:.1e} to {:.1e})", choice.probed_rmse,
                                                   choice.probed_rmse_low, choice.probed_rmse_high)
                                     : fmt::format(", {:.1e} probed in one tile", choice.probed_rmse);
+  if (choice.through_rms > 0) text += fmt::format(", {:.2f} of light through thin parts", choice.through_rms);
   if (!choice.next_better.empty())
     text += fmt::format("; next better {} would need {:.2f} ms more", choice.next_better,
                         choice.next_better_missing_ms);
@@ -87,6 +88,7 @@ void ChoiceReport::write(JsonWriter& writer) const {
     writer.close();
     if (choice.probed_tiles > 0) writer.member("probed_tiles", choice.probed_tiles);
     if (choice.probed_tiles > 0) writer.member("probed_rmse", choice.probed_rmse);
+    if (choice.through_rms > 0) writer.member("through_rms", choice.through_rms);
     if (choice.probed_tiles > 1)
       writer.member("probed_rmse_low", choice.probed_rmse_low)
           .member("probed_rmse_high", choice.probed_rmse_high);

@@ -469,6 +469,7 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   out.probed_rmse = static_cast<double>(choice.probed_rmse);
   out.probed_rmse_low = static_cast<double>(choice.probed_rmse_low);
   out.probed_rmse_high = static_cast<double>(choice.probed_rmse_high);
+  out.through_rms = static_cast<double>(choice.through_rms);
   out.miss = choice.miss;
   return out;
 }

@@ -521,9 +521,12 @@ typedef struct dermis_choice {
   float probed_rmse;             /* of this very frame, linear luminance times dermis_frame.exposure */
   float probed_rmse_low;         /* to probed_rmse_high: where it lies in 95 of 100 frames */
   float probed_rmse_high;        /* infinity where one tile was probed */
+  float through_rms;             /* light through thin parts, by subsurface.thin_parts: root mean square over tiles with
+                                  * subsurface, linear luminance times dermis_frame.exposure; 0: none, or not counted */
+  uint32_t reserved_four;        /* 0 */
 } dermis_choice;
 #define DERMIS_CHOICE_INIT \
-  {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL, 0, 0, 0, 0}
+  {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL, 0, 0, 0, 0, 0, 0}
 
 /* The newest frame whose counts came back: looks at frames up to `completed_frame_index`, as in dermis_frame. Of the
  * graph's own view. Thread: one per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */

@@ -84,18 +84,28 @@ constexpr Port light_ports[] = {
 };
 constexpr KindSetting light_settings[] = {setting::texturing};
 
+constexpr Port back_lighting_port{
+    "back_lighting",
+    Usage::sampled_image,
+    false,
+    "texture2D",
+    "irradiance on the far side, linear, of the light that thickness is measured along",
+    port::color_formats};
+constexpr Port thickness_port{"thickness",
+                              Usage::sampled_image,
+                              false,
+                              "texture2D",
+                              "way of that light through the material, metres",
+                              {}};
+constexpr Port thin_parts_ports[] = {
+    back_lighting_port,  thickness_port, port::material,
+    port::scatter_scale, port::tiles,    port::arguments,
+};
 constexpr Port transmission_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
      port::color_formats},
-    {"back_lighting", Usage::sampled_image, false, "texture2D",
-     "irradiance on the far side, linear, of the light that thickness is measured along",
-     port::color_formats},
-    {"thickness",
-     Usage::sampled_image,
-     false,
-     "texture2D",
-     "way of that light through the material, metres",
-     {}},
+    back_lighting_port,
+    thickness_port,
     port::material,
     port::scatter_scale,
     {"lit", Usage::storage_image_write, false, "image2D", "lighting with what came through",
@@ -125,6 +135,17 @@ const PassKind transmission_kind{
     .settings = {},
     .dispatch = DispatchShape::over_view,
     .side_effects = false,
+};
+
+const PassKind thin_parts_kind{
+    .name = "subsurface.thin_parts",
+    .shader = "subsurface_thin_parts",
+    .doc = "Counts the light that comes through thin parts, so that the choice knows what screen space does "
+           "not see.",
+    .ports = thin_parts_ports,
+    .settings = {},
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = true, // it tells the host
 };
 
 const PassKind combine_kind{

@@ -1,9 +1,14 @@
 // Budgets: what is chosen, what it does to the picture, and what is told about it.
 
+#include "framegraph/text/document.hpp"
+#include "passes/subsurface/environment.hpp"
+#include "passes/subsurface/profile.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace dermis::abi_test {
 namespace {
@@ -265,6 +270,85 @@ TEST_F(Choice, CountsTilesAndTellsHowFarLightGoes) {
   EXPECT_EQ(choice.copied_tiles, 0u);
   // Skin's widest d is 1.04 mm, a pixel half a millimetre; a step of the counter is a sixteenth of an octave.
   EXPECT_NEAR(std::log2(choice.mean_d_px), std::log2(3.67 / 3.5 / 0.5), 1.0 / 16);
+}
+
+struct ThinParts : Choice {
+  // Of a host that gives no scene.
+  static GraphOptions without_scene() {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/restir.json");
+    options.unbound = {"albedo",   "scatter_scale", "velocity",  "normal", "scene",
+                       "vertices", "indices",       "instances", "lights", "scattered_light"};
+    return options;
+  }
+  void make() {
+    graph = make_graph(without_scene());
+    ASSERT_NE(graph, nullptr);
+    make_images(graph);
+  }
+  // Of a slab on the left half of the picture.
+  double counted(float thickness_m, float light, float exposure = 1) {
+    fill("thickness", [&](uint32_t x, uint32_t) { return x < 32 ? thickness_m : 0.1f; });
+    fill("back_lighting", [&](uint32_t, uint32_t) { return light; });
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound);
+    one.exposure = exposure;
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    dermis_choice choice = DERMIS_CHOICE_INIT;
+    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    return double(choice.through_rms);
+  }
+};
+
+// What Burley's profile carries further than t, 1/4 e^(-t/d) + 3/4 e^(-t/3d), by channel.
+TEST_F(ThinParts, AreCountedByTheLightThatComesThroughThem) {
+  make();
+  Diagnostics diagnostics;
+  const auto document = parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
+  const auto skin = subsurface::read_profile(*document, diagnostics);
+  constexpr std::array luminance = {0.2126, 0.7152, 0.0722}; // Rec. 709
+  constexpr double thickness_mm = 0.8, light = 0.5, exposure = 1.5;
+  double through = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const double e = std::exp(-thickness_mm / (3 * skin->d_mm[c]));
+    through += luminance[c] * (0.25 * e * e * e + 0.75 * e);
+  }
+  const double square = 0.5 * std::pow(exposure * light * through, 2); // on half of the picture
+  const double found = counted(0.8e-3f, 0.5f, 1.5f);
+  // A step of the counter, which is rounded by tile; thickness and light are bound as they come.
+  EXPECT_NEAR(found * found, square, 2e-3 * square + 1.0 / subsurface::through_square_steps);
+  EXPECT_EQ(counted(0.8e-3f, 0), 0) << "no light behind";
+  EXPECT_EQ(counted(0.1f, 0.5f), 0) << "a decimetre";
+  EXPECT_EQ(counted(std::numeric_limits<float>::quiet_NaN(), 0.5f), 0) << "a way that is not known";
+  EXPECT_LE(counted(0, 6e4f, 1e4f), 1) << "no more than the brightest light";
+}
+
+TEST_F(ThinParts, AreUnknownWhereTheHostDoesNotSayHowThickTheyAre) {
+  GraphOptions options = without_scene();
+  options.unbound.emplace_back("thickness");
+  dermis_report report = nullptr;
+  ASSERT_EQ(create_graph(options, &graph, &report), DERMIS_OK);
+  graphs.push_back(graph);
+  const Said said = take(report);
+  EXPECT_THAT(said.all, HasSubstr("does not offer 'counted': 'thickness' is not bound"));
+  EXPECT_THAT(said.all, HasSubstr("does not offer 'restir': "));
+  make_images(graph);
+  EXPECT_EQ(run_frame().through_rms, 0);
+}
+
+TEST_F(ThinParts, CountAgainstTechniquesThatDoNotSeeThem) {
+  make();
+  const std::string table = R"({ "dermis_errors": 1, "scenes": "invented",
+    "unscattered": [[1, 0.001]], "unscattered_through": 2,
+    "techniques": [{ "name": "smooth", "kinds": [{ "kind": "subsurface.sap_gather" }], "rmse": [[1, 0.003]], "through": 0.5 }] })";
+  const dermis_source errors = source_of(table, "invented");
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  budget.milliseconds = 1e3f;
+  budget.flags = DERMIS_BUDGET_METER;
+  budget.errors = &errors;
+  ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  const double through = counted(0.8e-3f, 0.5f);
+  EXPECT_NEAR(double(run_frame().predicted_rmse), std::hypot(0.003, 0.5 * through), 1e-6);
 }
 
 TEST_F(Choice, LearnsTheDevicesTimesAndHandsThemOut) {

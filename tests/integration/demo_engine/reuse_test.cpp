@@ -19,13 +19,14 @@ namespace {
 using dermis::restir::testing::Mean;
 using dermis::restir::testing::mean_of;
 
-constexpr uint32_t side = 32;
 constexpr size_t least_pixels = 20; // of a region
 constexpr double confidence_cap = 20;
 
 uint32_t tier(uint32_t quick, uint32_t full) {
   return static_cast<uint32_t>(dermis::testing::seeds_of_tier(quick, full));
 }
+
+const uint32_t side = tier(32, 64); // pixels of a picture
 
 std::vector<std::string> shifts() { // of tests that judge a frame after something changed
   if (tier(0, 1) != 0) return {"delayed", "reconnection", "hybrid", "sequential"};

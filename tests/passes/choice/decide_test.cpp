@@ -47,6 +47,29 @@ TEST(Decide, ABudgetThatSwingsAroundAPriceDoesNotSwitchMoreThanTwiceASecond) {
   EXPECT_LE(state.switches, 2 * frames / 60);
 }
 
+// The second sees what the first does not: the first errs less wherever there is none of it.
+TEST(Decide, LightThroughThinPartsIsToldWhereItTipsTheScales) {
+  const std::vector<Forecast> lit_in_front{{1.0, 0, 2e-3, 0}, {4.0, 0, 0.1, 0}};
+  const std::vector<Forecast> lit_behind{{1.0, 0, 0.3, 0.2999}, {4.0, 0, 0.1, 0}};
+  DecisionState state;
+  const Decision front = decide(lit_in_front, 5.0, frame_seconds, state);
+  EXPECT_EQ(front.outcome, 0u);
+  EXPECT_FALSE(front.thin_parts);
+  EXPECT_STREQ(why_text(front), "least error that fits; nothing ran before");
+  const Decision behind = decide(lit_behind, 5.0, 1.5, state);
+  EXPECT_EQ(behind.why, Why::held); // a second has to go by
+  const Decision later = decide(lit_behind, 5.0, 1.5, state);
+  EXPECT_EQ(later.outcome, 1u);
+  EXPECT_TRUE(later.thin_parts);
+  EXPECT_STREQ(why_text(later), "less error than before fits now, for light through thin parts");
+  const Decision again = decide(lit_behind, 5.0, 1.5, state);
+  EXPECT_STREQ(why_text(again), "least error that fits, for light through thin parts");
+  const Decision dear = decide(lit_behind, 2.0, 1.5, state); // rays do not fit: nothing was tipped
+  EXPECT_EQ(dear.outcome, 0u);
+  EXPECT_FALSE(dear.thin_parts);
+  EXPECT_EQ(dear.next_better, 1u);
+}
+
 TEST(Decide, ASmallGainIsNoReasonToSwitch) {
   const std::vector<Forecast> alike{{1.0, 0, 5.0e-3}, {1.5, 0, 4.9e-3}};
   DecisionState state;

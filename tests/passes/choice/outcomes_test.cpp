@@ -12,11 +12,12 @@ using namespace dermis;
 using namespace dermis::choice;
 
 constexpr const char* errors_text = R"({ "dermis_errors": 1, "scenes": "invented",
-"unscattered": [[1, 0.02], [4, 0.04]],
+"unscattered": [[1, 0.02], [4, 0.04]], "unscattered_through": 1.5,
 "techniques": [
  { "name": "burley 16", "kinds": [{ "kind": "subsurface.burley", "set": { "samples": 16 } }], "rmse": [[1, 0.004], [16, 0.016]] },
  { "name": "separable", "kinds": [{ "kind": "subsurface.separable" }], "rmse": [[1, 0.003]] },
- { "name": "separable 11", "kinds": [{ "kind": "subsurface.separable", "set": { "taps": "11" } }], "rmse": [[1, 0.005]] }] })";
+ { "name": "separable 11", "kinds": [{ "kind": "subsurface.separable", "set": { "taps": "11" } }], "rmse": [[1, 0.005]],
+   "through": 0.5, "by_rays": true }] })";
 
 struct Outcomes : ::testing::Test {
   KindRegistry kinds = subsurface::make_kinds();
@@ -106,6 +107,14 @@ TEST_F(Outcomes, ErrorsRunStraightOnLogarithmicAxes) {
   EXPECT_NEAR(expected_rmse(errors, 0, 0.1), 0.004, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, 0, 100), 0.016, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, -1, 2), std::sqrt(0.02 * 0.04), 1e-12);
+}
+
+TEST_F(Outcomes, LightThroughThinPartsIsMissedByTheShareThatTheTableSays) {
+  EXPECT_NEAR(missed_rmse(errors, 2, 0.3), 0.15, 1e-12);
+  EXPECT_NEAR(missed_rmse(errors, -1, 0.3), 0.45, 1e-12);
+  EXPECT_EQ(missed_rmse(errors, 0, 0.3), 0); // the table says nothing of it
+  EXPECT_TRUE(errors.techniques[2].by_rays);
+  EXPECT_FALSE(errors.techniques[0].by_rays);
 }
 
 TEST_F(Outcomes, SamplesThatAreGivenInPartTakeOffPartOfTheSquare) {

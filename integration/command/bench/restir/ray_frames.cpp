@@ -45,7 +45,8 @@ scatter_by_rays(const RayRequest& request, const SceneRequest& scene, const Subj
     if (frame.dermis_times.empty())
       return demo::Error{demo::ErrorKind::environment,
                          "the device has no timestamps; nothing can be compared"};
-    auto done = on_frame({frame.scattered.texels, device_ms_of(frame, request.loaded)});
+    const double slab_rms = frame.choice ? frame.choice->through_rms / double(frame.exposure) : 0;
+    auto done = on_frame({frame.scattered.texels, device_ms_of(frame, request.loaded), slab_rms});
     if (done && request.step) request.step();
     return done;
   };

@@ -23,6 +23,9 @@ struct RayRequest {
 struct RayFrame {
   const std::vector<float>& light; // 3 a pixel, before albedo
   double device_ms = 0;            // all passes but those that only hand light to tools
+  // What the graph counted of light through thin parts, as a slab lets it through: root mean square, of the
+  // luminance that `light` has. 0: none, or the graph does not count it.
+  double slab_rms = 0;
 };
 
 // Calls on_frame in order; an error of it ends the rendering, and so does Ctrl-C. Returns credits to be

@@ -2,6 +2,7 @@
 // techniques beside it, against a reference by rays.
 
 #include "integration/command/bench/quick.hpp"
+#include "integration/command/bench/restir/claims.hpp"
 #include "integration/command/bench/restir/restir_report.hpp"
 #include "integration/command/interrupt.hpp"
 #include "passes/subsurface/environment.hpp"
@@ -60,7 +61,8 @@ uint32_t settle_of(const RestirFile& file, const RestirVariant& variant) {
 }
 
 demo::Result<RestirRow> measure_variant(Bench& bench, const SceneRequest& scene, const RayRegions& regions,
-                                        const RestirVariant& variant, uint32_t samples, Steps& steps) {
+                                        const RestirVariant& variant, uint32_t samples, double& slab_rms,
+                                        Steps& steps) {
   RestirRow row{"restir", samples == 1 ? "1 path" : fmt::format("{} paths", samples), variant, samples};
   RayRequest request = request_of(bench, variant);
   request.step = [&] { steps.reach(steps.done + 1); };
@@ -73,6 +75,7 @@ demo::Result<RestirRow> measure_variant(Bench& bench, const SceneRequest& scene,
   auto done =
       scatter_by_rays(request, scene, bench.subject_options, [&](const RayFrame& one) -> demo::Result<> {
         if (frame++ < settle) return demo::success();
+        slab_rms = one.slab_rms;
         errors.push_back(measure_light(one.light, regions));
         times.push_back(one.device_ms);
         row.light = one.light;
@@ -120,7 +123,7 @@ void choose_pictures(std::vector<RestirRow>& rows) {
 demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& steps) {
   auto subject = render_subject(request, bench.subject_options);
   if (!subject) return subject.error();
-  RestirScene scene{subject.take(), {}, {}, {}};
+  RestirScene scene{subject.take(), {}, {}, {}, {}};
   RayRequest none = request_of(bench, bench.variants.front());
   none.step = [&] { steps.reach(steps.done + 1); };
   const uint64_t after_truth = steps.done + bench.file.reference.frames; // also where it was kept
@@ -133,7 +136,7 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
   for (const uint32_t samples : bench.file.samples) {
     const size_t first = scene.rows.size();
     for (const RestirVariant& variant : bench.variants) {
-      auto row = measure_variant(bench, request, scene.regions, variant, samples, steps);
+      auto row = measure_variant(bench, request, scene.regions, variant, samples, scene.slab_rms, steps);
       if (!row) return row.error();
       scene.rows.push_back(row.take());
       const RestirRow& base = scene.rows[first];
@@ -142,6 +145,8 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
           ratio_at_equal_time(last.error.all.mse, last.device_ms, base.error.all.mse, base.device_ms);
     }
   }
+  scene.slab_rms *= scene.truth.reference.exposure;
+  expect_of_reuse(scene.rows);
   choose_pictures(scene.rows);
   const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
   for (const TechniqueRequest& technique : bench.file.screen_space) {
@@ -222,7 +227,11 @@ ExitCode bench_restir(const Session& session, const BenchRestirOptions& asked) {
     print(text + fmt::format("took {}\n", format_duration(seconds)));
   }
   const std::string problem = deliver_report(report, options.json, options.csv, options.html);
-  return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
+  if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+  const size_t broken = rows_that_err_more(report.table);
+  if (broken == 0) return ExitCode::ok;
+  return fail(session, ExitCode::problems,
+              fmt::format("{} rows err more than reuse is expected to", broken));
 }
 
 } // namespace dermis::tools

@@ -1,6 +1,7 @@
 #include "integration/command/bench/restir/restir_report.hpp"
 
 #include "integration/command/bench/report/heat_map.hpp"
+#include "integration/command/bench/restir/claims.hpp"
 #include "integration/command/present.hpp"
 
 #include <fmt/format.h>
@@ -63,6 +64,7 @@ Report start_restir_report(const RestirFile& file) {
   report.facts.emplace_back(
       "reference", fmt::format("the same kernels without reuse, {} paths a pixel in each of {} frames",
                                file.reference.samples, file.reference.frames));
+  report.facts.emplace_back("expected", expectation_text());
   report.facts.emplace_back(
       "frames", fmt::format("{} counted, after {} where there is history", file.frames, file.settle));
   report.facts.emplace_back(
@@ -78,13 +80,17 @@ Report start_restir_report(const RestirFile& file) {
                           {"device_ms", "ms", 4},
                           {"mse", "MSE"},
                           {"mse_ratio_to_none_at_equal_time", "MSE at equal time / none"},
+                          {"mse_at_most", "MSE expected at most"},
+                          {"holds", "holds"},
                           {"rmse_through", "RMSE through"},
                           {"light_through", "light through"},
                           {"rmse_rest", "RMSE of the rest"},
                           {"light_rest", "light of the rest"},
                           {"mse_of_reference", "MSE of the reference"},
                           {"pixels", "pixels"},
-                          {"pixels_through", "pixels through"}};
+                          {"pixels_through", "pixels through"},
+                          {"slab_rms", "light that slabs let through, RMS"},
+                          {"rmse_of_slab", "RMSE / light that slabs let through"}};
   report.pictures = {{"Light", "Scattered light before albedo, exposed and tonemapped.", {}},
                      {"Where it errs", heat_map_explanation(), {}}};
   return report;
@@ -93,20 +99,26 @@ Report start_restir_report(const RestirFile& file) {
 void add_scene(Report& report, const RestirScene& scene) {
   const RayRegions& regions = scene.regions;
   for (const RestirRow& row : scene.rows) {
-    ReportValue shift, reuse, samples, ratio;
+    ReportValue shift, reuse, samples, ratio, at_most, holds, of_slab;
     if (row.samples > 0) {
       reuse = row.variant.reuse;
       samples = static_cast<int64_t>(row.samples);
       if (!row.variant.shift.empty()) shift = row.variant.shift;
     }
     if (row.ratio_to_none) ratio = *row.ratio_to_none;
+    if (row.mse_at_most) {
+      at_most = *row.mse_at_most;
+      holds = row.error.all.mse <= *row.mse_at_most;
+    }
+    if (row.samples == 0 && scene.slab_rms > 0) of_slab = std::sqrt(row.error.all.mse) / scene.slab_rms;
     report.table.rows.push_back(
         {scene.subject.scene, scene.subject.d_px, row.technique, row.setting, shift, reuse, samples,
-         row.device_ms, row.error.all.mse, ratio, if_any(regions.through, std::sqrt(row.error.through.mse)),
+         row.device_ms, row.error.all.mse, ratio, at_most, holds,
+         if_any(regions.through, std::sqrt(row.error.through.mse)),
          if_any(regions.through, row.error.through.light),
          if_any(regions.rest, std::sqrt(row.error.rest.mse)), if_any(regions.rest, row.error.rest.light),
          scene.truth.own_mse, static_cast<int64_t>(regions.all.pixels.size()),
-         static_cast<int64_t>(regions.through.pixels.size())});
+         static_cast<int64_t>(regions.through.pixels.size()), scene.slab_rms, of_slab});
   }
   add_pictures(report, scene);
 }
@@ -115,7 +127,7 @@ std::string text_of_restir(const Report& report) {
   Table table;
   table.columns = {{"scene"},         {"technique"},   {"setting"},    {"reuse"},
                    {"shift"},         {"ms", true},    {"MSE", true},  {"/ none", true},
-                   {"through", true}, {"light", true}, {"rest", true}, {"light", true}};
+                   {"holds"},         {"through", true}, {"light", true}, {"rest", true}, {"light", true}};
   std::string last;
   for (size_t i = 0; i < report.table.rows.size(); ++i) {
     const auto text = [&](const char* key, int digits = 0) { return report.table.text_at(i, key, digits); };
@@ -123,6 +135,7 @@ std::string text_of_restir(const Report& report) {
     last = text("scene");
     table.rows.push_back({last, text("technique"), text("setting"), text("reuse"), text("shift"),
                           text("device_ms", 2), text("mse", 6), text("mse_ratio_to_none_at_equal_time", 3),
+                          text("holds"),
                           text("rmse_through", 4), text("light_through", 3), text("rmse_rest", 4),
                           text("light_rest", 3)});
   }
