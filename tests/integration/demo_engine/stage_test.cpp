@@ -2,23 +2,47 @@
 #include "tests/integration/demo_engine/rendering.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
 
 namespace demo {
 namespace {
 
-// A camera that moves, shadows that move, and a cut within five frames.
-RenderOptions moving(const std::string& graph) {
-  RenderOptions options;
-  options.scene = DERMIS_SOURCE_DIR "/configs/scenes/cut.json";
-  options.graph = DERMIS_SOURCE_DIR "/configs/graphs/" + graph + ".json";
-  options.roots = {DERMIS_SOURCE_DIR "/configs"};
-  options.width = 70;
-  options.height = 45;
-  options.frames = 5;
-  options.frames_per_second = 2;
-  options.validation = true;
-  return options;
-}
+// A ball of skin before a wall: a camera and a shadow that move, and a cut within five frames.
+struct KeptStage : testing::Test {
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = std::filesystem::temp_directory_path() /
+             (std::string("dermis_stage_") + info->name() + "_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  RenderOptions moving(const std::string& graph, const std::string& intensity = "0.8") const {
+    RenderOptions options;
+    options.scene = (folder / ("scene_" + intensity + ".json")).string();
+    std::ofstream(options.scene)
+        << R"({ "dermis_scene": 1, "name": "small", "sky": [0.1, 0.1, 0.1], "cuts": [0.3],
+      "frames_per_second": 10,
+      "profiles": [ { "name": "skin", "file": ")" DERMIS_SOURCE_DIR R"(/configs/profiles/skin.json" } ],
+      "camera": { "position": { "keys": [[0, -0.2, 0, 1], [1, 0.2, 0, 1]] }, "target": [0, 0, 0], "vertical_fov": 20 },
+      "lights": [ { "type": "spot", "position": { "keys": [[0, -0.5, 0.5, 0.8], [1, 0.5, 0.5, 0.8]] },
+                    "target": [0, 0, 0], "intensity": )"
+        << intensity << R"( } ],
+      "objects": [ { "shape": "sphere", "scale": [0.1, 0.1, 0.1], "profile": "skin", "albedo": [0.7, 0.45, 0.35] },
+                   { "shape": "plane", "position": [0, 0, -0.3], "rotation": [90, 0, 0] } ] })";
+    options.graph = DERMIS_SOURCE_DIR "/configs/graphs/" + graph + ".json";
+    options.roots = {DERMIS_SOURCE_DIR "/configs"};
+    options.width = 70;
+    options.height = 45;
+    options.frames = 5;
+    options.validation = true;
+    return options;
+  }
+
+  std::filesystem::path folder;
+};
 
 void expect_same(const std::vector<FrameOutputs>& a, const std::vector<FrameOutputs>& b) {
   ASSERT_EQ(a.size(), b.size());
@@ -40,7 +64,7 @@ size_t drawn(const std::vector<FrameOutputs>& frames) {
       frames.begin(), frames.end(), [](const FrameOutputs& frame) { return !frame.host_times.empty(); }));
 }
 
-TEST(Stage, BringsBackFramesBitForBit) {
+TEST_F(KeptStage, BringsBackFramesBitForBit) {
   const RenderOptions options = moving("sap");
   const StageHandle stage = make_stage();
   const auto alone = rendered(options).frames;
@@ -53,26 +77,26 @@ TEST(Stage, BringsBackFramesBitForBit) {
   expect_same(alone, second);
 }
 
-TEST(Stage, TakesAnotherGraphForFramesThatItKeeps) {
+TEST_F(KeptStage, TakesAnotherGraphForFramesThatItKeeps) {
   const StageHandle stage = make_stage();
   ASSERT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
   const RenderOptions options = moving("burley");
   expect_same(rendered(options).frames, rendered(options, stage.get()).frames);
 }
 
-TEST(Stage, IsMadeAnewForAnotherPictureOrScene) {
+TEST_F(KeptStage, IsMadeAnewForAnotherPictureOrScene) {
   const StageHandle stage = make_stage();
   RenderOptions options = moving("sap");
   ASSERT_EQ(rendered(options, stage.get()).frames.size(), 5u);
   options.width = 33;
   expect_same(rendered(options).frames, rendered(options, stage.get()).frames);
-  options.scene = DERMIS_SOURCE_DIR "/configs/scenes/flashing.json";
+  options.scene = moving("sap", "0.4").scene;
   const auto frames = rendered(options, stage.get()).frames;
   EXPECT_EQ(drawn(frames), 5u);
   expect_same(rendered(options).frames, frames);
 }
 
-TEST(Stage, AfterAMistakeItServesTheNextCall) {
+TEST_F(KeptStage, AfterAMistakeItServesTheNextCall) {
   const StageHandle stage = make_stage();
   RenderOptions options = moving("sap");
   options.scene = "no/such/scene.json";
@@ -82,7 +106,7 @@ TEST(Stage, AfterAMistakeItServesTheNextCall) {
   EXPECT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
 }
 
-TEST(Stage, FramesWhosePicturesNobodyWantsComeWithoutThem) {
+TEST_F(KeptStage, FramesWhosePicturesNobodyWantsComeWithoutThem) {
   RenderOptions options = moving("sap");
   options.pictures_of = [](uint32_t frame) { return frame == 3; };
   options.inputs_of = [](uint32_t frame) { return frame == 1; };
