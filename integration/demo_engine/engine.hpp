@@ -129,7 +129,7 @@ struct FrameChoice {
   uint32_t probed_tiles = 0;                   // 0: the frame's error is not known
   double probed_rmse = 0, probed_rmse_low = 0, probed_rmse_high = 0;
   double through_rms = 0; // light through thin parts, exposed; 0: none, or not counted
-  std::string miss; // why it took longer than the budget; "": it did not
+  std::string miss;       // why it took longer than the budget; "": it did not
 };
 
 // What a history of the graph holds after the frame.
@@ -185,8 +185,8 @@ struct RenderCallbacks {
   std::function<Result<>(const FrameOutputs&)> on_frame; // may be empty; an error ends the rendering with it
 };
 
-// A device, a scene that is loaded on it, and its frames as graphs are given them, up to a gigabyte of them: kept
-// from one call of render() to the next, so that only the graph begins anew. Belongs to one thread.
+// A device, a scene that is loaded on it, and its frames as graphs are given them, up to a gigabyte of them:
+// kept from one call of render() to the next, so that only the graph begins anew. Belongs to one thread.
 struct Stage;
 struct StageDeleter {
   void operator()(Stage* stage) const;
@@ -194,11 +194,12 @@ struct StageDeleter {
 using StageHandle = std::unique_ptr<Stage, StageDeleter>;
 StageHandle make_stage();
 
-// Runs on the calling thread (loading uses two more). With a stage, frames that it keeps are the same bits as if
-// they were rendered, and `host_times` has no times for them; it is made anew where a call asks for another device,
-// scene, model, camera or size. Errors: input (scene, model, graph, profile; the text holds all located messages),
-// usage (size, frames), environment (no driver, no memory), internal.
-Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks, Stage* stage = nullptr);
+// Runs on the calling thread (loading uses two more). With a stage, frames that it keeps are the same bits as
+// if they were rendered, and `host_times` has no times for them; it is made anew where a call asks for
+// another device, scene, model, camera or size. Errors: input (scene, model, graph, profile; the text holds
+// all located messages), usage (size, frames), environment (no driver, no memory), internal.
+Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks,
+                             Stage* stage = nullptr);
 
 // Filmic curve after Narkowicz 2016, "ACES Filmic Tone Mapping Curve", then the sRGB curve; 8 bits a channel.
 std::vector<uint8_t> tonemap(const FloatImage& linear_rgb);

@@ -32,7 +32,7 @@ struct Decision {
   uint32_t outcome = 0;
   Why why = Why::first_frame;
   uint32_t next_better =
-      UINT32_MAX;        // the fastest outcome with less error that does not fit; none: UINT32_MAX
+      UINT32_MAX;          // the fastest outcome with less error that does not fit; none: UINT32_MAX
   double missing_ms = 0;   // what the budget lacks for it
   bool thin_parts = false; // but for light through them another outcome that fits would have less error
 };

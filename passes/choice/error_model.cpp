@@ -146,8 +146,8 @@ double expected_rmse(const ErrorModel& model, int32_t technique, double d_px) {
 }
 
 double missed_rmse(const ErrorModel& model, int32_t technique, double through_rms) {
-  return through_rms *
-         (technique < 0 ? model.unscattered_through : model.techniques[static_cast<size_t>(technique)].through);
+  return through_rms * (technique < 0 ? model.unscattered_through
+                                      : model.techniques[static_cast<size_t>(technique)].through);
 }
 
 } // namespace dermis::choice

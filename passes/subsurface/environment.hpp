@@ -46,12 +46,12 @@ struct FrameCounters {
   // Of subsurface.thin_parts: over tiles with subsurface, the mean square of the exposed light that comes
   // through, at most 1, in steps of 1 / through_square_steps.
   uint32_t through_steps = 0;
-  // Of each probed tile, as bits of floats, the sum of squared errors and the pixels that it was made of, both
-  // times the tiles that it stands for.
+  // Of each probed tile, as bits of floats, the sum of squared errors and the pixels that it was made of,
+  // both times the tiles that it stands for.
   std::array<std::array<uint32_t, 2>, most_probes> probes{};
 };
-inline constexpr float counter_log2_shift = 8;  // d from 1/256 pixel
-inline constexpr float counter_log2_steps = 16; // an octave; the sum of 4 M tiles fits 32 bits
+inline constexpr float counter_log2_shift = 8;      // d from 1/256 pixel
+inline constexpr float counter_log2_steps = 16;     // an octave; the sum of 4 M tiles fits 32 bits
 inline constexpr float through_square_steps = 1023; // the sum of 4 M tiles fits 32 bits
 // Light that comes through thin parts, root mean square over the tiles with subsurface, exposed luminance.
 double through_rms(const FrameCounters& counters);

@@ -91,15 +91,11 @@ constexpr Port back_lighting_port{
     "texture2D",
     "irradiance on the far side, linear, of the light that thickness is measured along",
     port::color_formats};
-constexpr Port thickness_port{"thickness",
-                              Usage::sampled_image,
-                              false,
-                              "texture2D",
-                              "way of that light through the material, metres",
-                              {}};
+constexpr Port thickness_port{
+    "thickness", Usage::sampled_image, false, "texture2D", "way of that light through the material, metres",
+    {}};
 constexpr Port thin_parts_ports[] = {
-    back_lighting_port,  thickness_port, port::material,
-    port::scatter_scale, port::tiles,    port::arguments,
+    back_lighting_port, thickness_port, port::material, port::scatter_scale, port::tiles, port::arguments,
 };
 constexpr Port transmission_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",

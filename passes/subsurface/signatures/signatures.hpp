@@ -7,8 +7,8 @@
 namespace dermis::subsurface {
 
 extern const PassKind classify_kind, flat_kind, tile_list_kind, skips_kind; // tile_signatures.cpp
-extern const PassKind setup_kind, combine_kind, light_kind, copy_kind,
-    transmission_kind, thin_parts_kind;                                           // light_signatures.cpp
+extern const PassKind setup_kind, combine_kind, light_kind, copy_kind, transmission_kind,
+    thin_parts_kind;                                                              // light_signatures.cpp
 extern const PassKind burley_kind, fixed_kind, separable_kind;                    // scatter_signatures.cpp
 extern const PassKind afis_kind, guided_kind, afis_tiles_kind;                    // afis_signatures.cpp
 extern const PassKind pyramid_setup_kind, pyramid_down_kind, pyramid_gather_kind; // pyramid_signatures.cpp

@@ -1,4 +1,5 @@
-// What a budget buys where light comes through thin parts: rays, where the device has them, and the reason told.
+// What a budget buys where light comes through thin parts: rays, where the device has them, and the reason
+// told.
 #include "tests/integration/demo_engine/ray_queries.hpp"
 
 #include <fstream>

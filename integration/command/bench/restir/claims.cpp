@@ -37,7 +37,8 @@ std::optional<double> limit_of(std::span<const RestirRow> rows, const RestirRow&
 
 std::string expectation_text() {
   return "by frames, not by time: spatial reuse no more error than none, 10 % for chance; reuse with history "
-         "half of it at most, and half of spatial reuse alone; a sequence no more than the worse of its parts";
+         "half of it at most, and half of spatial reuse alone; a sequence no more than the worse of its "
+         "parts";
 }
 
 void expect_of_reuse(std::span<RestirRow> rows) {

@@ -111,23 +111,36 @@ void add_scene(Report& report, const RestirScene& scene) {
       holds = row.error.all.mse <= *row.mse_at_most;
     }
     if (row.samples == 0 && scene.slab_rms > 0) of_slab = std::sqrt(row.error.all.mse) / scene.slab_rms;
-    report.table.rows.push_back(
-        {scene.subject.scene, scene.subject.d_px, row.technique, row.setting, shift, reuse, samples,
-         row.device_ms, row.error.all.mse, ratio, at_most, holds,
-         if_any(regions.through, std::sqrt(row.error.through.mse)),
-         if_any(regions.through, row.error.through.light),
-         if_any(regions.rest, std::sqrt(row.error.rest.mse)), if_any(regions.rest, row.error.rest.light),
-         scene.truth.own_mse, static_cast<int64_t>(regions.all.pixels.size()),
-         static_cast<int64_t>(regions.through.pixels.size()), scene.slab_rms, of_slab});
+    report.table.rows.push_back({scene.subject.scene,
+                                 scene.subject.d_px,
+                                 row.technique,
+                                 row.setting,
+                                 shift,
+                                 reuse,
+                                 samples,
+                                 row.device_ms,
+                                 row.error.all.mse,
+                                 ratio,
+                                 at_most,
+                                 holds,
+                                 if_any(regions.through, std::sqrt(row.error.through.mse)),
+                                 if_any(regions.through, row.error.through.light),
+                                 if_any(regions.rest, std::sqrt(row.error.rest.mse)),
+                                 if_any(regions.rest, row.error.rest.light),
+                                 scene.truth.own_mse,
+                                 static_cast<int64_t>(regions.all.pixels.size()),
+                                 static_cast<int64_t>(regions.through.pixels.size()),
+                                 scene.slab_rms,
+                                 of_slab});
   }
   add_pictures(report, scene);
 }
 
 std::string text_of_restir(const Report& report) {
   Table table;
-  table.columns = {{"scene"},         {"technique"},   {"setting"},    {"reuse"},
-                   {"shift"},         {"ms", true},    {"MSE", true},  {"/ none", true},
-                   {"holds"},         {"through", true}, {"light", true}, {"rest", true}, {"light", true}};
+  table.columns = {{"scene"},       {"technique"},  {"setting"},      {"reuse"}, {"shift"},
+                   {"ms", true},    {"MSE", true},  {"/ none", true}, {"holds"}, {"through", true},
+                   {"light", true}, {"rest", true}, {"light", true}};
   std::string last;
   for (size_t i = 0; i < report.table.rows.size(); ++i) {
     const auto text = [&](const char* key, int digits = 0) { return report.table.text_at(i, key, digits); };
@@ -135,9 +148,8 @@ std::string text_of_restir(const Report& report) {
     last = text("scene");
     table.rows.push_back({last, text("technique"), text("setting"), text("reuse"), text("shift"),
                           text("device_ms", 2), text("mse", 6), text("mse_ratio_to_none_at_equal_time", 3),
-                          text("holds"),
-                          text("rmse_through", 4), text("light_through", 3), text("rmse_rest", 4),
-                          text("light_rest", 3)});
+                          text("holds"), text("rmse_through", 4), text("light_through", 3),
+                          text("rmse_rest", 4), text("light_rest", 3)});
   }
   return format_table(table);
 }

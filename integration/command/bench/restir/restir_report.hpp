@@ -17,7 +17,7 @@ struct RestirRow {
   LightError error = {};      // mean of the counted frames
   std::optional<double> ratio_to_none = {};
   std::optional<double> mse_at_most = {}; // what is expected of it (claims.hpp)
-  std::vector<float> light = {}; // of the last frame
+  std::vector<float> light = {};          // of the last frame
   bool heat_map = false;
 };
 
@@ -25,7 +25,7 @@ struct RestirScene {
   Subject subject;
   RayReference truth;
   RayRegions regions;
-  double slab_rms = 0; // as RayFrame has it, exposed
+  double slab_rms = 0;         // as RayFrame has it, exposed
   std::vector<RestirRow> rows; // without reuse first
 };
 
