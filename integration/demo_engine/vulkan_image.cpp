@@ -205,6 +205,19 @@ void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& i
   host.vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
+void memory_barrier(const VulkanHost& host, VkCommandBuffer commands, const ImageState& from,
+                    const ImageState& to) {
+  auto barrier = vulkan_struct<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
+  barrier.srcStageMask = from.stages;
+  barrier.srcAccessMask = from.access;
+  barrier.dstStageMask = to.stages;
+  barrier.dstAccessMask = to.access;
+  auto dependency = vulkan_struct<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
+  dependency.memoryBarrierCount = 1;
+  dependency.pMemoryBarriers = &barrier;
+  host.vk.vkCmdPipelineBarrier2(commands, &dependency);
+}
+
 Result<> upload_image(VulkanHost& host, Image& image, std::span<const float> texels, uint32_t channels,
                       const ImageState& after) {
   const PixelFormat* format = find_pixel_format(image.format);
@@ -273,15 +286,8 @@ Result<std::vector<float>> read_image(VulkanHost& host, const Image& image, cons
     region.imageExtent = {image.width, image.height, 1};
     host.vk.vkCmdCopyImageToBuffer(commands, image.image, source.layout, staging->buffer, 1, &region);
     transition(host, commands, image, source, state);
-    auto to_host = vulkan_struct<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
-    to_host.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-    to_host.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-    to_host.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
-    to_host.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
-    auto dependency = vulkan_struct<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
-    dependency.memoryBarrierCount = 1;
-    dependency.pMemoryBarriers = &to_host;
-    host.vk.vkCmdPipelineBarrier2(commands, &dependency);
+    memory_barrier(host, commands, {{}, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                   {{}, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
     return success();
   });
   if (!done) return done.error();
@@ -297,15 +303,8 @@ Result<Buffer> upload_buffer(VulkanHost& host, std::span<const std::byte> bytes,
   auto done = run_commands(host, [&](VkCommandBuffer commands) {
     const VkBufferCopy region = {0, 0, bytes.size()};
     host.vk.vkCmdCopyBuffer(commands, staging->buffer, buffer->buffer, 1, &region);
-    auto barrier = vulkan_struct<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-    barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT;
-    auto dependency = vulkan_struct<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
-    dependency.memoryBarrierCount = 1;
-    dependency.pMemoryBarriers = &barrier;
-    host.vk.vkCmdPipelineBarrier2(commands, &dependency);
+    memory_barrier(host, commands, {{}, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                   {{}, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT});
     return success();
   });
   if (!done) return done.error();

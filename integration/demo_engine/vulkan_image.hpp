@@ -64,6 +64,10 @@ Result<Image> create_image(VulkanHost& host, const ImageDesc& desc);
 void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& image, const ImageState& from,
                 const ImageState& to);
 
+// Records a barrier for all memory; layouts play no part in it.
+void memory_barrier(const VulkanHost& host, VkCommandBuffer commands, const ImageState& from,
+                    const ImageState& to);
+
 // Fills mip 0 with texels in the image's own format, row by row from the top; other mips are made by halving.
 // Leaves the image in `after`. The image needs TRANSFER_DST (and TRANSFER_SRC for mips > 1). Waits for the
 // device. Errors: internal (the size does not fit), environment.

@@ -42,19 +42,6 @@ Layout layout_of(const Renderer& renderer) {
   return layout;
 }
 
-// What is copied out is there for copies back in.
-void make_readable(const VulkanHost& host, VkCommandBuffer commands) {
-  auto barrier = vulkan_struct<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT;
-  auto dependency = vulkan_struct<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
-  dependency.memoryBarrierCount = 1;
-  dependency.pMemoryBarriers = &barrier;
-  host.vk.vkCmdPipelineBarrier2(commands, &dependency);
-}
-
 } // namespace
 
 std::array<VkImageUsageFlags, target_count> usage_for_keeping() {
@@ -78,7 +65,7 @@ Result<> keep_frame(KeptFrames& kept, const Renderer& renderer, uint32_t frame) 
       host.vk.vkCmdCopyImageToBuffer(commands, image.image, source.layout, buffer->buffer, 1, &part.region);
       transition(host, commands, image, source, resting);
     }
-    make_readable(host, commands);
+    memory_barrier(host, commands, destination, source); // what is copied out is there for copies back in
     return success();
   });
   if (!done) return done.error();
