@@ -304,6 +304,8 @@ struct BenchBudgetOptions {
   std::vector<std::string> scenes{"flashing", "regular", "dynamic", "dolly", "cut"}; // in configs/scenes
   Size size{480, 270};
   uint32_t frames = 32;                    // judged, of each run
+  uint32_t repetitions = 3;                // timed runs of a budget
+  std::string head;                        // folder of the head scan, for scenes that show it; "": none
   std::string json, html;                  // files to write; "": none
   std::string cache = "build/bench_truth"; // folder for references; "": none is kept
   bool quick = false;

@@ -137,10 +137,18 @@ TEST_F(Choice, BenchSkipGivesARowForEachCase) {
 TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndShare) {
   const std::string file = path("budget.json");
   const Outcome outcome = run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
-                               "--cache", "", "--json", file});
+                               "--repetitions", "1", "--cache", "", "--json", file});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const Outcome text = run({"bench", "budget", "--scenes", "no_such_scene", "--json", path("none.json")});
-  EXPECT_EQ(text.exit_code, 2);
+}
+
+TEST_F(Choice, BenchBudgetNamesScenesItCannotMeasureBeforeItMeasuresOthers) {
+  const Outcome missing =
+      run({"bench", "budget", "--scenes", "flashing,no_such_scene", "--json", path("none.json")});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("there is no scene 'no_such_scene'"));
+  const Outcome head = run({"bench", "budget", "--scenes", "flashing,head", "--json", path("none.json")});
+  EXPECT_EQ(head.exit_code, 2);
+  EXPECT_THAT(head.err, HasSubstr("scene head: no model was given (--head FOLDER)"));
 }
 
 } // namespace

@@ -120,7 +120,11 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->delimiter(',');
         verb.add_option("--frames", options.frames, "Judged frames of each run [32]")
             ->check(CLI::Range(4u, max_frames));
-        add_quick(verb, options.quick, {"--size", "--frames", "--scenes"});
+        verb.add_option("--repetitions", options.repetitions,
+                        "Timed runs of each budget; the median counts [3]")
+            ->check(CLI::Range(1u, 100u));
+        add_head(verb, options.head);
+        add_quick(verb, options.quick, {"--size", "--frames", "--scenes", "--repetitions"});
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
         add_cache(verb, options.cache);
       },

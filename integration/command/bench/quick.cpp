@@ -54,6 +54,7 @@ BenchBudgetOptions quickened(BenchBudgetOptions options) {
   if (!options.quick) return options;
   options.size = small;
   options.frames = few_judged;
+  options.repetitions = 1;
   options.scenes = {"flashing", "dolly"}; // light that changes, and size
   return options;
 }

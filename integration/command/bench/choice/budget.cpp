@@ -2,29 +2,27 @@
 // technique.
 
 #include "framegraph/model/graph.hpp"
-#include "integration/command/bench/choice/scene_run.hpp"
+#include "integration/command/bench/choice/budget_judge.hpp"
 #include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/report/report.hpp"
+#include "integration/command/bench/subject.hpp"
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/run/choice_sets.hpp"
 #include "integration/demo_engine/files.hpp"
+#include "integration/demo_engine/scene/read_scene.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <span>
 
 namespace dermis::tools {
 namespace {
 
-constexpr uint32_t warm_up = 10;                                    // frames that are not judged
-constexpr double measured_tolerance = 1.15, meter_tolerance = 1.05; // of the budget: over it beyond that
 constexpr double shares[] = {0.25, 0.5, 1, 2}; // x: of the way from the cheapest to the best outcome
-constexpr double within = 0.99;                // share of frames whose meter a single technique must keep
-
-constexpr uint32_t compared = 8; // judged frames of a run whose error is measured
+constexpr uint32_t compared = 8;               // judged frames of a run whose error is measured
 
 // The camera of `dolly` takes five seconds for its way: more frames, each further from the one before, see
 // all of it.
@@ -35,57 +33,6 @@ struct Stretch {
 
 Stretch stretch_of(std::string_view scene) {
   return scene == "dolly" ? Stretch{2, 24} : Stretch{};
-}
-
-// One outcome alone over the whole scene.
-struct Single {
-  std::vector<NamedValue> set; // as JSON
-  std::vector<double> metered_ms;
-  double rmse = 0;
-
-  double metered_at(double share) const { // nearest rank
-    std::vector<double> sorted = metered_ms;
-    std::sort(sorted.begin(), sorted.end());
-    const auto rank = static_cast<size_t>(std::ceil(share * double(sorted.size())));
-    return sorted[std::clamp<size_t>(rank, 1, sorted.size()) - 1];
-  }
-};
-
-struct Figures {
-  double mean_ms = 0, p95_ms = 0, over = 0, over_meter = 0, rmse = 0;
-  uint32_t switches = 0;
-};
-
-// Root of the mean square over the judged frames that were compared.
-double pooled_rmse(const SceneRun& run) {
-  double sum = 0;
-  uint32_t count = 0;
-  for (size_t i = warm_up; i < run.frames.size(); ++i)
-    if (const auto& rmse = run.frames[i].rmse) {
-      sum += *rmse * *rmse;
-      ++count;
-    }
-  return count > 0 ? std::sqrt(sum / count) : 0;
-}
-
-Figures judge(const SceneRun& timed, const SceneRun& metered, double budget_ms) {
-  Figures out;
-  std::vector<double> times;
-  for (size_t i = warm_up; i < timed.frames.size(); ++i)
-    times.push_back(timed.frames[i].choice.measured_ms);
-  std::sort(times.begin(), times.end());
-  for (const double ms : times) {
-    out.mean_ms += ms / double(times.size());
-    out.over += ms > measured_tolerance * budget_ms ? 1.0 / double(times.size()) : 0;
-  }
-  constexpr double tail = 0.95;
-  out.p95_ms = times[static_cast<size_t>(tail * double(times.size() - 1) + 0.5)];
-  const double judged = double(metered.frames.size() - warm_up);
-  for (size_t i = warm_up; i < metered.frames.size(); ++i)
-    out.over_meter += metered.frames[i].choice.metered_ms > meter_tolerance * budget_ms ? 1 / judged : 0;
-  out.rmse = pooled_rmse(metered);
-  out.switches = timed.frames.back().choice.switches;
-  return out;
 }
 
 const std::vector<ReportColumn> columns = {
@@ -129,23 +76,10 @@ demo::Result<std::vector<Single>> measure_singles(Bench& bench) {
     const auto run = run_counted(bench);
     if (!run) return run.error();
     bench.device = run->device;
-    Single& single = singles.emplace_back();
-    single.set = set;
-    single.rmse = pooled_rmse(*run);
-    for (size_t i = warm_up; i < run->frames.size(); ++i)
-      single.metered_ms.push_back(run->frames[i].choice.metered_ms);
+    singles.push_back(single_of(*run, set));
   }
   bench.request.set.clear();
   return singles;
-}
-
-// The least error among those whose meter keeps to the budget; null: none does.
-const Single* best_within(const std::vector<Single>& singles, double budget_ms) {
-  const Single* best = nullptr;
-  for (const Single& one : singles)
-    if (one.metered_at(within) <= meter_tolerance * budget_ms && (best == nullptr || one.rmse < best->rmse))
-      best = &one;
-  return best;
 }
 
 std::string name_of(const Single* single) {
@@ -156,32 +90,67 @@ std::string name_of(const Single* single) {
   return name;
 }
 
+// Timed runs of all budgets follow each other, and then again: what slows the machine down for a while slows
+// one run of a budget and not its median.
+demo::Result<std::vector<std::vector<TimedFigures>>> measure_times(Bench& bench,
+                                                                   std::span<const double> budgets) {
+  std::vector<std::vector<TimedFigures>> times(budgets.size());
+  bench.request.metered = false;
+  for (uint32_t i = 0; i < bench.options.repetitions; ++i)
+    for (size_t k = 0; k < budgets.size(); ++k) {
+      bench.request.budget_ms = budgets[k];
+      const auto run = run_counted(bench);
+      if (!run) return run.error();
+      times[k].push_back(judge_times(*run, budgets[k]));
+    }
+  return times;
+}
+
 // A row for each share of the way from the cheapest outcome to the best.
 demo::Result<> measure_scene(Bench& bench, const std::string& scene) {
   const auto singles = measure_singles(bench);
   if (!singles) return singles.error();
-  double floor_ms = singles->front().metered_at(within);
-  for (const Single& single : *singles)
-    floor_ms = std::min(floor_ms, single.metered_at(within));
-  const auto best = std::min_element(singles->begin(), singles->end(),
-                                     [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
-  for (const double x : shares) {
-    const double budget_ms = floor_ms + x * (best->metered_at(within) - floor_ms);
-    bench.request.budget_ms = budget_ms;
-    bench.request.metered = false;
-    const auto timed = run_counted(bench);
-    if (!timed) return timed.error();
-    bench.request.metered = true;
+  std::vector<double> budgets;
+  for (const double x : shares)
+    budgets.push_back(budget_at(*singles, x));
+  const auto times = measure_times(bench, budgets);
+  if (!times) return times.error();
+  bench.request.metered = true;
+  for (size_t k = 0; k < budgets.size(); ++k) {
+    const double budget_ms = bench.request.budget_ms = budgets[k];
     const auto metered = run_counted(bench);
     if (!metered) return metered.error();
-    const Figures figures = judge(*timed, *metered, budget_ms);
+    const TimedFigures timed = median_of((*times)[k]);
     const Single* single = best_within(*singles, budget_ms);
-    bench.report.table.rows.push_back({scene, x, budget_ms, figures.mean_ms, figures.p95_ms, figures.over,
-                                       figures.over_meter, figures.rmse,
+    bench.report.table.rows.push_back({scene, shares[k], budget_ms, timed.mean_ms, timed.p95_ms, timed.over,
+                                       share_over_meter(*metered, budget_ms), pooled_rmse(*metered),
                                        single != nullptr ? ReportValue(single->rmse) : ReportValue(),
-                                       name_of(single), int64_t{figures.switches}});
+                                       name_of(single), static_cast<int64_t>(timed.switches)});
   }
   return demo::success();
+}
+
+std::string file_of(const std::string& scene) {
+  return shipped(fmt::format("configs/scenes/{}.json", scene));
+}
+
+// Why scenes cannot be measured; "" when they can. Said before minutes are spent on the others.
+std::string why_not(const BenchBudgetOptions& options) {
+  for (const std::string& name : options.scenes) {
+    const std::string file = file_of(name);
+    if (!std::filesystem::exists(file))
+      return fmt::format("there is no scene '{}': '{}' is missing (--scenes takes names in configs/scenes)",
+                         name, file);
+    Diagnostics diagnostics;
+    const auto scene = demo::read_scene(file, diagnostics);
+    if (!scene) return format_for_people(diagnostics, diagnostics.list.front());
+    const bool model =
+        std::any_of(scene->objects.begin(), scene->objects.end(),
+                    [](const demo::Object& object) { return object.shape == demo::Shape::model; });
+    const std::string problem = model ? why_no_head(options.head) : "";
+    if (!problem.empty()) return fmt::format("scene {}: {}", name, problem);
+  }
+  return "";
 }
 
 // What a scene's frames take and how far they are from the truth, over the budget.
@@ -237,38 +206,37 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
   request.graph = options.graph;
   request.size = options.size;
   request.cache = options.cache;
+  request.model = head_model(options.head);
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
     request.calibration = {options.calibration, text.take()};
   }
+  if (const std::string problem = why_not(options); !problem.empty())
+    return fail(session, ExitCode::usage, problem);
   Progress progress(progress_style(session.quiet, false), "budget", "run",
-                    options.scenes.size() * (sets.size() + 2 * std::size(shares)));
+                    options.scenes.size() * (sets.size() + (1 + options.repetitions) * std::size(shares)));
   Bench bench{session, options, std::move(request), std::move(sets), progress};
   Report& report = bench.report;
   report.bench = "budget";
   report.title = "Frames within a budget";
-  report.summary = fmt::format(
-      "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the meter",
-      options.frames, warm_up, measured_tolerance, meter_tolerance);
+  report.summary =
+      fmt::format("{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
+                  "meter; times: median of {}",
+                  options.frames, warm_up, measured_tolerance, meter_tolerance, options.repetitions);
   report.table.columns = columns;
   for (const std::string& scene : options.scenes) {
-    bench.request.scene = shipped(fmt::format("configs/scenes/{}.json", scene));
+    bench.request.scene = file_of(scene);
     const Stretch stretch = stretch_of(scene);
     const uint32_t judged = stretch.times * options.frames;
     bench.request.frames = warm_up + judged;
     bench.request.frames_per_second = stretch.frames_per_second;
     bench.request.error_every = std::max(1u, judged / compared);
     bench.shared = {};
-    if (!std::filesystem::exists(bench.request.scene)) {
-      report.notes.push_back(fmt::format("scene {}: there is no '{}'", scene, bench.request.scene));
-      continue;
-    }
     const auto measured = measure_scene(bench, scene);
     if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
     if (!measured) return fail(session, static_cast<ExitCode>(measured.error().kind), measured.error().text);
   }
-  if (report.table.rows.empty()) return fail(session, ExitCode::usage, "no scene is left to measure");
   report.facts = machine_facts(session.command, bench.device);
   if (options.quick) report.facts.push_back(quick_fact());
   add_plots(report);

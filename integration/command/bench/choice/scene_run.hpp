@@ -16,6 +16,7 @@ namespace dermis::tools {
 
 struct SceneRunRequest {
   std::string scene, graph; // files
+  demo::ModelOptions model; // of scenes that show one
   Size size;
   uint32_t frames = 0;
   double frames_per_second = 0; // 0: the scene's
