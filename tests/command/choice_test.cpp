@@ -142,11 +142,10 @@ TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndShare) {
 }
 
 TEST_F(Choice, BenchBudgetNamesScenesItCannotMeasureBeforeItMeasuresOthers) {
-  const Outcome missing =
-      run({"bench", "budget", "--scenes", "flashing,no_such_scene", "--json", path("none.json")});
+  const Outcome missing = run({"bench", "budget", "--scenes", "flashing,no_such_scene"});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_THAT(missing.err, HasSubstr("there is no scene 'no_such_scene'"));
-  const Outcome head = run({"bench", "budget", "--scenes", "flashing,head", "--json", path("none.json")});
+  const Outcome head = run({"bench", "budget", "--scenes", "flashing,head"});
   EXPECT_EQ(head.exit_code, 2);
   EXPECT_THAT(head.err, HasSubstr("scene head: no model was given (--head FOLDER)"));
 }
