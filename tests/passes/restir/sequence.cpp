@@ -83,6 +83,11 @@ SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettin
         frame.reservoirs[i] = merge_temporal(scene, settings(Stage::temporal), domain, frame.reservoirs[i],
                                              before.pixels[past].domain, before.reservoirs[past], random);
     }
+    // Kept for the next frame is what history gave, without the neighbours. What lies between frames is the
+    // packed form.
+    Frame kept = frame;
+    for (Reservoir& reservoir : kept.reservoirs)
+      reservoir = unpack_reservoir(pack_reservoir(reservoir));
     if (over_space) {
       frame.reservoirs =
           spatial_pass(scene, s, settings(Stage::spatial_first), frame, s.neighbours[0], 2, key);
@@ -101,10 +106,7 @@ SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettin
       for (uint32_t i = 0; i < truth.size(); ++i)
         result.last_square += (estimate(i) - truth[i]) * (estimate(i) - truth[i]) / double(truth.size());
     }
-    // What lies between frames is the packed form.
-    for (Reservoir& reservoir : frame.reservoirs)
-      reservoir = unpack_reservoir(pack_reservoir(reservoir));
-    before = frame;
+    before = std::move(kept);
   }
   for (double& mean : result.region_mean)
     mean /= judged;

@@ -74,6 +74,7 @@ ReportValue& ReportTable::at(size_t row, std::string_view key) {
 std::string ReportTable::text_at(size_t row, std::string_view key, int digits) const {
   const ReportValue& value = at(row, key);
   if (const auto* words = std::get_if<std::string>(&value)) return *words;
+  if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "yes" : "no";
   const auto* number = std::get_if<double>(&value);
   return number != nullptr ? fmt::format("{:.{}f}", *number, digits) : "-";
 }
