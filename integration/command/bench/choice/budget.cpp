@@ -3,6 +3,7 @@
 
 #include "framegraph/model/graph.hpp"
 #include "integration/command/bench/choice/budget_judge.hpp"
+#include "integration/command/bench/choice/budget_report.hpp"
 #include "integration/command/bench/quick.hpp"
 #include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/subject.hpp"
@@ -34,20 +35,6 @@ struct Stretch {
 Stretch stretch_of(std::string_view scene) {
   return scene == "dolly" ? Stretch{2, 24} : Stretch{};
 }
-
-const std::vector<ReportColumn> columns = {
-    {"scene", "scene"},
-    {"x", "x"},
-    {"budget_ms", "budget, ms"},
-    {"mean_ms", "mean, ms"},
-    {"p95_ms", "95 %, ms"},
-    {"over_budget_fraction", "over, timed", 2},
-    {"over_budget_fraction_meter", "over, meter", 2},
-    {"mean_rmse", "RMSE"},
-    {"best_single_rmse_within_budget", "best single RMSE"},
-    {"best_single", "best single"},
-    {"switches", "switches"},
-};
 
 struct Bench {
   const Session& session;
@@ -153,46 +140,6 @@ std::string why_not(const BenchBudgetOptions& options) {
   return "";
 }
 
-// What a scene's frames take and how far they are from the truth, over the budget.
-void add_plots(Report& report) {
-  Plot time{"mean device time of a frame", "budget, ms", "ms", {}};
-  Plot error{"error", "budget, ms", "RMSE of linear luminance", {}};
-  for (size_t row = 0; row < report.table.rows.size(); ++row) {
-    const auto number = [&](std::string_view key) { return std::get<double>(report.table.at(row, key)); };
-    const std::string& scene = std::get<std::string>(report.table.at(row, "scene"));
-    if (time.series.empty() || time.series.back().name != scene) {
-      time.series.push_back({scene, {}});
-      error.series.push_back({scene, {}});
-    }
-    const std::string label = fmt::format("{} within {:.2f} ms: {:.2f} ms, RMSE {:.5f}", scene,
-                                          number("budget_ms"), number("mean_ms"), number("mean_rmse"));
-    time.series.back().points.push_back({number("budget_ms"), number("mean_ms"), label, false});
-    error.series.back().points.push_back({number("budget_ms"), number("mean_rmse"), label, false});
-  }
-  report.plots = {time, error};
-  report.plots_title = "Over the budget";
-  report.plots_text = "Point at a budget to see what its frames took and how far they were from the truth.";
-}
-
-std::string cell(const ReportValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.3g}", *number);
-  if (const auto* count = std::get_if<int64_t>(&value)) return fmt::format("{}", *count);
-  return "-";
-}
-
-std::string text_of(const Report& report) {
-  Table table;
-  for (const ReportColumn& column : report.table.columns)
-    table.columns.push_back({column.title, column.key != "scene" && column.key != "best_single"});
-  for (const auto& row : report.table.rows) {
-    auto& cells = table.rows.emplace_back();
-    for (const ReportValue& value : row)
-      cells.push_back(cell(value));
-  }
-  return format_table(table);
-}
-
 } // namespace
 
 ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
@@ -224,7 +171,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
       fmt::format("{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
                   "meter; times: median of {}",
                   options.frames, warm_up, measured_tolerance, meter_tolerance, options.repetitions);
-  report.table.columns = columns;
+  report.table.columns = budget_columns();
   for (const std::string& scene : options.scenes) {
     bench.request.scene = file_of(scene);
     const Stretch stretch = stretch_of(scene);
@@ -239,8 +186,8 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
   }
   report.facts = machine_facts(session.command, bench.device);
   if (options.quick) report.facts.push_back(quick_fact());
-  add_plots(report);
-  if (!session.quiet && options.json != "-" && options.html != "-") print(text_of(report));
+  add_budget_plots(report);
+  if (!session.quiet && options.json != "-" && options.html != "-") print(text_of_budget(report));
   const std::string problem = deliver_report(report, options.json, "", options.html);
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }

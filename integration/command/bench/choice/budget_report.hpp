@@ -1,0 +1,18 @@
+#pragma once
+// Rows of dermis bench budget as text and plots.
+
+#include "integration/command/bench/report/report.hpp"
+
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+std::vector<ReportColumn> budget_columns();
+
+// What a scene's frames take and how far they are from the truth, over the budget.
+void add_budget_plots(Report& report);
+
+std::string text_of_budget(const Report& report);
+
+} // namespace dermis::tools
