@@ -315,7 +315,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options)
 struct BenchSkipOptions {
   std::string graph = shipped("configs/graphs/skin.json"), profile = shipped("configs/profiles/skin.json");
   Size size{1280, 720}; // of a small view the fixed cost of 22 dispatches is a large share
-  uint32_t repetitions = 15;
+  uint32_t repetitions = 31;
   std::string json, html; // files to write; "": none
   bool quick = false;
 };

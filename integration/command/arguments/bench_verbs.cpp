@@ -156,7 +156,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--graph", options.graph, "Graph file [configs/graphs/skin.json]")->type_name("FILE");
         verb.add_option("--profile", options.profile, "Profile of the plane [configs/profiles/skin.json]")
             ->type_name("FILE");
-        verb.add_option("--repetitions", options.repetitions, "Timed frames of each case [15]")
+        verb.add_option("--repetitions", options.repetitions, "Timed frames of each case [31]")
             ->check(CLI::Range(1u, most_sequence_frames));
         add_quick(verb, options.quick, {"--size", "--repetitions"});
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
