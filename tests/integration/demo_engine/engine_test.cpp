@@ -1,4 +1,5 @@
 #include "tests/integration/demo_engine/rendering.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <unistd.h>
 
 namespace demo {
 namespace {
@@ -35,14 +35,6 @@ uint64_t generated_code_bytes() {
 
 // A ball before a wall, in a folder of its own, seen by `camera`.
 struct Engine : testing::Test {
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::temp_directory_path() /
-             (std::string("dermis_engine_") + info->name() + "_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   RenderOptions
   small(const std::string& camera = R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })",
         const std::string& profile_file = shipped + "profiles/skin.json") const {
@@ -77,7 +69,7 @@ struct Engine : testing::Test {
     return summary.error();
   }
 
-  std::filesystem::path folder;
+  const dermis::testing::TestFolder folder;
 };
 
 size_t center_of(const FloatImage& image) {

@@ -1,5 +1,6 @@
 #include "integration/demo_engine/model/load_model.hpp"
 #include "integration/demo_engine/model/load_texture.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,23 +11,13 @@
 #include <random>
 #include <span>
 #include <string_view>
-#include <unistd.h>
 
 namespace demo {
 namespace {
 
 using testing::HasSubstr;
 
-// A folder of its own for each test, gone afterwards.
 struct ModelFile : testing::Test {
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::temp_directory_path() /
-             (std::string("dermis_model_") + info->name() + "_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   std::string write(const std::string& name, const std::string& bytes) const {
     const std::string path = (folder / name).string();
     std::ofstream(path, std::ios::binary) << bytes;
@@ -65,7 +56,7 @@ struct ModelFile : testing::Test {
     return options;
   }
 
-  std::filesystem::path folder;
+  const dermis::testing::TestFolder folder;
 };
 
 TEST_F(ModelFile, ATriangleIsScaledToItsHeightAroundItsMiddle) {
@@ -90,7 +81,7 @@ TEST_F(ModelFile, WhatIsNoGltfIsCalledSo) {
   EXPECT_THAT(refused(only(write("short.glb", "glTF\x02"))).text, HasSubstr("damaged"));
   EXPECT_THAT(refused(only(write("bad.gltf", "{ \"asset\": "))).text, HasSubstr("damaged"));
   EXPECT_THAT(refused(only((folder / "absent.glb").string())).text, HasSubstr("no such file"));
-  EXPECT_THAT(refused(only(folder.string())).text, HasSubstr("not a regular file"));
+  EXPECT_THAT(refused(only(folder.path().string())).text, HasSubstr("not a regular file"));
 }
 
 TEST_F(ModelFile, IndicesBeyondTheVerticesAreRefused) {
@@ -138,7 +129,7 @@ TEST_F(ModelFile, WhatAFileNamesIsReadInItsFolderAlone) {
   std::ifstream stream(path, std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(stream)), {});
   std::filesystem::create_directories(folder / "models");
-  std::filesystem::create_symlink(folder, folder / "models" / "link");
+  std::filesystem::create_symlink(folder.path(), folder / "models" / "link");
   std::filesystem::copy_file(folder / "triangle.bin", folder / "models" / "here.bin");
   const std::string absolute = (folder / "triangle.bin").string();
   for (const std::string& outside :
@@ -148,14 +139,14 @@ TEST_F(ModelFile, WhatAFileNamesIsReadInItsFolderAlone) {
     EXPECT_THAT(refused(only(model)).text, HasSubstr("leads out of what may be read")) << outside;
     EXPECT_THAT(refused(only(model)).text, HasSubstr("--root")) << outside;
   }
-  const auto declared =
-      load_model(only(write("models/a.gltf", with_buffer(whole, "../triangle.bin"))), {folder.string()});
+  const auto declared = load_model(only(write("models/a.gltf", with_buffer(whole, "../triangle.bin"))),
+                                   {folder.path().string()});
   EXPECT_TRUE(declared) << declared.error().text;
   const auto inside = load_model(only(write("models/b.gltf", with_buffer(whole, "here.bin"))));
   EXPECT_TRUE(inside) << inside.error().text;
   // Not in the working folder either, where tinygltf would look.
   const std::filesystem::path before = std::filesystem::current_path();
-  std::filesystem::current_path(folder);
+  std::filesystem::current_path(folder.path());
   EXPECT_THAT(refused(only(write("models/c.gltf", whole))).text, HasSubstr("triangle.bin"));
   std::filesystem::current_path(before);
   EXPECT_THAT(refused(only(write("models/d.gltf", with_buffer(whole, std::string(5000, 'a'))))).text,

@@ -5,13 +5,13 @@
 #include "tests/integration/demo_engine/moving_sheet.hpp"
 #include "tests/integration/demo_engine/ray_queries.hpp"
 #include "tests/passes/restir/statistics.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <unistd.h>
 
 namespace demo {
 namespace {
@@ -41,17 +41,8 @@ struct Reuse : WithRayQueries {
   void SetUp() override {
     WithRayQueries::SetUp();
     if (IsSkipped()) return;
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::temp_directory_path() /
-             (std::string("dermis_reuse_") + info->name() + "_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
     std::filesystem::copy_file(source + "/configs/profiles/skin.json", folder / "skin.json");
   }
-  void TearDown() override {
-    WithRayQueries::TearDown();
-    if (!folder.empty()) std::filesystem::remove_all(folder);
-  }
-
   std::vector<FrameOutputs> frames_of(const Motion& motion, const Way& way, uint32_t periods,
                                       uint32_t samples = 1) const {
     const uint32_t frames = periods * motion.period;
@@ -64,7 +55,7 @@ struct Reuse : WithRayQueries {
         .frames;
   }
 
-  std::filesystem::path folder;
+  const dermis::testing::TestFolder folder;
 };
 
 // Of a frame's pixels with subsurface: all, and those of each quarter of the picture.

@@ -1,24 +1,16 @@
 // Frames that a stage keeps are those that are rendered without one, bit for bit.
 #include "tests/integration/demo_engine/rendering.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 namespace demo {
 namespace {
 
 // A ball of skin before a wall: a camera and a shadow that move, and a cut within five frames.
 struct KeptStage : testing::Test {
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::temp_directory_path() /
-             (std::string("dermis_stage_") + info->name() + "_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   RenderOptions moving(const std::string& graph, const std::string& intensity = "0.8") const {
     RenderOptions options;
     options.scene = (folder / ("scene_" + intensity + ".json")).string();
@@ -41,7 +33,7 @@ struct KeptStage : testing::Test {
     return options;
   }
 
-  std::filesystem::path folder;
+  const dermis::testing::TestFolder folder;
 };
 
 void expect_same(const std::vector<FrameOutputs>& a, const std::vector<FrameOutputs>& b) {

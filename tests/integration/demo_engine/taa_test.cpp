@@ -1,26 +1,18 @@
 // The engine's temporal anti-aliasing: more exact edges where things rest, nothing of what was before after a
 // cut.
 #include "integration/demo_engine/engine.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 namespace demo {
 namespace {
 
 struct TemporalAntiAliasing : testing::Test {
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::temp_directory_path() /
-             (std::string("dermis_taa_") + info->name() + "_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   // A bright ball before a dark wall; the camera goes from left to right within a second and jumps at .5.
   RenderOptions options(const std::string& camera, uint32_t width, uint32_t height) const {
     const std::string path = (folder / "scene.json").string();
@@ -54,7 +46,7 @@ struct TemporalAntiAliasing : testing::Test {
     return colors;
   }
 
-  std::filesystem::path folder;
+  const dermis::testing::TestFolder folder;
 };
 
 const std::string resting_camera = R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })";

@@ -1,28 +1,20 @@
 // What a budget buys where light comes through thin parts: rays, where the device has them, and the reason
 // told.
 #include "tests/integration/demo_engine/ray_queries.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <fstream>
 #include <sstream>
-#include <unistd.h>
 
 namespace demo {
 namespace {
 
+using dermis::testing::TestFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
 enum class LightFrom { behind, front };
-
-struct Folder {
-  std::filesystem::path path;
-  explicit Folder(const std::string& name)
-      : path(std::filesystem::temp_directory_path() / ("dermis_" + name + "_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path);
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
 
 void replace(std::string& text, const std::string& old, const std::string& with) {
   const size_t at = text.find(old);
@@ -32,7 +24,7 @@ void replace(std::string& text, const std::string& old, const std::string& with)
 
 // The ear of configs/scenes/back_lit_ear.json, its light behind it or in front. Frames are seconds apart: no
 // switch has to wait.
-RenderOptions ear(const Folder& folder, LightFrom from, double budget_ms) {
+RenderOptions ear(const TestFolder& folder, LightFrom from, double budget_ms) {
   std::ifstream file(source + "/configs/scenes/back_lit_ear.json");
   std::stringstream text;
   text << file.rdbuf();
@@ -40,9 +32,9 @@ RenderOptions ear(const Folder& folder, LightFrom from, double budget_ms) {
   replace(scene, R"("frames_per_second": 25)", R"("frames_per_second": 1)");
   replace(scene, "../profiles/skin.json", "skin.json");
   if (from == LightFrom::front) replace(scene, "[-0.05, 0.05, -0.20]", "[-0.05, 0.05, 0.20]");
-  const std::filesystem::path path = folder.path / "ear.json";
+  const std::filesystem::path path = folder / "ear.json";
   std::ofstream(path) << scene;
-  std::filesystem::copy_file(source + "/configs/profiles/skin.json", folder.path / "skin.json",
+  std::filesystem::copy_file(source + "/configs/profiles/skin.json", folder / "skin.json",
                              std::filesystem::copy_options::overwrite_existing);
   RenderOptions options = by_rays(path.string(), 48, 5, {});
   options.budget_ms = budget_ms;
@@ -52,7 +44,7 @@ RenderOptions ear(const Folder& folder, LightFrom from, double budget_ms) {
 constexpr double plenty_ms = 60000; // of a software driver, whatever else runs beside it
 
 TEST(WithoutRayQueries, TheBudgetHasNoRaysToBuyAndTheReportSaysWhy) {
-  const Folder folder("no_rays");
+  const TestFolder folder;
   const Rendering rendering = rendered(ear(folder, LightFrom::behind, plenty_ms));
   ASSERT_EQ(rendering.frames.size(), 5u);
   if (ran(rendering.frames[0], "draw")) GTEST_SKIP() << "this device has ray queries";
@@ -66,7 +58,7 @@ TEST(WithoutRayQueries, TheBudgetHasNoRaysToBuyAndTheReportSaysWhy) {
 }
 
 TEST_F(WithRayQueries, ABudgetBuysThemWhereLightComesThroughAThinPart) {
-  const Folder folder("behind");
+  const TestFolder folder;
   const Rendering rendering = rendered(ear(folder, LightFrom::behind, plenty_ms));
   ASSERT_EQ(rendering.frames.size(), 5u);
   const FrameChoice& choice = rendering.frames.back().choice.value();
@@ -80,7 +72,7 @@ TEST_F(WithRayQueries, ABudgetBuysThemWhereLightComesThroughAThinPart) {
 }
 
 TEST_F(WithRayQueries, ABudgetBuysNoneWhereLightComesFromTheFront) {
-  const Folder folder("front");
+  const TestFolder folder;
   const Rendering rendering = rendered(ear(folder, LightFrom::front, plenty_ms));
   ASSERT_EQ(rendering.frames.size(), 5u);
   const FrameChoice& choice = rendering.frames.back().choice.value();
@@ -91,7 +83,7 @@ TEST_F(WithRayQueries, ABudgetBuysNoneWhereLightComesFromTheFront) {
 }
 
 TEST_F(WithRayQueries, ABudgetThatDoesNotPayForThemSaysWhatIsMissing) {
-  const Folder folder("little");
+  const TestFolder folder;
   RenderOptions options = ear(folder, LightFrom::behind, 0);
   options.metered = true; // the same on every machine
   options.budget_ms = 20;
