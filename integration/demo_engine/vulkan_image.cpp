@@ -50,6 +50,13 @@ void record_mip(const VulkanHost& host, VkCommandBuffer commands, const Image& i
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
 }
 
+template <typename Barrier> void set_scopes(Barrier& barrier, const ImageState& from, const ImageState& to) {
+  barrier.srcStageMask = from.stages;
+  barrier.srcAccessMask = from.access;
+  barrier.dstStageMask = to.stages;
+  barrier.dstAccessMask = to.access;
+}
+
 } // namespace
 
 Buffer::Buffer(Buffer&& other) noexcept {
@@ -189,10 +196,7 @@ Result<Image> create_image(VulkanHost& host, const ImageDesc& desc) {
 void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& image, const ImageState& from,
                 const ImageState& to) {
   auto barrier = vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
-  barrier.srcStageMask = from.stages;
-  barrier.srcAccessMask = from.access;
-  barrier.dstStageMask = to.stages;
-  barrier.dstAccessMask = to.access;
+  set_scopes(barrier, from, to);
   barrier.oldLayout = from.layout;
   barrier.newLayout = to.layout;
   barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
@@ -208,10 +212,7 @@ void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& i
 void memory_barrier(const VulkanHost& host, VkCommandBuffer commands, const ImageState& from,
                     const ImageState& to) {
   auto barrier = vulkan_struct<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
-  barrier.srcStageMask = from.stages;
-  barrier.srcAccessMask = from.access;
-  barrier.dstStageMask = to.stages;
-  barrier.dstAccessMask = to.access;
+  set_scopes(barrier, from, to);
   auto dependency = vulkan_struct<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
   dependency.memoryBarrierCount = 1;
   dependency.pMemoryBarriers = &barrier;

@@ -29,18 +29,13 @@ std::string read_file(const fs::path& path) {
   return text.str();
 }
 
-fs::path make_folder() {
-  std::string name = (fs::temp_directory_path() / "dermis_command_XXXXXX").string();
-  return mkdtemp(name.data()) != nullptr ? fs::path(name) : fs::path();
-}
-
 void redirect(int target, const fs::path& path, int flags) {
   const int file = open(path.c_str(), flags, 0600);
   if (file < 0 || dup2(file, target) < 0) _exit(127);
 }
 
 [[noreturn]] void become_command(const std::vector<std::string>& arguments, const RunOptions& options,
-                                 const fs::path& streams) {
+                                 const TestFolder& streams) {
   redirect(STDIN_FILENO, streams / "in", O_RDONLY);
   redirect(STDOUT_FILENO, streams / "out", O_WRONLY | O_CREAT);
   redirect(STDERR_FILENO, streams / "err", O_WRONLY | O_CREAT);
@@ -58,15 +53,8 @@ void redirect(int target, const fs::path& path, int flags) {
 
 } // namespace
 
-CommandTest::CommandTest() : folder_(make_folder()) {}
-
-CommandTest::~CommandTest() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
-}
-
 Outcome CommandTest::run(const std::vector<std::string>& arguments, const RunOptions& options) {
-  const fs::path streams = make_folder();
+  const TestFolder streams;
   std::ofstream(streams / "in", std::ios::binary) << options.input;
   const pid_t child = fork();
   if (child == 0) become_command(arguments, options, streams);
@@ -82,7 +70,6 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments, const RunOpt
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   outcome.out = read_file(streams / "out");
   outcome.err = read_file(streams / "err");
-  fs::remove_all(streams);
   return outcome;
 }
 
@@ -101,7 +88,7 @@ std::string CommandTest::write(const std::string& name, const std::string& text)
 
 std::vector<std::string> CommandTest::files(const std::string& below) const {
   std::vector<std::string> names;
-  const fs::path root = below.empty() ? folder_ : folder_ / below;
+  const fs::path root = below.empty() ? folder_.path() : folder_ / below;
   if (!fs::exists(root)) return names;
   for (const auto& entry : fs::recursive_directory_iterator(root))
     names.push_back(fs::relative(entry.path(), root).string());

@@ -1,6 +1,8 @@
 #pragma once
 // Runs the built command in a folder of its own, as a shell would, and keeps what it said.
 
+#include "tests/support/test_folder.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,9 +25,6 @@ struct RunOptions {
 
 class CommandTest : public testing::Test {
 protected:
-  CommandTest();
-  ~CommandTest() override;
-
   // Runs `dermis` with these arguments, from the repository's root.
   static Outcome run(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
@@ -36,7 +35,7 @@ protected:
   std::vector<std::string> files(const std::string& below = "") const;
 
 private:
-  std::filesystem::path folder_;
+  const TestFolder folder_;
 };
 
 // An overlay on configs/graphs/skin.json whose budget chooses among its four techniques and no steps of

@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-namespace dermis::testing {
+namespace dermis::test {
 
 class TestFolder {
 public:
@@ -30,4 +30,4 @@ private:
   std::filesystem::path place;
 };
 
-} // namespace dermis::testing
+} // namespace dermis::test

@@ -69,7 +69,7 @@ struct Engine : testing::Test {
     return summary.error();
   }
 
-  const dermis::testing::TestFolder folder;
+  const dermis::test::TestFolder folder;
 };
 
 size_t center_of(const FloatImage& image) {

@@ -56,7 +56,7 @@ struct ModelFile : testing::Test {
     return options;
   }
 
-  const dermis::testing::TestFolder folder;
+  const dermis::test::TestFolder folder;
 };
 
 TEST_F(ModelFile, ATriangleIsScaledToItsHeightAroundItsMiddle) {

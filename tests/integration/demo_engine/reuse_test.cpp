@@ -55,7 +55,7 @@ struct Reuse : WithRayQueries {
         .frames;
   }
 
-  const dermis::testing::TestFolder folder;
+  const dermis::test::TestFolder folder;
 };
 
 // Of a frame's pixels with subsurface: all, and those of each quarter of the picture.

@@ -33,7 +33,7 @@ struct KeptStage : testing::Test {
     return options;
   }
 
-  const dermis::testing::TestFolder folder;
+  const dermis::test::TestFolder folder;
 };
 
 void expect_same(const std::vector<FrameOutputs>& a, const std::vector<FrameOutputs>& b) {

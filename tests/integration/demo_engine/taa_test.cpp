@@ -46,7 +46,7 @@ struct TemporalAntiAliasing : testing::Test {
     return colors;
   }
 
-  const dermis::testing::TestFolder folder;
+  const dermis::test::TestFolder folder;
 };
 
 const std::string resting_camera = R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })";

@@ -9,7 +9,7 @@
 namespace demo {
 namespace {
 
-using dermis::testing::TestFolder;
+using dermis::test::TestFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <span>
 
 namespace dermis::tools {
 namespace {
@@ -45,13 +44,28 @@ struct Bench {
   SharedScene shared = {};
   uint64_t done = 0;
   std::string device = {};
-  Report report = {};
+  std::vector<BudgetRow> rows = {};
 };
 
 demo::Result<SceneRun> run_counted(Bench& bench) {
   auto run = run_scene(bench.session, bench.request, bench.shared);
   bench.progress.update(++bench.done);
   return run;
+}
+
+std::string file_of(const std::string& scene) {
+  return shipped(fmt::format("configs/scenes/{}.json", scene));
+}
+
+// What runs of a scene begin with; nothing is left of the scene before.
+void begin_scene(Bench& bench, const std::string& scene) {
+  const Stretch stretch = stretch_of(scene);
+  const uint32_t judged = stretch.times * bench.options.frames;
+  bench.request.scene = file_of(scene);
+  bench.request.frames = unjudged_frames + judged;
+  bench.request.frames_per_second = stretch.frames_per_second;
+  bench.request.error_every = std::max(1u, judged / compared);
+  bench.shared = {};
 }
 
 demo::Result<std::vector<Single>> measure_singles(Bench& bench) {
@@ -69,56 +83,57 @@ demo::Result<std::vector<Single>> measure_singles(Bench& bench) {
   return singles;
 }
 
-std::string name_of(const Single* single) {
+std::string name_of(const Single& single) {
   std::string name;
-  if (single != nullptr)
-    for (const auto& [setting, value] : single->set)
-      name += fmt::format("{}{}={}", name.empty() ? "" : " ", setting, value.substr(1, value.size() - 2));
+  for (const auto& [setting, value] : single.set)
+    name += fmt::format("{}{}={}", name.empty() ? "" : " ", setting, value.substr(1, value.size() - 2));
   return name;
 }
 
-// Timed runs of all budgets follow each other, and then again: what slows the machine down for a while slows
-// one run of a budget and not its median.
-demo::Result<std::vector<std::vector<TimedFigures>>> measure_times(Bench& bench,
-                                                                   std::span<const double> budgets) {
-  std::vector<std::vector<TimedFigures>> times(budgets.size());
-  bench.request.metered = false;
-  for (uint32_t i = 0; i < bench.options.repetitions; ++i)
-    for (size_t k = 0; k < budgets.size(); ++k) {
-      bench.request.budget_ms = budgets[k];
-      const auto run = run_counted(bench);
-      if (!run) return run.error();
-      times[k].push_back(judge_times(*run, budgets[k]));
-    }
-  return times;
-}
-
-// A row for each share of the way from the cheapest outcome to the best.
-demo::Result<> measure_scene(Bench& bench, const std::string& scene) {
+// Errors and the meter of a row for each share of the way from the cheapest outcome to the best.
+demo::Result<> measure_by_meter(Bench& bench, const std::string& scene) {
+  begin_scene(bench, scene);
   const auto singles = measure_singles(bench);
   if (!singles) return singles.error();
-  std::vector<double> budgets;
-  for (const double x : shares)
-    budgets.push_back(budget_at(*singles, x));
-  const auto times = measure_times(bench, budgets);
-  if (!times) return times.error();
-  bench.request.metered = true;
-  for (size_t k = 0; k < budgets.size(); ++k) {
-    const double budget_ms = bench.request.budget_ms = budgets[k];
-    const auto metered = run_counted(bench);
-    if (!metered) return metered.error();
-    const TimedFigures timed = median_of((*times)[k]);
-    const Single* single = best_within(*singles, budget_ms);
-    bench.report.table.rows.push_back({scene, shares[k], budget_ms, timed.mean_ms, timed.p95_ms, timed.over,
-                                       share_over_meter(*metered, budget_ms), pooled_rmse(*metered),
-                                       single != nullptr ? ReportValue(single->rmse) : ReportValue(),
-                                       name_of(single), static_cast<int64_t>(timed.switches)});
+  for (const double x : shares) {
+    BudgetRow& row = bench.rows.emplace_back(BudgetRow{scene, x, budget_at(*singles, x)});
+    bench.request.budget_ms = row.budget_ms;
+    const auto run = run_counted(bench);
+    if (!run) return run.error();
+    row.over_meter = share_over_meter(*run, row.budget_ms);
+    row.rmse = pooled_rmse(*run);
+    if (const Single* single = best_within(*singles, row.budget_ms)) {
+      row.single_rmse = single->rmse;
+      row.single = name_of(*single);
+    }
   }
   return demo::success();
 }
 
-std::string file_of(const std::string& scene) {
-  return shipped(fmt::format("configs/scenes/{}.json", scene));
+// One more timed run of each of a scene's rows.
+demo::Result<> measure_by_time(Bench& bench, const std::string& scene) {
+  begin_scene(bench, scene);
+  bench.request.metered = false;
+  bench.request.error_every = 0;
+  for (BudgetRow& row : bench.rows) {
+    if (row.scene != scene) continue;
+    bench.request.budget_ms = row.budget_ms;
+    const auto run = run_counted(bench);
+    if (!run) return run.error();
+    row.timed.push_back(judge_times(*run, row.budget_ms));
+  }
+  return demo::success();
+}
+
+// What slows the machine down for a while meets one run of a budget and not its median: between two of them
+// all other scenes are timed.
+demo::Result<> measure(Bench& bench) {
+  for (const std::string& scene : bench.options.scenes)
+    if (auto measured = measure_by_meter(bench, scene); !measured) return measured;
+  for (uint32_t i = 0; i < bench.options.repetitions; ++i)
+    for (const std::string& scene : bench.options.scenes)
+      if (auto measured = measure_by_time(bench, scene); !measured) return measured;
+  return demo::success();
 }
 
 // Why scenes cannot be measured; "" when they can. Said before minutes are spent on the others.
@@ -164,26 +179,19 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
   Progress progress(progress_style(session.quiet, false), "budget", "run",
                     options.scenes.size() * (sets.size() + (1 + options.repetitions) * std::size(shares)));
   Bench bench{session, options, std::move(request), std::move(sets), progress};
-  Report& report = bench.report;
+  Report report;
   report.bench = "budget";
   report.title = "Frames within a budget";
   report.summary =
       fmt::format("{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
                   "meter; times: median of {}",
-                  options.frames, warm_up, measured_tolerance, meter_tolerance, options.repetitions);
+                  options.frames, unjudged_frames, measured_tolerance, meter_tolerance, options.repetitions);
   report.table.columns = budget_columns();
-  for (const std::string& scene : options.scenes) {
-    bench.request.scene = file_of(scene);
-    const Stretch stretch = stretch_of(scene);
-    const uint32_t judged = stretch.times * options.frames;
-    bench.request.frames = warm_up + judged;
-    bench.request.frames_per_second = stretch.frames_per_second;
-    bench.request.error_every = std::max(1u, judged / compared);
-    bench.shared = {};
-    const auto measured = measure_scene(bench, scene);
-    if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-    if (!measured) return fail(session, static_cast<ExitCode>(measured.error().kind), measured.error().text);
-  }
+  const auto measured = measure(bench);
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  if (!measured) return fail(session, static_cast<ExitCode>(measured.error().kind), measured.error().text);
+  for (const BudgetRow& row : bench.rows)
+    add_budget_row(report, row);
   report.facts = machine_facts(session.command, bench.device);
   if (options.quick) report.facts.push_back(quick_fact());
   add_budget_plots(report);

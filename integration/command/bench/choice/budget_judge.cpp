@@ -7,8 +7,10 @@
 namespace dermis::tools {
 namespace {
 
+constexpr double within = 0.99; // share of frames whose meter a single technique must keep
+
 std::span<const RunFrame> judged_frames(const SceneRun& run) {
-  return std::span(run.frames).subspan(warm_up);
+  return std::span(run.frames).subspan(unjudged_frames);
 }
 
 } // namespace

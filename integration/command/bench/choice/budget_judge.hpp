@@ -5,14 +5,14 @@
 #include "integration/command/bench/choice/scene_run.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace dermis::tools {
 
-constexpr uint32_t warm_up = 10;                                    // frames that are not judged
+constexpr uint32_t unjudged_frames = 10;                            // of each run, its first
 constexpr double measured_tolerance = 1.15, meter_tolerance = 1.05; // of the budget: over it beyond that
-constexpr double within = 0.99; // share of frames whose meter a single technique must keep
 
 // One outcome alone over the whole scene.
 struct Single {
@@ -23,8 +23,9 @@ struct Single {
   double metered_at(double share) const; // nearest rank
 };
 
-// Null: none, or none keeps to the budget.
 Single single_of(const SceneRun& run, std::vector<NamedValue> set);
+
+// The least error among those whose meter keeps to the budget in 99 % of the frames; null: none does.
 const Single* best_within(const std::vector<Single>& singles, double budget_ms);
 
 // Budget of a share of the way from the cheapest outcome to the best, in milliseconds. Not of none.
@@ -38,8 +39,18 @@ struct TimedFigures {
 
 TimedFigures judge_times(const SceneRun& run, double budget_ms);
 
-// Each figure's median. Not of none.
+// Each figure's median, the larger of the middle two. Not of none.
 TimedFigures median_of(const std::vector<TimedFigures>& runs);
+
+// A budget of a scene: what its runs were like.
+struct BudgetRow {
+  std::string scene;
+  double x = 0, budget_ms = 0;
+  double over_meter = 0, rmse = 0;        // of the metered run
+  std::optional<double> single_rmse = {}; // of the best single outcome that keeps the budget; none does: none
+  std::string single = {};                // its settings
+  std::vector<TimedFigures> timed = {};   // a run each
+};
 
 double share_over_meter(const SceneRun& run, double budget_ms);
 

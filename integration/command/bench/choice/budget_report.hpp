@@ -1,6 +1,7 @@
 #pragma once
 // Rows of dermis bench budget as text and plots.
 
+#include "integration/command/bench/choice/budget_judge.hpp"
 #include "integration/command/bench/report/report.hpp"
 
 #include <string>
@@ -9,6 +10,8 @@
 namespace dermis::tools {
 
 std::vector<ReportColumn> budget_columns();
+
+void add_budget_row(Report& report, const BudgetRow& row); // of at least one timed run
 
 // What a scene's frames take and how far they are from the truth, over the budget.
 void add_budget_plots(Report& report);
