@@ -30,13 +30,14 @@ void read_pixels(texel_block block) {
 }
 
 vec4 gather(int k, ivec2 pixel, vec3 light) {
+  take_corners(k);
   uint id = pixel_profile[k];
   float area_root;
   sap_texel own = block_surface(pixel, k, area_root);
   vec3 d_px = sap_d_px(own) * inversesqrt(area_root); // a tilted pixel keeps more of its own light
   vec3 centre = sap_lookup(id, sap_half, 0, d_px);
   float confidence;
-  sap_sum rest = sap_from_coarser(k, 0, own, light, confidence);
+  sap_sum rest = sap_from_coarser(odd_of(k), 0, own, light, 1, confidence);
   rest.mass *= 1.0 - centre;
   confidence = mix(confidence, 1.0, centre[profiles[min(id, 255u)].widest]);
   vec3 direct = profile_direct(id); // what never scatters needs no surface around

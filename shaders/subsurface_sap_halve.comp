@@ -6,9 +6,10 @@
 #include "subsurface_sap_halve.bindings.glsl"
 #include "environment.glsl"
 #include "half.glsl"
-#define SAP_LAYERS 1
 #define SAP_BOX
 #include "sap_down.glsl"
+sap_texel block_children[side * side];
+vec4 block_light[side * side];
 const int pixels_across = side, pixels_down = side;
 #include "sap_pixel_block.glsl"
 
@@ -26,11 +27,11 @@ void read_pixels(texel_block block, ivec2 first) {
   }
   [[unroll]] for (int i = 0; i < side * side; ++i) {
     ivec2 pixel = 2 * first + ivec2(i % side, i / side);
-    children[i] = sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u);
-    child_light[i] = vec4(0.0);
+    block_children[i] = sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u);
+    block_light[i] = vec4(0.0);
     if (pixel_profile[i] != 0u && pixel_depth[i] > 0.0) {
-      children[i] = block_surface(pixel, i, child_light[i].a);
-      child_light[i].rgb = pixel_light(texel_of(pixel));
+      block_children[i] = block_surface(pixel, i, block_light[i].a);
+      block_light[i].rgb = pixel_light(texel_of(pixel));
     }
   }
 }
@@ -45,10 +46,15 @@ void main() {
     ivec2 at = first + ivec2(k % block_width, k / block_width);
     if (!sap_inside(at, 1))
       continue;
+    [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
+      children[c] = block_children[shared_child(k, c)];
+      child_light[c] = block_light[shared_child(k, c)];
+    }
+    begin_parent(1);
     vec4 light;
     uvec4 bits;
-    reduce(k, 1.0, light, bits);
-    imageStore(coarse_light_image, sap_address(at, 1), settings.storage == STORAGE_FULL ? light : round_to_half(light));
+    reduce(1.0, 1, light, bits);
+    imageStore(coarse_light_image, sap_address(at, 1), stored(light));
     imageStore(coarse_surface_image, sap_address(at, 1), bits);
   }
 }

@@ -113,7 +113,8 @@ ImageReads sap_gather_half(const PassKind& kind, const ReadsQuestion& question) 
   return {widest < copy_below_d_px ? own : own + 2 * block_reads(4 * 3, 4, 2)};
 }
 
-// subsurface_sap_down.comp: surface and light of the 6x6 children of 2x2 parents.
+// subsurface_sap_down.comp: surface and light of the 6x6 children of 2x2 parents. Second layers, here and
+// below, are read where there are some: nowhere on a surface that covers the view.
 ImageReads sap_down(const PassKind&, const ReadsQuestion&) {
   return {2 * block_reads(6 * 6, 2, 2)};
 }
@@ -131,26 +132,6 @@ ImageReads sap_up(const PassKind& kind, const ReadsQuestion& question) {
 ImageReads sap_gather(const PassKind&, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
   return {widest < copy_below_d_px ? 2 : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2)};
-}
-
-// subsurface_sap_down_layered.comp: of one parent at a time the 4x4 children, of both layers where the level
-// has two.
-ImageReads sap_down_layered(const PassKind& kind, const ReadsQuestion& question) {
-  return {2 * 4 * 4 * (1 + one_if(kind, question, "second_surface", PortSide::read))};
-}
-
-// subsurface_sap_up_layered.comp: as sap_up, one texel at a time and of both layers.
-ImageReads sap_up_layered(const PassKind& kind, const ReadsQuestion& question) {
-  const auto variant = static_cast<SapVariant>(setting(kind, question, "variant"));
-  const bool tent = setting(kind, question, "level") <= int64_t{sap_last_tent(variant)};
-  const bool last = one_if(kind, question, "coarse_scattered", PortSide::read) == 0;
-  return {2.0 * 2 * (tent ? 3 * 3 : 1) + (last ? 0 : 2 * 2 * 2 * 2)};
-}
-
-// As sap_gather, from two layers of the coarser level.
-ImageReads sap_gather_layered(const PassKind&, const ReadsQuestion& question) {
-  const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
-  return {widest < copy_below_d_px ? 2 : 2 * block_reads(6 * 4, 4, 2) + 4 * block_reads(4 * 3, 4, 2)};
 }
 
 // As fixed; a sample reads its levels beside that, two of them or one.
@@ -335,9 +316,9 @@ constexpr Entry entries[] = {
     {"subsurface.sap_gather", sap_gather},
     {"subsurface.sap_halve", sap_halve},
     {"subsurface.sap_gather_half", sap_gather_half},
-    {"subsurface.sap_down_layered", sap_down_layered},
-    {"subsurface.sap_up_layered", sap_up_layered},
-    {"subsurface.sap_gather_layered", sap_gather_layered},
+    {"subsurface.sap_down_layered", sap_down},
+    {"subsurface.sap_up_layered", sap_up},
+    {"subsurface.sap_gather_layered", sap_gather},
     {"subsurface.combine", combine},
     {"subsurface.light", light},
     {"subsurface.fixed", fixed},

@@ -28,13 +28,17 @@ struct sap_texel {
   float mass;   // share of the texel's own kernel that met the surface
   uint id;      // profile, 0: nothing here
 };
+// Beside the id of a texel's first surface where the level has two layers and the texel a second surface: that one's
+// images hold nothing anywhere else.
+const uint sap_second_bit = 0x100u;
+bool sap_has_second(uvec4 bits) { return (bits.w & sap_second_bit) != 0u; }
 
 uvec4 sap_pack(sap_texel t) {
   return uvec4(floatBitsToUint(t.depth), packHalf2x16(t.slope), packHalf2x16(vec2(t.reach, t.mass)), t.id);
 }
 sap_texel sap_unpack(uvec4 bits) {
   vec2 pair = unpackHalf2x16(bits.z);
-  return sap_texel(uintBitsToFloat(bits.x), unpackHalf2x16(bits.y), pair.x, pair.y, bits.w);
+  return sap_texel(uintBitsToFloat(bits.x), unpackHalf2x16(bits.y), pair.x, pair.y, bits.w & 0xffu);
 }
 
 // What a level hands down: light of its own and coarser levels, the share of the kernel that met the surface, confidence.

@@ -3,25 +3,22 @@
 #define DERMIS_SAP_CLIMB_GLSL
 
 const int block_width = 2, block_height = 2, coarse_width = 2, coarse_height = 2;
-#ifndef SAP_TEXELS_ACROSS
 const ivec2 odd_first = ivec2(1);
-#else
-ivec2 odd_first;
-#endif
 #include "sap_up.glsl"
 
 const float least_share = 0.004; // below it the tent is not worth its time
 
-// Bits of texel k, blended with what the coarser level hands down.
-uvec4 climb(int k, int level, sap_texel own, vec3 light, bool smooth_level, bool last) {
+// Bits of the texel at hand, whose place has parity `odd`, blended with what the coarser level hands down. `layers`: how
+// many are looked at.
+uvec4 climb(ivec2 odd, int level, sap_texel own, vec3 light, int layers, bool smooth_level, bool last) {
   vec3 share = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
   sap_sum here = sap_sum(light, vec3(own.mass));
   if (smooth_level && max(share.r, max(share.g, share.b)) >= least_share)
-    here = sap_tent(k, level, own);
+    here = sap_tent(level, own, layers);
   float confidence = 0.0;
   sap_sum rest = sap_sum(here.light, vec3(0.0));
   if (!last)
-    rest = sap_from_coarser(k, level, own, here.light, confidence);
+    rest = sap_from_coarser(odd, level, own, here.light, layers, confidence);
   rest.mass *= 1.0 - share;
   sap_sum blend = sap_blend(share * here.mass, here.light, vec3(0.0), here.light, rest);
   float widest = share[profiles[min(own.id, 255u)].widest];

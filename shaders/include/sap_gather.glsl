@@ -8,15 +8,16 @@ const ivec2 odd_first = ivec2(0);
 
 const float least_share = 0.002; // below it the tent is not worth its time
 
-vec4 gather(int k, sap_texel own) {
-  vec3 light = sap_own_light(k);
-  vec3 d_px = sap_d_px(own) * inversesqrt(sap_own_area(k)); // a tilted pixel keeps more of its own light
+// Of the texel at hand, whose place has parity `odd`.
+vec4 gather(ivec2 odd, sap_texel own) {
+  vec3 light = near_light[near_centre].rgb;
+  vec3 d_px = sap_d_px(own) * inversesqrt(near_light[near_centre].a); // a tilted pixel keeps more of its own light
   vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
   sap_sum near = sap_sum(light, vec3(own.mass));
   if (max(tent.r, max(tent.g, tent.b)) >= least_share)
-    near = sap_tent(k, 0, own);
+    near = sap_tent(0, own, 1);
   float confidence;
-  sap_sum rest = sap_from_coarser(k, 0, own, light, confidence);
+  sap_sum rest = sap_from_coarser(odd, 0, own, light, SAP_COARSE_LAYERS, confidence);
   rest.mass *= 1.0 - centre - tent;
   uint widest = profiles[min(own.id, 255u)].widest;
   confidence = mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
@@ -37,10 +38,13 @@ void gather_block() {
     ivec2 pixel = block.first + ivec2(k % block_width, k / block_width);
     if (!inside_rect(pixel))
       continue;
-    vec4 result = vec4(sap_own_light(k), 1.0);
-    sap_texel own = sap_own(k);
-    if (!block.copy_only && own.id != 0u)
-      result = gather(k, own);
+    take_near(k);
+    vec4 result = vec4(near_light[near_centre].rgb, 1.0);
+    sap_texel own = sap_unpack(near_surface[near_centre]);
+    if (!block.copy_only && own.id != 0u) {
+      take_corners(k);
+      result = gather(odd_of(k), own);
+    }
     imageStore(scattered_image, texel_of(pixel), settings.storage == STORAGE_FULL ? result : round_to_half(result));
   }
 }

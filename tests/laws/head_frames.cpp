@@ -181,10 +181,11 @@ std::vector<float> HeadTest::scatter(const std::string& graph, const std::vector
 }
 
 subsurface::SapResult<float> HeadTest::twin(const CapturedFrame& frame, subsurface::SapVariant variant,
-                                            uint32_t layers) {
+                                            uint32_t first_layered) {
   const std::vector<float> table = subsurface::make_sap_table(subsurface::fit_sap_weights(variant));
   const TruthFrame truth = make_truth_frame(frame);
-  return subsurface::sap_scatter<float>(truth.input(), table, {.variant = variant, .layers = layers});
+  return subsurface::sap_scatter<float>(truth.input(), table,
+                                        {.variant = variant, .first_layered = first_layered});
 }
 
 } // namespace laws

@@ -45,7 +45,7 @@ protected:
   // The pyramid's CPU twin.
   static dermis::subsurface::SapResult<float> twin(const dermis::tools::CapturedFrame& frame,
                                                    dermis::subsurface::SapVariant variant,
-                                                   uint32_t layers = 1);
+                                                   uint32_t first_layered = 2);
 
   void TearDown() override; // fails on validation messages
 

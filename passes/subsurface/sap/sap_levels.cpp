@@ -141,7 +141,7 @@ template <class Real> SapTexel<Real> first_texel(const TruthInput& input, const 
 } // namespace
 
 template <class Real>
-SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t layers, unsigned threads) {
+SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t first_layered, unsigned threads) {
   SapPyramid<Real> pyramid{.side_x = Real(std::abs(input.rays.scale_x)),
                            .side_y = Real(std::abs(input.rays.scale_y)),
                            .perspective = input.rays.perspective};
@@ -160,7 +160,8 @@ SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t layers, uns
                           .height = (fine.height + 1) / 2,
                           .border = 1,
                           .spacing = 2 * fine.spacing};
-    for (uint32_t layer = 0; layer < layers; ++layer)
+    const size_t layers = pyramid.levels.size() < first_layered ? 1 : 2;
+    for (size_t layer = 0; layer < layers; ++layer)
       coarse.layers[layer].resize(coarse.index(coarse.width, coarse.height) + 1);
     parallel_for(static_cast<size_t>(coarse.height + 2), 4, threads, [&](size_t row) {
       const int y = static_cast<int>(row) - 1;
@@ -179,7 +180,7 @@ SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t layers, uns
           children.texels[k] = &child;
           children.left[k] = 1;
         }
-        for (uint32_t layer = 0; layer < layers; ++layer)
+        for (size_t layer = 0; layer < layers; ++layer)
           coarse.layers[layer][coarse.index(x, y)] = reduce(pyramid, children);
       }
     });

@@ -54,8 +54,8 @@ template <class Real> struct SapTexel {
 template <class Real> struct SapLevel {
   int width = 0, height = 0, border = 0; // texels
   Real spacing = 1;                      // pixels
-  // The surface that most of what a texel stands for lies on and, of levels from 1 on with two layers, what
-  // lies off it: empty with one layer.
+  // The surface that most of what a texel stands for lies on and, of levels with two layers, what lies off
+  // it: empty with one layer.
   std::array<std::vector<SapTexel<Real>>, 2> layers{};
 
   size_t index(int x, int y) const {
@@ -85,8 +85,9 @@ template <class Real> struct SapPyramid {
   }
 };
 
-// All levels, with one or two layers a texel. Deterministic for any number of threads. Real: float or double.
+// All levels, those from `first_layered` on (1 or more) with two layers a texel. Deterministic for any number
+// of threads. Real: float or double.
 template <class Real>
-SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t layers, unsigned threads);
+SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t first_layered, unsigned threads);
 
 } // namespace dermis::subsurface

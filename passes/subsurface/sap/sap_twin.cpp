@@ -150,7 +150,7 @@ template <class Real>
 SapResult<Real> sap_scatter(const TruthInput& input, std::span<const float> table,
                             const SapOptions& options) {
   SapClimb<Real> climb{input, table, options.variant,
-                       build_sap_pyramid<Real>(input, options.layers, options.threads)};
+                       build_sap_pyramid<Real>(input, options.first_layered, options.threads)};
   for (auto& levels : climb.scattered)
     levels.resize(sap_level_count);
   for (size_t l = sap_level_count; l-- > 0;) {

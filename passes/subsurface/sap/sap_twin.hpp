@@ -9,7 +9,9 @@ namespace dermis::subsurface {
 
 struct SapOptions {
   SapVariant variant = SapVariant::smooth;
-  uint32_t layers = 1;  // surfaces a texel of levels from 1 on can have: 1 (sap.json) or 2 (sap_layered.json)
+  // The first level whose texels can have two surfaces: 2 (sap.json), 1 (sap_layered.json),
+  // sap_level_count: none.
+  uint32_t first_layered = 2;
   unsigned threads = 0; // 0: one a hardware thread; the result does not depend on it
 };
 

@@ -15,7 +15,7 @@ constexpr std::string_view light_doc =
     "rgb light, a = fourth root of the surface's area over its cross-section";
 constexpr std::string_view surface_doc =
     "depth in mm (bits of a float); slope x, y (halves); factor on d, share of the texel's kernel that met "
-    "its own surface (halves); profile id, 0 = nothing here";
+    "its own surface (halves); profile id in bits 0-7, 0 = nothing here, bit 8 = there is a second layer";
 constexpr std::string_view scattered_doc = "scattered light of this level and coarser ones (3 halves), "
                                            "confidence (half), share of the kernel that met the "
                                            "surface (3 halves), 0; in full storage light (bits of 3 floats), "
@@ -41,7 +41,7 @@ constexpr KindSetting variant =
                     "level 1, below subsurface.sap_gather_half",
                     1);
 
-// With two layers there is no other first level.
+// With two layers at level 1 there is no other first level.
 constexpr KindSetting layered_variant =
     setting::choice("variant", std::span(variant_options).first(2),
                     "base: tent at levels 0 and 1; smooth: at every level, which hides the grid", 1);
@@ -126,6 +126,15 @@ constexpr Port down_ports[] = {
 };
 constexpr KindSetting down_settings[] = {level_setting(1, "that is written"), storage};
 
+// Of levels whose texels can have a second surface: ports of that layer beside those of the first. Its images
+// hold something only where the first surface says so.
+constexpr std::string_view second_doc =
+    "the same of the second layer, what lies off the first; nothing where a texel has one";
+constexpr Port second_coarse_surface{
+    "second_coarse_surface", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats};
+constexpr Port second_coarse_scattered{
+    "second_coarse_scattered", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats};
+
 constexpr Port up_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of this level", light_formats},
     {"surface", Usage::sampled_image, false, "utexture2D", "of this level", surface_formats},
@@ -133,6 +142,8 @@ constexpr Port up_ports[] = {
      surface_formats},
     {"coarse_scattered", Usage::sampled_image, true, "utexture2D",
      "of the coarser level; unbound at the last", surface_formats},
+    second_coarse_surface,
+    second_coarse_scattered,
     level_tiles,
     level_arguments,
     {"scattered", Usage::storage_image_write, false, "uimage2D", scattered_doc, surface_formats},
@@ -156,19 +167,15 @@ constexpr Port half_gather_ports[] = {
     gather_ports[2], gather_ports[3], level_tiles, level_arguments,     gather_ports[6],
 };
 
-constexpr KindSetting layered_up_settings[] = {level_setting(1, "that is written"), layered_variant, storage};
 constexpr KindSetting layered_gather_settings[] = {layered_variant, storage};
-
-// With two layers a texel of levels from 1 on: ports of the second one beside those of the first.
-constexpr std::string_view second_doc = "the same of the second layer, what lies off the first; id 0 = none";
 
 constexpr Port layered_down_ports[] = {
     down_ports[0],
     down_ports[1],
-    {"second_light", Usage::sampled_image, true, "texture2D", "of the second layer; level 0 has none",
-     light_formats},
-    {"second_surface", Usage::sampled_image, true, "utexture2D", "of the second layer; level 0 has none",
-     surface_formats},
+    {"second_light", Usage::sampled_image, true, "texture2D",
+     "of the second layer; unbound where the finer level has one", light_formats},
+    {"second_surface", Usage::sampled_image, true, "utexture2D",
+     "of the second layer; unbound where the finer level has one", surface_formats},
     level_tiles,
     level_arguments,
     down_ports[4],
@@ -184,11 +191,11 @@ constexpr Port layered_up_ports[] = {
     {"second_surface", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
     up_ports[2],
     up_ports[3],
-    {"second_coarse_surface", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats},
-    {"second_coarse_scattered", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats},
+    second_coarse_surface,
+    second_coarse_scattered,
     level_tiles,
     level_arguments,
-    up_ports[6],
+    up_ports[8],
     {"second_scattered", Usage::storage_image_write, false, "uimage2D", second_doc, surface_formats},
 };
 
@@ -242,7 +249,9 @@ const PassKind sap_down_kind{
 const PassKind sap_up_kind{
     .name = "subsurface.sap_up",
     .shader = "subsurface_sap_up",
-    .doc = "Blends one level of the pyramid with what comes from the coarser ones.",
+    .doc = "Blends one level of the pyramid with what comes from the coarser ones; of two layers there a "
+           "texel takes "
+           "the one nearer to it.",
     .ports = up_ports,
     .settings = up_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -300,7 +309,7 @@ const PassKind sap_up_layered_kind{
     .shader = "subsurface_sap_up_layered",
     .doc = "As subsurface.sap_up, of both layers: each takes of another texel the layer nearer to it.",
     .ports = layered_up_ports,
-    .settings = layered_up_settings,
+    .settings = up_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
     .arguments_entry = "level",
@@ -309,7 +318,7 @@ const PassKind sap_up_layered_kind{
 const PassKind sap_gather_layered_kind{
     .name = "subsurface.sap_gather_layered",
     .shader = "subsurface_sap_gather_layered",
-    .doc = "As subsurface.sap_gather, from two layers.",
+    .doc = "As subsurface.sap_gather, from two layers at level 1.",
     .ports = layered_gather_ports,
     .settings = layered_gather_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -21,6 +21,8 @@ constexpr const char* unit_times = R"({ "dermis_calibration": 1, "device": "inve
   { "work": "subsurface.sap_setup texturing=post storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_down level=1 storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_up level=1 variant=smooth storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_down_layered level=2 storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_up_layered level=2 variant=smooth storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_gather variant=smooth storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.doubt below=0.8", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.allot", "base_us": 0, "group_us": 0, "spread": 0 },
