@@ -62,7 +62,7 @@ CostId CostModel::add(std::string_view work) {
     line.prior[0] = at.base_ms;
     line.prior[1] = at.unit_ms;
     line.has_prior = line.stand_in = true;
-    line.guess = words_alike(like->work, work) == 0;
+    line.guess = like->guess || words_alike(like->work, work) == 0;
   }
   lines_.push_back(std::move(line));
   return {static_cast<uint32_t>(lines_.size() - 1)};

@@ -66,6 +66,16 @@ TEST(CostModel, WorkOfAnotherKindThatStoodInDoesNotScaleTheRest) {
   EXPECT_NEAR(model.estimate(known, 1000).ms, 1.1, 1e-3);
 }
 
+TEST(CostModel, NorDoesWorkForWhichSuchAStandInStoodInAgain) {
+  CostModel model({{"known a", 100, 1, 0.1}});
+  const CostId known = model.add("known a");
+  const CostId strange[] = {model.add("strange level=2"), model.add("strange level=3")};
+  for (int i = 0; i < 40; ++i)
+    for (const CostId one : strange)
+      model.observe(one, 1000, 0.001);
+  EXPECT_NEAR(model.estimate(known, 1000).ms, 1.1, 1e-3);
+}
+
 TEST(CostModel, UnknownWorkCostsWhatItsLikesDoAndNeverNothing) {
   CostModel model({{"fixed inverse=exact samples=16", 10, 1, 0.1},
                    {"fixed inverse=approximate samples=8", 10, 4, 0.1},
