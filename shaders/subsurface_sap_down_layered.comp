@@ -17,7 +17,7 @@ void read_children(texel_block block, ivec2 parent, int finer) {
     uvec4 bits = needed ? texelFetch(surface_image, sap_address(at, finer), 0) : uvec4(0u);
     children[c] = sap_unpack(bits);
     child_light[c] = needed ? texelFetch(light_image, sap_address(at, finer), 0) : vec4(0.0);
-    needed = needed && sap_has_second(bits) && has_second_surface();
+    needed = needed && sap_has_second(bits) && has_second_surface() && has_second_light();
     int second = children_a_layer + c;
     children[second] = sap_unpack(needed ? texelFetch(second_surface_image, sap_address(at, finer), 0) : uvec4(0u));
     child_light[second] = needed ? texelFetch(second_light_image, sap_address(at, finer), 0) : vec4(0.0);

@@ -81,7 +81,7 @@ void read_coarser(ivec2 first, int level) {
 #if SAP_COARSE_LAYERS > 1 && SAP_OWN_LAYERS == 1
     needed = needed && sap_has_second(coarse_surface[i]);
 #ifdef SAP_SECOND_MAY_LACK
-    needed = needed && has_second_coarse_surface();
+    needed = needed && has_second_coarse_surface() && has_second_coarse_scattered();
 #endif
     coarse_surface[coarse_texels + i] = needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
     coarse_scattered[coarse_texels + i] = needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
@@ -124,7 +124,7 @@ void read_corners(ivec2 place, int level, bool there) {
     bool needed = there && sap_inside(at, level + 1);
     corner_surface[n] = needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
     corner_scattered[n] = needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
-    needed = needed && sap_has_second(corner_surface[n]) && has_second_coarse_surface();
+    needed = needed && sap_has_second(corner_surface[n]) && has_second_coarse_surface() && has_second_coarse_scattered();
     int second = corner_texels + n;
     corner_surface[second] = needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
     corner_scattered[second] = needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);

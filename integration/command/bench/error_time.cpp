@@ -10,6 +10,8 @@
 #include "passes/subsurface/environment.hpp"
 
 #include <fmt/format.h>
+#include <set>
+#include <string>
 
 #include <algorithm>
 #include <chrono>
@@ -102,8 +104,12 @@ demo::Result<> add_techniques(ErrorTimeBench& bench) {
     if (!made) return made.error();
     bench.techniques.push_back(made.take());
   }
-  if (bench.techniques.empty()) return demo::Error{demo::ErrorKind::usage, "no technique is left to measure"};
-  return demo::success();
+  if (!bench.techniques.empty()) return demo::success();
+  std::set<std::string> known;
+  for (const TechniqueRequest& request : bench.file.techniques)
+    known.insert(request.technique);
+  return demo::Error{demo::ErrorKind::usage,
+                     fmt::format("no technique is left to measure; there are {}", fmt::join(known, ", "))};
 }
 
 // Median projected d of the frame, per channel; and the share of its subsurface pixels that scatter at all.
