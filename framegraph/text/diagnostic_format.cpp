@@ -14,7 +14,6 @@ namespace dermis {
 namespace {
 
 constexpr size_t excerpt_before = 60, excerpt_after = 40; // bytes shown on either side of the column
-constexpr size_t longest_text = 4096;                     // bytes of a message, name or pointer
 
 std::string_view severity_name(Severity severity) {
   switch (severity) {

@@ -11,8 +11,6 @@ namespace dermis {
 
 namespace {
 
-constexpr size_t longest_text = 4096; // bytes of a message
-
 std::string_view level_of(Severity severity) {
   return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
 }

@@ -14,7 +14,6 @@ namespace dermis {
 
 namespace {
 
-constexpr size_t shown_bytes = 80;          // of a hostile token, in a message
 constexpr int out_of_range_exception = 406; // nlohmann: "number overflow"
 
 TextPosition locate(std::string_view text, size_t offset) {
@@ -27,12 +26,6 @@ TextPosition locate(std::string_view text, size_t offset) {
       out.column = 1;
     }
   }
-  return out;
-}
-
-std::string shown(std::string_view text) {
-  std::string out;
-  append_printable(out, text, shown_bytes);
   return out;
 }
 
@@ -115,7 +108,7 @@ private:
   }
   bool refuse_integer() {
     return refuse(DiagnosticId::integer_precision, cursor_.value_position(),
-                  fmt::format("the integer {} does not fit in 64 signed bits", shown(number_token())));
+                  fmt::format("the integer {} does not fit in 64 signed bits", shown_token(number_token())));
   }
   bool check_no_nul(std::string_view value) {
     if (value.find('\0') == std::string_view::npos) return true;
@@ -219,7 +212,7 @@ bool NodeBuilder::end_object() {
     if (diagnostics_.full()) break;
     Diagnostic& one = diagnostics_.add(
         DiagnosticId::duplicate_key, document_.where_key(again),
-        fmt::format("the key '{}' appears twice in one object", shown(document_.key(again))));
+        fmt::format("the key '{}' appears twice in one object", shown_token(document_.key(again))));
     one.related.emplace_back(document_.where_key(first), "first given here");
   }
   return true;
@@ -232,7 +225,7 @@ bool NodeBuilder::parse_error(size_t position, const std::string&,
   if (exception.id == out_of_range_exception) {
     return refuse(
         DiagnosticId::out_of_range, cursor_.value_position(),
-        fmt::format("the number {} is beyond the range of double precision", shown(number_token())));
+        fmt::format("the number {} is beyond the range of double precision", shown_token(number_token())));
   }
   // "[json.exception...] parse error at line L, column C: syntax error while parsing W - what; last read:
   // '...'"

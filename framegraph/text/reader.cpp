@@ -9,18 +9,6 @@
 
 namespace dermis {
 
-namespace {
-
-constexpr size_t shown_bytes = 80; // of a value, in a message
-
-std::string shown(std::string_view text) {
-  std::string out;
-  append_printable(out, text, shown_bytes);
-  return out;
-}
-
-} // namespace
-
 bool expect_kind(const Document& document, NodeId node, std::string_view what, NodeKind kind,
                  Diagnostics& diagnostics) {
   const NodeKind found = document[node].kind;
@@ -51,9 +39,9 @@ bool check_name(std::string_view name, std::string_view what, const SourceLocati
       std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || digit(c); })) {
     return true;
   }
-  diagnostics.add(
-      DiagnosticId::bad_name, where,
-      fmt::format("{} is '{}'; a name is a letter or '_', then letters, digits or '_'", what, shown(name)));
+  diagnostics.add(DiagnosticId::bad_name, where,
+                  fmt::format("{} is '{}'; a name is a letter or '_', then letters, digits or '_'", what,
+                              shown_token(name)));
   return false;
 }
 
@@ -98,7 +86,7 @@ std::optional<uint32_t> read_word(const Document& document, NodeId node, std::st
   if (found != words.end()) return static_cast<uint32_t>(found - words.begin());
   diagnostics
       .add(DiagnosticId::invalid_value, document.where(node),
-           fmt::format("{} is '{}'; it must be {}", what, shown(text), list_words(words)))
+           fmt::format("{} is '{}'; it must be {}", what, shown_token(text), list_words(words)))
       .suggestion = did_you_mean(text, words);
   return std::nullopt;
 }
@@ -309,7 +297,7 @@ bool ObjectReader::finish() {
         std::find_if(missing_.begin(), missing_.end(), [&](const Missing& one) { return one.key == meant; });
     Diagnostic fresh{DiagnosticId::unknown_key,
                      document_.where_key(child),
-                     fmt::format("{} has no key '{}'", what_, shown(key)),
+                     fmt::format("{} has no key '{}'", what_, shown_token(key)),
                      did_you_mean(key, asked_),
                      {}};
     if (missing != missing_.end()) { // one root cause: the key is there, misspelt

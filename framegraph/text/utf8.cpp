@@ -34,6 +34,12 @@ size_t find_invalid_utf8(std::string_view text) {
   return std::string_view::npos;
 }
 
+std::string shown_token(std::string_view text) {
+  std::string out;
+  append_printable(out, text, 80);
+  return out;
+}
+
 void append_printable(std::string& out, std::string_view text, size_t max_bytes) {
   size_t at = 0;
   while (at < text.size()) {

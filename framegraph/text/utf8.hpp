@@ -16,5 +16,8 @@ size_t utf8_sequence_bytes(std::string_view text);
 // `text` made safe for a terminal or a log: control characters become \xNN, ill-formed bytes '?'. At most
 // `max_bytes` of the input are kept, cut between code points, with "..." in place of the rest.
 void append_printable(std::string& out, std::string_view text, size_t max_bytes);
+inline constexpr size_t longest_text = 4096; // bytes of a message, name or pointer
+// A token or value as messages show it: the first 80 bytes, made safe.
+std::string shown_token(std::string_view text);
 
 } // namespace dermis

@@ -10,8 +10,7 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t most_mips = 32;     // of an image whose sides are 32-bit numbers
-constexpr size_t most_objections = 32; // the first ones tell; a hostile plan could cause one for each pair
+constexpr uint32_t most_mips = 32; // of an image whose sides are 32-bit numbers
 // A hostile plan could lay all that it has into the same bytes.
 constexpr uint64_t most_shared_pairs = 1u << 25;
 

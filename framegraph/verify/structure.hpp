@@ -9,6 +9,9 @@
 
 namespace dermis {
 
+inline constexpr size_t most_objections =
+    32; // the first ones tell; a hostile plan could cause one for each pair
+
 // What is wrong with the shape of the plan, one sentence each; empty: every index can be followed.
 std::vector<std::string> verify_structure(const Plan& plan);
 

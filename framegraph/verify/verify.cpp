@@ -16,8 +16,6 @@
 namespace dermis {
 namespace {
 
-constexpr size_t most_objections = 32; // the first ones tell; the rest follow from them
-
 // A hostile plan could divide images, and accesses by barriers for some of their bytes, without end.
 constexpr uint64_t most_things = 1u << 18, most_pieces = 1u << 21;
 // Nor could it let all its memory meet without end: each access is held against earlier ones to the same

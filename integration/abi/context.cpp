@@ -60,7 +60,8 @@ dermis_result check_alive(const dermis_context_t& context, const char* function)
 
 namespace {
 
-constexpr uint32_t known_flags = DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS | DERMIS_CONTEXT_RAY_QUERY;
+constexpr uint32_t known_context_flags =
+    DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS | DERMIS_CONTEXT_RAY_QUERY;
 
 dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   const auto null = [&](const char* field) {
@@ -70,9 +71,9 @@ dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
     return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
                 "dermis_context_create: desc.abi_version is {}, this library speaks 1..{}", desc.abi_version,
                 DERMIS_ABI_VERSION);
-  if ((desc.flags & ~known_flags) != 0)
+  if ((desc.flags & ~known_context_flags) != 0)
     return bad_argument(log, "dermis_context_create: desc.flags is {:#x}, known bits are {:#x}", desc.flags,
-                        known_flags);
+                        known_context_flags);
   if (desc.frames_in_flight > vulkan::max_frames_in_flight)
     return bad_argument(log, "dermis_context_create: desc.frames_in_flight is {}, expected 0 (= {}) or 1..{}",
                         desc.frames_in_flight, default_frames_in_flight, vulkan::max_frames_in_flight);

@@ -10,7 +10,7 @@
 namespace dermis::abi {
 namespace {
 
-constexpr uint32_t known_flags = DERMIS_FRAME_RESET_HISTORY | DERMIS_FRAME_BOUNDS;
+constexpr uint32_t known_frame_flags = DERMIS_FRAME_RESET_HISTORY | DERMIS_FRAME_BOUNDS;
 
 dermis_result check_numbers(const dermis_view_t& view, const dermis_frame& frame) {
   const Log& log = view.context->log;
@@ -18,8 +18,9 @@ dermis_result check_numbers(const dermis_view_t& view, const dermis_frame& frame
   const uint32_t in_flight = view.context->frames_in_flight;
   if (frame.command_buffer == VK_NULL_HANDLE)
     return bad_argument(log, "{}: command_buffer is NULL", function);
-  if ((frame.flags & ~known_flags) != 0)
-    return bad_argument(log, "{}: flags is {:#x}, known bits are {:#x}", function, frame.flags, known_flags);
+  if ((frame.flags & ~known_frame_flags) != 0)
+    return bad_argument(log, "{}: flags is {:#x}, known bits are {:#x}", function, frame.flags,
+                        known_frame_flags);
   if (frame.frame_index <= view.last_frame)
     return bad_argument(log, "{}: frame_index is {}, expected more than that of the frame before, {}",
                         function, frame.frame_index, view.last_frame);
@@ -151,10 +152,6 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
       result != DERMIS_OK)
     return result;
   return check_state(view, index, slot, "after", binding.after);
-}
-
-vulkan::HostState host_state(const dermis_image_state& state) {
-  return {state.layout, state.queue_family, state.stages, state.access};
 }
 
 // The image view of a binding that brings none.

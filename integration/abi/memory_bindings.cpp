@@ -54,10 +54,6 @@ const Slot* find_slot(const Place& place, const Program& program, uint32_t numbe
   return result == DERMIS_OK && slot.bound ? &slot : nullptr;
 }
 
-vulkan::HostState host_state(const dermis_image_state& state) {
-  return {state.layout, state.queue_family, state.stages, state.access};
-}
-
 // Calls `use(place, binding)` for each element of a caller's array, stepped by the first one's struct_size.
 template <class T, class Use>
 dermis_result for_each(const Place& array, const Program& program, const T* items, uint32_t count,

@@ -15,6 +15,7 @@ namespace dermis::tools {
 // Names of channels in the order wanted. The name "*" alone stands for the only channel of a file that has
 // one.
 using ChannelNames = std::vector<std::string>;
+inline const ChannelNames rgb_names = {"R", "G", "B"};
 
 // Reads the channels of the first entry of `accepted` whose names are all present; other channels are
 // ignored. Half, float and uint channels become float. Empty on failure (missing, too large, malformed,

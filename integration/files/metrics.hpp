@@ -12,6 +12,9 @@ namespace dermis::tools {
 
 // ITU-R BT.709 luminance of linear light.
 inline constexpr std::array<double, 3> rec709 = {0.2126, 0.7152, 0.0722};
+template <class Value> double luminance_of(const Value* rgb) {
+  return rec709[0] * double(rgb[0]) + rec709[1] * double(rgb[1]) + rec709[2] * double(rgb[2]);
+}
 
 // PSNR is capped here: beyond, the figures are those of rounding.
 inline constexpr double max_psnr_db = 100;

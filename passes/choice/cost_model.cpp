@@ -8,7 +8,7 @@ namespace {
 
 // Chosen on recorded timings of the software driver, whose single frames are off by up to three times.
 constexpr double unit_groups = 1024;     // brings both coefficients to the same size
-constexpr double keep = 0.96;            // weight of the past at each new frame: a memory of 25 frames
+constexpr double time_memory = 0.96;     // weight of the past at each new frame: a memory of 25 frames
 constexpr double prior_weight = 0.5;     // of the calibration, in frames
 constexpr double no_prior_weight = 1e-3; // where there is none: only keeps the equations regular
 constexpr double outlier = 2.0;          // residuals beyond this many typical ones count less (Huber 1964)
@@ -137,9 +137,9 @@ void CostModel::observe(CostId id, uint64_t groups, double ms) {
   }
   const double x_power[3] = {1, x, x * x};
   for (size_t i = 0; i < 3; ++i)
-    line.moments[i] = keep * line.moments[i] + weight * x_power[i];
+    line.moments[i] = time_memory * line.moments[i] + weight * x_power[i];
   for (size_t i = 0; i < 2; ++i)
-    line.targets[i] = keep * line.targets[i] + weight * ms * x_power[i];
+    line.targets[i] = time_memory * line.targets[i] + weight * ms * x_power[i];
   ++line.observations;
 }
 

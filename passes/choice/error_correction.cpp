@@ -6,10 +6,10 @@
 namespace dermis::choice {
 namespace {
 
-constexpr double keep = 0.96;      // of what is known, a probed frame: a memory of 25, as that of times
-constexpr double prior_frames = 4; // that the table counts as
-constexpr double most_factor = 4;  // either way: a table that is further off is of other content
-constexpr double wild = 3;         // times what is known so far: a frame counts as no more than that
+constexpr double error_memory = 0.96; // of what is known, a probed frame: a memory of 25, as that of times
+constexpr double prior_frames = 4;    // that the table counts as
+constexpr double most_factor = 4;     // either way: a table that is further off is of other content
+constexpr double wild = 3;            // times what is known so far: a frame counts as no more than that
 
 ErrorCorrection::Line& line_of(ErrorCorrection& correction, int32_t technique) {
   return correction.lines[static_cast<size_t>(technique + 1)];
@@ -34,8 +34,8 @@ void observe_error(ErrorCorrection& correction, int32_t technique, double probed
   const double most = wild * factor_of(line) * expected;
   const double found = std::min(probed, most);
   for (ErrorCorrection::Line& other : correction.lines) {
-    other.probed *= keep;
-    other.expected *= keep;
+    other.probed *= error_memory;
+    other.expected *= error_memory;
   }
   line.probed += found * found;
   line.expected += expected * expected;

@@ -1,9 +1,9 @@
 #include "passes/restir/domain.hpp"
 
+#include "passes/restir/word.hpp"
 #include "passes/subsurface/burley_profile.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace dermis::restir {
@@ -12,12 +12,6 @@ namespace {
 
 constexpr double snorm_most = 32767;
 
-uint32_t bits(double x) {
-  return std::bit_cast<uint32_t>(static_cast<float>(x));
-}
-double number(uint32_t word) {
-  return static_cast<double>(std::bit_cast<float>(word));
-}
 uint32_t snorm(double x) {
   return static_cast<uint32_t>(std::lround(std::clamp(x, -1.0, 1.0) * snorm_most)) & 0xffffu;
 }

@@ -1,7 +1,8 @@
 #include "passes/restir/reservoir.hpp"
 
+#include "passes/restir/word.hpp"
+
 #include <algorithm>
-#include <bit>
 
 namespace dermis::restir {
 
@@ -9,13 +10,6 @@ namespace {
 
 bool usable(double x) {
   return x >= 0 && std::isfinite(x); // NaN compares false
-}
-
-uint32_t bits(double x) {
-  return std::bit_cast<uint32_t>(static_cast<float>(x));
-}
-double number(uint32_t word) {
-  return static_cast<double>(std::bit_cast<float>(word));
 }
 
 } // namespace

@@ -35,8 +35,10 @@ double burley_pdf(double r, double d) {
 double burley_cdf(double r, double d) {
   if (!(r > 0)) return 0;
   if (!(d > 0)) return 1;
-  // expm1 keeps the digits of small radii, where both exponentials are close to 1.
-  return -0.25 * std::expm1(-r / d) - 0.75 * std::expm1(-r / (3 * d));
+  // expm1 keeps the digits of small radii, where both exponentials are close to 1: with e = e^(-r/3d) - 1 the
+  // other one is (1 + e)^3.
+  const double e = std::expm1(-r / (3 * d));
+  return -e * (1.5 + e * (0.75 + e * 0.25));
 }
 
 double burley_inverse_survival(double u, double d) {

@@ -2,6 +2,8 @@
 // Burley's normalised diffusion profile in fp64: density, distribution, inverse, sampler, and its scaling by
 // albedo. shaders/burley.glsl mirrors these functions under the same names.
 
+#include <span>
+
 namespace dermis::subsurface {
 
 // Sources: Burley 2015 ("Extending the Disney BRDF to a BSDF with integrated subsurface scattering"),
@@ -12,10 +14,14 @@ namespace dermis::subsurface {
 
 // Smallest survival that is inverted: 24 random bits never give less, and r stays below 49.1 d.
 inline constexpr double burley_min_survival = 1.0 / 16777216.0;
+inline constexpr double burley_negligible_in_d = 250;
 
 // R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r), per unit of area. Infinite at r = 0: use burley_pdf where r may
 // be 0.
 double burley_R(double r, double d);
+// The same at many radii > 0 at once, within 2e-14 of it; beyond burley_negligible_in_d, where both
+// exponentials are below 1e-36, as there. 0 for d = 0. `result` holds as many values.
+void burley_R(std::span<const double> r, double d, std::span<double> result);
 // Radial density 2 pi r R(r) = (e^(-r/d) + e^(-r/3d)) / (4 d), r >= 0.
 double burley_pdf(double r, double d);
 // Share of the energy within radius r: 1 - e^(-r/d)/4 - 3 e^(-r/3d)/4. 0 for r <= 0; 1 for d = 0 and r > 0.

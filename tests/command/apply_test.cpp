@@ -16,8 +16,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr const char* burley = "configs/graphs/burley.json";
-
 class Captures : public CommandTest {
 protected:
   Outcome apply(const std::vector<std::string>& more = {}, const RunOptions& options = {}) const {

@@ -17,20 +17,20 @@ namespace {
 using test::Outcome;
 using testing::HasSubstr;
 
-const std::string root = DERMIS_SOURCE_DIR;
+const std::string sources = DERMIS_SOURCE_DIR;
 
 TEST(BenchRestirFile, TheShippedOneIsReadableAndNamesFilesThatAreThere) {
   Diagnostics diagnostics;
-  const auto file = read_restir(root + "/tests/benchmark/restir.json", diagnostics);
+  const auto file = read_restir(sources + "/tests/benchmark/restir.json", diagnostics);
   ASSERT_TRUE(file.has_value());
-  EXPECT_TRUE(std::filesystem::exists(root + "/" + file->graph));
+  EXPECT_TRUE(std::filesystem::exists(sources + "/" + file->graph));
   std::set<std::string> scenes, beside;
   for (const SceneRequest& scene : file->scenes) {
-    EXPECT_TRUE(std::filesystem::exists(root + "/" + scene.file)) << scene.file;
+    EXPECT_TRUE(std::filesystem::exists(sources + "/" + scene.file)) << scene.file;
     scenes.insert(scene.scene);
   }
   for (const TechniqueRequest& technique : file->screen_space) {
-    EXPECT_TRUE(std::filesystem::exists(root + "/" + technique.graph)) << technique.graph;
+    EXPECT_TRUE(std::filesystem::exists(sources + "/" + technique.graph)) << technique.graph;
     beside.insert(technique.technique);
   }
   EXPECT_TRUE(scenes.contains("back_lit_ear"));
@@ -39,7 +39,7 @@ TEST(BenchRestirFile, TheShippedOneIsReadableAndNamesFilesThatAreThere) {
 
 TEST(BenchRestirFile, WhatIsNotKnownIsRefusedWithThePlace) {
   Diagnostics diagnostics;
-  EXPECT_FALSE(read_restir(root + "/tests/benchmark/dynamic.json", diagnostics));
+  EXPECT_FALSE(read_restir(sources + "/tests/benchmark/dynamic.json", diagnostics));
   EXPECT_TRUE(diagnostics.has_errors());
 }
 
@@ -129,9 +129,9 @@ TEST(RestirClaims, RowsThatErrMoreAreCounted) {
 
 struct BenchRestir : test::CommandTest {
   static test::RunOptions with_rays() {
-    return {{"VK_DRIVER_FILES=" + root + "/build/drivers/mesa25.json"}, "", ""};
+    return {{"VK_DRIVER_FILES=" + sources + "/build/drivers/mesa25.json"}, "", ""};
   }
-  static bool has_rays() { return std::filesystem::exists(root + "/build/drivers/mesa25.json"); }
+  static bool has_rays() { return std::filesystem::exists(sources + "/build/drivers/mesa25.json"); }
   nlohmann::json rows(const std::string& name) const { return nlohmann::json::parse(read(name)).at("rows"); }
 };
 

@@ -22,13 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-std::string read_file(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 void redirect(int target, const fs::path& path, int flags) {
   const int file = open(path.c_str(), flags, 0600);
   if (file < 0 || dup2(file, target) < 0) _exit(127);
@@ -53,6 +46,13 @@ void redirect(int target, const fs::path& path, int flags) {
 
 } // namespace
 
+std::string text_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
 Outcome CommandTest::run(const std::vector<std::string>& arguments, const RunOptions& options) {
   const TestFolder streams;
   std::ofstream(streams / "in", std::ios::binary) << options.input;
@@ -68,8 +68,8 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments, const RunOpt
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  outcome.out = read_file(streams / "out");
-  outcome.err = read_file(streams / "err");
+  outcome.out = text_of(streams / "out");
+  outcome.err = text_of(streams / "err");
   return outcome;
 }
 

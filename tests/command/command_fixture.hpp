@@ -38,11 +38,15 @@ private:
   const TestFolder folder_;
 };
 
+inline constexpr const char* burley = "configs/graphs/burley.json";
+
 // An overlay on configs/graphs/skin.json whose budget chooses among its four techniques and no steps of
 // theirs, which makes calibrating it short.
 inline constexpr const char* techniques_alone = R"({ "dermis_overlay": 1, "edits": [
   { "set": "/settings/variant", "to": { "choice": ["base", "smooth", "half"], "default": "smooth" } },
   { "set": "/settings/taps", "to": { "choice": ["11", "17", "25"], "default": "25" } } ] })";
+
+std::string text_of(const std::filesystem::path& file); // all of it; "" where there is no such file
 
 // Variables under which the Khronos layer checks everything that the command asks of the driver,
 // synchronization included; what it finds goes to standard output.

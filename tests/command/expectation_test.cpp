@@ -16,16 +16,9 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-std::string text_of(const std::string& path) {
-  std::ifstream stream(path);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 struct Expectations : CommandTest {
   // burley.json as shipped, in this test's folder, with these expectations beside it.
-  std::string burley(const std::string& expectations) const {
+  std::string beside_burley(const std::string& expectations) const {
     write("burley.json", text_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json"));
     return write("burley.expect.json", expectations);
   }
@@ -55,7 +48,7 @@ TEST_F(Expectations, EveryShippedGraphHasSomeAndMeetsThem) {
 }
 
 TEST_F(Expectations, OnlyWhatIsStatedIsHeld) {
-  burley(two_facts);
+  beside_burley(two_facts);
   const Outcome outcome = run({"test", path("")});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("burley.expect.json: 1 case as expected"));
@@ -64,7 +57,7 @@ TEST_F(Expectations, OnlyWhatIsStatedIsHeld) {
 TEST_F(Expectations, ADifferenceIsShownLineByLine) {
   std::string wrong = two_facts;
   wrong.replace(wrong.find("\"scatter\", "), 11, "\"sharpen\", ");
-  const std::string file = burley(wrong);
+  const std::string file = beside_burley(wrong);
   const Outcome outcome = run({"test", file});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err,
@@ -77,7 +70,7 @@ TEST_F(Expectations, ADifferenceIsShownLineByLine) {
 TEST_F(Expectations, UpdateChangesTheFactsAndNothingElse) {
   std::string wrong = two_facts;
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
-  const std::string file = burley(wrong);
+  const std::string file = beside_burley(wrong);
   EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
   const std::string after = text_of(file);
   EXPECT_THAT(after, AllOf(HasSubstr("// what the smallest host gets"), HasSubstr("\"history_bytes\": 0"),
@@ -88,7 +81,7 @@ TEST_F(Expectations, UpdateChangesTheFactsAndNothingElse) {
 }
 
 TEST_F(Expectations, UpdateStatesEverythingOfACaseThatStatesNothing) {
-  const std::string file = burley(R"({ "dermis_expect": 1, "cases": [
+  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "new" },
   { "case": "too_large", "device": { "max_image_dimension": 16 } } ] })");
   const Outcome before = run({"test", file});
@@ -101,7 +94,7 @@ TEST_F(Expectations, UpdateStatesEverythingOfACaseThatStatesNothing) {
 }
 
 TEST_F(Expectations, MessagesThatNobodyStatedAreShown) {
-  const std::string file = burley(R"({ "dermis_expect": 1, "cases": [
+  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "small", "device": { "max_image_dimension": 16 }, "expect": {} } ] })");
   const Outcome outcome = run({"test", file});
   EXPECT_EQ(outcome.exit_code, 1);
@@ -117,8 +110,8 @@ TEST_F(Expectations, AGraphThatCannotBeReadHasMessagesOnly) {
 
 TEST_F(Expectations, WhatTheGraphDoesNotHaveIsNamed) {
   const auto says = [&](const std::string& inputs, const std::string& message) {
-    const std::string file = burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " + inputs +
-                                    ", \"expect\": {} } ] }");
+    const std::string file = beside_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " +
+                                           inputs + ", \"expect\": {} } ] }");
     for (const char* flag : {"--quiet", "--update"}) {
       const Outcome outcome = run({"test", file, flag});
       EXPECT_EQ(outcome.exit_code, 1) << inputs;
@@ -133,7 +126,7 @@ TEST_F(Expectations, WhatTheGraphDoesNotHaveIsNamed) {
 
 TEST_F(Expectations, ErrorsInTheFileAreLocated) {
   const auto says = [&](const std::string& text, const std::string& message) {
-    const std::string file = burley(text);
+    const std::string file = beside_burley(text);
     const Outcome outcome = run({"test", file});
     EXPECT_EQ(outcome.exit_code, 1) << text;
     EXPECT_THAT(outcome.err, AllOf(HasSubstr(file + ":"), HasSubstr(message)));
@@ -168,7 +161,7 @@ TEST_F(Expectations, ResultsAreWrittenForBuildServersAndPrograms) {
   std::string wrong = two_facts;
   wrong.replace(wrong.find("\"least\""), 7, "\"a<b & c\"");
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
-  const std::string file = burley(wrong);
+  const std::string file = beside_burley(wrong);
   const Outcome outcome = run({"test", file, "configs", "--junit", path("results.xml"), "--json"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
@@ -182,7 +175,7 @@ TEST_F(Expectations, ResultsAreWrittenForBuildServersAndPrograms) {
 }
 
 TEST_F(Expectations, OverlaysOfACaseComeFromDeclaredFoldersOnly) {
-  const std::string file = burley(R"({ "dermis_expect": 1, "cases": [
+  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "changed", "overlays": ["changes/less.json"], "unbound": ["scattered_light"],
     "expect": { "passes": ["classify", "list", "setup", "scatter"] } } ] })");
   std::filesystem::create_directories(path("other/changes"));
@@ -205,7 +198,7 @@ TEST_F(Expectations, OverlaysOfACaseComeFromDeclaredFoldersOnly) {
   EXPECT_EQ(outside.exit_code, 1);
   EXPECT_THAT(outside.err, HasSubstr("leads out of"));
   const std::string escaping =
-      burley(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "overlays": ["../x.json"] } ] })");
+      beside_burley(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "overlays": ["../x.json"] } ] })");
   EXPECT_THAT(run({"test", escaping}).err, AllOf(HasSubstr(escaping + ":1:"), HasSubstr("D0115")));
 }
 

@@ -18,8 +18,6 @@ using testing::StartsWith;
 
 using GraphFiles = CommandTest;
 
-constexpr const char* burley = "configs/graphs/burley.json";
-
 // The shipped graph with one piece of its text replaced.
 std::string burley_with(const std::string& from, const std::string& to) {
   std::ifstream stream(std::string(DERMIS_SOURCE_DIR "/") + burley);
@@ -271,15 +269,13 @@ TEST_F(GraphFiles, AScenesProfilesAreReadInItsFolderAndDeclaredRoots) {
   "profiles": [ { "name": "skin", "file": "../elsewhere/secret.json" } ],
   "camera": { "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 },
   "objects": [ { "shape": "sphere", "profile": "skin" } ] })");
-  for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"validate", scene},
-        {"render", scene, "--graph", "none", "--out", path("out")},
-        {"capture", scene, "--out", path("out")}}) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"validate", scene},
+                                                {"render", scene, "--graph", "none", "--out", path("out")},
+                                                {"capture", scene, "--out", path("out")}}) {
     const Outcome outside = run(words);
     EXPECT_EQ(outside.exit_code, 1) << words[0];
-    EXPECT_THAT(outside.err,
-                AllOf(HasSubstr("scene.json:2:43: error[D0118"), HasSubstr("leads out of what may be read"),
-                      HasSubstr("--root")))
+    EXPECT_THAT(outside.err, AllOf(HasSubstr("scene.json:2:43: error[D0118"),
+                                   HasSubstr("leads out of what may be read"), HasSubstr("--root")))
         << words[0];
     EXPECT_FALSE(std::filesystem::exists(path("out"))) << words[0];
   }

@@ -10,7 +10,7 @@ constexpr const char* kinds = R"({ "dermis_kinds": 1, "kinds": [
   { "name": "studio.tone", "ports": [ { "name": "light", "usage": "sampled_image" },
                                       { "name": "toned", "usage": "storage_image_write" } ],
     "settings": [ { "name": "level", "type": "real", "default": 1, "min": 0, "max": 4 } ] } ] })";
-constexpr const char* graph = R"({ "dermis": 1, "name": "tone",
+constexpr const char* tone = R"({ "dermis": 1, "name": "tone",
   "imports": { "light": { "format": "rgba16f", "size": "view" } },
   "resources": { "out": { "format": "rgba16f", "size": "view" } },
   "passes": [ { "pass": "tone", "kind": "studio.tone", "read": { "light": "light" }, "write": { "toned": "out" },
@@ -20,7 +20,7 @@ constexpr const char* graph = R"({ "dermis": 1, "name": "tone",
 class Kinds : public CommandTest {};
 
 TEST_F(Kinds, OfAHostLetItsGraphsBeCheckedWithoutIt) {
-  const std::string kind_file = write("kinds.json", kinds), graph_file = write("tone.json", graph);
+  const std::string kind_file = write("kinds.json", kinds), graph_file = write("tone.json", tone);
   const Outcome without = run({"validate", graph_file});
   EXPECT_EQ(without.exit_code, 1);
   EXPECT_THAT(without.err, HasSubstr("studio.tone"));
@@ -41,7 +41,7 @@ TEST_F(Kinds, AreCheckedThemselves) {
   EXPECT_THAT(refused.err, HasSubstr("settings[0]"));
   own.replace(own.find("studio"), 6, "subsurface");
   EXPECT_THAT(run({"validate", write("own.json", own)}).err, HasSubstr("are the library's"));
-  const std::string graph_file = write("tone.json", graph);
+  const std::string graph_file = write("tone.json", tone);
   const std::string kind_file = write("kinds.json", kinds);
   const Outcome twice = run({"validate", graph_file, "--kinds", kind_file, "--kinds", kind_file});
   EXPECT_EQ(twice.exit_code, 1);

@@ -14,8 +14,6 @@ using testing::Not;
 
 using PlanFiles = CommandTest;
 
-constexpr const char* burley = "configs/graphs/burley.json";
-
 std::string contents(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};

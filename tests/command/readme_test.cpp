@@ -15,13 +15,6 @@ namespace fs = std::filesystem;
 
 const fs::path repository = DERMIS_SOURCE_DIR;
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file);
-  std::ostringstream whole;
-  whole << in.rdbuf();
-  return whole.str();
-}
-
 // What stands between ```language and ```, in order.
 std::vector<std::string> blocks(const std::string& text, const std::string& language) {
   std::vector<std::string> found;

@@ -15,7 +15,6 @@ using testing::IsEmpty;
 using testing::Not;
 
 constexpr const char* bust = "configs/scenes/bust.json";
-constexpr const char* burley = "configs/graphs/burley.json";
 
 class Render : public CommandTest {
 protected:

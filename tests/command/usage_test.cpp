@@ -11,8 +11,6 @@ using testing::Not;
 
 using Usage = CommandTest;
 
-constexpr const char* graph = "configs/graphs/burley.json";
-
 TEST_F(Usage, HelpOfEveryVerbShowsAnExampleAndSucceeds) {
   for (const std::string verb :
        {"validate", "upgrade", "test", "explain", "graph", "render", "sheet", "apply", "reference"}) {
@@ -42,13 +40,13 @@ TEST_F(Usage, AMisspeltVerbIsAnsweredWithTheNearestOne) {
 }
 
 TEST_F(Usage, AMisspeltOptionIsAnsweredWithTheNearestOneBeforeAnythingElseIsMissing) {
-  const Outcome outcome = run({"apply", "--grph", graph});
+  const Outcome outcome = run({"apply", "--grph", burley});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("'apply' has no option '--grph'; did you mean '--graph'?"));
 }
 
 TEST_F(Usage, AMissingRequiredOptionIsNamed) {
-  const Outcome outcome = run({"apply", "--graph", graph, "--frames", "capture"});
+  const Outcome outcome = run({"apply", "--graph", burley, "--frames", "capture"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--out"));
 }
@@ -57,7 +55,7 @@ TEST_F(Usage, ASizeThatIsNoSizeIsRefusedAndNothingIsWritten) {
   for (const std::string size :
        {"0x0", "0x360", "640", "640x", "x360", "640x360x3", "-1x5", "16385x10", "1e3x10"}) {
     const Outcome outcome =
-        run({"render", "configs/scenes/bust.json", "--graph", graph, "--size", size, "--out", path("out")});
+        run({"render", "configs/scenes/bust.json", "--graph", burley, "--size", size, "--out", path("out")});
     EXPECT_EQ(outcome.exit_code, 2) << size;
     EXPECT_THAT(outcome.err, HasSubstr("640x360, each 1..16384, found '" + size + "'"));
     EXPECT_THAT(files(), IsEmpty()) << size;
@@ -65,32 +63,32 @@ TEST_F(Usage, ASizeThatIsNoSizeIsRefusedAndNothingIsWritten) {
 }
 
 TEST_F(Usage, AnUnknownSettingIsAnsweredWithTheNearestOne) {
-  const Outcome outcome = run({"explain", graph, "--set", "sample=16"});
+  const Outcome outcome = run({"explain", burley, "--set", "sample=16"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no setting 'sample'; did you mean 'samples'?"));
 }
 
 TEST_F(Usage, ASettingOutsideItsRangeOrOfTheWrongTypeIsRefused) {
-  const Outcome range = run({"explain", graph, "--set", "samples=1"});
+  const Outcome range = run({"explain", burley, "--set", "samples=1"});
   EXPECT_EQ(range.exit_code, 2);
   EXPECT_THAT(range.err, HasSubstr("setting 'samples': 1 is outside 4 .. 4096"));
-  const Outcome type = run({"explain", graph, "--set", "samples=many"});
+  const Outcome type = run({"explain", burley, "--set", "samples=many"});
   EXPECT_EQ(type.exit_code, 2);
   EXPECT_THAT(type.err, HasSubstr("expected an integer, found 'many'"));
-  const Outcome word = run({"explain", graph, "--set", "texturing=posst"});
+  const Outcome word = run({"explain", burley, "--set", "texturing=posst"});
   EXPECT_EQ(word.exit_code, 2);
   EXPECT_THAT(word.err, HasSubstr("'post', 'pre_post' or 'pre'"));
 }
 
 TEST_F(Usage, ASlotThatIsNotOptionalCannotBeLeftUnbound) {
-  const Outcome outcome = run({"explain", graph, "--unbound", "depth"});
+  const Outcome outcome = run({"explain", burley, "--unbound", "depth"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("'depth' is not optional"));
 }
 
 TEST_F(Usage, AUsageErrorIsOneJsonDocumentForPrograms) {
   for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"rendr", "--json"}, {"explain", graph, "--json", "--set", "sample=1"}}) {
+       {std::vector<std::string>{"rendr", "--json"}, {"explain", burley, "--json", "--set", "sample=1"}}) {
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_TRUE(is_json(outcome.out)) << outcome.out;

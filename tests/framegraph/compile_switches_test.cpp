@@ -11,14 +11,14 @@
 namespace dermis::testing {
 namespace {
 
-constexpr uint64_t seeds = 120;
+constexpr uint64_t switched_graphs = 120;
 
 uint64_t transient_bytes(const GraphBuilder& builder, const CompileInput& input) {
   return compiled(builder, input).plan.transient_bytes;
 }
 
 TEST(Switches, MoreWorkOnPackingNeverMakesTheHeapLarger) {
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
     CompileInput input = builder.input(640, 360);
@@ -31,7 +31,7 @@ TEST(Switches, MoreWorkOnPackingNeverMakesTheHeapLarger) {
 
 TEST(Switches, WithoutAliasingNoTransientsShareMemoryAndTheHeapIsTheirSum) {
   uint64_t larger = 0;
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
     CompileInput input = builder.input();
@@ -46,12 +46,12 @@ TEST(Switches, WithoutAliasingNoTransientsShareMemoryAndTheHeapIsTheirSum) {
       }
     if (HasFailure()) return;
   }
-  EXPECT_GT(larger, seeds / 4); // the generator makes graphs where sharing pays
+  EXPECT_GT(larger, switched_graphs / 4); // the generator makes graphs where sharing pays
 }
 
 // Only what the graph's own images and buffers may be used for differs.
 TEST(Switches, PoisonChangesUsagesAndNothingElse) {
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
     CompileInput input = builder.input();
@@ -69,7 +69,7 @@ TEST(Switches, PoisonChangesUsagesAndNothingElse) {
 }
 
 TEST(Switches, AResourceKeptAliveSharesItsMemoryWithNothing) {
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
     const auto usual = compiled(builder).plan;
@@ -106,7 +106,7 @@ TEST(Switches, ARandomOrderIsLegalRepeatableAndNotAlwaysTheSame) {
 
 TEST(Switches, WithoutCullingNoPassIsLost) {
   uint64_t more = 0;
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
     CompileInput input = builder.input();
@@ -120,7 +120,7 @@ TEST(Switches, WithoutCullingNoPassIsLost) {
 }
 
 TEST(Switches, ReasonsAreASideTableThatDoesNotChangeThePlan) {
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
     CompileInput input = builder.input();
@@ -137,7 +137,7 @@ TEST(Switches, ReasonsAreASideTableThatDoesNotChangeThePlan) {
 
 TEST(Switches, ACompilerThatHasSeenOtherGraphsMakesTheSamePlan) {
   Compiler used;
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
     const CompileInput input = builder.input();

@@ -27,8 +27,8 @@ constexpr Port blend_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "
 constexpr Port update_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
                                  {"image", Usage::storage_image_update, false, "image2D", ""}};
 constexpr Port fill_ports[] = {{"target", Usage::clear, false, "", ""}};
-constexpr Port list_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
-                               {"tiles", Usage::storage_buffer_write, false, "uint", ""}};
+constexpr Port lister_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
+                                 {"tiles", Usage::storage_buffer_write, false, "uint", ""}};
 constexpr Port count_ports[] = {{"tiles", Usage::storage_buffer_update, false, "uint", ""}};
 constexpr Port tiles_ports[] = {{"tiles", Usage::storage_buffer_read, true, "uint", ""},
                                 {"arguments", Usage::indirect_arguments, true, "uint", ""},
@@ -53,7 +53,7 @@ KindRegistry test_kinds() {
   kinds.add(kind("test.need", need_ports));
   kinds.add(kind("test.update", update_ports));
   kinds.add(kind("test.fill", fill_ports));
-  kinds.add(kind("test.list", list_ports));
+  kinds.add(kind("test.list", lister_ports));
   kinds.add(kind("test.count", count_ports));
   kinds.add(kind("test.tiles", tiles_ports));
   kinds.add(kind("test.narrow", narrow_ports));

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <vector>
 
 namespace dermis::testing {
@@ -19,11 +21,15 @@ struct Operation {
   uint32_t mip = 0, layer = 0;
   Queue queue = Queue::main;
   uint32_t until = 0; // waits: the last step of the other queue that is done by then
+  // Where the thing's instance lies; the host's have a heap each.
+  uint64_t heap = 0, begin = 0, end = 1;
 };
 
 struct Oracle {
   const Plan& plan;
   std::vector<Operation> all;
+  std::vector<size_t> next_write =
+      {};                     // by operation: the next one of another step that writes the same thing
   std::string misplaced = {}; // what is wrong with points and releases
 
   // --- what the operations are
@@ -34,6 +40,15 @@ struct Oracle {
   }
 
   void add(Operation operation, const SubresourceRange& range) {
+    if (host(operation.resource)) {
+      operation.heap = ~(uint64_t{operation.resource} << 32 | operation.instance);
+    } else {
+      const Placement& at =
+          plan.placements[plan.resources[operation.resource].first_instance + operation.instance];
+      operation.heap = at.heap;
+      operation.begin = at.offset;
+      operation.end = at.offset + at.size;
+    }
     for (uint32_t m = range.first_mip; m < uint32_t{range.first_mip} + range.mips; ++m)
       for (uint32_t l = range.first_layer; l < uint32_t{range.first_layer} + range.layers; ++l) {
         operation.mip = m;
@@ -134,11 +149,8 @@ struct Oracle {
     return a.resource == b.resource && a.instance == b.instance;
   }
   bool overlap(const Operation& a, const Operation& b) const {
-    if (same_instance(a, b)) return same_thing(a, b);
-    if (host(a.resource) || host(b.resource)) return false;
-    const Placement& m = plan.placements[plan.resources[a.resource].first_instance + a.instance];
-    const Placement& n = plan.placements[plan.resources[b.resource].first_instance + b.instance];
-    return m.heap == n.heap && std::max(m.offset, n.offset) < std::min(m.offset + m.size, n.offset + n.size);
+    if (a.heap != b.heap || std::max(a.begin, b.begin) >= std::min(a.end, b.end)) return false;
+    return !same_instance(a, b) || same_thing(a, b);
   }
   // Does the operation reach this byte of the heap that `thing` lies in, or all of the thing itself?
   bool reaches(const Operation& o, const Operation& thing, uint64_t byte) const {
@@ -229,11 +241,20 @@ struct Oracle {
   // Another operation on the thing of `first`, between the two, that replaces what `first` left: it had to
   // wait for `first`, and `second` has to wait for it.
   bool replaced(size_t first, size_t second) const {
-    for (size_t k = first + 1; k < second; ++k)
-      if (all[k].step != all[first].step && all[k].step != all[second].step &&
-          same_thing(all[k], all[first]) && writes(all[k]))
-        return true;
-    return false;
+    const size_t k = next_write[first];
+    return k < second && all[k].step != all[second].step;
+  }
+
+  void find_next_writes() {
+    next_write.assign(all.size(), all.size());
+    std::map<std::array<uint32_t, 4>, size_t> nearest; // by thing: the write behind that comes first
+    for (size_t i = all.size(); i-- > 0;) {
+      const Operation& o = all[i];
+      if (o.what == Operation::What::wait) continue;
+      size_t& first = nearest.try_emplace({o.resource, o.instance, o.mip, o.layer}, all.size()).first->second;
+      if (first < all.size()) next_write[i] = all[first].step != o.step ? first : next_write[first];
+      if (writes(o)) first = i;
+    }
   }
 
   bool read_since(size_t first, size_t second) const {
@@ -246,9 +267,10 @@ struct Oracle {
 
   // --- the questions
 
+  // Of two that act, one of which writes.
   std::string pair(size_t first, size_t second) const {
     const Operation &a = all[first], &b = all[second];
-    if (a.step == b.step || !acts(a) || !acts(b) || (!writes(a) && !writes(b)) || !overlap(a, b)) return "";
+    if (a.step == b.step || !overlap(a, b)) return "";
     if (is_barrier(b) && b.barrier->from_host) return ""; // the host has seen to that
     if (replaced(first, second)) return "";
     for (const uint64_t byte : common_bytes(a, b))
@@ -474,12 +496,19 @@ std::string first_hazard(const Plan& plan) {
     frames = std::max(frames, 2 * resource.instance_count + 1);
   oracle.unroll(frames + 1); // the beginning of the last one tells how the one before ended
   if (!oracle.misplaced.empty()) return oracle.misplaced;
+  oracle.find_next_writes();
+  std::vector<size_t> acting, writing; // operations before b
   for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {
     const Operation& o = oracle.all[b];
     if (o.frame == frames && o.what != Operation::What::frame_begins) break;
     std::string wrong = oracle.alone(b);
-    for (size_t a = 0; a < b && wrong.empty(); ++a)
-      wrong = oracle.pair(a, b);
+    if (oracle.acts(o)) {
+      const std::vector<size_t>& earlier = oracle.writes(o) ? acting : writing;
+      for (size_t i = 0; i < earlier.size() && wrong.empty(); ++i)
+        wrong = oracle.pair(earlier[i], b);
+      acting.push_back(b);
+      if (oracle.writes(o)) writing.push_back(b);
+    }
     if (!wrong.empty())
       return fmt::format("frame {}, step {}: resource {}.{} {}", o.frame, o.step, o.resource, o.instance,
                          wrong);

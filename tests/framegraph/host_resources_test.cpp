@@ -74,7 +74,7 @@ std::string with(std::string_view from, std::string_view to) {
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-struct Damage {
+struct Mistake {
   const char* law;
   const char *from, *to;
   DiagnosticId id;
@@ -82,14 +82,14 @@ struct Damage {
   std::vector<std::string> words;
 };
 
-void PrintTo(const Damage& damage, std::ostream* out) {
+void PrintTo(const Mistake& damage, std::ostream* out) {
   *out << damage.to;
 }
 
-class DamagedHostResources : public ::testing::TestWithParam<Damage> {};
+class DamagedHostResources : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(DamagedHostResources, GiveOneDiagnosticAtTheDamage) {
-  const Damage& damage = GetParam();
+  const Mistake& damage = GetParam();
   const std::string text = with(damage.from, damage.to);
   const size_t at = text.find(damage.at);
   ASSERT_NE(at, std::string::npos);
@@ -103,73 +103,73 @@ TEST_P(DamagedHostResources, GiveOneDiagnosticAtTheDamage) {
 
 INSTANTIATE_TEST_SUITE_P(
     Graph, DamagedHostResources,
-    ::testing::Values(Damage{"AnAccelerationStructureIsOfTheTopLevel",
-                             "\"top_level\"",
-                             "\"bottom_level\"",
-                             Id::invalid_value,
-                             "\"bottom_level\"",
-                             {"top_level"}},
-                      Damage{"NoGraphBuildsAnAccelerationStructure",
-                             "\"out\": { \"format\": \"rgba16f\", \"size\": \"view\" } }",
-                             "\"out\": { \"format\": \"rgba16f\", \"size\": \"view\" }, \"own\": { "
-                             "\"acceleration_structure\": \"top_level\" } }",
-                             Id::not_imported,
-                             "\"own\"",
-                             {"'own'", "no graph builds"}},
-                      Damage{"AnAccelerationStructureIsNoImage",
-                             "{ \"light\": \"light\" }",
-                             "{ \"light\": \"scene\" }",
-                             Id::usage_mismatch,
-                             "\"scene\" }, \"write\"",
-                             {"takes an image", "'scene' is an acceleration structure"}},
-                      Damage{"ABufferIsNoAccelerationStructure",
-                             "\"scene\": \"scene\"",
-                             "\"scene\": \"vertices\"",
-                             Id::usage_mismatch,
-                             "\"vertices\", \"vertices\"",
-                             {"takes an acceleration structure", "'vertices' is a buffer"}},
-                      Damage{"AnImportedBufferHasAStride",
-                             "\"stride\": 16",
-                             "\"count\": 16",
-                             Id::missing_key,
-                             "{ \"count\": 16",
-                             {"buffer 'lights'", "'stride'"}},
-                      Damage{"AnAccelerationStructureIsNotExported",
-                             "\"exports\": [\"out\"]",
-                             "\"exports\": [\"scene\", \"out\"]",
-                             Id::bad_export,
-                             "\"scene\", \"out\"",
-                             {"'scene' is an acceleration structure"}},
-                      Damage{"ARequirementIsAFeatureOrAnImport",
-                             "\"ray_query\", \"scene\"]",
-                             "\"ray_querry\"]",
-                             Id::bad_option_requires,
-                             "\"ray_querry\"",
-                             {"did you mean 'ray_query'?"}},
-                      Damage{"ARequiredImportIsOptional",
-                             "\"ray_query\", \"scene\"]",
-                             "\"light\"]",
-                             Id::bad_option_requires,
-                             "\"light\"]",
-                             {"may leave unbound"}},
-                      Damage{"OptionsThatRequireAreOptions",
-                             "\"requires\": { \"trace\"",
-                             "\"requires\": { \"trase\"",
-                             Id::bad_option_requires,
-                             "\"trase\"",
-                             {"did you mean 'trace'?"}},
-                      Damage{"OneOptionRequiresNothing",
-                             "[\"ray_query\", \"scene\"] }",
-                             "[\"ray_query\"], \"copy\": [\"scene\"] }",
-                             Id::bad_option_requires,
-                             "\"requires\"",
-                             {"every option"}},
-                      Damage{"AGraphRequiresFeaturesOnly",
-                             "\"name\": \"traced\"",
-                             "\"name\": \"traced\", \"requires\": [\"scene\"]",
-                             Id::invalid_value,
-                             "\"scene\"],\n",
-                             {"ray_query"}}),
+    ::testing::Values(Mistake{"AnAccelerationStructureIsOfTheTopLevel",
+                              "\"top_level\"",
+                              "\"bottom_level\"",
+                              Id::invalid_value,
+                              "\"bottom_level\"",
+                              {"top_level"}},
+                      Mistake{"NoGraphBuildsAnAccelerationStructure",
+                              "\"out\": { \"format\": \"rgba16f\", \"size\": \"view\" } }",
+                              "\"out\": { \"format\": \"rgba16f\", \"size\": \"view\" }, \"own\": { "
+                              "\"acceleration_structure\": \"top_level\" } }",
+                              Id::not_imported,
+                              "\"own\"",
+                              {"'own'", "no graph builds"}},
+                      Mistake{"AnAccelerationStructureIsNoImage",
+                              "{ \"light\": \"light\" }",
+                              "{ \"light\": \"scene\" }",
+                              Id::usage_mismatch,
+                              "\"scene\" }, \"write\"",
+                              {"takes an image", "'scene' is an acceleration structure"}},
+                      Mistake{"ABufferIsNoAccelerationStructure",
+                              "\"scene\": \"scene\"",
+                              "\"scene\": \"vertices\"",
+                              Id::usage_mismatch,
+                              "\"vertices\", \"vertices\"",
+                              {"takes an acceleration structure", "'vertices' is a buffer"}},
+                      Mistake{"AnImportedBufferHasAStride",
+                              "\"stride\": 16",
+                              "\"count\": 16",
+                              Id::missing_key,
+                              "{ \"count\": 16",
+                              {"buffer 'lights'", "'stride'"}},
+                      Mistake{"AnAccelerationStructureIsNotExported",
+                              "\"exports\": [\"out\"]",
+                              "\"exports\": [\"scene\", \"out\"]",
+                              Id::bad_export,
+                              "\"scene\", \"out\"",
+                              {"'scene' is an acceleration structure"}},
+                      Mistake{"ARequirementIsAFeatureOrAnImport",
+                              "\"ray_query\", \"scene\"]",
+                              "\"ray_querry\"]",
+                              Id::bad_option_requires,
+                              "\"ray_querry\"",
+                              {"did you mean 'ray_query'?"}},
+                      Mistake{"ARequiredImportIsOptional",
+                              "\"ray_query\", \"scene\"]",
+                              "\"light\"]",
+                              Id::bad_option_requires,
+                              "\"light\"]",
+                              {"may leave unbound"}},
+                      Mistake{"OptionsThatRequireAreOptions",
+                              "\"requires\": { \"trace\"",
+                              "\"requires\": { \"trase\"",
+                              Id::bad_option_requires,
+                              "\"trase\"",
+                              {"did you mean 'trace'?"}},
+                      Mistake{"OneOptionRequiresNothing",
+                              "[\"ray_query\", \"scene\"] }",
+                              "[\"ray_query\"], \"copy\": [\"scene\"] }",
+                              Id::bad_option_requires,
+                              "\"requires\"",
+                              {"every option"}},
+                      Mistake{"AGraphRequiresFeaturesOnly",
+                              "\"name\": \"traced\"",
+                              "\"name\": \"traced\", \"requires\": [\"scene\"]",
+                              Id::invalid_value,
+                              "\"scene\"],\n",
+                              {"ray_query"}}),
     [](const auto& one) { return one.param.law; });
 
 struct Compiled {

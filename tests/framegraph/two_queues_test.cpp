@@ -25,7 +25,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr uint32_t frames = 5;
+constexpr uint32_t queue_frames = 5;
 
 CompileInput two_queues(const GraphBuilder& builder) {
   CompileInput input = builder.input();
@@ -171,9 +171,9 @@ TEST(TwoQueues, TheFrameBeforeIsWaitedForAsFarAsAnyPassNeeds) {
 
 TEST(TwoQueues, WhateverOrderThePointsAllowGivesThePixelsThatTheGraphMeans) {
   for_random_plans(1500, 10000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    const Interpretation truth = graph_truth(builder.graph, builder.kinds, queue_frames, seed);
     for (uint64_t order = 0; order <= 3; ++order)
-      ASSERT_TRUE(agrees(interpret(plan, {frames, seed, order + 1, order}), truth))
+      ASSERT_TRUE(agrees(interpret(plan, {queue_frames, seed, order + 1, order}), truth))
           << "seed " << seed << ", order " << order;
   });
 }

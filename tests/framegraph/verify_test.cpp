@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr uint64_t seeds = 150;
+constexpr uint64_t verified_graphs = 150;
 
 // A history, an alias, a buffer read at two stages, an import updated in place.
 GraphBuilder everything() {
@@ -111,7 +111,7 @@ TEST(Verify, RefusesAReadOutsideItsLifetime) {
 }
 
 TEST(Verify, RefusesEveryBarrierThatLosesItsSource) {
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto plan = compiled(random_graph(seed)).plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
       if (plan.barriers[i].from_host || plan.barriers[i].source_stages == 0) continue;
@@ -124,7 +124,7 @@ TEST(Verify, RefusesEveryBarrierThatLosesItsSource) {
 }
 
 TEST(Verify, RefusesEveryBarrierThatLosesAWriteItMustMakeAvailable) {
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto builder = random_graph(seed);
     const auto whole = compiled(builder);
     const Plan& plan = whole.plan;
@@ -141,7 +141,7 @@ TEST(Verify, RefusesEveryBarrierThatLosesAWriteItMustMakeAvailable) {
 }
 
 TEST(Verify, RefusesEveryBarrierThatDoesNotReachItsReader) {
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
+  for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto plan = compiled(random_graph(seed)).plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
       if (plan.barriers[i].to_host) continue;

@@ -1,5 +1,6 @@
 // Light over frames (subsurface.accumulate, configs/overlays/accumulate.json): it converges where nothing
 // changes, and starts anew where the camera cuts or a surface comes into sight.
+#include "tests/framegraph/test_tier.hpp"
 #include "tests/laws/sequences.hpp"
 
 #include <cmath>
@@ -96,6 +97,7 @@ TEST_F(Accumulate, WhatComesIntoSightStartsAnewAndWhatStaysInSightDoesNot) {
 }
 
 TEST_F(Accumulate, LightThatFlashesIsFollowedAndMeantAllTheSame) {
+  DERMIS_IN_FULL_TIER();
   const Sequence sequence = frames_of("flashing", 0, 32);
   Judge judge{sequence};
   const std::vector<uint32_t> judged = {20, 22, 23, 26, 29, 31}; // all is dark at 21

@@ -8,9 +8,9 @@ namespace {
 
 using namespace laws;
 
-class Culling : public DeviceTest, public testing::WithParamInterface<const char*> {};
+class Culling : public DeviceTest, public ::testing::WithParamInterface<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(Laws, Culling, testing::Values("base", "smooth", "half"),
+INSTANTIATE_TEST_SUITE_P(Laws, Culling, ::testing::Values("base", "smooth", "half"),
                          [](const auto& one) { return std::string(one.param); });
 
 // An island with ragged borders, in a picture of its own.

@@ -1,5 +1,6 @@
 // How many samples guidance takes over frames: as many as the light's own size asks for, whatever units it
 // comes in.
+#include "tests/framegraph/test_tier.hpp"
 #include "tests/laws/noise.hpp"
 #include "tests/laws/sequences.hpp"
 
@@ -43,6 +44,7 @@ TEST_F(GuidedSequence, LightInOtherUnitsUnderAnotherExposureTakesAsManySamples) 
 }
 
 TEST_F(GuidedSequence, AControlAsksForNoMoreSamplesThanNoneWhereAllLightTrembles) {
+  DERMIS_IN_FULL_TIER();
   // All light times 1 +- .02, drawn anew in each frame: what candles and compressed textures do.
   constexpr uint32_t frames = 36, counted = 18;
   Sequence sequence = laws::standing_still(frames_of("pan", 40, 1), frames);
@@ -92,6 +94,7 @@ Sequence plane_of_noise(uint32_t frames) {
 }
 
 TEST_F(GuidedSequence, HalfSequencesTakeAsManyMoreSamplesUnderLightThatFlashesAsItsVarianceAsksFor) {
+  DERMIS_IN_FULL_TIER();
   // All light times 1 + sin: its square, and with it the variance, is 1.5 times as large in the mean. Without
   // mips the variance of n samples of noise is that of one over n; where mips average over what n samples
   // leave between them, noise of single pixels spreads as much however many they are.

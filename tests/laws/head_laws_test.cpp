@@ -13,10 +13,10 @@ using namespace dermis;
 using namespace dermis::tools;
 using subsurface::SapVariant;
 
-struct Size {
+struct FrameSize {
   uint32_t width, height;
 };
-std::vector<Size> sizes() {
+std::vector<FrameSize> sizes() {
   if (dermis::testing::seeds_of_tier(0, 1) == 0) return {{640, 360}};
   return {{640, 360}, {1280, 720}};
 }
@@ -52,7 +52,7 @@ class OnAHead : public laws::HeadTest, public ::testing::WithParamInterface<size
 protected:
   // `compared`: 0 for as many pixels as the framing's figures are steady with, within 5 %. Whole heads have
   // few pixels of large error, and a kernel that takes no time: all.
-  void show(const Size& size, uint32_t compared = 0) {
+  void show(const FrameSize& size, uint32_t compared = 0) {
     const bool whole = GetParam() % 3 == 2;
     if (compared == 0) compared = whole ? size.width * size.height : 3072;
     HeadTest::show(laws::head_framings()[GetParam()], size.width, size.height, compared);
@@ -155,7 +155,7 @@ TEST_P(OnAHead, FlatLightComesOutBitForBitAndAllLightStaysWithinWhatTheSkinHas) 
 
 TEST_P(OnAHead, ConfidenceSaysWhereThePyramidIsExact) {
   if (is_left_out()) GTEST_SKIP() << "of the scan, with DERMIS_TESTS_FULL";
-  for (const Size& size : sizes()) {
+  for (const FrameSize& size : sizes()) {
     show(size);
     if (IsSkipped() || HasFatalFailure()) return;
     const subsurface::SapResult<float> result = twin(frame_, SapVariant::smooth);

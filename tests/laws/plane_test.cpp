@@ -40,23 +40,23 @@ const Technique fixed_published{
     {{"inverse", "\"approximate\""}, {"weighting", "\"profile\""}, {"direct", "\"circumscribed\""}}};
 const Technique jimenez_17{"jimenez_17", "separable_jimenez", {{"taps", "\"17\""}}};
 
-class EveryTechnique : public DeviceTest, public testing::WithParamInterface<Technique> {
+class EveryTechnique : public DeviceTest, public ::testing::WithParamInterface<Technique> {
 protected:
   Picture scatter(const Plane& plane) { return run(GetParam().graph, plane, GetParam().settings); }
 };
 
 INSTANTIATE_TEST_SUITE_P(Laws, EveryTechnique,
-                         testing::Values(burley_64, separable_11, separable_17, separable_25, sap_base,
-                                         sap_smooth, sap_half, sap_layered, pyramid, fixed_16,
-                                         fixed_published, jimenez_17),
+                         ::testing::Values(burley_64, separable_11, separable_17, separable_25, sap_base,
+                                           sap_smooth, sap_half, sap_layered, pyramid, fixed_16,
+                                           fixed_published, jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
 // All but the plain pyramid know other profiles and depth.
 class SurfaceTechnique : public EveryTechnique {};
 
 INSTANTIATE_TEST_SUITE_P(Laws, SurfaceTechnique,
-                         testing::Values(burley_64, separable_11, separable_17, separable_25, sap_base,
-                                         sap_smooth, sap_half, sap_layered, fixed_16, jimenez_17),
+                         ::testing::Values(burley_64, separable_11, separable_17, separable_25, sap_base,
+                                           sap_smooth, sap_half, sap_layered, fixed_16, jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {

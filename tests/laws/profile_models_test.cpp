@@ -38,7 +38,7 @@ float discs(double x, double y) {
   return value;
 }
 
-class EveryModel : public DeviceTest, public testing::WithParamInterface<Case> {};
+class EveryModel : public DeviceTest, public ::testing::WithParamInterface<Case> {};
 
 TEST_P(EveryModel, IsReproducedWithinTheTechniquesOwnError) {
   const Case& one = GetParam();
@@ -94,19 +94,19 @@ TEST_P(EveryModel, IsReproducedWithinTheTechniquesOwnError) {
 const Settings many = {{"samples", "256"}};
 INSTANTIATE_TEST_SUITE_P(
     Laws, EveryModel,
-    testing::Values(Case{"burley_dipole", "burley", many, "skin_dipole", 0.01},
-                    Case{"burley_artist", "burley", many, "skin_artist", 0.01},
-                    Case{"fixed_dipole", "fixed", many, "skin_dipole", 0.01},
-                    Case{"fixed_artist", "fixed", many, "skin_artist", 0.01},
-                    Case{"sap_dipole", "sap", {}, "skin_dipole", 0.003},
-                    Case{"sap_marble_dipole", "sap", {}, "marble_dipole", 0.003},
-                    Case{"sap_artist", "sap", {}, "skin_artist", 0.003},
-                    Case{"pyramid_skin", "pyramid", {}, "skin", 0.002},
-                    Case{"pyramid_dipole", "pyramid", {}, "skin_dipole", 0.002},
-                    Case{"pyramid_artist", "pyramid", {}, "skin_artist", 0.002},
-                    Case{"separable_dipole", "separable", {}, "skin_dipole", 0.01},
-                    Case{"separable_artist", "separable", {}, "skin_artist", 0.01},
-                    Case{"jimenez_artist", "separable_jimenez", {}, "skin_artist", 0.022}),
+    ::testing::Values(Case{"burley_dipole", "burley", many, "skin_dipole", 0.01},
+                      Case{"burley_artist", "burley", many, "skin_artist", 0.01},
+                      Case{"fixed_dipole", "fixed", many, "skin_dipole", 0.01},
+                      Case{"fixed_artist", "fixed", many, "skin_artist", 0.01},
+                      Case{"sap_dipole", "sap", {}, "skin_dipole", 0.003},
+                      Case{"sap_marble_dipole", "sap", {}, "marble_dipole", 0.003},
+                      Case{"sap_artist", "sap", {}, "skin_artist", 0.003},
+                      Case{"pyramid_skin", "pyramid", {}, "skin", 0.002},
+                      Case{"pyramid_dipole", "pyramid", {}, "skin_dipole", 0.002},
+                      Case{"pyramid_artist", "pyramid", {}, "skin_artist", 0.002},
+                      Case{"separable_dipole", "separable", {}, "skin_dipole", 0.01},
+                      Case{"separable_artist", "separable", {}, "skin_artist", 0.01},
+                      Case{"jimenez_artist", "separable_jimenez", {}, "skin_artist", 0.022}),
     [](const auto& one) { return std::string(one.param.name); });
 
 } // namespace

@@ -85,6 +85,7 @@ TEST_F(Resize, TheRatioMendsTheFirstFrameOfAnotherSizeAsIfItHadAlwaysBeenThat) {
 }
 
 TEST_F(Resize, GuidanceGoesOnWithTheNumberOfSamplesItHadFound) {
+  DERMIS_IN_FULL_TIER();
   for (const Case& one : cases())
     for (const char* guidance : {"split_half", "ccv"}) {
       Judge judge{one.resized}, judge_always{one.always};
@@ -119,6 +120,7 @@ TEST_F(Resize, LightOverFramesGoesOn) {
 }
 
 TEST_F(Resize, AViewThatChangesItsSizeAgainAndAgainWhileTheCameraPansLeavesNoTrail) {
+  DERMIS_IN_FULL_TIER();
   // Four frames in each size, as a host does that keeps to a time.
   constexpr uint32_t first = 20, count = 24, each = 4;
   Sequence sequence = frames(before, first, count);

@@ -1,5 +1,6 @@
 // How steady light is where the camera goes by whole pixels: the picture is the same, its place on the grid
 // of levels is not. The frame is one large picture, of which each frame renders another rectangle.
+#include "tests/framegraph/test_tier.hpp"
 #include "tests/laws/sequences.hpp"
 
 #include "integration/command/bench/dynamic/figures.hpp"
@@ -14,8 +15,8 @@ namespace {
 using namespace dermis;
 using namespace dermis::tools;
 
-constexpr uint32_t moves = 16, width = 320, height = 180, large_width = width + moves,
-                   large_height = height + moves;
+constexpr uint32_t moves = 16, panned_width = 320, panned_height = 180, large_width = panned_width + moves,
+                   large_height = panned_height + moves;
 constexpr uint32_t margin = 32; // pixels along the borders whose light changes with what is in the picture
 
 class Shimmer : public laws::SequenceTest {
@@ -24,7 +25,7 @@ protected:
   static CapturedFrame rectangle_at(const CapturedFrame& large, uint32_t x, uint32_t y) {
     CapturedFrame frame = large;
     FrameDescription& description = frame.description;
-    description.render = {x, y, width, height};
+    description.render = {x, y, panned_width, panned_height};
     const auto zoom = [&](size_t row, double whole, double part, double first) {
       for (size_t c = 0; c < 4; ++c) {
         double& value = description.clip_from_view[4 * row + c];
@@ -32,8 +33,8 @@ protected:
                 large.description.clip_from_view[12 + c] * ((whole - 2 * first) / part - 1);
       }
     };
-    zoom(0, large_width, width, x);
-    zoom(1, large_height, height, y);
+    zoom(0, large_width, panned_width, x);
+    zoom(1, large_height, panned_height, y);
     EXPECT_TRUE(complete_projection(description, frame.rays));
     return frame;
   }
@@ -44,7 +45,7 @@ protected:
   };
   static Still picture() {
     auto sequence = render_sequence({"pan", "close", laws::root() + "/configs/scenes/pan.json",
-                                     laws::close_d_px * large_height / height, 40, 1, false},
+                                     laws::close_d_px * large_height / panned_height, 40, 1, false},
                                     large_width, large_height, {});
     EXPECT_TRUE(sequence) << sequence.error().text;
     if (!sequence) return {};
@@ -58,8 +59,8 @@ protected:
   static std::vector<double> seen(const CapturedFrame& large, const std::vector<float>& light,
                                   double exposure) {
     std::vector<double> values(large.profile.size());
-    for (uint32_t y = moves + margin; y < height - margin; ++y)
-      for (uint32_t x = moves + margin; x < width - margin; ++x) {
+    for (uint32_t y = moves + margin; y < panned_height - margin; ++y)
+      for (uint32_t x = moves + margin; x < panned_width - margin; ++x) {
         const size_t i = size_t{y} * large_width + x;
         if (large.profile[i] == 0) continue;
         for (size_t c = 0; c < 3; ++c)
@@ -147,6 +148,7 @@ TEST_F(Shimmer, ThePyramidIsSteadyUnderPansByWholePixels) {
 }
 
 TEST_F(Shimmer, MendingThePyramidMakesItNoLessSteadyThanSamplesAre) {
+  DERMIS_IN_FULL_TIER();
   const Still still = picture();
   const double sap = change_in_pan(still, laws::request_of("sap")),
                residual = change_in_pan(still, laws::request_of("sap_residual")),

@@ -54,6 +54,7 @@ TEST_P(FullStorage, FlatLightOfAnyBrightnessStaysFlatToTwoMillionths) {
 class FullStorageOnAHead : public HeadTest {};
 
 TEST_F(FullStorageOnAHead, FlatLightStaysFlatToTwoMillionthsAndLightIsThatOfTheTwin) {
+  DERMIS_IN_FULL_TIER();
   show(head_framings()[3], 640, 360, 1); // the bust from near; no truth is asked for
   if (IsSkipped() || HasFatalFailure()) return;
   const std::vector<float> expected = twin(frame_, SapVariant::smooth).light;

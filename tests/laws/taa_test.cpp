@@ -1,5 +1,6 @@
 // Techniques through the demo engine's temporal anti-aliasing, against the same with so many samples that
 // what is left is their own error.
+#include "tests/framegraph/test_tier.hpp"
 #include "tests/laws/sequences.hpp"
 
 #include "integration/demo_engine/engine.hpp"
@@ -89,6 +90,7 @@ TEST_F(Taa, MendedLightDoesNotLoseToEightSamplesWhereTheCameraRests) {
 }
 
 TEST_F(Taa, MendedLightDoesNotLoseToEightSamplesUnderAPanOfPartsOfPixels) {
+  DERMIS_IN_FULL_TIER();
   judge(false, 3.6); // measured 4.1
 }
 

@@ -1,6 +1,7 @@
 // What history must and must not do: the running ratio mends the pyramid where nothing changes, does not lag
 // behind light, keeps out of light of another pattern, follows cameras and things, and leaves no ghost. On
 // the sculpted bust.
+#include "tests/framegraph/test_tier.hpp"
 #include "tests/laws/sequences.hpp"
 
 #include <algorithm>
@@ -110,6 +111,7 @@ TEST_F(Temporal, AThingThatMovesBeforeACameraThatRestsKeepsItsHistory) {
 constexpr const char* trusting = "100";
 
 TEST_F(Temporal, ShadowsThatMoveAcrossSkinAreGainedUponInEachFrame) {
+  DERMIS_IN_FULL_TIER();
   const Sequence sequence = frames_of("dynamic", 88, 36); // boids cross the face from 88 to 140
   Judge judge{sequence};
   const Frames judged = range(24, 36);
@@ -126,6 +128,7 @@ TEST_F(Temporal, ShadowsThatMoveAcrossSkinAreGainedUponInEachFrame) {
 }
 
 TEST_F(Temporal, AFlashFromAnotherSideCostsNothingAndLeavesTheRatioAsItWas) {
+  DERMIS_IN_FULL_TIER();
   const Sequence sequence = frames_of("strobe", 10, 34); // shots at 30 .. 32 and 38 .. 39
   Judge judge{sequence};
   const Frames judged = range(18, 34), lit = {20, 21, 22, 28, 29};
@@ -153,10 +156,12 @@ TEST_F(Temporal, ALightThatIsSwitchedOffCostsNothing) {
 }
 
 TEST_F(Temporal, ALightThatIsSwitchedOnCostsNothing) {
+  DERMIS_IN_FULL_TIER();
   switches(335); // on from 360 on
 }
 
 TEST_F(Temporal, LightThatStaysIsLearnedInTheEnd) {
+  DERMIS_IN_FULL_TIER();
   const Sequence sequence = frames_of("regular", 155, 106); // off from 180 on
   Judge judge{sequence};
   const Frames judged = {55, 65, 75, 85, 95, 105};

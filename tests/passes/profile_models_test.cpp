@@ -23,17 +23,17 @@ void PrintTo(const Named& named, std::ostream* out) {
   *out << named.name;
 }
 
-class EveryShape : public testing::TestWithParam<Named> {
+class EveryShape : public ::testing::TestWithParam<Named> {
 protected:
   const ChannelShape& shape = GetParam().shape;
 };
 
 INSTANTIATE_TEST_SUITE_P(Profiles, EveryShape,
-                         testing::Values(Named{"burley", burley_shape(0.7)},
-                                         Named{"dipole_skin", dipole_shape(0.032, 0.74)},
-                                         Named{"dipole_milk", dipole_shape(0.0011, 2.55)},
-                                         Named{"dipole_ketchup", dipole_shape(0.97, 0.07)},
-                                         Named{"artist", artist_shape(1.001, 0.48)}),
+                         ::testing::Values(Named{"burley", burley_shape(0.7)},
+                                           Named{"dipole_skin", dipole_shape(0.032, 0.74)},
+                                           Named{"dipole_milk", dipole_shape(0.0011, 2.55)},
+                                           Named{"dipole_ketchup", dipole_shape(0.97, 0.07)},
+                                           Named{"artist", artist_shape(1.001, 0.48)}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 // Integral of f over [a, b], Simpson with n intervals.

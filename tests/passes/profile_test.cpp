@@ -10,16 +10,16 @@ namespace {
 using namespace dermis;
 using namespace dermis::subsurface;
 
-std::optional<Profile> parse(const std::string& text, Diagnostics& diagnostics) {
+std::optional<Profile> parsed(const std::string& text, Diagnostics& diagnostics) {
   const auto document = parse_document("test.json", text, diagnostics);
   return document ? read_profile(*document, diagnostics) : std::nullopt;
 }
 
 TEST(Profile, ShapeParameterIsDmfpOverScalingOfTheProfilesAlbedo) {
   Diagnostics diagnostics;
-  const auto profile = parse(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [3.67, 1.37, 0.68],
+  const auto profile = parsed(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [3.67, 1.37, 0.68],
                                 "albedo": [0.33, 0.8, 1.0], "source": "test"})",
-                             diagnostics);
+                              diagnostics);
   ASSERT_TRUE(profile) << format_as_json(diagnostics);
   EXPECT_NEAR(profile->d_mm[0], 3.67 / 3.5, 1e-12);      // s(.33) = 3.5
   EXPECT_NEAR(profile->d_mm[1], 1.37 / 8.3796841, 1e-6); // s(.8) = 3.5 + 100 * .47^4
@@ -28,18 +28,18 @@ TEST(Profile, ShapeParameterIsDmfpOverScalingOfTheProfilesAlbedo) {
 
 TEST(Profile, TheWidestChannelIsChosenByShapeParameterNotByMeanFreePath) {
   Diagnostics diagnostics;
-  const auto profile = parse(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [5, 4, 1],
+  const auto profile = parsed(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [5, 4, 1],
                                 "albedo": [1, 0.33, 0.33], "source": "test"})",
-                             diagnostics);
+                              diagnostics);
   ASSERT_TRUE(profile);
   EXPECT_EQ(profile->widest, 1); // d = 5/23.65, 4/3.5, 1/3.5
 }
 
 TEST(Profile, AMeanFreePathOfZeroMeansNoScattering) {
   Diagnostics diagnostics;
-  const auto profile =
-      parse(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [0, 0, 0], "albedo": [1, 1, 1], "source": "t"})",
-            diagnostics);
+  const auto profile = parsed(
+      R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [0, 0, 0], "albedo": [1, 1, 1], "source": "t"})",
+      diagnostics);
   ASSERT_TRUE(profile);
   for (const double d : profile->d_mm)
     EXPECT_EQ(d, 0.0);
@@ -48,9 +48,9 @@ TEST(Profile, AMeanFreePathOfZeroMeansNoScattering) {
 TEST(Profile, NegativePathsAlbedosAboveOneAndMisspelledKeysAreRefusedWithTheirPlace) {
   Diagnostics diagnostics;
   EXPECT_FALSE(
-      parse("{\"dermis_profile\": 1, \"name\": \"p\",\n \"dmfp_mm\": [-1, 0, 0],\n \"albedo\": [0, 2, 0],\n"
-            " \"sorce\": \"t\"}",
-            diagnostics));
+      parsed("{\"dermis_profile\": 1, \"name\": \"p\",\n \"dmfp_mm\": [-1, 0, 0],\n \"albedo\": [0, 2, 0],\n"
+             " \"sorce\": \"t\"}",
+             diagnostics));
   ASSERT_EQ(diagnostics.count(Severity::error), 3u) << format_as_json(diagnostics);
   EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::out_of_range);
   EXPECT_EQ(diagnostics.list[0].where.line, 2u);

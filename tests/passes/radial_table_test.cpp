@@ -11,13 +11,13 @@ namespace {
 
 using namespace dermis::subsurface;
 
-struct Named {
+struct Tabled {
   const char* name;
   ProfileShape shape;
   double mean_square; // of the radius of red, mm^2, closed form
 };
 
-void PrintTo(const Named& named, std::ostream* out) {
+void PrintTo(const Tabled& named, std::ostream* out) {
   *out << named.name;
 }
 
@@ -37,7 +37,7 @@ double artist_mean_square(double width) {
   return sum;
 }
 
-class RadialTable : public testing::TestWithParam<Named> {
+class RadialTable : public testing::TestWithParam<Tabled> {
 protected:
   const ProfileShape& shape = GetParam().shape;
   std::vector<RadialRow> rows = make_radial_rows(shape, 0);
@@ -46,12 +46,12 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(
     Profiles, RadialTable,
-    testing::Values(Named{"dipole",
-                          {dipole_shape(0.032, 0.74), dipole_shape(0.17, 0.88), dipole_shape(0.48, 1.01)},
-                          mean_square(make_dipole(0.032, 0.74))},
-                    Named{"artist",
-                          {artist_shape(1.001, 0.48), artist_shape(0.371, 0.41), artist_shape(0.301, 0.28)},
-                          artist_mean_square(1.001)}),
+    testing::Values(Tabled{"dipole",
+                           {dipole_shape(0.032, 0.74), dipole_shape(0.17, 0.88), dipole_shape(0.48, 1.01)},
+                           mean_square(make_dipole(0.032, 0.74))},
+                    Tabled{"artist",
+                           {artist_shape(1.001, 0.48), artist_shape(0.371, 0.41), artist_shape(0.301, 0.28)},
+                           artist_mean_square(1.001)}),
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(RadialTable, ReturnsDensityAndSurvivalOfEveryChannel) {

@@ -13,14 +13,14 @@ namespace dermis::subsurface {
 namespace {
 
 // A view of one plane with one profile; light, depth and profile are changed by each test.
-struct View {
+struct Seen {
   uint32_t width, height;
   PixelRays rays;
   std::vector<float> light, depth, scale;
   std::vector<uint8_t> profile;
   std::vector<PerChannel> d;
 
-  View(uint32_t w, uint32_t h, PerChannel d_m)
+  Seen(uint32_t w, uint32_t h, PerChannel d_m)
       : width(w), height(h), rays(orthographic_rays(w, h, 1e-3)), light(3 * w * h, 1.0f), depth(w * h, 0.5f),
         profile(w * h, 1), d{{0, 0, 0}, d_m} {}
 
@@ -43,7 +43,7 @@ float noise(uint32_t x, uint32_t y) { // deterministic, in [0, 1)
 }
 
 TEST(Truth, ConstantLightStaysConstant) {
-  View view(48, 40, {2e-3, 1e-3, 0.2e-3});
+  Seen view(48, 40, {2e-3, 1e-3, 0.2e-3});
   view.profile[view.at(20, 20)] = 0; // holes do not matter
   for (const bool planar : {true, false})
     for (const double value : truth_everywhere(view.input(), {.planar_shortcut = planar}))
@@ -51,7 +51,7 @@ TEST(Truth, ConstantLightStaysConstant) {
 }
 
 TEST(Truth, ZeroDistanceReturnsTheLightBitForBit) {
-  View view(16, 16, {0, 1e-3, 0});
+  Seen view(16, 16, {0, 1e-3, 0});
   view.paint(noise);
   for (const bool planar : {true, false}) {
     const auto result = truth_everywhere(view.input(), {.planar_shortcut = planar});
@@ -64,7 +64,7 @@ TEST(Truth, ZeroDistanceReturnsTheLightBitForBit) {
 }
 
 TEST(Truth, VanishingDistanceConvergesToTheLight) {
-  View view(16, 16,
+  Seen view(16, 16,
             {1e-5, 1e-7, 1e-30}); // pixels are 1e-3: mass beyond .5 px is .75 e^-16 = 8e-8 for the first
   view.paint(noise);
   const auto result = truth_everywhere(view.input(), {.planar_shortcut = false});
@@ -76,7 +76,7 @@ TEST(Truth, HalfPlaneFollowsTheExactEdge) {
   // d = 4 px. What the definition differs by from the plane's closed form: the cut at 20 d leaves .75
   // e^(-20/3) = 9.5e-4 of the energy out (it would have been 1 on one side), pixels taken by their centre
   // beyond 4 px a few 1e-5.
-  View view(340, 190, {4e-3, 2e-3, 1e-3});
+  Seen view(340, 190, {4e-3, 2e-3, 1e-3});
   view.paint([](uint32_t x, uint32_t) { return x < 170 ? 0.0f : 1.0f; });
   std::vector<uint32_t> row;
   for (uint32_t x = 100; x < 240; ++x)
@@ -91,7 +91,7 @@ TEST(Truth, HalfPlaneFollowsTheExactEdge) {
 TEST(Truth, SinusoidLosesContrastByTheTransferFunction) {
   // d = 3 px, period 32 px: k d = .589. Light constant over pixels multiplies the contrast by sinc(1/32) =
   // .99839.
-  View view(256, 128, {3e-3, 3e-3, 3e-3});
+  Seen view(256, 128, {3e-3, 3e-3, 3e-3});
   const double pi = 3.14159265358979323846, k = 2 * pi / 32;
   view.paint([&](uint32_t x, uint32_t) { return float(0.5 + 0.5 * std::cos(k * x)); });
   const std::vector<uint32_t> peaks = {64 * 256 + 128, 64 * 256 + 112};
@@ -101,7 +101,7 @@ TEST(Truth, SinusoidLosesContrastByTheTransferFunction) {
 }
 
 TEST(Truth, FastAndGeneralPathsAgree) {
-  View view(61, 53, {2.2e-3, 0.9e-3, 0.1e-3});
+  Seen view(61, 53, {2.2e-3, 0.9e-3, 0.1e-3});
   view.paint(noise);
   for (uint32_t y = 0; y < 53; ++y)
     for (uint32_t x = 30; x < 61; ++x) {
@@ -117,7 +117,7 @@ TEST(Truth, FastAndGeneralPathsAgree) {
 }
 
 TEST(Truth, OtherMaterialsDoNotLeakIn) {
-  View view(64, 32, {3e-3, 3e-3, 3e-3});
+  Seen view(64, 32, {3e-3, 3e-3, 3e-3});
   view.paint([](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.0f; });
   for (uint32_t y = 0; y < 32; ++y)
     for (uint32_t x = 32; x < 64; ++x)
@@ -129,7 +129,7 @@ TEST(Truth, OtherMaterialsDoNotLeakIn) {
 }
 
 TEST(Truth, FarStepsInDepthDoNotLeak) {
-  View view(48, 24, {1e-3, 1e-3, 1e-3});
+  Seen view(48, 24, {1e-3, 1e-3, 1e-3});
   for (uint32_t y = 0; y < 24; ++y)
     for (uint32_t x = 24; x < 48; ++x) {
       view.depth[view.at(x, y)] = 0.6f; // 100 d behind
@@ -144,7 +144,7 @@ TEST(Truth, FarStepsInDepthDoNotLeak) {
 TEST(Truth, TiltedPlaneScattersInSurfaceDistance) {
   // Seen at 60 degrees the surface is stretched by 2 along x: an edge must follow the closed form in surface
   // distance.
-  View view(220, 160, {4e-3, 4e-3, 4e-3});
+  Seen view(220, 160, {4e-3, 4e-3, 4e-3});
   for (uint32_t y = 0; y < view.height; ++y)
     for (uint32_t x = 0; x < view.width; ++x)
       view.depth[view.at(x, y)] = float(0.5 + x * 1e-3 * std::sqrt(3.0));
@@ -162,9 +162,9 @@ TEST(Truth, TiltedPlaneScattersInSurfaceDistance) {
 TEST(Truth, PerspectiveAndOrthographicViewsOfOnePlaneAgree) {
   // A plane at 0.5 m with 1 mm pixels: rays of 2e-3 per pixel. Patches are cut by rays from one eye, yet lie
   // the same.
-  View ortho(40, 40, {2e-3, 1e-3, 0.5e-3});
+  Seen ortho(40, 40, {2e-3, 1e-3, 0.5e-3});
   ortho.paint(noise);
-  View eye = ortho;
+  Seen eye = ortho;
   eye.rays.perspective = true;
   for (double* x : {&eye.rays.scale_x, &eye.rays.offset_x, &eye.rays.scale_y, &eye.rays.offset_y})
     *x *= 2;
@@ -175,10 +175,10 @@ TEST(Truth, PerspectiveAndOrthographicViewsOfOnePlaneAgree) {
 }
 
 TEST(Truth, ScatterScaleActsOnTheReceivingPixel) {
-  View view(32, 32, {2e-3, 1e-3, 0.5e-3});
+  Seen view(32, 32, {2e-3, 1e-3, 0.5e-3});
   view.paint(noise);
   const auto full = truth_everywhere(view.input(), {.planar_shortcut = false});
-  View half = view;
+  Seen half = view;
   for (double& x : half.d[1])
     x *= 0.5;
   const auto halved = truth_everywhere(half.input(), {.planar_shortcut = false});
@@ -195,7 +195,7 @@ TEST(Truth, ScatterScaleActsOnTheReceivingPixel) {
 }
 
 TEST(Truth, PixelsWithoutSurfaceKeepTheirLight) {
-  View view(16, 16, {2e-3, 2e-3, 2e-3});
+  Seen view(16, 16, {2e-3, 2e-3, 2e-3});
   view.paint(noise);
   view.depth[5] = 0;
   view.depth[6] = INFINITY;
@@ -212,7 +212,7 @@ TEST(Truth, PixelsWithoutSurfaceKeepTheirLight) {
 }
 
 TEST(Truth, GrazingPatchesCountForAtMostTheCap) {
-  View view(8, 8, {2e-3, 2e-3, 2e-3});
+  Seen view(8, 8, {2e-3, 2e-3, 2e-3});
   for (uint32_t y = 0; y < 8; ++y)
     for (uint32_t x = 0; x < 8; ++x)
       view.depth[view.at(x, y)] = 0.5f + 0.1f * float(x);
@@ -222,7 +222,7 @@ TEST(Truth, GrazingPatchesCountForAtMostTheCap) {
 }
 
 TEST(Truth, ResultDoesNotDependOnTheNumberOfThreads) {
-  View view(40, 30, {2e-3, 1e-3, 0.5e-3});
+  Seen view(40, 30, {2e-3, 1e-3, 0.5e-3});
   view.paint(noise);
   for (const bool planar : {true, false})
     EXPECT_EQ(truth_everywhere(view.input(), {.threads = 1, .planar_shortcut = planar}),

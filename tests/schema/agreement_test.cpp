@@ -13,6 +13,7 @@
 #include "passes/choice/error_model.hpp"
 #include "passes/subsurface/kinds.hpp"
 #include "passes/subsurface/profile.hpp"
+#include "tests/framegraph/test_tier.hpp"
 #include "tests/schema/validator.hpp"
 
 #include <algorithm>
@@ -258,7 +259,8 @@ constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 1, "name": 
 TEST(Schema, OfGraphsAgreesWithTheParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/graphs");
   files.push_back(parse(every_feature));
-  expect_agreement("configs/schema/graph.schema.json", read_graph_text, files, 10000);
+  expect_agreement("configs/schema/graph.schema.json", read_graph_text, files,
+                   static_cast<int>(dermis::testing::seeds_of_tier(4000, 10000)));
 }
 
 TEST(Schema, OfFragmentsAgreesWithTheParserOnMutatedFiles) {

@@ -16,7 +16,7 @@ const bench = (suite, name, ...options) => {
 };
 
 const record = bench('record', 'record', '--size', '320x180');
-const error_time = bench('error-time', 'error-time', '--quick', '--scenes', 'edge,texture_plane', '--techniques', 'sap,afis,burley,fixed,separable',
+const error_time = bench('error-time', 'error-time', '--quick', '--scenes', 'edge', '--techniques', 'sap,afis,burley,fixed,separable',
   '--cache', join(out, 'cache'));
 const dynamic = bench('dynamic', 'dynamic', '--quick', '--scenes', 'flashing', '--framings', 'close', '--techniques', 'sap,sap_residual,afis',
   '--cache', join(out, 'cache'));
@@ -135,7 +135,7 @@ law('lines of baselines can be told apart, and each frame is on the axis', async
 law('pictures are drawn, and rows say what their marks mean', async () => {
   const { page, close } = await open(error_time);
   const widths = await page.locator('img').evaluateAll((all) => Promise.all(all.map((one) => one.decode().then(() => one.naturalWidth))));
-  assert.ok(widths.length > 20 && widths.every((one) => one > 0));
+  assert.ok(widths.length > 5 && widths.every((one) => one > 0));
   assert.match(await page.locator('p', { hasText: 'Click a title' }).textContent(), /Marked rows are on the front\.$/);
   assert.ok(await page.locator('tr.best').count() > 5);
   await close();

@@ -19,8 +19,6 @@
 namespace dermis::tools {
 namespace {
 
-const ChannelNames rgb_names = {"R", "G", "B"};
-
 struct Run {
   const Session& session;
   const ApplyOptions& options;

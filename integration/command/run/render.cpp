@@ -28,7 +28,6 @@ namespace dermis::tools {
 namespace {
 
 constexpr std::string_view no_graph = "none"; // for --graph: as the engine looks without Dermis
-const ChannelNames rgb_names = {"R", "G", "B"};
 
 demo::Error cannot_write(std::string problem) {
   return {demo::ErrorKind::environment, std::move(problem)};

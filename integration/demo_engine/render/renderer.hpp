@@ -41,6 +41,8 @@ struct TargetInfo {
 };
 const TargetInfo& target_info(Target target);
 
+inline constexpr ImageState storage_target = {VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                              VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
 // Between the passes of this engine and the graph each target rests in this state.
 inline constexpr ImageState resting = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,

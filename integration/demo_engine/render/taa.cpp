@@ -14,9 +14,6 @@ struct TaaData {
   uint32_t unused;  // rounds the block to 16 bytes
 };
 
-constexpr ImageState storage_target = {VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                       VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
-
 Result<> create_images(Taa& taa, const Renderer& renderer) {
   VulkanHost& host = *renderer.host;
   ImageDesc desc;

@@ -17,7 +17,6 @@ using dermis::NodeKind;
 using dermis::ObjectReader;
 
 constexpr size_t most_keys = 4096;
-constexpr double longest_seconds = 86400.0;
 
 constexpr size_t width_of(const double&) {
   return 1;

@@ -8,6 +8,8 @@
 
 namespace demo {
 
+inline constexpr double longest_seconds = 86400.0; // of a scene
+
 // Inclusive range of every value on the curve's keys.
 struct ValueRange {
   double least, greatest;

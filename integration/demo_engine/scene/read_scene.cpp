@@ -23,7 +23,6 @@ using std::string_view;
 
 constexpr int64_t format_version = 1;
 constexpr size_t most_lights = 8, most_objects = 256, most_profiles = 255, most_cuts = 256;
-constexpr double longest_seconds = 86400.0;
 constexpr ValueRange places = {-1000.0, 1000.0}; // metres
 constexpr ValueRange degrees = {-3600.0, 3600.0};
 constexpr ValueRange intensities = {0.0, 1e6};

@@ -54,6 +54,13 @@ double shape_R(const ChannelShape& shape, double r) {
   return artist_R(r, shape.width);
 }
 
+void shape_R(const ChannelShape& shape, std::span<const double> r, std::span<double> result) {
+  if (shape.model == ProfileModel::burley) return burley_R(r, shape.d, result);
+  const double last = burley_negligible_in_d * shape.d; // beyond it numbers become denormal, which takes long
+  for (size_t i = 0; i < r.size(); ++i)
+    result[i] = r[i] < last ? shape_R(shape, r[i]) : 0;
+}
+
 double shape_pdf(const ChannelShape& shape, double r) {
   switch (shape.model) {
   case ProfileModel::burley:

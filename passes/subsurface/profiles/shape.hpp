@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace dermis::subsurface {
 
@@ -36,7 +37,10 @@ ChannelShape artist_shape(double width, double strength);
 ChannelShape scaled(const ChannelShape& shape, double factor);
 
 // Of the scattered part, total 1; d > 0 unless said.
-double shape_R(const ChannelShape& shape, double r);        // per unit of area
+double shape_R(const ChannelShape& shape, double r); // per unit of area
+// The same at many radii > 0 at once; 0 for d = 0. Beyond 250 d it is less than 1e-12 of its peak, and may be
+// told as that.
+void shape_R(const ChannelShape& shape, std::span<const double> r, std::span<double> result);
 double shape_pdf(const ChannelShape& shape, double r);      // 2 pi r R(r)
 double shape_cdf(const ChannelShape& shape, double r);      // 1 for d = 0 and r > 0
 double shape_survival(const ChannelShape& shape, double r); // 1 - cdf

@@ -1,26 +1,18 @@
 // Samples by tile: how far off each tile is expected to be, which tiles get samples, and the samples
 // themselves.
 
-#include "passes/subsurface/signatures/signatures.hpp"
+#include "passes/subsurface/signatures/level_ports.hpp"
 
 namespace dermis::subsurface {
 
 namespace {
 
-constexpr Format surface_formats[] = {Format::rgba32_uint};
 using port::light_formats;
 constexpr Format mended_formats[] = {Format::rgba16f};
 constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format::r32f};
-constexpr std::string_view light_doc = "as subsurface.sap_down writes it";
 constexpr std::string_view doubts_doc =
     "by tile of the render rectangle: how far off it is expected to be, 0 = not at all";
 
-constexpr Port light_port(std::string_view name) {
-  return {name, Usage::sampled_image, false, "texture2D", light_doc, light_formats};
-}
-constexpr Port surface_port(std::string_view name) {
-  return {name, Usage::sampled_image, false, "utexture2D", light_doc, surface_formats};
-}
 constexpr KindSetting below =
     setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel may be sampled");
 
@@ -28,7 +20,8 @@ constexpr Port doubt_ports[] = {
     {"scattered", Usage::sampled_image, false, "texture2D",
      "of the pyramid; rgb scattered light, a = confidence", light_formats},
     {"light", Usage::sampled_image, true, "texture2D",
-     "before it scattered: what did not change by that counts less; unbound: all counts alike", light_formats},
+     "before it scattered: what did not change by that counts less; unbound: all counts alike",
+     light_formats},
     port::material,
     {"importance", Usage::sampled_image, true, "texture2D",
      "how much an error matters to the host, 0 to 1; unbound: 1 everywhere", importance_formats},
@@ -63,18 +56,18 @@ constexpr Port allot_ports[] = {
 };
 
 constexpr Port mend_ports[] = {
-    light_port("light"),
-    light_port("light_1"),
-    light_port("light_2"),
-    light_port("light_3"),
-    light_port("light_4"),
-    light_port("light_5"),
-    surface_port("surface"),
-    surface_port("surface_1"),
-    surface_port("surface_2"),
-    surface_port("surface_3"),
-    surface_port("surface_4"),
-    surface_port("surface_5"),
+    port::level_light("light"),
+    port::level_light("light_1"),
+    port::level_light("light_2"),
+    port::level_light("light_3"),
+    port::level_light("light_4"),
+    port::level_light("light_5"),
+    port::level_surface("surface"),
+    port::level_surface("surface_1"),
+    port::level_surface("surface_2"),
+    port::level_surface("surface_3"),
+    port::level_surface("surface_4"),
+    port::level_surface("surface_5"),
     port::classes,
     port::shares,
     port::tiles,

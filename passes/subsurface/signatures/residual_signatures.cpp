@@ -1,22 +1,13 @@
 // What mends the surface-aware pyramid where it is unsure: samples of the surface around, read from the
 // pyramid's own levels.
 
-#include "passes/subsurface/signatures/signatures.hpp"
+#include "passes/subsurface/signatures/level_ports.hpp"
 
 namespace dermis::subsurface {
 
 namespace {
 
-constexpr Format surface_formats[] = {Format::rgba32_uint};
 using port::light_formats;
-constexpr std::string_view light_doc = "as subsurface.sap_down writes it";
-
-constexpr Port light_port(std::string_view name) {
-  return {name, Usage::sampled_image, false, "texture2D", light_doc, light_formats};
-}
-constexpr Port surface_port(std::string_view name) {
-  return {name, Usage::sampled_image, false, "utexture2D", light_doc, surface_formats};
-}
 
 constexpr Port sure_light{"scattered",
                           Usage::sampled_image,
@@ -28,18 +19,18 @@ constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
                        "uint",    "as subsurface.classify writes them", {}};
 
 constexpr Port blend_ports[] = {
-    light_port("light"),
-    light_port("light_1"),
-    light_port("light_2"),
-    light_port("light_3"),
-    light_port("light_4"),
-    light_port("light_5"),
-    surface_port("surface"),
-    surface_port("surface_1"),
-    surface_port("surface_2"),
-    surface_port("surface_3"),
-    surface_port("surface_4"),
-    surface_port("surface_5"),
+    port::level_light("light"),
+    port::level_light("light_1"),
+    port::level_light("light_2"),
+    port::level_light("light_3"),
+    port::level_light("light_4"),
+    port::level_light("light_5"),
+    port::level_surface("surface"),
+    port::level_surface("surface_1"),
+    port::level_surface("surface_2"),
+    port::level_surface("surface_3"),
+    port::level_surface("surface_4"),
+    port::level_surface("surface_5"),
     sure_light,
     classes,
     port::tiles,
@@ -63,7 +54,7 @@ constexpr std::string_view brightness_doc = "logarithm of how much brighter all 
                                             "pattern is the learned light, tolerance of patterns";
 
 constexpr Port brightness_ports[] = {
-    surface_port("surface"),
+    port::level_surface("surface"),
     sure_light,
     port::velocity,
     classes,
@@ -72,18 +63,18 @@ constexpr Port brightness_ports[] = {
 };
 
 constexpr Port residual_ports[] = {
-    light_port("light"),
-    light_port("light_1"),
-    light_port("light_2"),
-    light_port("light_3"),
-    light_port("light_4"),
-    light_port("light_5"),
-    surface_port("surface"),
-    surface_port("surface_1"),
-    surface_port("surface_2"),
-    surface_port("surface_3"),
-    surface_port("surface_4"),
-    surface_port("surface_5"),
+    port::level_light("light"),
+    port::level_light("light_1"),
+    port::level_light("light_2"),
+    port::level_light("light_3"),
+    port::level_light("light_4"),
+    port::level_light("light_5"),
+    port::level_surface("surface"),
+    port::level_surface("surface_1"),
+    port::level_surface("surface_2"),
+    port::level_surface("surface_3"),
+    port::level_surface("surface_4"),
+    port::level_surface("surface_5"),
     sure_light,
     {"brightness", Usage::sampled_image, false, "texture2D", brightness_doc, brightness_formats},
     port::velocity,

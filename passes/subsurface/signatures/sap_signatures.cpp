@@ -2,7 +2,7 @@
 // every 2^l pixels and a border of one texel, which takes what lies beyond the last pixels.
 
 #include "passes/subsurface/sap/sap_weights.hpp"
-#include "passes/subsurface/signatures/signatures.hpp"
+#include "passes/subsurface/signatures/level_ports.hpp"
 
 namespace dermis::subsurface {
 
@@ -22,7 +22,7 @@ constexpr std::string_view scattered_doc = "scattered light of this level and co
                                            "the share and confidence (a byte each)";
 
 using port::light_formats;
-constexpr Format surface_formats[] = {Format::rgba32_uint};
+using port::surface_formats;
 
 constexpr KindSetting level_setting(double first, std::string_view doc, double last = sap_level_count - 1) {
   return {.name = "level",

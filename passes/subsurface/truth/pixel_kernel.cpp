@@ -3,19 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace dermis::subsurface {
 
 namespace {
-
-// Beyond this many d Burley's exponentials are below 1e-36, other profiles less than 1e-12 of their peak: no
-// contribution, and no slow denormal numbers.
-constexpr double negligible_in_d = 250;
-
-void add_profile(double r, const ProfileShape& shape, double scale, PerChannel& sum) {
-  for (size_t c = 0; c < 3; ++c)
-    if (r < negligible_in_d * shape[c].d) sum[c] += scale * shape_R(shape[c], r);
-}
 
 // Gauss-Legendre, 8 points on [-1, 1] (positive half).
 constexpr std::array<double, 4> gauss_nodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
@@ -59,18 +51,23 @@ double reach_of(const ProfileShape& shape) {
 
 PerChannel patch_mean(const PixelRays& rays, const Patch& patch, double x, double y, bool near,
                       const Vector3& point, const ProfileShape& shape) {
-  PerChannel sum{};
-  if (!near) {
-    add_profile(length(patch.position - point), shape, 1, sum);
-    return sum;
+  std::array<double, size_t{sub_points} * sub_points> radii, values;
+  size_t count = 0;
+  if (near) {
+    constexpr double step = 1.0 / sub_points;
+    for (int j = 0; j < sub_points; ++j)
+      for (int i = 0; i < sub_points; ++i)
+        radii[count++] =
+            length(patch_point(rays, patch, x + (i + 0.5) * step - 0.5, y + (j + 0.5) * step - 0.5) - point);
+  } else {
+    radii[count++] = length(patch.position - point);
   }
-  constexpr double step = 1.0 / sub_points, scale = step * step;
-  for (int j = 0; j < sub_points; ++j)
-    for (int i = 0; i < sub_points; ++i) {
-      const Vector3 at = patch_point(rays, patch, x + (i + 0.5) * step - 0.5, y + (j + 0.5) * step - 0.5);
-      add_profile(length(at - point), shape, scale, sum);
-    }
-  return sum;
+  PerChannel mean{};
+  for (size_t c = 0; c < 3; ++c) {
+    shape_R(shape[c], std::span(radii).first(count), values);
+    mean[c] = std::accumulate(values.begin(), values.begin() + count, 0.0) / double(count);
+  }
+  return mean;
 }
 
 PerChannel centre_integral(const PixelRays& rays, const Patch& patch, double x, double y,

@@ -84,10 +84,6 @@ Patch build_patch(const DepthImage& image, const PixelRays& rays, uint32_t x, ui
 
 } // namespace
 
-double length(const Vector3& a) {
-  return std::sqrt(dot(a, a));
-}
-
 Vector3 pixel_ray(const PixelRays& rays, double x, double y) {
   return {rays.scale_x * x + rays.offset_x, rays.scale_y * y + rays.offset_y, rays.perspective ? -1.0 : 0.0};
 }

@@ -4,6 +4,7 @@
 #include "passes/subsurface/camera.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,7 +19,9 @@ inline Vector3 operator-(const Vector3& a, const Vector3& b) {
 inline double dot(const Vector3& a, const Vector3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-double length(const Vector3& a);
+inline double length(const Vector3& a) {
+  return std::sqrt(dot(a, a));
+}
 
 // The part of the surface behind one pixel: where the pixel's footprint meets the tangent plane at its
 // centre. The plane follows from depth differences to the neighbours of the same profile (of the two on an

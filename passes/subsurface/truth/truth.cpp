@@ -4,6 +4,7 @@
 #include "passes/subsurface/truth/planar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -37,47 +38,96 @@ PixelRange pixels_within(const TruthInput& input, const Vector3& point, double r
   return {x0, x1, y0, y1};
 }
 
+// Light that comes to one point, and all that could come.
+class Gathered {
+public:
+  explicit Gathered(const ProfileShape& shape) : shape_(shape) {}
+
+  void add(const PerChannel& weight, const float* light) {
+    for (size_t c = 0; c < 3; ++c) {
+      light_[c] += weight[c] * light[c];
+      total_[c] += weight[c];
+    }
+  }
+
+  // Of a patch that is so far away that its centre stands for it. Many are weighed at once.
+  void add_far(double distance, double area, const float* light) {
+    distances_[waiting_] = distance;
+    areas_[waiting_] = area;
+    lights_[waiting_] = light;
+    if (++waiting_ == distances_.size()) weigh();
+  }
+
+  // What is there instead of the point's own light.
+  PerChannel scattered(const PerChannel& own) {
+    weigh();
+    PerChannel result = own;
+    for (size_t c = 0; c < 3; ++c)
+      if (shape_[c].d > 0 && total_[c] > 0)
+        result[c] += (1 - shape_[c].direct) * (light_[c] / total_[c] - own[c]);
+    return result;
+  }
+
+private:
+  void weigh() {
+    for (size_t c = 0; c < 3; ++c) {
+      shape_R(shape_[c], std::span(distances_).first(waiting_), values_);
+      for (size_t i = 0; i < waiting_; ++i) {
+        const double weight = values_[i] * areas_[i];
+        light_[c] += weight * lights_[i][c];
+        total_[c] += weight;
+      }
+    }
+    waiting_ = 0;
+  }
+
+  const ProfileShape& shape_;
+  PerChannel light_{}, total_{};
+  size_t waiting_ = 0;
+  std::array<double, 256> distances_, areas_, values_;
+  std::array<const float*, 256> lights_;
+};
+
 PerChannel scatter_at(const TruthInput& input, const Surface& surface, uint32_t pixel) {
   const float* light = &input.light[size_t{3} * pixel];
-  PerChannel result = {light[0], light[1], light[2]};
+  const PerChannel own = {light[0], light[1], light[2]};
   const uint8_t id = input.profile[pixel];
   const Patch& here = surface.patches[pixel];
-  if (id == 0 || id >= input.d_m.size() || here.area == 0) return result;
+  if (id == 0 || id >= input.d_m.size() || here.area == 0) return own;
   ProfileShape shape = input.shape_of(id);
   const double scale = input.scatter_scale.empty() ? 1.0 : std::max(0.0f, input.scatter_scale[pixel]);
   for (ChannelShape& channel : shape)
     channel = scaled(channel, scale);
-  if (!(std::max({shape[0].d, shape[1].d, shape[2].d}) > 0)) return result;
+  if (!(std::max({shape[0].d, shape[1].d, shape[2].d}) > 0)) return own;
 
   // A pixel's nearest part is at most half a patch's diagonal nearer than its centre.
   const double radius = reach_of(shape) + pixel_reach(input.rays, -here.position[2]);
   const PixelRange range = pixels_within(input, here.position, radius);
   const int64_t px = pixel % input.width, py = pixel / input.width;
-  PerChannel sum{}, total{};
+  Gathered gathered(shape);
   for (int64_t y = range.y0; y <= range.y1; ++y)
     for (int64_t x = range.x0; x <= range.x1; ++x) {
       const auto q = static_cast<size_t>(y * input.width + x);
       const Patch& patch = surface.patches[q];
       if (input.profile[q] != id || patch.area == 0) continue;
-      PerChannel weight;
+      const float* from = &input.light[3 * q];
       if (x == px && y == py) {
-        weight = centre_integral(input.rays, patch, double(x), double(y), shape);
-      } else {
-        const Vector3 offset = patch.position - here.position;
-        if (dot(offset, offset) > radius * radius) continue;
-        const bool near = std::max(std::abs(x - px), std::abs(y - py)) <= near_pixels;
-        weight = patch_mean(input.rays, patch, double(x), double(y), near, here.position, shape);
-        for (double& w : weight)
-          w *= patch.area;
+        gathered.add(centre_integral(input.rays, patch, double(x), double(y), shape), from);
+        continue;
       }
-      for (size_t c = 0; c < 3; ++c) {
-        sum[c] += weight[c] * input.light[3 * q + c];
-        total[c] += weight[c];
+      const Vector3 offset = patch.position - here.position;
+      const double squared = dot(offset, offset);
+      if (squared > radius * radius) continue;
+      if (std::max(std::abs(x - px), std::abs(y - py)) > near_pixels) {
+        gathered.add_far(std::sqrt(squared), patch.area, from);
+        continue;
       }
+      PerChannel weight = patch_mean(input.rays, patch, double(x), double(y), true, here.position, shape);
+      for (double& w : weight)
+        w *= patch.area;
+      gathered.add(weight, from);
     }
-  for (size_t c = 0; c < 3; ++c)
-    if (shape[c].d > 0 && total[c] > 0) result[c] += (1 - shape[c].direct) * (sum[c] / total[c] - result[c]);
-  return result;
+  return gathered.scattered(own);
 }
 
 // O'Neill 2014, pcg32.

@@ -9,7 +9,7 @@ namespace {
 using ::testing::Each;
 using ::testing::FloatEq;
 
-constexpr uint32_t side = 16, half = 8;
+constexpr uint32_t whole = 16, half = 8;
 
 class PartsTest : public ExecutorTest {};
 
@@ -35,14 +35,14 @@ TEST_F(PartsTest, APortSeesTheMipAndTheLayerThatItNames) {
   for (const auto& [ports, sum] : cases) {
     SmallGraph g = filled();
     g.pass("add", "test.add", {{"a", ports.first}, {"b", ports.second}}, {{"target", "result"}});
-    make_executor(g, side, side);
+    make_executor(g, whole, whole);
     const TestImage result = bind(g, "result", {});
     for (int i = 0; i < 3; ++i)
       ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
     const std::vector<float> texels = read(result);
     for (uint32_t y = 0; y < half; ++y)
       for (uint32_t x = 0; x < half; ++x)
-        ASSERT_EQ(texels[y * side + x], sum) << ports.first << " + " << ports.second;
+        ASSERT_EQ(texels[y * whole + x], sum) << ports.first << " + " << ports.second;
     executor.reset();
   }
 }
@@ -53,7 +53,7 @@ TEST_F(PartsTest, ClearingAPartLeavesTheOthers) {
   // What stood there is written over: the fill of that part is none that somebody reads, and is culled.
   g.graph.passes.erase(g.graph.passes.begin());
   g.pass("add", "test.add", {{"a", "image#0[0]"}, {"b", "image#0[1]"}}, {{"target", "result"}});
-  make_executor(g, side, side);
+  make_executor(g, whole, whole);
   const TestImage result = bind(g, "result", {});
   ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
   EXPECT_EQ(read(result)[0], 10.0f);
@@ -72,7 +72,7 @@ SmallGraph two_histories_in_one() {
 TEST_F(PartsTest, EachMipOfAHistoryIsThatOfTheFrameMeant) {
   SmallGraph g = two_histories_in_one();
   g.pass("show", "test.add", {{"a", "kept#1"}, {"b", "kept#0@-1"}}, {{"target", "result"}});
-  make_executor(g, side, side);
+  make_executor(g, whole, whole);
   const TestImage result = bind(g, "result", {});
   for (const float expected : {1.0f + 0, 3.0f + 1, 6.0f + 2, 10.0f + 3, 15.0f + 4}) {
     ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
@@ -85,7 +85,7 @@ TEST_F(PartsTest, EachMipOfAHistoryIsThatOfTheFrameMeant) {
 TEST_F(PartsTest, EachMipOfAHistoryHasALayoutOfItsOwnBetweenFrames) {
   SmallGraph g = two_histories_in_one();
   g.pass("show", "test.add", {{"a", "kept#1@-1"}}, {{"target", "result"}});
-  make_executor(g, side, side);
+  make_executor(g, whole, whole);
   const TestImage result = bind(g, "result", {});
   for (const float expected : {0.0f, 1.0f, 3.0f, 6.0f, 10.0f}) {
     ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));

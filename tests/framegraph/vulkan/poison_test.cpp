@@ -8,15 +8,15 @@
 namespace dermis::testing {
 namespace {
 
-constexpr uint32_t width = 24, height = 16;
+constexpr uint32_t wide = 24, high = 16;
 
 class PoisonTest : public ExecutorTest {
 protected:
   std::vector<float> run(const SmallGraph& graph, bool with_poison, vulkan::Rectangle rectangle) {
     poison = with_poison;
-    make_executor(graph, width, height);
+    make_executor(graph, wide, high);
     images.clear();
-    const TestImage result = bind(graph, "result", std::vector<float>(width * height, 0.0f));
+    const TestImage result = bind(graph, "result", std::vector<float>(wide * high, 0.0f));
     for (int i = 0; i < 3; ++i)
       EXPECT_FALSE(frame(static_cast<float>(i), rectangle));
     const std::vector<float> texels = read(result);
@@ -69,7 +69,7 @@ TEST_F(PoisonTest, NeedsAPlanThatIsMadeForIt) {
   g.image("first");
   g.pass("fill", "test.fill", {}, {{"target", "first"}});
   g.pass("show", "test.add", {{"a", "first"}}, {{"target", "result"}});
-  const Plan plan = g.compile(profile, width, height);
+  const Plan plan = g.compile(profile, wide, high);
   poison = true;
   const vulkan::Error error = try_executor(g, plan, dermis_device, executor);
   EXPECT_EQ(error.kind, vulkan::ErrorKind::argument);

@@ -11,7 +11,7 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr uint32_t side = 64; // one run of tiles: each frame probes one
+constexpr uint32_t probed_side = 64; // one run of tiles: each frame probes one
 
 struct Probe : DermisTest {
   dermis_graph graph = nullptr;
@@ -38,15 +38,15 @@ struct Probe : DermisTest {
     const auto document = parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
     const auto skin = subsurface::read_profile(*document, diagnostics);
     std::vector<float> lit;
-    for (uint32_t y = 0; y < side; ++y)
-      for (uint32_t x = 0; x < side; ++x)
+    for (uint32_t y = 0; y < probed_side; ++y)
+      for (uint32_t x = 0; x < probed_side; ++x)
         lit.insert(lit.end(), 3, light(x, y));
-    const std::vector<float> depth(size_t{side} * side, 0.5f);
-    const std::vector<uint8_t> ids(size_t{side} * side, 1);
+    const std::vector<float> depth(size_t{probed_side} * probed_side, 0.5f);
+    const std::vector<uint8_t> ids(size_t{probed_side} * probed_side, 1);
     const std::vector<subsurface::PerChannel> d_m = {
         {}, {skin->d_mm[0] * 1e-3, skin->d_mm[1] * 1e-3, skin->d_mm[2] * 1e-3}};
     subsurface::TruthInput input;
-    input.width = input.height = side;
+    input.width = input.height = probed_side;
     input.rays.perspective = false;
     input.rays.scale_x = input.rays.scale_y = pitch_m;
     input.light = lit;
@@ -62,7 +62,7 @@ struct Probe : DermisTest {
         off += luminance[c] * (double(lit[3 * i + c]) - truth[3 * i + c]);
       squares += off * off;
     }
-    return squares / (double(side) * side);
+    return squares / (double(probed_side) * probed_side);
   }
 };
 

@@ -54,7 +54,7 @@ Storm rendered(const std::function<std::vector<std::string>(uint32_t)>& reloads)
   auto done = demo::render(options, callbacks);
   EXPECT_TRUE(done) << done.error().text;
   if (done) storm.summary = done.take();
-  EXPECT_THAT(storm.summary.validation_messages, testing::IsEmpty());
+  EXPECT_THAT(storm.summary.validation_messages, ::testing::IsEmpty());
   return storm;
 }
 

@@ -14,7 +14,7 @@
 namespace dermis::abi_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr const char* traced = R"({ "dermis": 1, "name": "traced",
   "imports": { "scene": { "acceleration_structure": "top_level" },
@@ -41,7 +41,7 @@ void DERMIS_CALL keep_ports(void* user, const dermis_pass_call* call) {
   seen.ports.assign(call->ports, call->ports + call->port_count);
 }
 
-struct SceneBindings : testing::Test {
+struct SceneBindings : ::testing::Test {
   NullHost host;
   SeenPorts seen;
   std::vector<dermis_image_binding> images;

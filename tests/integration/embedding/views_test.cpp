@@ -310,7 +310,7 @@ TEST_F(Views, WrongArgumentsAreNamed) {
   const dermis_graph graph = make_accumulating();
   const auto expect = [](dermis_result result, const char* named) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), testing::HasSubstr(named));
+    EXPECT_THAT(dermis_last_error(), ::testing::HasSubstr(named));
   };
   dermis_view view = nullptr;
   dermis_frame frame = DERMIS_FRAME_INIT;

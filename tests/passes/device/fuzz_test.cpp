@@ -157,7 +157,7 @@ protected:
 };
 
 TEST_F(DeviceFuzz, WhatTheCompilerDecidesShowsInNoBitOfAnyRandomGraph) {
-  const FuzzSeeds seeds = fuzz_seeds(8);
+  const FuzzSeeds seeds = fuzz_seeds(4);
   Totals totals;
   for (uint64_t seed = seeds.begin; seed < seeds.end && !HasFailure(); ++seed)
     try_graph(seed, totals);

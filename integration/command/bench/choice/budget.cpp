@@ -35,7 +35,7 @@ Stretch stretch_of(std::string_view scene) {
   return scene == "dolly" ? Stretch{2, 24} : Stretch{};
 }
 
-struct Bench {
+struct BudgetBench {
   const Session& session;
   const BenchBudgetOptions& options;
   SceneRunRequest request;
@@ -47,7 +47,7 @@ struct Bench {
   std::vector<BudgetRow> rows = {};
 };
 
-demo::Result<SceneRun> run_counted(Bench& bench) {
+demo::Result<SceneRun> run_counted(BudgetBench& bench) {
   auto run = run_scene(bench.session, bench.request, bench.shared);
   bench.progress.update(++bench.done);
   return run;
@@ -58,7 +58,7 @@ std::string file_of(const std::string& scene) {
 }
 
 // What runs of a scene begin with; nothing is left of the scene before.
-void begin_scene(Bench& bench, const std::string& scene) {
+void begin_scene(BudgetBench& bench, const std::string& scene) {
   const Stretch stretch = stretch_of(scene);
   const uint32_t judged = stretch.times * bench.options.frames;
   bench.request.scene = file_of(scene);
@@ -68,7 +68,7 @@ void begin_scene(Bench& bench, const std::string& scene) {
   bench.shared = {};
 }
 
-demo::Result<std::vector<Single>> measure_singles(Bench& bench) {
+demo::Result<std::vector<Single>> measure_singles(BudgetBench& bench) {
   std::vector<Single> singles;
   bench.request.budget_ms = 0;
   bench.request.metered = true;
@@ -91,7 +91,7 @@ std::string name_of(const Single& single) {
 }
 
 // Errors and the meter of a row for each share of the way from the cheapest outcome to the best.
-demo::Result<> measure_by_meter(Bench& bench, const std::string& scene) {
+demo::Result<> measure_by_meter(BudgetBench& bench, const std::string& scene) {
   begin_scene(bench, scene);
   const auto singles = measure_singles(bench);
   if (!singles) return singles.error();
@@ -111,7 +111,7 @@ demo::Result<> measure_by_meter(Bench& bench, const std::string& scene) {
 }
 
 // One more timed run of each of a scene's rows.
-demo::Result<> measure_by_time(Bench& bench, const std::string& scene) {
+demo::Result<> measure_by_time(BudgetBench& bench, const std::string& scene) {
   begin_scene(bench, scene);
   bench.request.metered = false;
   bench.request.error_every = 0;
@@ -127,7 +127,7 @@ demo::Result<> measure_by_time(Bench& bench, const std::string& scene) {
 
 // What slows the machine down for a while meets one run of a budget and not its median: between two of them
 // all other scenes are timed.
-demo::Result<> measure(Bench& bench) {
+demo::Result<> measure(BudgetBench& bench) {
   for (const std::string& scene : bench.options.scenes)
     if (auto measured = measure_by_meter(bench, scene); !measured) return measured;
   for (uint32_t i = 0; i < bench.options.repetitions; ++i)
@@ -178,7 +178,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
     return fail(session, ExitCode::usage, problem);
   Progress progress(progress_style(session.quiet, false), "budget", "run",
                     options.scenes.size() * (sets.size() + (1 + options.repetitions) * std::size(shares)));
-  Bench bench{session, options, std::move(request), std::move(sets), progress};
+  BudgetBench bench{session, options, std::move(request), std::move(sets), progress};
   Report report;
   report.bench = "budget";
   report.title = "Frames within a budget";

@@ -40,7 +40,7 @@ struct Case {
   dermis_choice choice = DERMIS_CHOICE_INIT;
 };
 
-struct Bench {
+struct SkipBench {
   demo::VulkanHost& host;
   const BenchSkipOptions& options;
   LoadedGraph loaded, plain; // as it is; without what looks for flat light
@@ -51,7 +51,7 @@ struct Bench {
   const LoadedGraph& graph_of(const SkipCase& one) const { return one.skips ? loaded : plain; }
 };
 
-demo::Result<> prepare(Bench& bench, SkipCase from) {
+demo::Result<> prepare(SkipBench& bench, SkipCase from) {
   Case one;
   one.from = std::move(from);
   const LoadedGraph& loaded = bench.graph_of(one.from);
@@ -100,7 +100,7 @@ demo::Result<> run_once(Case& one, bool timed) {
   return demo::success();
 }
 
-demo::Result<> measure(Bench& bench, Progress& progress) {
+demo::Result<> measure(SkipBench& bench, Progress& progress) {
   for (uint32_t i = 0; i < warm_up + bench.options.repetitions; ++i) {
     for (Case& one : bench.cases) // interleaved, so that a slow moment of the machine meets all
       if (auto ran = run_once(one, i >= warm_up); !ran) return ran.error();
@@ -116,7 +116,7 @@ demo::Result<> measure(Bench& bench, Progress& progress) {
 }
 
 // Texels fetched by the groups that ran, each as if all around it were subsurface.
-double reads_of(const Bench& bench, const Case& one, std::span<const float> sap_tables) {
+double reads_of(const SkipBench& bench, const Case& one, std::span<const float> sap_tables) {
   if (one.from.no_profiles || one.from.empty_bounds) return 0;
   const LoadedGraph& loaded = bench.graph_of(one.from);
   const double listed = double(one.choice.scattering_tiles) + one.choice.copied_tiles + one.choice.flat_tiles;
@@ -157,7 +157,7 @@ double median(std::vector<double> values) {
   return values.empty() ? 0 : values[values.size() / 2];
 }
 
-ReportValue largest_difference(const Bench& bench, const Case& one) {
+ReportValue largest_difference(const SkipBench& bench, const Case& one) {
   for (const Case& other : bench.cases) {
     if (other.from.name != one.from.same_as) continue;
     double largest = 0;
@@ -168,7 +168,7 @@ ReportValue largest_difference(const Bench& bench, const Case& one) {
   return {};
 }
 
-Report make_report(const Session& session, Bench& bench) {
+Report make_report(const Session& session, SkipBench& bench) {
   const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
   const double full = median(bench.cases.front().device_ms);
   Report report;
@@ -251,7 +251,7 @@ ExitCode bench_skip(const Session& session, const BenchSkipOptions& asked) {
 
   auto host = demo::create_vulkan_host({});
   if (!host) return failed(session, host.error());
-  Bench bench{**host, options, std::move(*loaded), std::move(*plain), text, {{1, *profile}}};
+  SkipBench bench{**host, options, std::move(*loaded), std::move(*plain), text, {{1, *profile}}};
   for (SkipCase& one : make_skip_cases(options.size.width, options.size.height, d_px, bench.profiles))
     if (auto ready = prepare(bench, std::move(one)); !ready) return failed(session, ready.error());
   Progress progress(progress_style(session.quiet, false), "skip", "frame", warm_up + options.repetitions);

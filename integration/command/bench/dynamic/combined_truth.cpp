@@ -10,7 +10,7 @@ namespace {
 
 // A frame is a sum of others where no pixel is further from it than light rounds in half floats, 2^-11 of it,
 // in each of them: three, of the brightest light.
-constexpr double close_enough = 3.0 / 2048;
+constexpr double little_light = 3.0 / 2048;
 
 std::vector<float> light_of(const TruthFrame& frame) {
   std::vector<float> light;
@@ -50,7 +50,7 @@ std::optional<Reference> make_reference_of_still(const Session& session, const C
     for (size_t i = 0; i < truth.size(); ++i)
       truth[i] += share.back() * one.truth[i];
   }
-  if (!known.known.empty() && comparable && double(largest(rest)) <= close_enough * double(brightest)) {
+  if (!known.known.empty() && comparable && double(largest(rest)) <= little_light * double(brightest)) {
     Reference combined = known.first;
     combined.light = std::move(truth);
     combined.exposure = frame.description.exposure;

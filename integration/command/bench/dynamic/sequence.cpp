@@ -9,7 +9,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double close_enough = 0.02; // of d_px
+constexpr double little_change = 0.02; // of d_px
 constexpr int most_tries = 4;
 
 demo::Result<Sequence> render_frames(const SequenceRequest& request, demo::RenderOptions options,
@@ -59,7 +59,7 @@ demo::Result<Sequence> render_sequence(const SequenceRequest& request, uint32_t 
   for (int i = 0; i < most_tries && request.d_px > 0; ++i) {
     auto first = render_frames(request, options, 1);
     if (!first) return first;
-    if (!(first->d_px > 0) || std::abs(first->d_px / request.d_px - 1) <= close_enough) break;
+    if (!(first->d_px > 0) || std::abs(first->d_px / request.d_px - 1) <= little_change) break;
     options.zoom *= request.d_px / first->d_px;
   }
   return render_frames(request, options, request.frames);

@@ -12,10 +12,6 @@ namespace {
 
 constexpr uint64_t definition_version = 0x7261790000000001u; // "ray", 1: changes with what is kept
 
-double luminance(const double* rgb) {
-  return rec709[0] * rgb[0] + rec709[1] * rgb[1] + rec709[2] * rgb[2];
-}
-
 Hash hash_of(const RayReferenceSize& size, const std::string& scene, const CapturedFrame& frame) {
   Hash hash;
   const uint64_t sizes[] = {definition_version, size.samples, size.frames, frame.description.width,
@@ -73,7 +69,7 @@ demo::Result<RayReference> make_ray_reference(const RayReferenceSize& size, cons
         double rgb[3];
         for (size_t c = 0; c < 3; ++c)
           sums.light[3 * i + c] += rgb[c] = double(one.light[size_t{3} * reference.pixels[i] + c]);
-        sums.square[i] += luminance(rgb) * luminance(rgb);
+        sums.square[i] += luminance_of(rgb) * luminance_of(rgb);
       }
       return demo::success();
     });
@@ -82,7 +78,7 @@ demo::Result<RayReference> make_ray_reference(const RayReferenceSize& size, cons
     for (double& value : sums.light)
       value /= n;
     for (size_t i = 0; i < reference.pixels.size(); ++i) {
-      const double mean = luminance(&sums.light[3 * i]);
+      const double mean = luminance_of(&sums.light[3 * i]);
       made.own_mse += std::max(0.0, sums.square[i] / n - mean * mean) / (n - 1);
     }
     made.own_mse /= double(reference.pixels.size());

@@ -3,15 +3,11 @@
 namespace dermis::tools {
 namespace {
 
-template <class Value> double luminance(const Value* rgb) {
-  return rec709[0] * double(rgb[0]) + rec709[1] * double(rgb[1]) + rec709[2] * double(rgb[2]);
-}
-
 bool comes_through(const CapturedFrame& frame, uint32_t pixel, double thin_mm) {
   const double metres = double(frame.thickness.values[pixel]);
   return metres > 0 && 1000 * metres <= thin_mm &&
-         luminance(&frame.back_lighting.values[size_t{3} * pixel]) >
-             luminance(&frame.lighting.values[size_t{3} * pixel]);
+         luminance_of(&frame.back_lighting.values[size_t{3} * pixel]) >
+             luminance_of(&frame.lighting.values[size_t{3} * pixel]);
 }
 
 RegionError measure(std::span<const float> light, const Reference& region) {
@@ -20,8 +16,8 @@ RegionError measure(std::span<const float> light, const Reference& region) {
       measure_error(light, region.light, region.pixels, region.exposure, region.population);
   double found = 0, truth = 0;
   for (size_t i = 0; i < region.pixels.size(); ++i) {
-    found += luminance(&light[size_t{3} * region.pixels[i]]);
-    truth += luminance(&region.light[3 * i]);
+    found += luminance_of(&light[size_t{3} * region.pixels[i]]);
+    truth += luminance_of(&region.light[3 * i]);
   }
   return {figures.rmse * figures.rmse, truth > 0 ? found / truth : 0};
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,9 @@ struct StabilityCase {
 
 inline constexpr uint32_t stability_side = 48; // pixels, of frames whose size is not the point
 inline constexpr double stability_d_px = 4;
+inline constexpr double furnace = 2e-3; // bound of a white furnace through half floats: two steps of 2^-10
+inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN(),
+                       infinity = std::numeric_limits<float>::infinity();
 
 // Two profiles, ids 1 and 2, the second twice as wide.
 std::vector<CaptureProfile> stability_profiles();

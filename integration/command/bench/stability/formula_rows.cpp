@@ -13,7 +13,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double furthest_d =
     49.1; // radius of the smallest survival, 2^-24, in d, by the approximate inverse
 constexpr double half_step = 0x1p-11; // largest relative error of a half float
@@ -161,11 +161,11 @@ std::vector<StabilityRow> formula_rows(uint64_t updates) {
           radii("xi_beyond_1", -0.25),
           albedo("albedo_-1", -1, 0),
           albedo("albedo_2", 2, 1),
-          albedo("albedo_nan", nan, 0.33),
+          albedo("albedo_nan", no_number, 0.33),
           dmfp("dmfp_0", 0, 0),
           dmfp("dmfp_1e-30", 1e-30, 1e-30 / 3.5),
           dmfp("dmfp_negative", -1, 0),
-          dmfp("dmfp_nan", nan, 0),
+          dmfp("dmfp_nan", no_number, 0),
           weight("control_weight_dark", dark, 1, 0),
           weight("control_weight_faint", tiny, 1, 1e-6),
           weight("control_weight_first_flash", flash, 1, 1e-6),

@@ -11,9 +11,6 @@ namespace dermis::tools {
 namespace {
 
 constexpr float largest_half = 65504; // what clean_light of shaders/include/sanitise.glsl lets through
-constexpr double furnace = 2e-3;      // a white furnace through half floats: two steps of 2^-10
-constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
-                infinity = std::numeric_limits<float>::infinity();
 
 // Three pixels of the textured frame hold `damage`; it counts as `taken`.
 StabilityCase damaged_light(std::string_view name, float damage, float taken) {
@@ -119,13 +116,13 @@ std::vector<StabilityCase> light_cases() {
   albedo.name = "albedo_out_of_range";
   albedo.given = [](uint32_t) {
     CapturedFrame frame = textured_frame();
-    constexpr std::array values{-1.0f, 2.0f, nan, infinity};
+    constexpr std::array values{-1.0f, 2.0f, not_a_number, infinity};
     for (size_t i = 0; i < frame.albedo.values.size(); ++i)
       frame.albedo.values[i] = values[i % values.size()];
     return frame;
   };
   albedo.finite_only = true;
-  return {damaged_light("light_nan", nan, 0),
+  return {damaged_light("light_nan", not_a_number, 0),
           damaged_light("light_negative", -1, 0),
           damaged_light("light_minus_infinity", -infinity, 0),
           damaged_light("light_infinity", infinity, largest_half),

@@ -8,10 +8,6 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double furnace = 2e-3; // as in light_cases.cpp
-constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
-                infinity = std::numeric_limits<float>::infinity();
-
 using Velocity = std::array<float, 3>; // pixels to the right, down; units of view depth
 constexpr Velocity rests{0, 0, 0};
 constexpr Velocity leads_outside{1e3f, 0, 0}; // of any picture here: a surface that was not to be seen
@@ -91,12 +87,13 @@ StabilityCase red_comes() {
 } // namespace
 
 std::vector<StabilityCase> motion_cases() {
-  return {velocity("velocity_nan", nan),
-          velocity("velocity_infinity", infinity),
-          velocity("velocity_1e6_px", 1e6f),
-          striped("velocity_in_stripes", {{{nan, 0, 0}, {infinity, -infinity, 0}, {0x1p31f, 1e30f, 0}}}),
-          striped("velocity_of_depth_in_stripes", {{{0, 0, -infinity}, {0, 0, nan}, {0, 0, -1e30f}}}),
-          red_comes()};
+  return {
+      velocity("velocity_nan", not_a_number),
+      velocity("velocity_infinity", infinity),
+      velocity("velocity_1e6_px", 1e6f),
+      striped("velocity_in_stripes", {{{not_a_number, 0, 0}, {infinity, -infinity, 0}, {0x1p31f, 1e30f, 0}}}),
+      striped("velocity_of_depth_in_stripes", {{{0, 0, -infinity}, {0, 0, not_a_number}, {0, 0, -1e30f}}}),
+      red_comes()};
 }
 
 } // namespace dermis::tools

@@ -8,10 +8,6 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double furnace = 2e-3; // as in light_cases.cpp
-constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
-                infinity = std::numeric_limits<float>::infinity();
-
 StabilityCase furnace_of(std::string_view name, std::function<CapturedFrame()> make, double bound = furnace) {
   StabilityCase made;
   made.name = name;
@@ -84,7 +80,7 @@ StabilityCase far_plane(std::string_view name, float metres) {
 } // namespace
 
 std::vector<StabilityCase> shape_cases() {
-  StabilityCase no_number = without_scattering("scatter_scale_nan", nan);
+  StabilityCase no_number = without_scattering("scatter_scale_nan", not_a_number);
   StabilityCase endless =
       furnace_of("scatter_scale_infinity", [] { return with_scale(sound_frame(), infinity); });
   StabilityCase widest = sized("size_16384x64", 16384, 64);
@@ -101,7 +97,7 @@ std::vector<StabilityCase> shape_cases() {
           grazing("grazing_89", 89),
           grazing("grazing_89_9", 89.9),
           odd_depth("depth_zero_beside", 0),
-          odd_depth("depth_nan_beside", nan),
+          odd_depth("depth_nan_beside", not_a_number),
           odd_depth("depth_infinity_beside", infinity),
           odd_depth("depth_negative_beside", -1),
           far_plane("depth_1e-6_m", 1e-6f),

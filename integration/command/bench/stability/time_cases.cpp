@@ -10,9 +10,6 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double furnace = 2e-3; // as in light_cases.cpp
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
 using Level = std::function<double(uint32_t frame)>;
 
 // White light of a level that changes from frame to frame.
@@ -39,7 +36,7 @@ StabilityCase poisoned() {
   made.frames = 12;
   made.given = [](uint32_t frame) {
     CapturedFrame out = sound_frame();
-    if (frame == 4) fill_light(out, nan);
+    if (frame == 4) fill_light(out, not_a_number);
     return out;
   };
   made.wanted = [](uint32_t frame) { return frame == 4 ? 0.0 : 1.0; };

@@ -16,13 +16,6 @@ struct Row {
 };
 
 // Inside of a table cell.
-std::string cell(std::string_view text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '|' ? std::string("\\|") : c == '\n' ? std::string(" ") : std::string(1, c);
-  return out;
-}
-
 struct SchemaPage {
   const Document& schema;
   std::string_view name; // of the format

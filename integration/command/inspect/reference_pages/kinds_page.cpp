@@ -52,13 +52,6 @@ std::string range_text(const KindSetting& setting) {
   return setting.options.empty() ? fmt::format("{} .. {}", setting.minimum, setting.maximum) : text;
 }
 
-std::string cell(std::string_view text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '|' ? std::string("\\|") : std::string(1, c);
-  return out;
-}
-
 // "; at least ..." of a port, "" where any size will do.
 std::string need_text(const PassKind& kind, const Port& port) {
   for (const PortNeed& need : kind.needs) {
