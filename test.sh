@@ -15,8 +15,11 @@ usage="usage: ./test.sh [--full]
            other drivers that are there; covered code (gcovr); 60 seconds a fuzz target; every bench. A run that was
            stopped goes on with the step that it was in, as long as the sources stay as they are"
 
-soak_processes=20 soak_frames=5000 # of each: a driver that forgets mappings runs out of them in one process
-graph_chunks=10 chunk_graphs=40
+# What --full does in parts, each of them a step of its own:
+test_parts=6
+soak_parts=10 soaks_a_part=2 soak_frames=5000 # of each soak: a driver that forgets mappings runs out of them in one process
+graph_parts=10 chunks_a_part=2 chunk_graphs=20
+driver_suites=(framegraph_vulkan passes_kernels passes_device integration_abi integration_embedding integration_demo_engine laws)
 full=no
 for argument in "$@"; do
   case "$argument" in
@@ -67,33 +70,51 @@ tell_times() {
           printf "%-20s %s\n", "all", told(all) }'
 }
 
-tests_of() { # preset
+tests_of() { # preset [part]
+  local chosen=()
+  [[ -z ${2:-} ]] || chosen=(-I "$2,,$test_parts")
   build_preset "$1"
-  ctest --preset "$1" -j "$(nproc)" --progress ||
+  ctest --preset "$1" -j "$(nproc)" --progress "${chosen[@]}" ||
     fail 1 "tests failed in '$1'; the log: build/$1/Testing/Temporary/LastTest.log"
 }
-release() { tests_of release; }
+release() { tests_of release "$1"; } # part, or all
 # Sanitizers and other drivers see no more in the tenth thousand of graphs, at many times the time.
 quick() { (unset DERMIS_TESTS_FULL && "$@"); }
-asan() { quick tests_of asan; }
+asan() { quick tests_of asan "$1"; } # part
 tsan() {
   build_preset tsan --target test_integration_static_library
   TSAN_OPTIONS=halt_on_error=1 build/tsan/tests/test_integration_static_library --gtest_filter='Threads.*'
 }
 built() { build_preset release --target "$@" >/dev/null; } # after an earlier run something else may have been
-soak() { # seed
+# Several runs of a test program at the same time, told apart by a variable.
+side_by_side() { # variable, first value, step, runs, program and its arguments
+  local variable=$1 first=$2 by=$3 runs=$4 i log failed=''
+  shift 4
+  local processes=()
+  for ((i = 0; i < runs; ++i)); do
+    env "$variable=$((first + i * by))" "$@" >"build/$variable.$i.log" 2>&1 &
+    processes+=($!)
+  done
+  for ((i = 0; i < runs; ++i)); do
+    log=build/$variable.$i.log
+    wait "${processes[i]}" || failed+=" $variable=$((first + i * by))"
+    cat "$log"
+  done
+  [[ -z $failed ]] || fail 1 "it failed with$failed"
+}
+soak() { # part, from 1
   built test_integration_soak
-  DERMIS_SOAK_SEED=$1 DERMIS_SOAK_FRAMES=$soak_frames build/release/tests/test_integration_soak ||
-    fail 1 "the soak failed with DERMIS_SOAK_SEED=$1 DERMIS_SOAK_FRAMES=$soak_frames"
+  DERMIS_SOAK_FRAMES=$soak_frames side_by_side DERMIS_SOAK_SEED $((($1 - 1) * soaks_a_part + 1)) 1 $soaks_a_part \
+    build/release/tests/test_integration_soak
 }
-random_graphs() { # chunk, from 1
+random_graphs() { # part, from 1
   built test_passes_device
-  DERMIS_FUZZ_SEED=$((($1 - 1) * chunk_graphs)) DERMIS_FUZZ_GRAPHS=$chunk_graphs \
-    build/release/tests/test_passes_device --gtest_filter='DeviceFuzz.*'
+  DERMIS_FUZZ_GRAPHS=$chunk_graphs side_by_side DERMIS_FUZZ_SEED $((($1 - 1) * chunks_a_part * chunk_graphs)) $chunk_graphs \
+    $chunks_a_part build/release/tests/test_passes_device --gtest_filter='DeviceFuzz.*'
 }
-other_drivers() {
+other_drivers() { # suite, from 1
   build_preset release >/dev/null
-  quick tests/drivers/run.sh
+  quick tests/drivers/run.sh build/release "${driver_suites[$1 - 1]}"
 }
 coverage() { tests/coverage/run.sh; }
 benches() {
@@ -115,9 +136,10 @@ fuzzers() { # and the plans of another compiler
 steps=(release fuzzers)
 if [[ $full == yes ]]; then
   open_kept_steps
-  mapfile -t soaks < <(seq -f 'soak %g' "$soak_processes")
-  mapfile -t chunks < <(seq -f 'random graphs %g' "$graph_chunks")
-  steps=(release asan tsan "${soaks[@]}" "${chunks[@]}" "other drivers" coverage fuzzers benches)
+  parts_of() { seq -f "$1 %g" "$2"; } # name, parts
+  mapfile -t steps < <(parts_of release "$test_parts"; echo fuzzers; echo coverage; echo tsan; parts_of soak "$soak_parts"
+    parts_of 'random graphs' "$graph_parts"; parts_of 'other drivers' "${#driver_suites[@]}"; echo benches
+    parts_of asan "$test_parts")
 fi
 for one in "${steps[@]}"; do
   step "$one"

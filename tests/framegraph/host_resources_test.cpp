@@ -28,7 +28,7 @@ constexpr Port copy_ports[] = {
     {"target", Usage::storage_image_write, false, "image2D", "the result"},
 };
 
-const KindRegistry& kinds() {
+const KindRegistry& kinds_of_host() {
   static const KindRegistry registry = [] {
     KindRegistry out;
     PassKind trace{"test.trace", "trace", "traces", trace_ports, {}};
@@ -55,15 +55,15 @@ constexpr std::string_view traced = R"({ "dermis": 1, "name": "traced",
       "read": { "light": "light" }, "write": { "target": "out" } } ],
   "exports": ["out"] })";
 
-struct Read {
+struct HostRead {
   Diagnostics diagnostics;
   std::optional<Graph> graph;
 };
 
-Read read(std::string text) {
-  Read out;
+HostRead read_with_host(std::string text) {
+  HostRead out;
   const auto document = parse_document("graph.json", std::move(text), out.diagnostics);
-  if (document) out.graph = read_graph(*document, kinds(), out.diagnostics);
+  if (document) out.graph = read_graph(*document, kinds_of_host(), out.diagnostics);
   return out;
 }
 
@@ -96,7 +96,7 @@ TEST_P(DamagedHostResources, GiveOneDiagnosticAtTheDamage) {
   const std::string before = text.substr(0, at);
   const auto line = static_cast<uint32_t>(1 + std::count(before.begin(), before.end(), '\n'));
   const auto column = static_cast<uint32_t>(at - (before.rfind('\n') + 1) + 1);
-  const Read result = read(text);
+  const HostRead result = read_with_host(text);
   EXPECT_FALSE(result.graph);
   expect_only(result.diagnostics, damage.id, line, column, damage.words);
 }
@@ -181,7 +181,7 @@ struct Compiled {
 Compiled compiled(const Graph& graph, const DeviceProfile& device, std::vector<bool> bound = {}) {
   Compiled out;
   out.input.graph = &graph;
-  out.input.kinds = &kinds();
+  out.input.kinds = &kinds_of_host();
   out.input.device = &device;
   out.input.view_width = 64;
   out.input.view_height = 64;
@@ -202,7 +202,7 @@ std::string only_pass(const Graph& graph, const CompiledPlan& compiled) {
 }
 
 TEST(HostResources, AreTakenOverReadAtTheComputeStageAndHandedBack) {
-  const Read loaded = read(std::string(traced));
+  const HostRead loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = generic_profile();
   const Compiled result = compiled(*loaded.graph, device);
@@ -241,7 +241,7 @@ TEST(HostResources, AreTakenOverReadAtTheComputeStageAndHandedBack) {
 }
 
 TEST(HostResources, ArePartOfASavedPlan) {
-  const Read loaded = read(std::string(traced));
+  const HostRead loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph);
   const DeviceProfile device = generic_profile();
   const Compiled result = compiled(*loaded.graph, device);
@@ -255,14 +255,14 @@ TEST(HostResources, ArePartOfASavedPlan) {
 }
 
 TEST(Options, ThatTheDeviceCannotRunGiveWayToOneThatItCan) {
-  const Read loaded = read(std::string(traced));
+  const HostRead loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph);
   const DeviceProfile device = without_rays();
   Compiled result = compiled(*loaded.graph, device);
   ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
   EXPECT_EQ(result.plan->plan.setting_values[0].integer, 1);
-  const std::string text = plan_text(*loaded.graph, kinds(), *result.plan, {});
+  const std::string text = plan_text(*loaded.graph, kinds_of_host(), *result.plan, {});
   EXPECT_NE(text.find("'copy' instead of 'trace', which is not offered: the device lacks ray_query"),
             std::string::npos)
       << text;
@@ -272,7 +272,7 @@ TEST(Options, ThatTheDeviceCannotRunGiveWayToOneThatItCan) {
 }
 
 TEST(Options, ThatNeedAnImportGiveWayWhereItIsNotBound) {
-  const Read loaded = read(std::string(traced));
+  const HostRead loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph);
   const DeviceProfile device = generic_profile();
   std::vector<bool> bound(loaded.graph->resources.size(), true);
@@ -280,13 +280,13 @@ TEST(Options, ThatNeedAnImportGiveWayWhereItIsNotBound) {
   const Compiled result = compiled(*loaded.graph, device, bound);
   ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
-  const std::string text = plan_text(*loaded.graph, kinds(), *result.plan, {});
+  const std::string text = plan_text(*loaded.graph, kinds_of_host(), *result.plan, {});
   EXPECT_NE(text.find("not offered: 'scene' is not bound"), std::string::npos) << text;
 }
 
 TEST(Features, ThatAGraphRequiresAreNeededToRunIt) {
-  const Read loaded =
-      read(with("\"name\": \"traced\"", "\"name\": \"traced\",\n  \"requires\": [\"ray_query\"]"));
+  const HostRead loaded =
+      read_with_host(with("\"name\": \"traced\"", "\"name\": \"traced\",\n  \"requires\": [\"ray_query\"]"));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = without_rays();
   const Compiled result = compiled(*loaded.graph, device);
@@ -295,7 +295,8 @@ TEST(Features, ThatAGraphRequiresAreNeededToRunIt) {
 }
 
 TEST(Features, ThatAKernelNeedsAreNeededToRunItsPass) {
-  const Read loaded = read(with(", \"requires\": { \"trace\": [\"ray_query\", \"scene\"] }", ""));
+  const HostRead loaded =
+      read_with_host(with(", \"requires\": { \"trace\": [\"ray_query\", \"scene\"] }", ""));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = without_rays();
   const Compiled result = compiled(*loaded.graph, device);

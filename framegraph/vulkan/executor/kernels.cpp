@@ -10,9 +10,11 @@
 namespace dermis::vulkan {
 namespace {
 
-// A format for the stand-in of an unbound port: what the shader declares, else any that reads as the same
-// number.
-VkFormat stand_in_format(const ShaderBinding& binding) {
+// A format for the stand-in of an unbound port: what port or shader declares, else any that reads as the same
+// number. A driver may compile a kernel once more for another format.
+VkFormat stand_in_format(const Port& port, const ShaderBinding& binding) {
+  if (port.usage == Usage::sampled_image && !port.formats.empty() && !format_info(port.formats.front()).depth)
+    return vk_format(port.formats.front());
   // SPIR-V specification, 3.11 Image Format.
   switch (binding.image_format) {
   case 1:
@@ -161,7 +163,8 @@ Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel&
     kernel.ports[p].type = descriptor_type(kind.ports[p].usage);
     if (kind.ports[p].usage == Usage::indirect_arguments) kernel.indirect_port = p;
     for (const ShaderBinding& binding : reflection->bindings)
-      if (binding.set == 0 && binding.binding == p) kernel.ports[p].stand_in = stand_in_format(binding);
+      if (binding.set == 0 && binding.binding == p)
+        kernel.ports[p].stand_in = stand_in_format(kind.ports[p], binding);
     if (kernel.ports[p].stand_in == VK_FORMAT_UNDEFINED)
       kernel.ports[p].stand_in = VK_FORMAT_R16G16B16A16_SFLOAT;
   }
