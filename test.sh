@@ -74,7 +74,8 @@ tests_of() { # preset [part]
   local chosen=()
   [[ -z ${2:-} ]] || chosen=(-I "$2,,$test_parts")
   build_preset "$1"
-  ctest --preset "$1" -j "$(nproc)" --progress "${chosen[@]}" ||
+  # As many tests run at a time as there are processors: one thread each of Mesa's software driver, not one a processor.
+  LP_NUM_THREADS=${LP_NUM_THREADS:-1} ctest --preset "$1" -j "$(nproc)" --progress "${chosen[@]}" ||
     fail 1 "tests failed in '$1'; the log: build/$1/Testing/Temporary/LastTest.log"
 }
 release() { tests_of release "$1"; } # part, or all

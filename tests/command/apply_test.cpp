@@ -12,9 +12,9 @@
 namespace dermis::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 class Captures : public CommandTest {
 protected:

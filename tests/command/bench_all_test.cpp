@@ -10,8 +10,8 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class BenchAll : public CommandTest {};
 
@@ -19,7 +19,7 @@ TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
   const std::vector<std::string> arguments = {"bench", "all", "--out", path("out"), "--suites", "record"};
   const Outcome first = run(arguments);
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_THAT(files("out"), testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
+  EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
   const std::string index = read("out/index.html");
   EXPECT_THAT(index, HasSubstr("<a href='record.html'>"));
   EXPECT_THAT(index, HasSubstr("dermis bench record --json record.json --html record.html"));
@@ -61,7 +61,7 @@ TEST_F(BenchAll, ARunThatWasStoppedGoesOnAndAQuickOneIsNotTakenForAWholeOne) {
   RunOptions stopped;
   stopped.interrupt_after = path("out/index.html"); // which is there after the first suite
   EXPECT_EQ(run(arguments, stopped).exit_code, 130);
-  EXPECT_THAT(files("out"), testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
+  EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
 
   const Outcome outcome = run(arguments);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -87,7 +87,7 @@ TEST_F(BenchAll, ASuiteThatIsNotThereIsAUsageErrorWithASuggestion) {
   const Outcome outcome = run({"bench", "all", "--out", path("out"), "--suites", "recrod"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("did you mean 'record'?"));
-  EXPECT_THAT(files(), testing::IsEmpty());
+  EXPECT_THAT(files(), ::testing::IsEmpty());
 }
 
 TEST_F(BenchAll, AnIndexThatIsNoneOfOursIsNotBelieved) {

@@ -8,8 +8,8 @@
 namespace {
 
 using namespace dermis::test;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class BenchErrorTime : public CommandTest {
 protected:
@@ -56,7 +56,7 @@ TEST_F(BenchErrorTime, WritesARowForEachSceneAndTechniqueInAllFormats) {
   const std::string csv = read(path("out.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 2);
   EXPECT_THAT(read(path("out.html")), HasSubstr("</html>"));
-  EXPECT_THAT(files("cache"), testing::SizeIs(3));
+  EXPECT_THAT(files("cache"), ::testing::SizeIs(3));
 }
 
 TEST_F(BenchErrorTime, FindsTheSameErrorsAgainFromTheCacheAndWithoutIt) {
@@ -103,7 +103,7 @@ TEST_F(BenchErrorTime, TheShippedFileIsReadable) {
   const Outcome outcome = run({"bench", "error-time", "--scenes", "edge", "--techniques", "burley", "--size",
                                "16x16", "--csv", "-", "--cache", "", "--study"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, testing::StartsWith("scene,d_px,framing"));
+  EXPECT_THAT(outcome.out, ::testing::StartsWith("scene,d_px,framing"));
 }
 
 TEST_F(BenchErrorTime, AGraphOrSettingThatCannotBeUsedEndsItWithAReason) {

@@ -8,7 +8,7 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 struct BenchRecord : CommandTest {};
 

@@ -15,7 +15,7 @@ namespace dermis::tools {
 namespace {
 
 using test::Outcome;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const std::string sources = DERMIS_SOURCE_DIR;
 
@@ -60,8 +60,8 @@ TEST(RestirVariants, AreNoneAndEveryReuseWithEveryShiftThatTheGraphLists) {
   for (const RestirVariant& one : variants_of(graph))
     found.push_back(one.reuse + " " + one.shift + (one.has_history() ? " with history" : ""));
   EXPECT_THAT(found,
-              testing::ElementsAre("none ", "spatial reconnection", "spatial delayed",
-                                   "temporal reconnection with history", "temporal delayed with history"));
+              ::testing::ElementsAre("none ", "spatial reconnection", "spatial delayed",
+                                     "temporal reconnection with history", "temporal delayed with history"));
 }
 
 TEST(RestirVariants, MorePathsInMoreTimeAreNoBetterAtEqualTime) {
@@ -83,8 +83,8 @@ TEST(RestirRegions, TellWhereLightComesThroughAndHowMuchOfItIsThere) {
   reference.light = {1, 1, 1, 2, 2, 2, 2, 2, 2};
   reference.population = 3;
   const RayRegions regions = split_by_light(reference, frame, 6);
-  EXPECT_THAT(regions.through.pixels, testing::ElementsAre(0u));
-  EXPECT_THAT(regions.rest.pixels, testing::ElementsAre(1u, 2u));
+  EXPECT_THAT(regions.through.pixels, ::testing::ElementsAre(0u));
+  EXPECT_THAT(regions.rest.pixels, ::testing::ElementsAre(1u, 2u));
   const std::vector<float> found = {0.25f, 0.25f, 0.25f, 2, 2, 2, 1, 1, 1};
   const LightError error = measure_light(found, regions);
   EXPECT_NEAR(error.through.light, 0.25, 1e-6);
@@ -145,7 +145,7 @@ TEST_F(BenchRestir, WithoutRayQueriesSaysWhatBringsThemAndIsNoFailureOfAllSuites
   EXPECT_EQ(all.exit_code, 0) << all.err;
   EXPECT_THAT(all.out, HasSubstr("left out: "));
   EXPECT_THAT(read("out/index.html"), HasSubstr("left out: "));
-  EXPECT_THAT(files("out"), testing::ElementsAre("index.html", "index.json"));
+  EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json"));
 }
 
 TEST_F(BenchRestir, WritesARowForEachReuseAndTechniqueAndKeepsTheReference) {
@@ -173,7 +173,7 @@ TEST_F(BenchRestir, WritesARowForEachReuseAndTechniqueAndKeepsTheReference) {
     }
   }
   EXPECT_THAT(read("page.html"), HasSubstr("back_lit, reference"));
-  EXPECT_THAT(files("cache"), testing::SizeIs(1));
+  EXPECT_THAT(files("cache"), ::testing::SizeIs(1));
   const auto kept = std::filesystem::last_write_time(path("cache/" + files("cache").front()));
   ASSERT_EQ(run(arguments, with_rays()).exit_code, 0);
   EXPECT_EQ(std::filesystem::last_write_time(path("cache/" + files("cache").front())), kept);

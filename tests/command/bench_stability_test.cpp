@@ -8,7 +8,7 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 class BenchStability : public CommandTest {};
 
 TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {

@@ -4,7 +4,7 @@
 namespace {
 
 using namespace dermis::test;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class BenchTruth : public CommandTest {
 protected:

@@ -1,5 +1,6 @@
 // Choices by budget on the command line: render, calibrate, bench budget.
 #include "tests/command/command_fixture.hpp"
+#include "tests/framegraph/test_tier.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -7,7 +8,7 @@ namespace dermis::test {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr const char* graph = "configs/graphs/skin.json";
 constexpr const char* scene = "configs/scenes/bust.json";
@@ -24,7 +25,7 @@ TEST_F(Choice, OfEachFrameIsToldWithWhatWasExpectedAndMeasured) {
   for (const json& frame : answer["choices"]) {
     // A second is enough for the least error: samples for all, until tiles were counted and none was in
     // doubt.
-    EXPECT_THAT(frame["technique"].get<std::string>(), testing::AnyOf("hybrid smooth", "sap base"));
+    EXPECT_THAT(frame["technique"].get<std::string>(), ::testing::AnyOf("hybrid smooth", "sap base"));
     EXPECT_EQ(frame["budget_ms"], 1000);
     EXPECT_GT(frame["measured_ms"], 0);
     EXPECT_GT(frame["metered_ms"], 0);
@@ -81,7 +82,7 @@ TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
   constexpr const char* residual = "configs/graphs/sap_residual.json";
   const Outcome text = run({"explain", residual, "--frame", "--size", "64x36"});
   ASSERT_EQ(text.exit_code, 0) << text.err;
-  EXPECT_THAT(text.out, testing::ContainsRegex("\nratio +6 frames +nothing has been recorded yet\n"));
+  EXPECT_THAT(text.out, ::testing::ContainsRegex("\nratio +6 frames +nothing has been recorded yet\n"));
   const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", residual, "--size", "64x36",
                                "--frames", "3", "--subset", "0", "--out", path("out"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -91,7 +92,7 @@ TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
     const json& histories = frame["histories"];
     ASSERT_EQ(histories.size(), 2u);
     for (const json& one : histories) {
-      EXPECT_THAT(one["name"].get<std::string>(), testing::AnyOf("ratio", "place"));
+      EXPECT_THAT(one["name"].get<std::string>(), ::testing::AnyOf("ratio", "place"));
       EXPECT_EQ(one["valid"], true);
       EXPECT_EQ(one["age"], age + 1);
       EXPECT_EQ(one["why"], "nothing has been recorded yet");
@@ -99,7 +100,7 @@ TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
     ++age;
   }
   const Outcome without = run({"explain", "configs/graphs/sap.json", "--frame", "--size", "64x36"});
-  EXPECT_THAT(without.out, testing::Not(HasSubstr("held nothing")));
+  EXPECT_THAT(without.out, ::testing::Not(HasSubstr("held nothing")));
 }
 
 TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {
@@ -128,6 +129,7 @@ TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {
 }
 
 TEST_F(Choice, BenchSkipGivesARowForEachCase) {
+  DERMIS_IN_FULL_TIER(); // BenchAll runs it, too
   const std::string file = path("skip.json");
   const Outcome outcome = run({"bench", "skip", "--size", "48x27", "--repetitions", "1", "--json", file});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -135,6 +137,7 @@ TEST_F(Choice, BenchSkipGivesARowForEachCase) {
 }
 
 TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndShare) {
+  DERMIS_IN_FULL_TIER(); // BudgetJudge judges without a device
   const std::string file = path("budget.json");
   const Outcome outcome = run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
                                "--repetitions", "1", "--cache", "", "--json", file});

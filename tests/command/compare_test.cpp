@@ -11,7 +11,7 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class Compare : public CommandTest {
 protected:
@@ -135,7 +135,7 @@ TEST_F(Compare, SumsAFolderUpAndSaysWhatAMapShows) {
   EXPECT_EQ(answer["all"]["pixels"], 1024);
   EXPECT_THAT(run({"compare", path("a"), path("b")}).out, HasSubstr("\nall "));
   const Outcome drawn = run({"compare", path("a/one.png"), path("b/one.png"), "--heat", path("heat.png")});
-  EXPECT_THAT(drawn.out, testing::AllOf(HasSubstr(path("heat.png")), HasSubstr("1e-4")));
+  EXPECT_THAT(drawn.out, ::testing::AllOf(HasSubstr(path("heat.png")), HasSubstr("1e-4")));
 }
 
 TEST_F(Compare, RefusesWhatCannotBeCompared) {

@@ -7,7 +7,7 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class Docs : public CommandTest {};
 

@@ -8,7 +8,7 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 class DoctorVerb : public CommandTest {};
 
 TEST_F(DoctorVerb, NamesTheDeviceAndEverythingThatIsAskedOfIt) {
@@ -29,7 +29,7 @@ TEST_F(DoctorVerb, AnswersPrograms) {
   for (const auto& device : document["devices"]) {
     used += device["used"].get<bool>() ? 1 : 0;
     for (const auto& item : device["items"])
-      EXPECT_THAT(item["state"].get<std::string>(), testing::AnyOf("ok", "missing", "degraded"));
+      EXPECT_THAT(item["state"].get<std::string>(), ::testing::AnyOf("ok", "missing", "degraded"));
   }
   EXPECT_EQ(used, 1u);
 }
@@ -40,7 +40,7 @@ TEST_F(DoctorVerb, SaysWhatToInstallWhereThereIsNoDriver) {
   const Outcome text = run({"doctor"}, without);
   EXPECT_EQ(text.exit_code, 3);
   EXPECT_THAT(text.err, HasSubstr("mesa-vulkan-drivers"));
-  EXPECT_THAT(text.out, testing::AllOf(HasSubstr("ok       Dermis"), HasSubstr("missing  Vulkan device")));
+  EXPECT_THAT(text.out, ::testing::AllOf(HasSubstr("ok       Dermis"), HasSubstr("missing  Vulkan device")));
 }
 
 } // namespace

@@ -11,10 +11,10 @@
 namespace dermis::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 using GraphFiles = CommandTest;
 
@@ -98,7 +98,7 @@ TEST_F(GraphFiles, AllFilesAreCheckedEvenAfterABadOne) {
   const Outcome outcome = run({"validate", bad, burley, "--json"});
   EXPECT_EQ(outcome.exit_code, 1);
   ASSERT_TRUE(is_json(outcome.out)) << outcome.out;
-  EXPECT_THAT(outcome.out, AllOf(testing::StartsWith("{\n  \"ok\": false,"),
+  EXPECT_THAT(outcome.out, AllOf(::testing::StartsWith("{\n  \"ok\": false,"),
                                  HasSubstr("burley.json\", \"kind\": \"graph\", \"ok\": true")));
 }
 
@@ -139,7 +139,7 @@ TEST_F(GraphFiles, GraphWritesDotAndJson) {
   EXPECT_THAT(dot.out, StartsWith("digraph"));
   const Outcome json = run({"graph", burley, "--json", "--out", path("plan.json")});
   EXPECT_EQ(json.exit_code, 0) << json.err;
-  EXPECT_THAT(files(), testing::ElementsAre("plan.json"));
+  EXPECT_THAT(files(), ::testing::ElementsAre("plan.json"));
 }
 
 TEST_F(GraphFiles, AnOutputThatCannotBeWrittenIsAnEnvironmentErrorAndLeavesNothing) {
@@ -201,7 +201,7 @@ TEST_F(GraphFiles, UpgradeHasNothingToDoForTheNewestVersionAndRefusesUnknownOnes
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("graph, version 1 is the newest: nothing to"));
   }
-  EXPECT_THAT(files(), testing::ElementsAre("mine.json"));
+  EXPECT_THAT(files(), ::testing::ElementsAre("mine.json"));
   const std::string newer = write("newer.json", "{ \"dermis_scene\": 7 }");
   const Outcome refused = run({"upgrade", "--check", newer, mine, "--json"});
   EXPECT_EQ(refused.exit_code, 1);

@@ -11,8 +11,8 @@ namespace dermis::test {
 namespace {
 
 using nlohmann::json;
-using testing::Contains;
-using testing::HasSubstr;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 
 class Keep : public CommandTest {};
 
@@ -91,7 +91,7 @@ TEST_F(Keep, ABugReportTakesTheLastFrameOfAnEnginesCaptureAndFilesThatAGraphIncl
       run({"report-bug", graph, "--frames", path("capture"), "--size", "32x18", "--out", path("bug")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(files("bug"), Contains("parts/back.json"));
-  EXPECT_THAT(files("bug/capture"), testing::Not(Contains("frame_0001")));
+  EXPECT_THAT(files("bug/capture"), ::testing::Not(Contains("frame_0001")));
   EXPECT_EQ(run({"validate", path("bug/main.json"), path("bug/capture")}).exit_code, 0);
 }
 
@@ -99,7 +99,7 @@ TEST_F(Keep, ABugReportMayBeOneArchive) {
   const Outcome outcome = run({"report-bug", "configs/graphs/burley.json", "--size", "32x18", "--count", "1",
                                "--out", path("bug.tar.gz")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(files(), testing::ElementsAre("bug.tar.gz"));
+  EXPECT_THAT(files(), ::testing::ElementsAre("bug.tar.gz"));
   const Outcome there = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")});
   EXPECT_EQ(there.exit_code, 3);
   EXPECT_THAT(there.err, HasSubstr("is there: choose another name"));
@@ -119,7 +119,7 @@ TEST_F(Keep, ABugReportNeitherWritesOverAFolderNorLeavesHalfOfOne) {
       run({"report-bug", "configs/graphs/burley.json", "--scene", path("none.json"), "--out", path("bug")})
           .exit_code,
       1);
-  EXPECT_THAT(files(), testing::ElementsAre("full", "full/file"));
+  EXPECT_THAT(files(), ::testing::ElementsAre("full", "full/file"));
 }
 
 TEST_F(Keep, ATraceHasEveryPassOfEveryFrameAndNestsPerfectly) {

@@ -4,7 +4,7 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr const char* kinds = R"({ "dermis_kinds": 1, "kinds": [
   { "name": "studio.tone", "ports": [ { "name": "light", "usage": "sampled_image" },

@@ -7,10 +7,10 @@
 namespace dermis::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
 using PlanFiles = CommandTest;
 
@@ -35,7 +35,7 @@ TEST_F(PlanFiles, TheSameGraphIsSavedAsTheSameBytesAndVerifiesAlone) {
     EXPECT_THAT(outcome.out, HasSubstr("passes"));
   }
   EXPECT_EQ(contents(path("a.plan")), contents(path("b.plan")));
-  EXPECT_THAT(files(), testing::ElementsAre("a.plan", "b.plan"));
+  EXPECT_THAT(files(), ::testing::ElementsAre("a.plan", "b.plan"));
   const Outcome verified = run({"plan", "verify", path("a.plan")});
   EXPECT_EQ(verified.exit_code, 0) << verified.err;
   EXPECT_THAT(verified.out, HasSubstr("no hazard"));

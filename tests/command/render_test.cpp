@@ -7,12 +7,12 @@
 namespace dermis::test {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::Each;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr const char* bust = "configs/scenes/bust.json";
 
@@ -31,8 +31,8 @@ TEST_F(Render, PicturesTimesAndErrorComeOut) {
   const Outcome outcome = render(bust, burley, {"--frames", "2", "--subset", "64"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(files("out"),
-              testing::ElementsAre("color_0000.exr", "color_0001.exr", "frame_0000.png", "frame_0001.png",
-                                   "scattered_0000.exr", "scattered_0001.exr"));
+              ::testing::ElementsAre("color_0000.exr", "color_0001.exr", "frame_0000.png", "frame_0001.png",
+                                     "scattered_0000.exr", "scattered_0001.exr"));
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("scatter"), HasSubstr(" ms"), HasSubstr("PSNR"), HasSubstr(" dB"),
                                  HasSubstr("RMSE"), HasSubstr(path("out"))));
 }
@@ -109,7 +109,7 @@ TEST_F(Render, WhatTheGraphSawCanBeAppliedAgain) {
 TEST_F(Render, WithoutAGraphThePictureIsTheEnginesOwn) {
   const Outcome outcome = render(bust, "none", {"--frames", "1"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(files("out"), testing::ElementsAre("color_0000.exr", "frame_0000.png"));
+  EXPECT_THAT(files("out"), ::testing::ElementsAre("color_0000.exr", "frame_0000.png"));
   EXPECT_THAT(outcome.out, HasSubstr("rendered without a graph"));
   EXPECT_EQ(render(bust, "none", {"--set", "samples=8"}).exit_code, 2);
 }
@@ -161,7 +161,7 @@ TEST_F(Render, CtrlCStopsAtTheNextFrameAndLeavesWholeFilesOnly) {
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_THAT(outcome.err, HasSubstr("stopped"));
   const std::vector<std::string> left = files("out");
-  EXPECT_THAT(left, Each(testing::AnyOf(testing::EndsWith(".png"), testing::EndsWith(".exr"))));
+  EXPECT_THAT(left, Each(::testing::AnyOf(::testing::EndsWith(".png"), ::testing::EndsWith(".exr"))));
   EXPECT_THAT(left, Not(Contains("frame_9999.png")));
 }
 

@@ -15,8 +15,8 @@
 namespace dermis::tools {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 Report small_report() {
   Report report;

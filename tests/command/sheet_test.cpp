@@ -8,9 +8,9 @@
 namespace dermis::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Sheet : public CommandTest {
 protected:

@@ -8,8 +8,8 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Shell : public CommandTest {
 protected:

@@ -8,7 +8,7 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class View : public CommandTest {
 protected:
@@ -48,13 +48,13 @@ TEST_F(View, AReportThatIsNoneIsRefusedWithItsPlaceAndNoPageIsWritten) {
       run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame", report});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("report.json:2:13: error[D0104 wrong_type]"));
-  EXPECT_THAT(files(), testing::ElementsAre("report.json"));
+  EXPECT_THAT(files(), ::testing::ElementsAre("report.json"));
 }
 
 TEST_F(View, AGraphWithErrorsHasNoPage) {
   const std::string graph = write("broken.json", R"({ "dermis": 1, "name": "broken", "passes": 3 })");
   EXPECT_EQ(run({"graph", graph, "--html", path("view.html")}).exit_code, 1);
-  EXPECT_THAT(files(), testing::ElementsAre("broken.json"));
+  EXPECT_THAT(files(), ::testing::ElementsAre("broken.json"));
 }
 
 TEST_F(View, AFrameWithoutAPageIsAUsageError) {

@@ -10,7 +10,7 @@
 namespace dermis::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using namespace std::chrono_literals;
 
 class Watch : public CommandTest {
@@ -49,7 +49,7 @@ TEST_F(Watch, SaysWhatAChangedGraphDoesToThePlanAndTheError) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("graph.json changed"));
   EXPECT_THAT(outcome.out, HasSubstr("horizontal")); // a pass that burley does not have
-  EXPECT_THAT(outcome.out, testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
 }
 
 TEST_F(Watch, GoesOnBehindAFileWithErrors) {
@@ -112,8 +112,8 @@ TEST_F(Watch, AShaderThatChangesIsRenderedWith) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("subsurface_combine.comp changed"));
   EXPECT_THAT(outcome.err,
-              testing::ContainsRegex("subsurface_combine.comp:[0-9]+:[0-9]+: error.D0615 shader_error"));
-  EXPECT_THAT(outcome.out, testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
+              ::testing::ContainsRegex("subsurface_combine.comp:[0-9]+:[0-9]+: error.D0615 shader_error"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
 }
 
 TEST_F(Watch, CtrlCEndsIt) {

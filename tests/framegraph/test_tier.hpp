@@ -12,6 +12,8 @@ inline uint64_t seeds_of_tier(uint64_t quick, uint64_t full) {
 
 // Leaves a test to `./test.sh --full`, which another law of the quick run stands for.
 #define DERMIS_IN_FULL_TIER()                                                                                \
-  if (dermis::testing::seeds_of_tier(0, 1) == 0) GTEST_SKIP() << "with DERMIS_TESTS_FULL"
+  do {                                                                                                       \
+    if (dermis::testing::seeds_of_tier(0, 1) == 0) GTEST_SKIP() << "with DERMIS_TESTS_FULL";                 \
+  } while (false)
 
 } // namespace dermis::testing
