@@ -1,5 +1,7 @@
 #include "tests/framegraph/hazard_oracle.hpp"
 
+#include "tests/framegraph/hazard_operation.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,21 +11,6 @@
 
 namespace dermis::testing {
 namespace {
-
-// What one command does to one thing. A thing is one mip of one layer of an instance of a resource.
-struct Operation {
-  enum class What { access, barrier, frame_begins, wait } what = What::access;
-  uint32_t step = 0; // passes and barriers, counted through all frames; accesses of a pass share one
-  uint32_t frame = 0;
-  uint32_t resource = 0, instance = 0;
-  const PlanAccess* access = nullptr;
-  const PlanBarrier* barrier = nullptr;
-  uint32_t mip = 0, layer = 0;
-  Queue queue = Queue::main;
-  uint32_t until = 0; // waits: the last step of the other queue that is done by then
-  // Where the thing's instance lies; the host's have a heap each.
-  uint64_t heap = 0, begin = 0, end = 1;
-};
 
 struct Oracle {
   const Plan& plan;
@@ -154,21 +141,16 @@ struct Oracle {
   }
   // Does the operation reach this byte of the heap that `thing` lies in, or all of the thing itself?
   bool reaches(const Operation& o, const Operation& thing, uint64_t byte) const {
-    if (same_instance(o, thing)) return same_thing(o, thing);
-    if (!overlap(o, thing)) return false;
-    const Placement& m = plan.placements[plan.resources[o.resource].first_instance + o.instance];
-    return m.offset <= byte && byte < m.offset + m.size;
+    return overlap(o, thing) && (same_instance(o, thing) || (o.begin <= byte && byte < o.end));
   }
   // One byte of each piece of what two operations share that no placement divides.
   std::vector<uint64_t> common_bytes(const Operation& a, const Operation& b) const {
     if (host(a.resource)) return {0};
-    const Placement& m = plan.placements[plan.resources[a.resource].first_instance + a.instance];
-    const Placement& n = plan.placements[plan.resources[b.resource].first_instance + b.instance];
-    const uint64_t begin = std::max(m.offset, n.offset), end = std::min(m.offset + m.size, n.offset + n.size);
+    const uint64_t begin = std::max(a.begin, b.begin), end = std::min(a.end, b.end);
     std::vector<uint64_t> bytes{begin};
     for (const Placement& other : plan.placements)
       for (const uint64_t border : {other.offset, other.offset + other.size})
-        if (other.heap == m.heap && border > begin && border < end) bytes.push_back(border);
+        if (other.heap == a.heap && border > begin && border < end) bytes.push_back(border);
     std::sort(bytes.begin(), bytes.end());
     bytes.erase(std::unique(bytes.begin(), bytes.end()), bytes.end());
     return bytes;
@@ -267,8 +249,7 @@ struct Oracle {
 
   // --- the questions
 
-  // Of two that act, one of which writes.
-  std::string pair(size_t first, size_t second) const {
+  std::string pair(size_t first, size_t second) const { // of two that act, one of which writes
     const Operation &a = all[first], &b = all[second];
     if (a.step == b.step || !overlap(a, b)) return "";
     if (is_barrier(b) && b.barrier->from_host) return ""; // the host has seen to that

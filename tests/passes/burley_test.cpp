@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace dermis::subsurface {
 namespace {
@@ -113,6 +114,28 @@ TEST(Burley, NoMeanFreePathMeansNoScattering) {
   EXPECT_EQ(burley_d_from_dmfp(-3, 0.5), 0);
   EXPECT_EQ(burley_d_from_dmfp(nan, 0.5), 0);
   EXPECT_NEAR(burley_d_from_dmfp(7, 0.33), 2, 1e-12);
+}
+
+TEST(Burley, ManyRadiiAtOnceGiveTheProfileOfEach) {
+  std::vector<double> radii, values;
+  for (double r = 1e-9; r < 240; r *= 1.013)
+    radii.push_back(r);
+  values.resize(radii.size());
+  for (const double d : {1e-4, 0.7, 3.0}) {
+    std::vector<double> scaled = radii;
+    for (double& r : scaled)
+      r *= d;
+    burley_R(scaled, d, values);
+    for (size_t i = 0; i < scaled.size(); ++i)
+      ASSERT_NEAR(values[i] / burley_R(scaled[i], d), 1, 2e-14) << "d " << d << ", r " << scaled[i];
+  }
+  radii = {260, 1e9};
+  values.resize(2);
+  burley_R(radii, 1, values);
+  EXPECT_LT(values[0], 1e-36); // as at 250 d
+  EXPECT_EQ(values[0], values[1]);
+  burley_R(radii, 0, values);
+  EXPECT_EQ(values[0], 0);
 }
 
 } // namespace
