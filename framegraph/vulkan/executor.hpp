@@ -21,7 +21,7 @@ inline constexpr uint32_t max_frames_in_flight = 8;
 struct KernelCode {
   std::string_view shader;
   std::span<const uint32_t> spirv;
-  uint64_t version = 0; // kernels of one name and version are the same: relatives lend their pipelines
+  uint64_t version = 0; // kernels of one name and version are the same
 };
 
 // Descriptor set 1, common to all kernels: entry i is binding i. Binding 0, if it is a uniform buffer, holds
@@ -52,6 +52,7 @@ enum class HistoryReason : uint8_t {
 const char* history_reason_text(HistoryReason reason);
 
 class HeapPool;
+class KernelStore;
 class Executor;
 
 struct Rectangle { // pixels; inside the allocated view size
@@ -98,10 +99,8 @@ struct ExecutorInput { // nothing is kept but `device`; all the rest is copied o
   const HeapPool* heap_pool = nullptr; // made with this plan among others: transients lie in its memory, and
                                        // no other user of it may run at the same time. Null: its own memory.
   std::shared_ptr<const Plan> kept_plan =
-      nullptr; // the same as `plan`, shared from now on; null: it is copied
-  // Made with this device, these kinds, kernels and an environment of the same types: their pipelines serve
-  // the new one too, and live as long as any that uses them. May be destroyed before the new one.
-  std::span<const Executor* const> relatives{};
+      nullptr;                         // the same as `plan`, shared from now on; null: it is copied
+  KernelStore* kernel_store = nullptr; // null: the executor compiles all kernels for itself
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid
   HostPassFunction host_pass =
       nullptr; // needed where the plan has passes that the host records; called by record()

@@ -4,6 +4,7 @@
 #include "framegraph/model/pass_kind.hpp"
 #include "framegraph/vulkan/device.hpp"
 #include "framegraph/vulkan/device_profile.hpp"
+#include "framegraph/vulkan/kernel_store.hpp"
 #include "integration/abi/failure.hpp"
 #include "integration/abi/host_kinds.hpp"
 #include "integration/abi/memory/device_memory.hpp"
@@ -20,7 +21,8 @@ struct dermis_context_t {
   dermis::KindRegistry kinds;
   dermis::abi::HostPasses host_passes; // its kinds are among `kinds`
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
-  uint32_t queue_family_count = 0; // of the physical device
+  dermis::vulkan::KernelStore kernels; // of all graphs; refers to `device`
+  uint32_t queue_family_count = 0;     // of the physical device
   uint32_t frames_in_flight = 2;
   std::atomic<bool> lost = false; // once set every call but destroy returns DEVICE_LOST
   std::mutex mutex;               // guards `graphs`

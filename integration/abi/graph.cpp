@@ -39,9 +39,8 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
     costs = graph.own.chooser.costs;
   }
   candidates.resize(1 + graph.others.size());
-  const std::shared_ptr<Program> before = keep_newest(graph.own);
-  dermis_result result = build_program(context, input, history, graph.plans, before.get(), errors, costs,
-                                       diagnostics, candidates[0]);
+  dermis_result result =
+      build_program(context, input, history, graph.plans, errors, costs, diagnostics, candidates[0]);
   for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
     result = copy_program(context, input, *candidates[0], history, diagnostics, candidates[v]);
   if (result != DERMIS_OK || diagnostics.has_errors())
@@ -60,6 +59,7 @@ void hand_over(dermis_graph_t& graph, Candidates& candidates) noexcept {
   size_t v = 0;
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
+    share_kernels(*candidates[v]);
     view.next.swap(candidates[v++]);
   });
 }

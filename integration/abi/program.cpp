@@ -87,11 +87,10 @@ template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& val
   return std::as_bytes(std::span<const T>(values));
 }
 
-// One executor for each plan; where there are several, their transients share memory. `relative`: another
-// program of the graph, whose pipelines are used again; or null.
+// One executor for each plan; where there are several, their transients share memory.
 vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                             const Program* relative, Program& program) {
-  const std::vector<vulkan::KernelCode> kernels = kernel_codes(input.shaders);
+                             vulkan::KernelStore& kernels, Program& program) {
+  const std::vector<vulkan::KernelCode> codes = kernel_codes(input.shaders);
   const subsurface::TableUse use = subsurface::table_use(program.graph, context.kinds);
   if (!input.tables || input.tables->use != use)
     input.tables =
@@ -112,10 +111,11 @@ vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vul
   executor.device = &context.device;
   executor.graph = &program.graph;
   executor.kinds = &context.kinds;
-  executor.kernels = kernels;
+  executor.kernels = codes;
   executor.environment = environment;
   executor.frames_in_flight = context.frames_in_flight;
   executor.pipeline_cache = context.pipeline_cache;
+  executor.kernel_store = &kernels;
   executor.history = history;
   executor.host_pass = record_host_pass;
   executor.host_pass_user = &context.host_passes;
@@ -127,16 +127,10 @@ vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vul
       return error;
   }
   executor.heap_pool = program.heap_pool.get();
-  std::vector<const vulkan::Executor*> relatives;
-  if (relative != nullptr)
-    for (const Variant& variant : relative->variants)
-      relatives.push_back(variant.executor.get());
   for (Variant& variant : program.variants) {
     executor.plan = &variant.compiled->plan;
     executor.kept_plan = {variant.compiled, executor.plan};
-    executor.relatives = relatives;
     if (vulkan::Error error = vulkan::Executor::create(executor, variant.executor)) return error;
-    relatives.push_back(variant.executor.get());
   }
   return {};
 }
@@ -214,9 +208,8 @@ std::vector<choice::Outcome> outcomes_with(const Program& program, Chooser& choo
 }
 
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            PlanCache& plans, const Program* relative, const choice::ErrorModel& errors,
-                            choice::CostModel& costs, Diagnostics& diagnostics,
-                            std::shared_ptr<Program>& program) {
+                            PlanCache& plans, const choice::ErrorModel& errors, choice::CostModel& costs,
+                            Diagnostics& diagnostics, std::shared_ptr<Program>& program) {
   auto composition = compose_sources(input, diagnostics);
   if (!composition) return DERMIS_ERROR_CONFIG;
   auto graph = read_graph(composition->document, context.kinds, diagnostics);
@@ -258,13 +251,20 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   candidate->slots = slots_of(*candidate);
   make_room_for_bindings(*candidate);
 
+  candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
   if (!compile_missing(input.shaders, candidate->graph, context.kinds, diagnostics))
     return DERMIS_ERROR_SHADER;
-  if (const vulkan::Error error = make_executors(context, input, history, relative, *candidate))
+  if (const vulkan::Error error = make_executors(context, input, history, *candidate->kernels, *candidate))
     return refused(context, error, diagnostics);
   tell_lost_histories(*candidate, history, diagnostics);
   program = std::move(candidate);
   return DERMIS_OK;
+}
+
+void share_kernels(Program& program) noexcept {
+  if (program.kernels == nullptr) return;
+  program.kernels->hand_over();
+  program.kernels.reset();
 }
 
 dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const Program& of,
@@ -281,7 +281,9 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
   candidate->settings = of.settings;
   candidate->slots = of.slots;
   make_room_for_bindings(*candidate);
-  if (const vulkan::Error error = make_executors(context, input, history, &of, *candidate))
+  if (of.kernels == nullptr) candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
+  vulkan::KernelStore& kernels = of.kernels != nullptr ? *of.kernels : *candidate->kernels;
+  if (const vulkan::Error error = make_executors(context, input, history, kernels, *candidate))
     return refused(context, error, diagnostics);
   program = std::move(candidate);
   return DERMIS_OK;

@@ -80,13 +80,14 @@ struct Program {
   bool without_material = false; // no profile: passes that serve scattering are off
   uint64_t serial = 0;           // no two programs of a graph have the same
   Graph graph;
-  std::vector<Change> changes;                 // what overlays and included files did
-  std::vector<SourceFile> files;               // that the changes name; without their texts
-  std::vector<choice::Outcome> outcomes;       // what the choices by budget can come to; first: the defaults
-  std::unique_ptr<vulkan::HeapPool> heap_pool; // of all variants' transients; null where there is one
-  std::vector<Variant> variants;               // by Outcome::plan
-  uint32_t outcome = 0;                        // recorded last, or to be recorded first
-  std::vector<SettingValue> settings;          // by Graph::settings: choices by budget at their defaults
+  std::vector<Change> changes;                  // what overlays and included files did
+  std::vector<SourceFile> files;                // that the changes name; without their texts
+  std::vector<choice::Outcome> outcomes;        // what the choices by budget can come to; first: the defaults
+  std::unique_ptr<vulkan::HeapPool> heap_pool;  // of all variants' transients; null where there is one
+  std::unique_ptr<vulkan::KernelStore> kernels; // what it compiled, until the context has it; then null
+  std::vector<Variant> variants;                // by Outcome::plan
+  uint32_t outcome = 0;                         // recorded last, or to be recorded first
+  std::vector<SettingValue> settings;           // by Graph::settings: choices by budget at their defaults
   std::vector<Slot> slots;
   std::vector<vulkan::HostImage>
       images; // by slot; filled at each record, so that recording allocates nothing
@@ -100,12 +101,13 @@ struct Program {
 
 // Parses, compiles (or takes the plan from `plans`, where it then is) and allocates. On failure `diagnostics`
 // tells why and `program` is unchanged. Keeps in `input` what the host delivers and what was fitted. `costs`
-// gets entries for what is new. `relative`: the program before, whose pipelines are used again; or null.
-// Before the first record: adopt(). Thread: any.
+// gets entries for what is new. Before the first record: adopt(). Thread: any.
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            PlanCache& plans, const Program* relative, const choice::ErrorModel& errors,
-                            choice::CostModel& costs, Diagnostics& diagnostics,
-                            std::shared_ptr<Program>& program);
+                            PlanCache& plans, const choice::ErrorModel& errors, choice::CostModel& costs,
+                            Diagnostics& diagnostics, std::shared_ptr<Program>& program);
+
+// Nothing that makes it fails any more: what it compiled serves all graphs of the context.
+void share_kernels(Program& program) noexcept;
 
 // The same program for another view. `input` as it was built from.
 dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const Program& of,

@@ -35,8 +35,9 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
   if (result != DERMIS_OK) return result;
   make_room(view->image_views, program->slots.size());
   adopt(view->chooser, graph.context->kinds, *program);
-  view->next = std::move(program);
+  view->next = program;
   graph.others.push_back(std::move(view));
+  share_kernels(*program);
   *out = graph.others.back().get();
   return DERMIS_OK;
 }

@@ -117,6 +117,7 @@ Result<> create_device(VulkanHost& host, bool as_vulkan_12) {
 } // namespace
 
 VulkanHost::~VulkanHost() {
+  context.reset();
   if (device != VK_NULL_HANDLE) {
     vk.vkDeviceWaitIdle(device);
     vk.vkDestroyFence(device, fence, nullptr);

@@ -7,6 +7,8 @@
 #include <functional>
 #include <memory>
 
+struct dermis_context_t;
+
 namespace demo {
 
 // Owns instance, device and a command pool. Images, buffers and pipelines made with it must die before it.
@@ -23,9 +25,10 @@ struct VulkanHost {
   VkQueue queue = VK_NULL_HANDLE;
   VkCommandPool pool = VK_NULL_HANDLE;
   VkFence fence = VK_NULL_HANDLE;
-  bool ray_query = false;    // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
+  bool ray_query = false;      // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
   ValidationLog log;
+  std::shared_ptr<dermis_context_t> context; // of graphs that share it; null until one is made
 
   VulkanHost() = default;
   VulkanHost(const VulkanHost&) = delete;

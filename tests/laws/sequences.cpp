@@ -3,6 +3,7 @@
 #include "integration/command/bench/dynamic/figures.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace laws {
 
@@ -97,12 +98,19 @@ SequenceRun SequenceTest::run(Judge& judge, const TechniqueRequest& request, con
   std::vector<FrameLight> light;
   for (uint32_t t = 0; t < judge.sequence.frames.size(); ++t) {
     const SequenceFrame& frame = judge.sequence.frames[t];
+    const bool is_judged = std::find(judged.begin(), judged.end(), t) != judged.end();
+    // Without histories a frame is what it is whatever came before it.
+    if (t > 0 && !judged.empty() && !is_judged && (*made)->history_bytes() == 0) {
+      result.samples.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    (*made)->skip_to(t);
     auto found = (*made)->scatter(frame.captured, follows ? follows(t) : t > 0 && !frame.cut);
     EXPECT_TRUE(found) << found.error().text;
     auto sampling = (*made)->sampling();
     if (!found || !sampling) return result;
     result.samples.push_back(mean_where_scattering(*sampling, frame.captured.profile));
-    if (std::find(judged.begin(), judged.end(), t) == judged.end()) continue;
+    if (!is_judged) continue;
     const Reference& reference = judge.at(t);
     FrameLight one{{}, reference.light};
     for (const uint32_t pixel : reference.pixels)

@@ -29,7 +29,7 @@ struct SequenceRun {
   double mean_psnr_db = 0;                         // of their mean square error
   std::map<uint32_t, std::vector<float>> pictures; // of the frames asked for, 3 values a pixel
   std::map<uint32_t, std::vector<float>> sampling; // likewise: samples, those behind history, confidence
-  std::vector<double> samples;                     // a subsurface pixel, each frame
+  std::vector<double> samples; // a subsurface pixel, each frame; NaN of frames that were left out
   uint64_t history_bytes = 0;
 };
 
@@ -46,7 +46,8 @@ using Follows = std::function<bool(uint32_t frame)>;
 // Repeats one frame, as a host does whose scene stands still.
 dermis::tools::Sequence standing_still(dermis::tools::Sequence sequence, uint32_t count);
 
-// Validation messages fail the test.
+// Validation messages fail the test. Of a graph without histories frames run that are judged, and the first;
+// all of them where none is judged.
 class SequenceTest : public DeviceTest {
 protected:
   void TearDown() override;

@@ -176,10 +176,7 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   make_slots(*state);
   make_histories(*state, input);
   if (Error error = create_environment(*state, input.environment)) return error;
-  std::vector<std::shared_ptr<const Kernel>> relatives;
-  for (const Executor* relative : input.relatives)
-    relatives.insert(relatives.end(), relative->state_->kernels.begin(), relative->state_->kernels.end());
-  if (Error error = create_kernels(*state, input, relatives)) return error;
+  if (Error error = create_kernels(*state, input)) return error;
   if (Error error = check_passes(*state, *input.kinds)) return error;
   if (Error error = check_host_passes(*state, input)) return error;
   if (Error error = create_memory(*state, *input.graph)) return error;

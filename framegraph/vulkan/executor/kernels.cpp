@@ -1,6 +1,7 @@
 // Pipelines of the pass kinds that the plan runs: layouts from the signature, checked against the kernel's
 // SPIR-V.
 #include "framegraph/vulkan/executor/state.hpp"
+#include "framegraph/vulkan/kernel_store.hpp"
 #include "framegraph/vulkan/shader/loop_hints.hpp"
 #include "framegraph/vulkan/shader/signature_check.hpp"
 
@@ -188,8 +189,7 @@ Kernel::~Kernel() {
   device->vk.vkDestroyDescriptorSetLayout(device->device, set_layout, device->allocator);
 }
 
-Error create_kernels(State& state, const ExecutorInput& input,
-                     std::span<const std::shared_ptr<const Kernel>> relatives) {
+Error create_kernels(State& state, const ExecutorInput& input) {
   for (uint32_t p = 0; p < state.passes.size(); ++p) {
     const KindId kind = state.plan.passes[p].kind;
     const DispatchShape dispatch = (*input.kinds)[kind].dispatch;
@@ -200,14 +200,15 @@ Error create_kernels(State& state, const ExecutorInput& input,
     const auto existing = std::find_if(state.kernels.begin(), state.kernels.end(), runs);
     state.passes[p].kernel = static_cast<uint32_t>(existing - state.kernels.begin());
     if (existing != state.kernels.end()) continue;
-    const auto relative = std::find_if(relatives.begin(), relatives.end(), runs);
-    if (relative != relatives.end()) {
-      state.kernels.push_back(*relative);
-      continue;
+    std::shared_ptr<const Kernel> kernel;
+    if (input.kernel_store != nullptr) kernel = input.kernel_store->find(kind, version);
+    if (kernel == nullptr) {
+      const auto added = std::make_shared<Kernel>(*state.device);
+      if (Error error = create_kernel(state, input, kind, *added)) return error;
+      kernel = added;
+      if (input.kernel_store != nullptr) input.kernel_store->add(kernel);
     }
-    const auto added = std::make_shared<Kernel>(*state.device);
-    if (Error error = create_kernel(state, input, kind, *added)) return error;
-    state.kernels.push_back(added);
+    state.kernels.push_back(std::move(kernel));
   }
   return {};
 }

@@ -207,9 +207,7 @@ void clear_counters(State& state, uint32_t frame_slot) noexcept;
 void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept;
 
 // ---- kernels.cpp
-// `relatives`: kernels that may be used again.
-Error create_kernels(State& state, const ExecutorInput& input,
-                     std::span<const std::shared_ptr<const Kernel>> relatives);
+Error create_kernels(State& state, const ExecutorInput& input);
 
 // ---- history.cpp
 void remember_before_frame(State& state, uint32_t frame_slot) noexcept;

@@ -7,10 +7,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <span>
 
 namespace dermis::abi {
 namespace {
+
+// Of all graphs: those of a context share their kernels.
+std::atomic<uint64_t> versions = 0;
 
 // Words that have not changed keep their version, so that pipelines are used again.
 RuntimeShaders::Kernel versioned(RuntimeShaders& shaders, const std::string& shader,
@@ -19,7 +23,7 @@ RuntimeShaders::Kernel versioned(RuntimeShaders& shaders, const std::string& sha
   const auto before = shaders.before.find(shader);
   if (before != shaders.before.end() && before->second.spirv && *before->second.spirv == spirv)
     return before->second;
-  return {std::make_shared<const std::vector<uint32_t>>(std::move(spirv)), ++shaders.versions};
+  return {std::make_shared<const std::vector<uint32_t>>(std::move(spirv)), ++versions};
 }
 
 std::string list_files(const std::vector<std::string>& shaders) {

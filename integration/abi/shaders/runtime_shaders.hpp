@@ -23,7 +23,6 @@ struct RuntimeShaders { // copied with what a graph is built from: a candidate t
   void* user = nullptr;
   Kernels kernels; // that were looked at
   Kernels before;  // that these replace
-  uint64_t versions = 0;
 };
 
 // From now on kernels come from what `open` delivers, anew; null: from the build.

@@ -49,7 +49,8 @@ dermis_source source_of(const std::string& name, const std::string& text) {
   return source;
 }
 
-demo::Result<dermis_context> create_context(const demo::VulkanHost& host) {
+demo::Result<> make_context(demo::VulkanHost& host) {
+  if (host.context != nullptr) return demo::success();
   dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
   desc.flags = host.timestamp_mask != 0 ? DERMIS_CONTEXT_TIMINGS : 0;
   desc.frames_in_flight = 1;
@@ -61,7 +62,8 @@ demo::Result<dermis_context> create_context(const demo::VulkanHost& host) {
   dermis_context context = nullptr;
   const dermis_result result = dermis_context_create(&desc, &context);
   if (result != DERMIS_OK) return error_of("dermis_context_create", result);
-  return context;
+  host.context.reset(context, dermis_context_destroy);
+  return demo::success();
 }
 
 // Keeps the texts that it delivers until the call that asks for them is over.
@@ -148,10 +150,9 @@ bool same_but_size(const DeviceGraphRequest& a, const DeviceGraphRequest& b) {
 demo::Result<std::unique_ptr<DeviceGraph>> DeviceGraph::create(demo::VulkanHost& host,
                                                                const DeviceGraphRequest& request) {
   std::unique_ptr<DeviceGraph> made(new DeviceGraph(host));
-  auto context = create_context(host);
-  if (!context) return context.error();
-  made->context_ = *context;
-  auto graph = create_graph(*context, request);
+  if (auto ready = make_context(host); !ready) return ready.error();
+  made->context_ = host.context;
+  auto graph = create_graph(host.context.get(), request);
   if (!graph) return graph.error();
   made->graph_ = *graph;
   if (auto set = set_settings(*graph, request); !set) return set.error();
@@ -161,7 +162,6 @@ demo::Result<std::unique_ptr<DeviceGraph>> DeviceGraph::create(demo::VulkanHost&
 
 DeviceGraph::~DeviceGraph() {
   dermis_graph_destroy(graph_);
-  dermis_context_destroy(context_);
 }
 
 demo::Result<> DeviceGraph::create_images() {

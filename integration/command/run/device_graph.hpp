@@ -83,7 +83,7 @@ private:
   Slot* find(std::string_view name);
 
   demo::VulkanHost& host_;
-  dermis_context context_ = nullptr;
+  std::shared_ptr<dermis_context_t> context_; // the host's, which its graphs share
   dermis_graph graph_ = nullptr;
   std::vector<Slot> slots_;
   uint64_t frame_index_ = 0;

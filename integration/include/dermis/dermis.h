@@ -323,8 +323,9 @@ typedef struct dermis_graph_desc {
  * Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source, dermis_report* report);
 /* Parses, checks, compiles and allocates. *graph is NULL on failure. *report (may be NULL) gets the messages and
- * is to be destroyed also on success. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY,
- * DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+ * is to be destroyed also on success. Graphs of a context share their pipelines, which stay until it is destroyed: one that is
+ * made beside or after others compiles only kernels that none of them had. Thread: any. Errors: ARGUMENT, VERSION, CONFIG,
+ * SHADER, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context, const dermis_graph_desc* desc,
                                                          dermis_graph* graph, dermis_report* report);
 /* Builds a new graph beside the running one and swaps it in at the next record of each view. On failure nothing changes. Histories

@@ -11,7 +11,6 @@ namespace dermis::testing {
 namespace {
 
 constexpr double pitch_m = 0.0005; // half a millimetre a pixel: skin's red d is about two
-constexpr size_t kept_executors = 24;
 constexpr uint32_t frames_in_flight = 2;
 constexpr const char* profile_files[] = {"skin", "jade"}; // profiles 1 and 2
 constexpr vulkan::HostState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
@@ -99,7 +98,7 @@ void DevicePlayer::SetUp() {
 
 void DevicePlayer::TearDown() {
   if (device != VK_NULL_HANDLE) wait();
-  executors_.clear();
+  kernels_.reset();
   VulkanTest::TearDown();
 }
 
@@ -142,9 +141,6 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
   std::vector<vulkan::KernelCode> kernels;
   for (const Kernel& kernel : embedded_kernels())
     kernels.push_back({kernel.shader, kernel.spirv});
-  std::vector<const vulkan::Executor*> relatives;
-  for (const auto& one : executors_)
-    relatives.push_back(one.get());
   vulkan::ExecutorInput input;
   input.device = &dermis_device;
   input.graph = &graph.graph;
@@ -153,7 +149,8 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
   input.kernels = kernels;
   input.environment = environment;
   input.frames_in_flight = frames_in_flight;
-  input.relatives = relatives;
+  if (kernels_ == nullptr) kernels_ = std::make_unique<vulkan::KernelStore>();
+  input.kernel_store = kernels_.get();
   input.poison = poison;
   std::unique_ptr<vulkan::Executor> executor;
   const vulkan::Error error = vulkan::Executor::create(input, executor);
@@ -223,8 +220,6 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
       out[slot.name] = slot.import ? std::move(texels) : inside(texels, slot.image, shown);
     }
   }
-  executors_.push_back(std::move(executor));
-  if (executors_.size() > kept_executors) executors_.pop_front();
   return played;
 }
 

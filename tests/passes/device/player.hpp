@@ -5,12 +5,12 @@
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/vulkan/device_profile.hpp"
 #include "framegraph/vulkan/executor.hpp"
+#include "framegraph/vulkan/kernel_store.hpp"
 #include "passes/subsurface/kernel_tables.hpp"
 #include "tests/passes/device/real_graph.hpp"
 #include "tests/passes/device/show.hpp"
 #include "tests/support/vulkan_fixture.hpp"
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -42,9 +42,8 @@ private:
 
   std::vector<subsurface::NumberedProfile> profiles_;
   std::vector<std::unique_ptr<subsurface::KernelTables>> tables_;
-  // The newest, whose pipelines serve those that follow.
-  std::deque<std::unique_ptr<vulkan::Executor>> executors_;
-  std::map<std::string, TestImage> images_; // by format, size and slot: used again
+  std::unique_ptr<vulkan::KernelStore> kernels_; // of all that was played
+  std::map<std::string, TestImage> images_;      // by format, size and slot: used again
 };
 
 } // namespace dermis::testing

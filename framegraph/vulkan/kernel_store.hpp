@@ -1,0 +1,39 @@
+#pragma once
+// Compiled kernels that executors share, so that a graph made beside or after another compiles only what no
+// other had.
+
+#include "framegraph/model/pass_kind.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace dermis::vulkan {
+
+struct Kernel; // executor/state.hpp
+
+// Of executors with one device, one registry of kinds and environments of the same types; destroyed before
+// the device is. Any thread.
+class KernelStore {
+public:
+  KernelStore() = default;
+  // Has what `shared` has, which must outlive it; what is added `shared` has only once it is handed over.
+  explicit KernelStore(KernelStore& shared) : shared_(&shared) {}
+  // Null: there is none of that kind and KernelCode::version.
+  std::shared_ptr<const Kernel> find(KindId kind, uint64_t version) const;
+  void add(std::shared_ptr<const Kernel> kernel);
+  // `shared` keeps kernels of version 0 until it is destroyed, others as long as an executor uses them. Where
+  // memory for that cannot be had, none of them.
+  void hand_over() noexcept;
+
+private:
+  void take(std::vector<std::shared_ptr<const Kernel>>& kernels);
+
+  KernelStore* shared_ = nullptr;
+  mutable std::mutex mutex_;
+  std::vector<std::shared_ptr<const Kernel>> kept_;
+  std::vector<std::weak_ptr<const Kernel>> in_use_;
+};
+
+} // namespace dermis::vulkan

@@ -1,0 +1,54 @@
+// Graphs of a context share their kernels, those that come after others as well.
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr uint64_t objects_of_kernel = 3; // pipeline, its layout, that of its sets
+constexpr uint64_t made_of_kernel = 4;    // and a shader module, until the pipeline is there
+
+TEST(Kernels, AGraphMadeAfterAnotherCompilesNoneOfItsKernels) {
+  dermis::abi_test::NullHost host;
+  const dermis_context_desc desc = host.context_desc();
+  ASSERT_EQ(host.make_context(desc), DERMIS_OK);
+  const uint64_t before = host.device.alive();
+  const auto make = [&] {
+    const uint64_t start = host.device.creations();
+    EXPECT_EQ(host.make_graph(), DERMIS_OK);
+    return host.device.creations() - start;
+  };
+  const uint64_t first = make();
+  dermis_graph_destroy(host.graph);
+  const uint64_t kept = host.device.alive() - before;
+  EXPECT_GT(kept, 0u);
+  EXPECT_EQ(kept % objects_of_kernel, 0u);
+  const uint64_t second = make();
+  EXPECT_EQ(first - second, made_of_kernel * kept / objects_of_kernel);
+  host.destroy();
+  EXPECT_EQ(host.device.alive(), 0u);
+}
+
+TEST(Kernels, OfAGraphThatIsNotMadeAreNotKept) {
+  dermis::abi_test::NullHost host;
+  const dermis_context_desc desc = host.context_desc();
+  ASSERT_EQ(host.make_context(desc), DERMIS_OK);
+  const uint64_t before = host.device.alive(), start = host.device.creations();
+  ASSERT_EQ(host.make_graph(), DERMIS_OK);
+  const uint64_t last = host.device.creations() - start;
+  dermis_graph_destroy(host.graph);
+  host.graph = nullptr;
+  const uint64_t kept = host.device.alive();
+  dermis::abi_test::NullHost other;
+  const dermis_context_desc other_desc = other.context_desc();
+  ASSERT_EQ(other.make_context(other_desc), DERMIS_OK);
+  other.device.fail_creation(last, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+  EXPECT_EQ(other.make_graph(), DERMIS_ERROR_DEVICE_MEMORY);
+  EXPECT_EQ(other.device.alive(), before);
+  EXPECT_EQ(other.make_graph(), DERMIS_OK);
+  dermis_graph_destroy(other.graph);
+  other.graph = nullptr;
+  EXPECT_EQ(other.device.alive(), kept);
+}
+
+} // namespace
