@@ -28,7 +28,8 @@ struct VulkanHost {
   bool ray_query = false;      // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
   ValidationLog log;
-  std::shared_ptr<dermis_context_t> context; // of graphs that share it; null until one is made
+  // Of graphs that share it, all made by the engine or all beside it; null until the first is made.
+  std::shared_ptr<dermis_context_t> context;
 
   VulkanHost() = default;
   VulkanHost(const VulkanHost&) = delete;

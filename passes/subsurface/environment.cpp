@@ -46,6 +46,38 @@ bool fill_previous(const FrameInput& input, FrameConstants& out) {
   if (rays->perspective) out.flags |= 8u;
   return true;
 }
+constexpr size_t sap_table_floats = size_t{sap_table_rows} * sap_node_count;
+using SapTables = std::array<float, sap_variant_count * sap_table_floats>; // by SapVariant
+
+// Zero of variants that are not used.
+SapTables sap_tables_of(const ChannelShape& shape, PyramidUse use) {
+  std::vector<SapVariant> used;
+  if (use.surface) used = {SapVariant::base, SapVariant::smooth, SapVariant::half};
+  if (use.plain) used.push_back(SapVariant::plain);
+  SapTables tables{};
+  for (const SapFit& fit : fit_sap_weights(used, shape)) {
+    const std::vector<float> table = make_sap_table(fit);
+    std::copy(table.begin(), table.end(),
+              tables.begin() + static_cast<size_t>(fit.variant) * sap_table_floats);
+  }
+  return tables;
+}
+
+// The same for each graph: fitted once. Nothing of it is on the heap, whose owner may be gone before the next
+// graph.
+const SapTables& burley_sap_tables(PyramidUse use) {
+  if (!use.plain) {
+    static const SapTables surface = sap_tables_of(burley_shape(1), {true, false});
+    return surface;
+  }
+  if (!use.surface) {
+    static const SapTables plain = sap_tables_of(burley_shape(1), {false, true});
+    return plain;
+  }
+  static const SapTables both = sap_tables_of(burley_shape(1), {true, true});
+  return both;
+}
+
 } // namespace
 
 bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
@@ -167,24 +199,20 @@ PyramidUse pyramid_use(const Graph& graph, const KindRegistry& kinds) {
 
 std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfile> profiles) {
   if (!use.surface && !use.plain) return {0.0f};
-  constexpr size_t table_floats = size_t{sap_table_rows} * sap_node_count;
   std::vector<float> tables;
-  const auto add = [&](SapVariant variant, const ChannelShape& shape) {
-    const bool used = variant == SapVariant::plain ? use.plain : use.surface;
-    const std::vector<float> table =
-        used ? make_sap_table(fit_sap_weights(variant, shape)) : std::vector<float>(table_floats);
-    tables.insert(tables.end(), table.begin(), table.end());
+  const auto add = [&](std::span<const float> shape) {
+    tables.insert(tables.end(), shape.begin(), shape.end());
   };
-  constexpr SapVariant variants[] = {SapVariant::base, SapVariant::smooth, SapVariant::half,
-                                     SapVariant::plain};
-  static_assert(std::size(variants) == sap_variant_count);
-  for (const SapVariant variant : variants)
-    add(variant, burley_shape(1));
+  add(burley_sap_tables(use));
   for (const NumberedProfile& numbered : profiles)
-    if (has_own_tables(numbered))
-      for (const SapVariant variant : variants)
-        for (const ChannelShape& shape : numbered.profile.shape_mm)
-          add(variant, shape);
+    if (has_own_tables(numbered)) {
+      std::array<SapTables, 3> of_channel;
+      for (size_t c = 0; c < 3; ++c)
+        of_channel[c] = sap_tables_of(numbered.profile.shape_mm[c], use);
+      for (uint32_t v = 0; v < sap_variant_count; ++v)
+        for (const SapTables& channel : of_channel)
+          add(std::span(channel).subspan(v * sap_table_floats, sap_table_floats));
+    }
   return tables;
 }
 

@@ -125,7 +125,8 @@ TEST_F(ShippedPlans, HaveNoBarrierThatCanBeDropped) {
 TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
   Tally tally;
   for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
-    if (bound == Bound::some) return; // the oracle is slow; these are the widest and the narrowest plan
+    // The oracle is slow: the widest plan of each graph, and the narrowest in the full tier.
+    if (bound != Bound::all && (bound == Bound::some || seeds_of_tier(0, 1) == 0)) return;
     for (const auto for_each_mutant : {for_each_weaker_mask, for_each_shifted_placement,
                                        for_each_flipped_slot, for_each_swap, for_each_moved_barrier})
       for_each_mutant(compiled.plan, [&](const Plan& mutant, const std::string& what) {

@@ -10,7 +10,7 @@ const { chromium } = createRequire(join(resolve(modules), '..', 'package.json'))
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
 
-const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
+const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-gpu'] });
 
 // A page whose every error counts, offline; `ready` is there once it is whole.
 export async function open(url, scheme = 'light', ready = 'body') {
@@ -41,9 +41,10 @@ export const law = (name, work) => laws.push([name, work]);
 export async function finish() {
   let failed = 0;
   for (const [name, work] of laws) {
+    const before = performance.now();
     try {
       await work();
-      console.log(`ok: ${name}`);
+      console.log(`ok: ${name} (${((performance.now() - before) / 1000).toFixed(1)} s)`);
     } catch (problem) {
       failed += 1;
       console.log(`FAILED: ${name}\n${problem.stack}`);

@@ -18,7 +18,7 @@ struct Delivery {
 };
 
 struct DermisHost {
-  dermis_context context = nullptr;
+  std::shared_ptr<dermis_context_t> context; // the device's, which its graphs share
   dermis_graph graph = nullptr;
   std::vector<dermis_slot> slots;
   std::vector<std::string> slot_names; // slots' own strings end with the graph that is replaced
@@ -174,7 +174,7 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
   info.include_user = &includes; // never asked again: this engine reloads no graph that includes others
   Report report;
   dermis_graph graph = nullptr;
-  const dermis_result result = dermis_graph_create(host.context, &info, &graph, &report.handle);
+  const dermis_result result = dermis_graph_create(host.context.get(), &info, &graph, &report.handle);
   if (result != DERMIS_OK) return dermis_error("dermis_graph_create", result, report.handle);
   host.warnings.clear();
   for (uint32_t i = 0; i < dermis_report_count(report.handle); ++i) {
@@ -232,18 +232,8 @@ Result<std::vector<std::string>> find_unbound(const DermisHost& host, const Derm
   return unbound;
 }
 
-} // namespace
-
-void DermisHostDeleter::operator()(DermisHost* host) const {
-  dermis_graph_destroy(host->graph);
-  dermis_context_destroy(host->context);
-  delete host;
-}
-
-Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc, KnownSlots* known) {
-  auto sources = read_sources(desc);
-  if (!sources) return sources.error();
-  DermisHandle host(new DermisHost);
+Result<> make_context(VulkanHost& vulkan) {
+  if (vulkan.context != nullptr) return success();
   dermis_context_desc context = DERMIS_CONTEXT_DESC_INIT;
   context.flags = DERMIS_CONTEXT_TIMINGS | (vulkan.ray_query ? DERMIS_CONTEXT_RAY_QUERY : 0);
   context.frames_in_flight = frames_in_flight;
@@ -252,9 +242,26 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   context.physical_device = vulkan.physical_device;
   context.device = vulkan.device;
   context.get_instance_proc_addr = vkGetInstanceProcAddr;
-  const dermis_result made = dermis_context_create(&context, &host->context);
+  dermis_context created = nullptr;
+  const dermis_result made = dermis_context_create(&context, &created);
   if (made != DERMIS_OK) return dermis_error("dermis_context_create", made);
+  vulkan.context.reset(created, dermis_context_destroy);
+  return success();
+}
 
+} // namespace
+
+void DermisHostDeleter::operator()(DermisHost* host) const {
+  dermis_graph_destroy(host->graph);
+  delete host;
+}
+
+Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc, KnownSlots* known) {
+  auto sources = read_sources(desc);
+  if (!sources) return sources.error();
+  DermisHandle host(new DermisHost);
+  if (auto ready = make_context(vulkan); !ready) return ready.error();
+  host->context = vulkan.context;
   const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.skips;
   if (!whole) known = nullptr;
   std::vector<std::string> unbound;

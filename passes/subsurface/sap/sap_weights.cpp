@@ -83,16 +83,38 @@ SapWeights basis_at(const Frequency& f, SapVariant variant) {
   return basis;
 }
 
+// What the closed form asks at a frequency and those that fold back on it, of no shape.
+struct Folded {
+  static constexpr size_t copies = 2 * folded_copies + 1; // an axis
+  std::array<double, copies> sinc_x, sinc_y;
+  std::array<std::array<double, copies>, copies> k; // by y, x: radians a pixel
+};
+
+std::vector<Folded> fold(const std::vector<Frequency>& frequencies) {
+  std::vector<Folded> all(frequencies.size());
+  for (size_t i = 0; i < all.size(); ++i)
+    for (int n = -folded_copies; n <= folded_copies; ++n) {
+      const auto at = static_cast<size_t>(n + folded_copies);
+      const Frequency& f = frequencies[i];
+      all[i].sinc_x[at] = sinc(f.x + n);
+      all[i].sinc_y[at] = sinc(f.y + n);
+      for (int m = -folded_copies; m <= folded_copies; ++m)
+        all[i].k[at][static_cast<size_t>(m + folded_copies)] = 2 * pi * std::hypot(f.x + m, f.y + n);
+    }
+  return all;
+}
+
 // The truth's transfer function at all frequencies: of the summed pixel-integrated kernel, or of its closed
 // form.
-std::vector<double> target_of(const std::vector<Frequency>& frequencies, const ChannelShape& shape) {
+std::vector<double> target_of(const std::vector<Frequency>& frequencies, const std::vector<Folded>& folded,
+                              const ChannelShape& shape) {
   std::vector<double> target;
   if (shape.d >= closed_form_from_d) {
-    for (const Frequency& f : frequencies) {
+    for (const Folded& f : folded) {
       double sum = 0;
-      for (int n = -folded_copies; n <= folded_copies; ++n)
-        for (int m = -folded_copies; m <= folded_copies; ++m)
-          sum += shape_transfer(shape, 2 * pi * std::hypot(f.x + m, f.y + n)) * sinc(f.x + m) * sinc(f.y + n);
+      for (size_t n = 0; n < Folded::copies; ++n)
+        for (size_t m = 0; m < Folded::copies; ++m)
+          sum += shape_transfer(shape, f.k[n][m]) * f.sinc_x[m] * f.sinc_y[n];
       target.push_back(sum);
     }
     return target;
@@ -124,6 +146,53 @@ std::vector<double> target_of(const std::vector<Frequency>& frequencies, const C
   return target;
 }
 
+// The least squares of a variant, of no shape.
+struct Problem {
+  SapVariant variant;
+  std::vector<SapWeights> basis = {}; // by frequency
+  NormalEquations<sap_weight_count> equations = {};
+  SapWeights ones = {}; // of the weights that there are
+};
+
+Problem make_problem(const std::vector<Frequency>& frequencies, SapVariant variant) {
+  Problem problem{variant};
+  for (const Frequency& f : frequencies) {
+    problem.basis.push_back(basis_at(f, variant));
+    problem.equations.add_row(problem.basis.back(), f.weight);
+  }
+  problem.ones.fill(1);
+  if (variant == SapVariant::half) problem.ones[1] = 0;
+  problem.equations.add_row(problem.ones, sum_weight);
+  return problem;
+}
+
+void solve_node(const Problem& problem, const std::vector<Frequency>& frequencies,
+                const std::vector<double>& target, double direct, SapNode& node) {
+  SapWeights right{};
+  for (size_t i = 0; i < frequencies.size(); ++i)
+    for (uint32_t j = 0; j < sap_weight_count; ++j)
+      right[j] += frequencies[i].weight * target[i] * problem.basis[i][j];
+  for (uint32_t j = 0; j < sap_weight_count; ++j)
+    right[j] += sum_weight * problem.ones[j];
+  node.weights = solve_non_negative(problem.equations, right);
+  double sum = 0;
+  for (const double w : node.weights)
+    sum += w;
+  for (double& w : node.weights)
+    w /= sum;
+  double squares = 0;
+  for (size_t i = 0; i < frequencies.size(); ++i) {
+    double error = -target[i];
+    for (uint32_t j = 0; j < sap_weight_count; ++j)
+      error += node.weights[j] * problem.basis[i][j];
+    squares += frequencies[i].weight * error * error;
+  }
+  node.residual = std::sqrt(squares);
+  for (double& w : node.weights)
+    w *= 1 - direct;
+  node.weights[0] += direct;
+}
+
 } // namespace
 
 SapFit fit_sap_weights(SapVariant variant) {
@@ -131,48 +200,27 @@ SapFit fit_sap_weights(SapVariant variant) {
 }
 
 SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape) {
-  const std::vector<Frequency> frequencies = make_frequencies();
-  std::vector<SapWeights> basis;
-  NormalEquations<sap_weight_count> equations;
-  for (const Frequency& f : frequencies) {
-    basis.push_back(basis_at(f, variant));
-    equations.add_row(basis.back(), f.weight);
-  }
-  SapWeights ones; // of the weights that there are
-  ones.fill(1);
-  if (variant == SapVariant::half) ones[1] = 0;
-  equations.add_row(ones, sum_weight);
+  return fit_sap_weights(std::span(&variant, 1), shape).front();
+}
 
-  SapFit fit{.variant = variant, .nodes = {}};
-  for (uint32_t k = 0; k < sap_node_count; ++k) {
-    SapNode& node = fit.nodes[k];
-    node.d_px = std::exp2(sap_log2_d_first + double(k) / sap_nodes_per_octave);
-    const std::vector<double> target = target_of(frequencies, scaled(shape, node.d_px / shape.d));
-    SapWeights right{};
-    for (size_t i = 0; i < frequencies.size(); ++i)
-      for (uint32_t j = 0; j < sap_weight_count; ++j)
-        right[j] += frequencies[i].weight * target[i] * basis[i][j];
-    for (uint32_t j = 0; j < sap_weight_count; ++j)
-      right[j] += sum_weight * ones[j];
-    node.weights = solve_non_negative(equations, right);
-    double sum = 0;
-    for (const double w : node.weights)
-      sum += w;
-    for (double& w : node.weights)
-      w /= sum;
-    double squares = 0;
-    for (size_t i = 0; i < frequencies.size(); ++i) {
-      double error = -target[i];
-      for (uint32_t j = 0; j < sap_weight_count; ++j)
-        error += node.weights[j] * basis[i][j];
-      squares += frequencies[i].weight * error * error;
-    }
-    node.residual = std::sqrt(squares);
-    for (double& w : node.weights)
-      w *= 1 - shape.direct;
-    node.weights[0] += shape.direct;
+std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const ChannelShape& shape) {
+  const std::vector<Frequency> frequencies = make_frequencies();
+  const std::vector<Folded> folded = fold(frequencies);
+  std::vector<Problem> problems;
+  std::vector<SapFit> fits;
+  for (const SapVariant variant : variants) {
+    problems.push_back(make_problem(frequencies, variant));
+    fits.push_back({.variant = variant, .nodes = {}});
   }
-  return fit;
+  for (uint32_t k = 0; k < sap_node_count; ++k) {
+    const double d_px = std::exp2(sap_log2_d_first + double(k) / sap_nodes_per_octave);
+    const std::vector<double> target = target_of(frequencies, folded, scaled(shape, d_px / shape.d));
+    for (size_t v = 0; v < fits.size(); ++v) {
+      fits[v].nodes[k].d_px = d_px;
+      solve_node(problems[v], frequencies, target, shape.direct, fits[v].nodes[k]);
+    }
+  }
+  return fits;
 }
 
 SapShares sap_shares(const SapWeights& weights) {

@@ -52,6 +52,8 @@ SapFit fit_sap_weights(SapVariant variant);
 // The same for another profile: `shape` in any unit, nodes by its d in pixels. The share of light that never
 // scatters is part of the centre's weight.
 SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape);
+// Several variants in little more time than one: what they are fitted to is the same.
+std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const ChannelShape& shape);
 
 // What a kernel needs of the weights, as shares of what is left at each level: out = mix(coarser, level l,
 // t_l). centre and tent are level 0's weights; share[l] = W_l / sum of W_k over k >= l for l >= 1, share[8]

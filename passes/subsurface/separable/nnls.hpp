@@ -13,9 +13,11 @@ template <size_t N> struct NormalEquations {
 
   // Adds weight * row * row^T.
   void add_row(const std::array<double, N>& row, double weight) {
-    for (size_t i = 0; i < N; ++i)
+    for (size_t i = 0; i < N; ++i) {
+      if (row[i] == 0) continue; // unknowns that a fit does not have
       for (size_t j = 0; j < N; ++j)
         matrix[i][j] += weight * row[i] * row[j];
+    }
   }
 };
 

@@ -26,21 +26,70 @@ struct Frequency {
   double x, y, weight, target = 0; // target: transfer of the truth's kernel
 };
 
-std::vector<Frequency> make_frequencies(const ChannelShape& shape) {
-  std::vector<Frequency> all;
+double sinc(double x) {
+  return x == 0 ? 1.0 : std::sin(pi * x) / (pi * x);
+}
+
+// What the transfer of the pixel's kernel asks at a frequency and those that alias with it, of no shape.
+struct Aliases {
+  static constexpr int most = 8; // periods on each side
+  static constexpr size_t count = 2 * most + 1;
+  std::array<double, count> sinc_x, sinc_y;
+  std::array<std::array<double, count>, count> k; // by y, x: radians a pixel
+};
+
+Aliases aliases_of(double fx, double fy) {
+  Aliases aliases;
+  for (int m = -Aliases::most; m <= Aliases::most; ++m) {
+    const auto at = static_cast<size_t>(m + Aliases::most);
+    aliases.sinc_x[at] = sinc(fx + m);
+    aliases.sinc_y[at] = sinc(fy + m);
+    for (int n = -Aliases::most; n <= Aliases::most; ++n)
+      aliases.k[at][static_cast<size_t>(n + Aliases::most)] = 2 * pi * std::hypot(fx + n, fy + m);
+  }
+  return aliases;
+}
+
+double transfer_of(const ChannelShape& shape, const Aliases& aliases) {
+  // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum settles to 1e-4 within 8 periods for d >=
+  // 1/16 px.
+  const int reach =
+      shape.d > 0 ? std::clamp(static_cast<int>(2 + 2 / shape.d), 2, Aliases::most) : Aliases::most;
+  const auto first = static_cast<size_t>(Aliases::most - reach),
+             last = static_cast<size_t>(Aliases::most + reach);
+  double sum = 0;
+  for (size_t y = first; y <= last; ++y)
+    for (size_t x = first; x <= last; ++x)
+      sum += shape_transfer(shape, aliases.k[y][x]) * aliases.sinc_x[x] * aliases.sinc_y[y];
+  return shape.direct + (1 - shape.direct) * sum;
+}
+
+// The frequencies of every fit, and what they alias with.
+struct Grid {
+  std::vector<Frequency> frequencies;
+  std::vector<Aliases> aliases;
+};
+
+Grid make_grid() {
+  Grid grid;
   for (int i = 0; i < radii; ++i) {
     const double f = lowest_frequency * std::pow(highest_frequency / lowest_frequency, (i + 0.5) / radii);
     for (int j = 0; j < angles; ++j) {
       const double angle = (j + 0.5) / angles * pi / 2;
       const double fx = f * std::cos(angle), fy = f * std::sin(angle);
-      if (fx <= 0.5 && fy <= 0.5) all.push_back({fx, fy, 1.0, pixel_kernel_transfer(shape, fx, fy)});
+      if (fx > 0.5 || fy > 0.5) continue;
+      grid.frequencies.push_back({fx, fy, 1.0});
+      grid.aliases.push_back(aliases_of(fx, fy));
     }
   }
-  return all;
+  return grid;
 }
 
-double sinc(double x) {
-  return x == 0 ? 1.0 : std::sin(pi * x) / (pi * x);
+std::vector<Frequency> with_targets(const Grid& grid, const ChannelShape& shape) {
+  std::vector<Frequency> all = grid.frequencies;
+  for (size_t i = 0; i < all.size(); ++i)
+    all[i].target = transfer_of(shape, grid.aliases[i]);
+  return all;
 }
 
 // Transfer of the two taps at +-offset, read with linear interpolation between texels.
@@ -66,16 +115,22 @@ double dot(const Row& row, const Row& weights) {
   return sum;
 }
 
-SeparableFit fit_to(const std::vector<Frequency>& frequencies, double d_px, std::span<const double> offsets) {
-  SeparableFit fit;
-  const size_t taps = offsets.size() + 1;
-  struct Sample {
-    Row x, y;
-    double target, weight;
-  };
+// By frequency, both axes; of no shape.
+struct Sample {
+  Row x, y;
+};
+
+std::vector<Sample> make_samples(const std::vector<Frequency>& frequencies, std::span<const double> offsets) {
   std::vector<Sample> samples;
   for (const Frequency& f : frequencies)
-    samples.push_back({axis_row(offsets, f.x), axis_row(offsets, f.y), f.target, f.weight});
+    samples.push_back({axis_row(offsets, f.x), axis_row(offsets, f.y)});
+  return samples;
+}
+
+SeparableFit fit_to(const std::vector<Frequency>& frequencies, const std::vector<Sample>& samples,
+                    double d_px, std::span<const double> offsets) {
+  SeparableFit fit;
+  const size_t taps = offsets.size() + 1;
 
   // Unknown here: a unnormalised (its square carries 1 - centre) and the centre. Gauss-Newton on the product,
   // each step a non-negative least-squares problem; the sum of the kernel, 1, is a row of large weight.
@@ -107,8 +162,8 @@ SeparableFit fit_to(const std::vector<Frequency>& frequencies, double d_px, std:
       for (size_t i = 0; i < unknowns; ++i)
         right[i] += weight * row[i] * value;
     };
-    for (const Sample& s : samples)
-      add(s.x, s.y, s.target, s.weight);
+    for (size_t i = 0; i < samples.size(); ++i)
+      add(samples[i].x, samples[i].y, frequencies[i].target, frequencies[i].weight);
     add(ones, ones, 1.0, sum_weight);
     const auto solved = solve_non_negative(equations, right);
     constexpr double damping = 0.7; // a full step overshoots while the active set still changes
@@ -123,10 +178,12 @@ SeparableFit fit_to(const std::vector<Frequency>& frequencies, double d_px, std:
   fit.centre = std::clamp(1 - sum * sum, 0.0, 1.0);
 
   double error = 0, signal = 0;
-  for (const Sample& s : samples) {
-    const double model = fit.centre + (1 - fit.centre) * dot(s.x, fit.weights) * dot(s.y, fit.weights);
-    error += s.weight * (model - s.target) * (model - s.target);
-    signal += s.weight * (1 - s.target) * (1 - s.target);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const Frequency& f = frequencies[i];
+    const double model =
+        fit.centre + (1 - fit.centre) * dot(samples[i].x, fit.weights) * dot(samples[i].y, fit.weights);
+    error += f.weight * (model - f.target) * (model - f.target);
+    signal += f.weight * (1 - f.target) * (1 - f.target);
   }
   fit.residual = signal > 0 ? std::sqrt(error / signal) : 0;
   return fit;
@@ -139,16 +196,7 @@ double pixel_kernel_transfer(double d_px, double fx, double fy) {
 }
 
 double pixel_kernel_transfer(const ChannelShape& shape, double fx, double fy) {
-  // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum settles to 1e-4 within 8 periods for d >=
-  // 1/16 px.
-  const int reach = shape.d > 0 ? std::clamp(static_cast<int>(2 + 2 / shape.d), 2, 8) : 8;
-  double sum = 0;
-  for (int my = -reach; my <= reach; ++my)
-    for (int mx = -reach; mx <= reach; ++mx) {
-      const double gx = fx + mx, gy = fy + my;
-      sum += shape_transfer(shape, 2 * pi * std::hypot(gx, gy)) * sinc(gx) * sinc(gy);
-    }
-  return shape.direct + (1 - shape.direct) * sum;
+  return transfer_of(shape, aliases_of(fx, fy));
 }
 
 std::vector<double> separable_offsets(double d_px, uint32_t taps) {
@@ -173,7 +221,8 @@ SeparableFit fit_separable(double d_px, std::span<const double> offsets) {
 
 SeparableFit fit_separable(const ChannelShape& shape, std::span<const double> offsets) {
   if (!(shape.d > 0)) return {};
-  return fit_to(make_frequencies(shape), shape.d, offsets);
+  const Grid grid = make_grid();
+  return fit_to(with_targets(grid, shape), make_samples(grid.frequencies, offsets), shape.d, offsets);
 }
 
 std::vector<SeparableRow> make_separable_rows(const std::array<double, 3>& d) {
@@ -183,25 +232,31 @@ std::vector<SeparableRow> make_separable_rows(const std::array<double, 3>& d) {
 std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape) {
   std::vector<SeparableRow> rows(separable_rows_per_profile, SeparableRow{});
   const double widest = std::max({shape[0].d, shape[1].d, shape[2].d});
+  const Grid grid = make_grid();
   for (uint32_t node = 0; node < separable_nodes; ++node) {
     const double d_px = std::exp2(separable_first_log2_d + node * separable_log2_d_step);
+    std::array<ChannelShape, 3> channels;
+    std::array<std::vector<Frequency>, 3> frequencies;
     for (size_t c = 0; c < 3; ++c) {
-      const ChannelShape channel = scaled(shape[c], widest > 0 ? d_px / widest : 0.0);
-      const std::vector<Frequency> frequencies =
-          channel.d > 0 ? make_frequencies(channel) : std::vector<Frequency>{};
-      size_t first = 0;
-      for (const uint32_t taps : separable_taps) {
-        const uint32_t per_node = separable_rows_per_node(taps);
-        SeparableRow* out = &rows[first + size_t{node} * per_node];
-        const std::vector<double> offsets = separable_offsets(d_px, taps);
-        const SeparableFit fit = channel.d > 0 ? fit_to(frequencies, channel.d, offsets) : SeparableFit{};
+      channels[c] = scaled(shape[c], widest > 0 ? d_px / widest : 0.0);
+      if (channels[c].d > 0) frequencies[c] = with_targets(grid, channels[c]);
+    }
+    size_t first = 0;
+    for (const uint32_t taps : separable_taps) {
+      const uint32_t per_node = separable_rows_per_node(taps);
+      SeparableRow* out = &rows[first + size_t{node} * per_node];
+      const std::vector<double> offsets = separable_offsets(d_px, taps);
+      const std::vector<Sample> samples = make_samples(grid.frequencies, offsets);
+      for (size_t c = 0; c < 3; ++c) {
+        const SeparableFit fit =
+            channels[c].d > 0 ? fit_to(frequencies[c], samples, channels[c].d, offsets) : SeparableFit{};
         for (size_t i = 0; i <= offsets.size(); ++i)
           out[i][c] = static_cast<float>(fit.weights[i]);
-        for (size_t i = 0; i < offsets.size(); ++i)
-          out[i + 1][3] = static_cast<float>(offsets[i]);
         out[per_node - 1][c] = static_cast<float>(fit.centre);
-        first += size_t{separable_nodes} * per_node;
       }
+      for (size_t i = 0; i < offsets.size(); ++i)
+        out[i + 1][3] = static_cast<float>(offsets[i]);
+      first += size_t{separable_nodes} * per_node;
     }
   }
   return rows;
