@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -212,7 +213,9 @@ TEST_P(EveryTechnique, ARectangleInsideTheImagesGivesThePictureOfItsOwnSize) {
 }
 
 TEST_P(EveryTechnique, OddAndTinySizesWork) {
-  for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 7u}, {7u, 1u}, {9u, 17u}, {131u, 3u}}) {
+  std::vector<std::pair<uint32_t, uint32_t>> sizes = {{1, 1}, {9, 17}, {131, 3}};
+  if (dermis::testing::seeds_of_tier(0, 1) == 1) sizes.insert(sizes.end(), {{1, 7}, {7, 1}});
+  for (const auto& [width, height] : sizes) {
     Plane plane;
     plane.width = width;
     plane.height = height;
