@@ -25,7 +25,7 @@ public:
   void add(std::shared_ptr<const Kernel> kernel);
   // `shared` keeps kernels of version 0 until it is destroyed, others as long as an executor uses them. Where
   // memory for that cannot be had, none of them.
-  void hand_over() noexcept;
+  void hand_over() noexcept; // of a store that has one
 
 private:
   void take(std::vector<std::shared_ptr<const Kernel>>& kernels);
@@ -33,7 +33,12 @@ private:
   KernelStore* shared_ = nullptr;
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<const Kernel>> kept_;
-  std::vector<std::weak_ptr<const Kernel>> in_use_;
+  struct InUse {
+    KindId kind;
+    uint64_t version = 0;
+    std::weak_ptr<const Kernel> kernel;
+  };
+  std::vector<InUse> in_use_;
 };
 
 } // namespace dermis::vulkan

@@ -56,10 +56,11 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
 
 // They take over at the next record of each view. One that waited was never recorded.
 void hand_over(dermis_graph_t& graph, Candidates& candidates) noexcept {
+  for (const std::shared_ptr<Program>& candidate : candidates)
+    share_kernels(*candidate); // before any view is locked, whose recording would wait
   size_t v = 0;
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
-    share_kernels(*candidates[v]);
     view.next.swap(candidates[v++]);
   });
 }

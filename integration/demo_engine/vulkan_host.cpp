@@ -117,9 +117,10 @@ Result<> create_device(VulkanHost& host, bool as_vulkan_12) {
 } // namespace
 
 VulkanHost::~VulkanHost() {
-  context.reset();
   if (device != VK_NULL_HANDLE) {
     vk.vkDeviceWaitIdle(device);
+    engine_context.reset();
+    tool_context.reset();
     vk.vkDestroyFence(device, fence, nullptr);
     vk.vkDestroyCommandPool(device, pool, nullptr);
     vk.vkDestroyDevice(device, nullptr);

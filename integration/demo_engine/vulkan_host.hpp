@@ -1,6 +1,6 @@
 #pragma once
 // The host side of Vulkan without a window: instance, device, one queue, and the wait for its work.
-// Nothing here knows of Dermis; it is what an engine has before it embeds it.
+// It is what an engine has before it embeds Dermis, and keeps the contexts that it made of this device.
 
 #include "integration/demo_engine/vulkan_instance.hpp"
 
@@ -28,8 +28,9 @@ struct VulkanHost {
   bool ray_query = false;      // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
   ValidationLog log;
-  // Of graphs that share it, all made by the engine or all beside it; null until the first is made.
-  std::shared_ptr<dermis_context_t> context;
+  // Shared by graphs that the engine made, and by those that tools made beside it; null until the first is
+  // made.
+  std::shared_ptr<dermis_context_t> engine_context, tool_context;
 
   VulkanHost() = default;
   VulkanHost(const VulkanHost&) = delete;

@@ -46,6 +46,7 @@ bool fill_previous(const FrameInput& input, FrameConstants& out) {
   if (rays->perspective) out.flags |= 8u;
   return true;
 }
+
 constexpr size_t sap_table_floats = size_t{sap_table_rows} * sap_node_count;
 using SapTables = std::array<float, sap_variant_count * sap_table_floats>; // by SapVariant
 

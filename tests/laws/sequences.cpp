@@ -104,7 +104,7 @@ SequenceRun SequenceTest::run(Judge& judge, const TechniqueRequest& request, con
       result.samples.push_back(std::numeric_limits<double>::quiet_NaN());
       continue;
     }
-    (*made)->skip_to(t);
+    (*made)->skip_to(t + 1); // the first frame has number 1
     auto found = (*made)->scatter(frame.captured, follows ? follows(t) : t > 0 && !frame.cut);
     EXPECT_TRUE(found) << found.error().text;
     auto sampling = (*made)->sampling();

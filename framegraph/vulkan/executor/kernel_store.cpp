@@ -3,21 +3,19 @@
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <new>
 
 namespace dermis::vulkan {
 
 std::shared_ptr<const Kernel> KernelStore::find(KindId kind, uint64_t version) const {
-  const auto is_wanted = [&](const Kernel& kernel) {
-    return kernel.kind == kind && kernel.version == version;
-  };
   {
     const std::lock_guard lock(mutex_);
     for (const std::shared_ptr<const Kernel>& kernel : kept_)
-      if (is_wanted(*kernel)) return kernel;
-    for (const std::weak_ptr<const Kernel>& one : in_use_)
-      if (std::shared_ptr<const Kernel> kernel = one.lock(); kernel != nullptr && is_wanted(*kernel))
-        return kernel;
+      if (kernel->kind == kind && kernel->version == version) return kernel;
+    for (const InUse& one : in_use_)
+      if (one.kind == kind && one.version == version)
+        if (std::shared_ptr<const Kernel> kernel = one.kernel.lock()) return kernel;
   }
   return shared_ != nullptr ? shared_->find(kind, version) : nullptr;
 }
@@ -28,6 +26,7 @@ void KernelStore::add(std::shared_ptr<const Kernel> kernel) {
 }
 
 void KernelStore::hand_over() noexcept {
+  assert(shared_ != nullptr);
   const std::lock_guard lock(mutex_);
   try {
     shared_->take(kept_);
@@ -37,7 +36,7 @@ void KernelStore::hand_over() noexcept {
 
 void KernelStore::take(std::vector<std::shared_ptr<const Kernel>>& kernels) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(in_use_, [](const std::weak_ptr<const Kernel>& one) { return one.expired(); });
+  std::erase_if(in_use_, [](const InUse& one) { return one.kernel.expired(); });
   kept_.reserve(kept_.size() + kernels.size());
   in_use_.reserve(in_use_.size() + kernels.size());
   for (std::shared_ptr<const Kernel>& kernel : kernels) {
@@ -49,7 +48,7 @@ void KernelStore::take(std::vector<std::shared_ptr<const Kernel>>& kernels) {
     if (kernel->version == 0)
       kept_.push_back(std::move(kernel));
     else
-      in_use_.emplace_back(kernel);
+      in_use_.push_back({kernel->kind, kernel->version, kernel});
   }
   kernels.clear();
 }

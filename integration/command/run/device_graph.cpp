@@ -50,7 +50,7 @@ dermis_source source_of(const std::string& name, const std::string& text) {
 }
 
 demo::Result<> make_context(demo::VulkanHost& host) {
-  if (host.context != nullptr) return demo::success();
+  if (host.tool_context != nullptr) return demo::success();
   dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
   desc.flags = host.timestamp_mask != 0 ? DERMIS_CONTEXT_TIMINGS : 0;
   desc.frames_in_flight = 1;
@@ -62,7 +62,7 @@ demo::Result<> make_context(demo::VulkanHost& host) {
   dermis_context context = nullptr;
   const dermis_result result = dermis_context_create(&desc, &context);
   if (result != DERMIS_OK) return error_of("dermis_context_create", result);
-  host.context.reset(context, dermis_context_destroy);
+  host.tool_context.reset(context, dermis_context_destroy);
   return demo::success();
 }
 
@@ -151,8 +151,8 @@ demo::Result<std::unique_ptr<DeviceGraph>> DeviceGraph::create(demo::VulkanHost&
                                                                const DeviceGraphRequest& request) {
   std::unique_ptr<DeviceGraph> made(new DeviceGraph(host));
   if (auto ready = make_context(host); !ready) return ready.error();
-  made->context_ = host.context;
-  auto graph = create_graph(host.context.get(), request);
+  made->context_ = host.tool_context;
+  auto graph = create_graph(host.tool_context.get(), request);
   if (!graph) return graph.error();
   made->graph_ = *graph;
   if (auto set = set_settings(*graph, request); !set) return set.error();

@@ -35,7 +35,8 @@ struct DeviceGraphRequest {
 // Do both differ in size at most?
 bool same_but_size(const DeviceGraphRequest& a, const DeviceGraphRequest& b);
 
-// Owns context, graph and one image a bound slot; all die before the host. One thread.
+// Owns a graph, in the context of all graphs of the host, and one image a bound slot; all die before the
+// host. One thread.
 class DeviceGraph {
 public:
   // Errors: input (the graph; the text holds all messages), environment, internal.

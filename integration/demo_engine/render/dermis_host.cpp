@@ -233,7 +233,7 @@ Result<std::vector<std::string>> find_unbound(const DermisHost& host, const Derm
 }
 
 Result<> make_context(VulkanHost& vulkan) {
-  if (vulkan.context != nullptr) return success();
+  if (vulkan.engine_context != nullptr) return success();
   dermis_context_desc context = DERMIS_CONTEXT_DESC_INIT;
   context.flags = DERMIS_CONTEXT_TIMINGS | (vulkan.ray_query ? DERMIS_CONTEXT_RAY_QUERY : 0);
   context.frames_in_flight = frames_in_flight;
@@ -245,7 +245,7 @@ Result<> make_context(VulkanHost& vulkan) {
   dermis_context created = nullptr;
   const dermis_result made = dermis_context_create(&context, &created);
   if (made != DERMIS_OK) return dermis_error("dermis_context_create", made);
-  vulkan.context.reset(created, dermis_context_destroy);
+  vulkan.engine_context.reset(created, dermis_context_destroy);
   return success();
 }
 
@@ -261,7 +261,7 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   if (!sources) return sources.error();
   DermisHandle host(new DermisHost);
   if (auto ready = make_context(vulkan); !ready) return ready.error();
-  host->context = vulkan.context;
+  host->context = vulkan.engine_context;
   const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.skips;
   if (!whole) known = nullptr;
   std::vector<std::string> unbound;

@@ -244,8 +244,9 @@ typedef struct dermis_context_desc {
 /* Resolves every Vulkan function by name and reports all that are missing at once. *context is NULL on failure.
  * Thread: any. Errors: ARGUMENT, VERSION, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_context_create(const dermis_context_desc* desc, dermis_context* context);
-/* The device must have finished every frame recorded through the context; its graphs must have been destroyed
- * (those that were not are destroyed here and logged). NULL is ignored. Thread: any, alone. Errors: none. */
+/* The device must have finished every frame recorded through the context, and must still be there: pipelines go with
+ * the context. Its graphs must have been destroyed (those that were not are destroyed here and logged). NULL is ignored.
+ * Thread: any, alone. Errors: none. */
 DERMIS_API void DERMIS_CALL dermis_context_destroy(dermis_context context);
 /* The last failure on this thread; NULL for none. A call that succeeds leaves it alone. The text lives until the
  * next Dermis call on this thread. Thread: any. Errors: none. */
@@ -323,8 +324,9 @@ typedef struct dermis_graph_desc {
  * Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source, dermis_report* report);
 /* Parses, checks, compiles and allocates. *graph is NULL on failure. *report (may be NULL) gets the messages and
- * is to be destroyed also on success. Graphs of a context share their pipelines, which stay until it is destroyed: one that is
- * made beside or after others compiles only kernels that none of them had. Thread: any. Errors: ARGUMENT, VERSION, CONFIG,
+ * is to be destroyed also on success. Graphs of a context share their pipelines: one that is made beside or after others
+ * compiles only kernels that none of them had. Those of the library's own kernels stay until the context is destroyed,
+ * those of shaders of yours as long as a graph runs them. Thread: any. Errors: ARGUMENT, VERSION, CONFIG,
  * SHADER, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context, const dermis_graph_desc* desc,
                                                          dermis_graph* graph, dermis_report* report);

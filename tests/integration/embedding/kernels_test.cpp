@@ -8,7 +8,7 @@ namespace {
 constexpr uint64_t objects_of_kernel = 3; // pipeline, its layout, that of its sets
 constexpr uint64_t made_of_kernel = 4;    // and a shader module, until the pipeline is there
 
-TEST(Kernels, AGraphMadeAfterAnotherCompilesNoneOfItsKernels) {
+TEST(SharedKernels, AGraphMadeAfterAnotherCompilesNoneOfItsKernels) {
   dermis::abi_test::NullHost host;
   const dermis_context_desc desc = host.context_desc();
   ASSERT_EQ(host.make_context(desc), DERMIS_OK);
@@ -29,7 +29,7 @@ TEST(Kernels, AGraphMadeAfterAnotherCompilesNoneOfItsKernels) {
   EXPECT_EQ(host.device.alive(), 0u);
 }
 
-TEST(Kernels, OfAGraphThatIsNotMadeAreNotKept) {
+TEST(SharedKernels, OfAGraphThatIsNotMadeAreNotKept) {
   dermis::abi_test::NullHost host;
   const dermis_context_desc desc = host.context_desc();
   ASSERT_EQ(host.make_context(desc), DERMIS_OK);
@@ -49,6 +49,27 @@ TEST(Kernels, OfAGraphThatIsNotMadeAreNotKept) {
   dermis_graph_destroy(other.graph);
   other.graph = nullptr;
   EXPECT_EQ(other.device.alive(), kept);
+}
+
+TEST(SharedKernels, OfTheHostsShadersGoWithTheLastGraphThatRunsThem) {
+  dermis::abi_test::NullHost host;
+  const dermis_context_desc desc = host.context_desc();
+  ASSERT_EQ(host.make_context(desc), DERMIS_OK);
+  ASSERT_EQ(host.make_graph(), DERMIS_OK);
+  dermis_graph_destroy(host.graph);
+  const uint64_t kept = host.device.alive();
+  ASSERT_EQ(host.make_graph(), DERMIS_OK);
+  const uint64_t with_graph = host.device.alive();
+  uint32_t asked = 0;
+  const dermis_result result =
+      dermis_graph_reload_shaders(host.graph, dermis::abi_test::open_kernel, &asked, nullptr);
+  if (result == DERMIS_ERROR_UNSUPPORTED)
+    GTEST_SKIP() << "this library compiles no shaders; test_shared_shaders is the one that does";
+  ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();
+  EXPECT_GT(host.device.alive(), with_graph);
+  dermis_graph_destroy(host.graph);
+  host.graph = nullptr;
+  EXPECT_EQ(host.device.alive(), kept);
 }
 
 } // namespace

@@ -39,4 +39,8 @@ private:
   std::vector<dermis_image_binding> bindings_;
 };
 
+// For dermis_graph_reload_shaders: one kernel of the graph, which does nothing. `user`: a uint32_t that
+// counts how often it was asked for.
+uint32_t DERMIS_CALL open_kernel(void* user, const char* name, dermis_source* source);
+
 } // namespace dermis::abi_test

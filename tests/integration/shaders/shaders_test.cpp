@@ -152,6 +152,25 @@ TEST_F(Shaders, ThatChangedAreSeenInTheNextFrameAndUntilTheLibrarysAreAskedBack)
   expect_as_ever(graph);
 }
 
+TEST_F(Shaders, OfTwoGraphsOfAContextAreEachItsOwn) {
+  const dermis_graph one = make(), other = make_graph();
+  folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
+  ASSERT_EQ(reload(one), DERMIS_OK) << dermis_last_error();
+  folder.change(combine, store, "vec4(round_to_half(color * 0.25), 1.0)");
+  ASSERT_EQ(reload(other), DERMIS_OK) << dermis_last_error();
+  const uint64_t number = last_frame;
+  const auto halved = light(one);
+  last_frame = number;
+  const auto quartered = light(other);
+  double sum = 0;
+  for (size_t i = 0; i < halved.size(); ++i) {
+    if (i % 4 == 3) continue;
+    EXPECT_NEAR(quartered[i], halved[i] / 2, 6e-8) << i; // exact but for the smallest half floats
+    sum += halved[i];
+  }
+  EXPECT_GT(sum, 0);
+}
+
 TEST_F(Shaders, ThatAreBrokenAreToldWithTheirPlaceAndNothingChanges) {
   const dermis_graph graph = make();
   light(graph);

@@ -78,6 +78,7 @@ struct Soak : DermisTest {
     if (!memory) return;
     EXPECT_EQ(memory->blocks, 0);
     EXPECT_EQ(heap.blocks, 0) << heap.bytes << " bytes";
+    EXPECT_EQ(object_counts().text, "none");
   }
   // Mesa's software driver destroys pipelines when something else is submitted, on a thread of its own.
   void let_the_driver_clean_up() {
@@ -368,7 +369,6 @@ struct Rest {
 };
 
 constexpr uint64_t most_kernels = 64; // the library has not as many
-constexpr int64_t most_kernel_blocks = 4, most_kernel_bytes = 4096;
 
 TEST_F(Soak, FramesWithoutEndAddNothingUp) {
   const uint64_t frames = from_environment("DERMIS_SOAK_FRAMES", 300);
@@ -376,7 +376,9 @@ TEST_F(Soak, FramesWithoutEndAddNothingUp) {
   const uint64_t rounds = std::max<uint64_t>(2, frames / frames_a_round);
   const std::vector<StageDesc> descs = soak_stages();
   std::vector<Rest> rests;
-  for (uint64_t round = 0; round < rounds && !HasFailure(); ++round) {
+  uint32_t rounds_alike = 0;          // in which no kernel came along: what they leave is compared
+  constexpr uint64_t more_rounds = 4; // until there is one
+  for (uint64_t round = 0; round < rounds + (rounds_alike == 0 ? more_rounds : 0) && !HasFailure(); ++round) {
     draw_sizes();
     for (const StageDesc& desc : descs)
       ASSERT_NO_FATAL_FAILURE(create(desc));
@@ -397,8 +399,11 @@ TEST_F(Soak, FramesWithoutEndAddNothingUp) {
     EXPECT_LE(rest.kernels(), most_kernels);
     const auto more = static_cast<int64_t>(rest.kernels() - before.kernels());
     EXPECT_GE(more, 0);
-    EXPECT_LE(rest.heap_blocks - before.heap_blocks, more * most_kernel_blocks);
-    EXPECT_LE(rest.heap_bytes - before.heap_bytes, more * most_kernel_bytes);
+    if (more == 0) {
+      EXPECT_EQ(rest.heap_blocks, before.heap_blocks);
+      EXPECT_EQ(rest.heap_bytes, before.heap_bytes);
+    }
+    rounds_alike += more == 0 && rests.size() > 1;
     EXPECT_EQ(rest.device_blocks, 0);
   }
   fmt::print("{} frames, {} pictures: {} reloads, {} refused, {} resizes, {} settings, {} budgets, {} cuts, "
@@ -411,6 +416,7 @@ TEST_F(Soak, FramesWithoutEndAddNothingUp) {
     fmt::print("{}: brightest {:.5f} of the light, off even light {:.5f}\n", name, most,
                totals.even_error[name]);
   EXPECT_EQ(totals.not_finite, 0u);
+  EXPECT_GT(rounds_alike, 0u);
 }
 
 } // namespace

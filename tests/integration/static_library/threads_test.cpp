@@ -130,6 +130,10 @@ TEST_F(Threads, GraphsMayComeAndGoOnAllOfThem) {
     }
   };
   run({live, live, live});
+  host.destroy(); // a context that has no kernel yet: several make the same at once
+  const dermis_context_desc desc = host.context_desc();
+  ASSERT_EQ(host.make_context(desc), DERMIS_OK);
+  run({live, live, live});
 }
 
 } // namespace
