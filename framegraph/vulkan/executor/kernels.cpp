@@ -1,5 +1,6 @@
 // Pipelines of the pass kinds that the plan runs: layouts from the signature, checked against the kernel's
 // SPIR-V.
+#include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
 #include "framegraph/vulkan/shader/loop_hints.hpp"
