@@ -23,21 +23,21 @@ public:
   // Null: there is none of that kind and KernelCode::version.
   std::shared_ptr<const Kernel> find(KindId kind, uint64_t version) const;
   void add(std::shared_ptr<const Kernel> kernel);
-  // `shared` keeps kernels of version 0 until it is destroyed, others as long as an executor uses them. Where
-  // memory for that cannot be had, none of them.
-  void hand_over() noexcept; // of a store that has one
+  // For a store that has a `shared` one, which keeps kernels of version 0 until it is destroyed, others as
+  // long as an executor uses them. Where memory for that cannot be had, none of them.
+  void hand_over() noexcept;
 
 private:
-  void take(std::vector<std::shared_ptr<const Kernel>>& kernels);
-
-  KernelStore* shared_ = nullptr;
-  mutable std::mutex mutex_;
-  std::vector<std::shared_ptr<const Kernel>> kept_;
   struct InUse {
     KindId kind;
     uint64_t version = 0;
     std::weak_ptr<const Kernel> kernel;
   };
+  void take(std::vector<std::shared_ptr<const Kernel>>& kernels);
+
+  KernelStore* shared_ = nullptr;
+  mutable std::mutex mutex_;
+  std::vector<std::shared_ptr<const Kernel>> kept_;
   std::vector<InUse> in_use_;
 };
 

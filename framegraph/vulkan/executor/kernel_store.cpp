@@ -43,12 +43,10 @@ void KernelStore::take(std::vector<std::shared_ptr<const Kernel>>& kernels) {
     const auto is_same = [&](const std::shared_ptr<const Kernel>& other) {
       return other->kind == kernel->kind;
     };
-    if (kernel->version == 0 && std::any_of(kept_.begin(), kept_.end(), is_same))
-      continue; // of another thread
-    if (kernel->version == 0)
-      kept_.push_back(std::move(kernel));
-    else
+    if (kernel->version != 0)
       in_use_.push_back({kernel->kind, kernel->version, kernel});
+    else if (std::none_of(kept_.begin(), kept_.end(), is_same)) // another thread may have made it as well
+      kept_.push_back(std::move(kernel));
   }
   kernels.clear();
 }

@@ -1,5 +1,7 @@
 #include "integration/command/run/device_graph.hpp"
 
+#include "integration/demo_engine/dermis_calls.hpp"
+
 #include <fmt/format.h>
 
 #include <deque>
@@ -13,59 +15,6 @@ demo::ImageState resting_state(VkImageLayout layout) {
           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 }
 
-demo::ErrorKind kind_of(dermis_result result) {
-  switch (result) {
-  case DERMIS_ERROR_CONFIG:
-    return demo::ErrorKind::input;
-  case DERMIS_ERROR_UNSUPPORTED:
-  case DERMIS_ERROR_MEMORY:
-  case DERMIS_ERROR_DEVICE_MEMORY:
-  case DERMIS_ERROR_VULKAN:
-  case DERMIS_ERROR_DEVICE_LOST:
-    return demo::ErrorKind::environment;
-  default:
-    return demo::ErrorKind::internal;
-  }
-}
-
-// The report says more than the last error where there is one; it is destroyed here.
-demo::Error error_of(const char* call, dermis_result result, dermis_report report = nullptr) {
-  std::string text;
-  if (dermis_report_count(report) > 0) {
-    text = dermis_report_text(report);
-  } else {
-    const char* last = dermis_last_error();
-    text = fmt::format("{}: {}: {}", call, dermis_result_name(result), last != nullptr ? last : "no message");
-  }
-  dermis_report_destroy(report);
-  return {kind_of(result), text};
-}
-
-dermis_source source_of(const std::string& name, const std::string& text) {
-  dermis_source source = DERMIS_SOURCE_INIT;
-  source.name = name.c_str();
-  source.text = text.data();
-  source.length = text.size();
-  return source;
-}
-
-demo::Result<> make_context(demo::VulkanHost& host) {
-  if (host.tool_context != nullptr) return demo::success();
-  dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
-  desc.flags = host.timestamp_mask != 0 ? DERMIS_CONTEXT_TIMINGS : 0;
-  desc.frames_in_flight = 1;
-  desc.queue_family = host.queue_family;
-  desc.instance = host.instance;
-  desc.physical_device = host.physical_device;
-  desc.device = host.device;
-  desc.get_instance_proc_addr = vkGetInstanceProcAddr;
-  dermis_context context = nullptr;
-  const dermis_result result = dermis_context_create(&desc, &context);
-  if (result != DERMIS_OK) return error_of("dermis_context_create", result);
-  host.tool_context.reset(context, dermis_context_destroy);
-  return demo::success();
-}
-
 // Keeps the texts that it delivers until the call that asks for them is over.
 struct Includes {
   const OpenFile& open;
@@ -76,7 +25,7 @@ uint32_t DERMIS_CALL deliver_include(void* user, const char* name, dermis_source
   auto& includes = *static_cast<Includes*>(user);
   const FileText& file = includes.delivered.emplace_back(includes.open(name));
   if (!file.problem.empty()) return 0;
-  *source = source_of(file.name, file.text);
+  *source = demo::source_of(file.name, file.text);
   return 1;
 }
 
@@ -85,7 +34,7 @@ demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGrap
   for (const DeviceGraphRequest::Profile& one : request.profiles) {
     dermis_profile profile = DERMIS_PROFILE_INIT;
     profile.id = one.id;
-    profile.source = source_of(one.name, one.text);
+    profile.source = demo::source_of(one.name, one.text);
     profiles.push_back(profile);
   }
   std::vector<dermis_slot_format> formats;
@@ -100,7 +49,7 @@ demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGrap
     unbound.push_back(name.c_str());
 
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-  desc.source = source_of(request.graph_name, request.graph_text);
+  desc.source = demo::source_of(request.graph_name, request.graph_text);
   desc.width = request.width;
   desc.height = request.height;
   desc.profiles = profiles.data();
@@ -111,26 +60,24 @@ demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGrap
   desc.format_count = static_cast<uint32_t>(formats.size());
   std::vector<dermis_source> overlays;
   for (const auto& [name, text] : request.overlays)
-    overlays.push_back(source_of(name, text));
+    overlays.push_back(demo::source_of(name, text));
   desc.overlays = overlays.data();
   desc.overlay_count = static_cast<uint32_t>(overlays.size());
   Includes includes{request.open};
   if (request.open) desc.include = deliver_include;
   desc.include_user = &includes; // never asked again: graphs of the command are not reloaded
   dermis_graph graph = nullptr;
-  dermis_report report = nullptr;
-  const dermis_result result = dermis_graph_create(context, &desc, &graph, &report);
-  if (result != DERMIS_OK) return error_of("dermis_graph_create", result, report);
-  dermis_report_destroy(report);
+  demo::Report report;
+  const dermis_result result = dermis_graph_create(context, &desc, &graph, &report.handle);
+  if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_create", result, report.handle);
   return graph;
 }
 
 demo::Result<> set_settings(dermis_graph graph, const DeviceGraphRequest& request) {
   for (const auto& [name, json] : request.settings) {
-    dermis_report report = nullptr;
-    const dermis_result result = dermis_graph_set_setting(graph, name.c_str(), json.c_str(), &report);
-    if (result != DERMIS_OK) return error_of("dermis_graph_set_setting", result, report);
-    dermis_report_destroy(report);
+    demo::Report report;
+    const dermis_result result = dermis_graph_set_setting(graph, name.c_str(), json.c_str(), &report.handle);
+    if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_set_setting", result, report.handle);
   }
   return demo::success();
 }
@@ -150,7 +97,7 @@ bool same_but_size(const DeviceGraphRequest& a, const DeviceGraphRequest& b) {
 demo::Result<std::unique_ptr<DeviceGraph>> DeviceGraph::create(demo::VulkanHost& host,
                                                                const DeviceGraphRequest& request) {
   std::unique_ptr<DeviceGraph> made(new DeviceGraph(host));
-  if (auto ready = make_context(host); !ready) return ready.error();
+  if (auto ready = demo::make_context(host, 1, false, host.tool_context); !ready) return ready.error();
   made->context_ = host.tool_context;
   auto graph = create_graph(host.tool_context.get(), request);
   if (!graph) return graph.error();
@@ -169,7 +116,7 @@ demo::Result<> DeviceGraph::create_images() {
   dermis_result result = dermis_graph_slots(graph_, &count, nullptr);
   std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
   if (result == DERMIS_OK && count > 0) result = dermis_graph_slots(graph_, &count, slots.data());
-  if (result != DERMIS_OK) return error_of("dermis_graph_slots", result);
+  if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_slots", result);
   for (const dermis_slot& slot : slots) {
     if (slot.bound == 0) continue;
     demo::ImageDesc desc;
@@ -187,10 +134,9 @@ demo::Result<> DeviceGraph::create_images() {
 }
 
 demo::Result<> DeviceGraph::resize(uint32_t width, uint32_t height) {
-  dermis_report report = nullptr;
-  const dermis_result result = dermis_graph_resize(graph_, width, height, &report);
-  if (result != DERMIS_OK) return error_of("dermis_graph_resize", result, report);
-  dermis_report_destroy(report);
+  demo::Report report;
+  const dermis_result result = dermis_graph_resize(graph_, width, height, &report.handle);
+  if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_resize", result, report.handle);
   slots_.clear(); // each frame is waited for
   return create_images();
 }
@@ -253,7 +199,7 @@ demo::Result<> DeviceGraph::run(dermis_frame frame) {
   return demo::run_commands(host_, [&](VkCommandBuffer commands) -> demo::Result<> {
     frame.command_buffer = commands;
     const dermis_result result = dermis_graph_record(graph_, &frame);
-    if (result != DERMIS_OK) return error_of("dermis_graph_record", result);
+    if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_record", result);
     return demo::success();
   });
 }

@@ -1,7 +1,7 @@
 #include "integration/demo_engine/render/dermis_host.hpp"
 
+#include "integration/demo_engine/dermis_calls.hpp"
 #include "integration/demo_engine/files.hpp"
-#include "integration/include/dermis/dermis.h"
 
 #include <fmt/format.h>
 
@@ -30,34 +30,6 @@ namespace {
 
 constexpr uint32_t frames_in_flight = 2;
 
-struct Report {
-  dermis_report handle = nullptr;
-  ~Report() { dermis_report_destroy(handle); }
-};
-
-ErrorKind kind_of(dermis_result result) {
-  switch (result) {
-  case DERMIS_ERROR_CONFIG:
-  case DERMIS_ERROR_SHADER:
-    return ErrorKind::input;
-  case DERMIS_ERROR_UNSUPPORTED:
-  case DERMIS_ERROR_MEMORY:
-  case DERMIS_ERROR_DEVICE_MEMORY:
-  case DERMIS_ERROR_VULKAN:
-  case DERMIS_ERROR_DEVICE_LOST:
-    return ErrorKind::environment;
-  default:
-    return ErrorKind::internal;
-  }
-}
-
-Error dermis_error(const char* call, dermis_result result, dermis_report report = nullptr) {
-  if (dermis_report_count(report) > 0) return {kind_of(result), dermis_report_text(report)};
-  const char* detail = dermis_last_error();
-  return {kind_of(result), fmt::format("{}: {}{}{}", call, dermis_result_name(result), detail ? ": " : "",
-                                       detail ? detail : "")};
-}
-
 std::optional<Target> target_of(std::string_view slot) {
   for (size_t i = 0; i < target_count; ++i)
     if (!slot.empty() && target_info(static_cast<Target>(i)).slot == slot) return static_cast<Target>(i);
@@ -69,14 +41,6 @@ struct Sources {
   std::string graph;
   std::vector<std::string> profiles;
 };
-
-dermis_source source_of(const std::string& name, const std::string& text) {
-  dermis_source source = DERMIS_SOURCE_INIT;
-  source.name = name.c_str();
-  source.text = text.data();
-  source.length = text.size();
-  return source;
-}
 
 Result<Sources> read_sources(const DermisDesc& desc) {
   Sources sources;
@@ -232,23 +196,6 @@ Result<std::vector<std::string>> find_unbound(const DermisHost& host, const Derm
   return unbound;
 }
 
-Result<> make_context(VulkanHost& vulkan) {
-  if (vulkan.engine_context != nullptr) return success();
-  dermis_context_desc context = DERMIS_CONTEXT_DESC_INIT;
-  context.flags = DERMIS_CONTEXT_TIMINGS | (vulkan.ray_query ? DERMIS_CONTEXT_RAY_QUERY : 0);
-  context.frames_in_flight = frames_in_flight;
-  context.queue_family = vulkan.queue_family;
-  context.instance = vulkan.instance;
-  context.physical_device = vulkan.physical_device;
-  context.device = vulkan.device;
-  context.get_instance_proc_addr = vkGetInstanceProcAddr;
-  dermis_context created = nullptr;
-  const dermis_result made = dermis_context_create(&context, &created);
-  if (made != DERMIS_OK) return dermis_error("dermis_context_create", made);
-  vulkan.engine_context.reset(created, dermis_context_destroy);
-  return success();
-}
-
 } // namespace
 
 void DermisHostDeleter::operator()(DermisHost* host) const {
@@ -260,7 +207,8 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   auto sources = read_sources(desc);
   if (!sources) return sources.error();
   DermisHandle host(new DermisHost);
-  if (auto ready = make_context(vulkan); !ready) return ready.error();
+  if (auto ready = make_context(vulkan, frames_in_flight, true, vulkan.engine_context); !ready)
+    return ready.error();
   host->context = vulkan.engine_context;
   const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.skips;
   if (!whole) known = nullptr;

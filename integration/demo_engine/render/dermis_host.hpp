@@ -25,7 +25,7 @@ struct DermisDesc {
   bool skips = false;    // the same of `skips`
 };
 
-struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h
+struct DermisHost; // opaque: dermis.h stays in dermis_host.cpp
 struct DermisHostDeleter {
   void operator()(DermisHost* host) const;
 };
