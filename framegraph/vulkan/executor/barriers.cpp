@@ -136,6 +136,27 @@ struct Batch { // how many of State::..._barriers are filled
   uint32_t images = 0, buffers = 0, memory = 0;
 };
 
+// What a resource's memory held before was written through other resources, but the barrier of an image or a
+// buffer acts on accesses through that one alone (VkImageMemoryBarrier2, VkBufferMemoryBarrier2): one that
+// names none makes those writes available. It and the resource's own name writes also where only reads are
+// waited for. By then nothing is left to be made available, but the validation layer (1.3.239), which knows
+// images without their padding, may not have seen it.
+struct Takeover {
+  Scopes scopes{};
+
+  void add(Scopes& s) {
+    if (s.source_stages == 0) return;
+    if (s.source_access == 0)
+      s.source_access =
+          s.source_stages == compute ? VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT : VK_ACCESS_2_MEMORY_WRITE_BIT;
+    scopes.source_stages |= s.source_stages;
+    scopes.source_access |= s.source_access;
+    scopes.destination_stages |= s.destination_stages;
+    scopes.destination_access |= s.destination_access;
+  }
+  bool needed() const { return scopes.source_stages != 0; }
+};
+
 void submit_batch(const State& state, VkCommandBuffer commands, const Batch& batch) {
   if (batch.images == 0 && batch.buffers == 0 && batch.memory == 0) return;
   VkDependencyInfo info{};
@@ -147,6 +168,21 @@ void submit_batch(const State& state, VkCommandBuffer commands, const Batch& bat
   info.bufferMemoryBarrierCount = batch.buffers;
   info.pBufferMemoryBarriers = state.buffer_barriers.data();
   state.commands->vkCmdPipelineBarrier2(commands, &info);
+}
+
+void global_barrier(const State& state, VkCommandBuffer commands, const VkMemoryBarrier2& barrier) {
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &barrier;
+  state.commands->vkCmdPipelineBarrier2(commands, &info);
+}
+
+void record_takeover(const State& state, VkCommandBuffer commands, Takeover& takeover) {
+  takeover.scopes.destination_stages = all_commands;
+  takeover.scopes.destination_access = all_memory;
+  if (takeover.needed()) global_barrier(state, commands, memory_barrier(takeover.scopes));
+  takeover = {};
 }
 
 // What the host binds to the resource's slot.
@@ -178,18 +214,23 @@ uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t 
 void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
                      std::span<const uint32_t> writable_stand_ins) noexcept {
   Batch batch;
+  Takeover takeover;
   for (uint32_t i = first; i < first + count; ++i) {
     const PlanBarrier& barrier = state.plan.barriers[i];
     const PlanResource& resource = state.plan.resources[barrier.resource];
     const bool host_owned = resource.first_instance == no_instance;
-    const Scopes s = scopes_of(*state.device, barrier, host_states(frame, resource));
+    Scopes s = scopes_of(*state.device, barrier, host_states(frame, resource));
     if (nothing_to_do(barrier, s)) continue;
     if (host_owned) {
       add_host_barrier(state, frame, resource, s, batch);
       continue;
     }
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
-    const bool poison = state.poison && discards(state.plan, barrier);
+    const bool discarded = discards(state.plan, barrier), poison = state.poison && discarded;
+    if (discarded && instance.shared) {
+      takeover.add(s);
+      if (poison) record_takeover(state, frame.command_buffer, takeover); // what fills it comes first
+    }
     if (resource.type == ResourceType::image) {
       VkImageMemoryBarrier2& image = state.image_barriers[batch.images];
       image = image_barrier(instance.image, barrier_aspects(resource.format), s);
@@ -207,6 +248,7 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     else
       ++batch.buffers;
   }
+  if (takeover.needed()) state.memory_barriers[batch.memory++] = memory_barrier(takeover.scopes);
   // A shader does not write to a port that is not bound, but only it knows that.
   constexpr Scopes in_order{
       compute, compute, shader_write, shader_write, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL};
@@ -220,18 +262,6 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
   }
   submit_batch(state, frame.command_buffer, batch);
 }
-
-namespace {
-
-void global_barrier(const State& state, VkCommandBuffer commands, const VkMemoryBarrier2& barrier) {
-  VkDependencyInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &barrier;
-  state.commands->vkCmdPipelineBarrier2(commands, &info);
-}
-
-} // namespace
 
 void record_memory_takeover(State& state, const FrameInput& frame) noexcept {
   global_barrier(state, frame.command_buffer,

@@ -146,7 +146,7 @@ void reserve_for_recording(State& state) {
     most_settings = std::max<size_t>(most_settings, kernel->push_bytes / sizeof(uint32_t));
   state.image_barriers.resize(largest);
   state.buffer_barriers.resize(largest);
-  state.memory_barriers.resize(largest);
+  state.memory_barriers.resize(largest + 1); // and one for memory that is taken over
   state.push_constants.resize(most_settings);
   state.before_frame.histories.resize(state.histories.size());
   state.before_frame.ready.resize(state.instances.size());

@@ -4,6 +4,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
 namespace dermis::vulkan {
 namespace {
 
@@ -141,11 +145,32 @@ Error create_buffer(State& state, const PlanResource& resource, const Placement&
   return call_error(result, "vkBindBufferMemory2", name);
 }
 
+// Which instances have bytes in common with another one.
+void find_shared(State& state) {
+  const std::vector<Placement>& placements = state.plan.placements;
+  std::vector<uint32_t> order(placements.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return std::tie(placements[a].heap, placements[a].offset) <
+           std::tie(placements[b].heap, placements[b].offset);
+  });
+  const auto end = [&](uint32_t index) { return placements[index].offset + placements[index].size; };
+  uint32_t furthest = 0; // in `order`: of those in this heap so far, what reaches furthest
+  for (uint32_t at = 1; at < order.size(); ++at) {
+    const uint32_t before = order[furthest], here = order[at];
+    const bool same_heap = placements[before].heap == placements[here].heap;
+    if (same_heap && placements[here].offset < end(before))
+      state.instances[before].shared = state.instances[here].shared = true;
+    if (!same_heap || end(here) > end(before)) furthest = at;
+  }
+}
+
 } // namespace
 
 Error create_memory(State& state, const Graph& graph) {
   if (Error error = create_heaps(state)) return error;
   state.instances.assign(state.plan.placements.size(), {});
+  find_shared(state);
   for (const PlanResource& resource : state.plan.resources) {
     if (resource.first_instance == no_instance) continue;
     const std::string& name = graph.resources[resource.declared.value].name;

@@ -23,7 +23,8 @@ struct Instance { // of a plan resource, one per Plan::placements
   VkImage image = VK_NULL_HANDLE;
   VkImageView all_mips = VK_NULL_HANDLE, first_mip = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
-  bool ready = false; // histories: holds defined contents in the layout that the plan expects
+  bool shared = false; // has bytes in common with another instance
+  bool ready = false;  // histories: holds defined contents in the layout that the plan expects
 };
 
 struct PartView { // of a range of mips and layers of one instance

@@ -75,9 +75,7 @@ protected:
     return std::move(compiled->plan);
   }
 
-  // First what all others are held against: nothing shared, nothing moved. What nobody reads has memory of
-  // its own: the validation layer (1.3.239) takes images of one kind in the same memory for one, and does not
-  // see the barriers of those that lay there between them.
+  // First what all others are held against: nothing shared, nothing moved.
   std::vector<Decisions> decisions_of(const RealGraph& graph, const Show& show, uint64_t seed) const {
     std::vector<Decisions> all = {
         {"nothing shared, order of the file", PassOrder::program, 0, PackingLevel::fast, false},
@@ -85,9 +83,11 @@ protected:
         {"packed fast, poison", PassOrder::memory, 0, PackingLevel::fast, true, true, true},
         {"another order", PassOrder::random, 2 * seed + 1},
         {"a third order, packed fast", PassOrder::random, 2 * seed + 2, PackingLevel::fast},
+        {"another order, nothing culled", PassOrder::random, 2 * seed + 1, PackingLevel::tight, true, false},
         {"another order, nothing shared, nothing culled", PassOrder::random, 2 * seed + 1,
          PackingLevel::tight, false, false}};
-    if (std::getenv("DERMIS_TESTS_FULL") != nullptr)
+    // Packing as well as can be searches for seconds, up to half a minute.
+    if (std::getenv("DERMIS_TESTS_FULL") != nullptr && seed % 10 == 0)
       all.push_back({"packed as well as can be", PassOrder::memory, 0, PackingLevel::optimize});
     const auto shipped = plan_of(graph, show, all[1]);
     for (uint32_t h = 0; shipped && h < shipped->histories.size(); ++h)
@@ -171,6 +171,15 @@ TEST_F(DeviceFuzz, WhatTheCompilerDecidesShowsInNoBitOfAnyRandomGraph) {
   std::printf("%s\n", told.c_str());
   EXPECT_EQ(totals.graphs, seeds.end - seeds.begin);
   EXPECT_GT(totals.shared, totals.graphs); // the law sees what sharing does
+}
+
+// Its `sampling` is read by nobody and lies where first other passes' light does, then small mips: what it
+// wrote was made available by no barrier of theirs that the validation layer could see.
+TEST_F(DeviceFuzz, MemoryOfWhatNobodyReadIsTakenOverTwice) {
+  Totals totals;
+  try_graph(51, totals);
+  EXPECT_EQ(totals.graphs, 1u);
+  EXPECT_GT(totals.shared, 0u);
 }
 
 } // namespace
