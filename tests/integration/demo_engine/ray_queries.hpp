@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace demo {
@@ -16,12 +17,20 @@ inline const std::string source = DERMIS_SOURCE_DIR;
 // The loader reads the variable each time an instance is made.
 struct WithRayQueries : testing::Test {
   void SetUp() override {
+    if (const char* own = std::getenv("VK_DRIVER_FILES")) before = own;
     const std::string driver = source + "/build/drivers/mesa25.json";
     if (!std::filesystem::exists(driver))
       GTEST_SKIP() << driver << " is not there: run tests/drivers/fetch.sh";
     setenv("VK_DRIVER_FILES", driver.c_str(), 1);
   }
-  void TearDown() override { unsetenv("VK_DRIVER_FILES"); }
+  void TearDown() override {
+    if (before)
+      setenv("VK_DRIVER_FILES", before->c_str(), 1);
+    else
+      unsetenv("VK_DRIVER_FILES");
+  }
+
+  std::optional<std::string> before; // of the driver that the suite runs on
 };
 
 inline RenderOptions by_rays(const std::string& scene, uint32_t side, uint32_t frames,
