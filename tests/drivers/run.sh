@@ -4,7 +4,8 @@
 # and suites. Golden frames, and light of random graphs, are held against those of the system's driver. Tests that a
 # driver does not pass are listed in known/DRIVER with the reason and left out; any other failure fails. Exit code 77:
 # there is no other driver.
-# usage: run.sh [BUILD [SUITE...]]; BUILD: build/release, SUITE: "abi" for test_integration_abi and so on
+# usage: run.sh [BUILD [SUITE...]]; BUILD: build/release; SUITE: "integration_abi" for test_integration_abi and so on,
+# "laws:2/8" for the second eighth of its tests
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
@@ -12,12 +13,14 @@ build=${1:-build/release}
 shift || true
 suites=("$@")
 [[ $# -gt 0 ]] || suites=(framegraph_vulkan passes_kernels passes_device integration_abi integration_embedding
-  integration_demo_engine laws)
+  integration_demo_engine laws:{1..8}/8)
 for suite in "${suites[@]}"; do
-  [[ -x $build/tests/test_$suite ]] ||
-    { echo "run.sh: there is no suite '$suite': $build/tests/test_$suite is not built" >&2; exit 2; }
+  program=$build/tests/test_${suite%%:*}
+  [[ -x $program ]] || { echo "run.sh: there is no suite '$suite': $program is not built" >&2; exit 2; }
+  [[ $suite =~ ^[a-z_]+(:[1-9][0-9]*/[1-9][0-9]*)?$ ]] ||
+    { echo "run.sh: '$suite' is no suite, nor a part of one such as 'laws:2/8'" >&2; exit 2; }
 done
-seconds=1800       # a suite
+seconds=1800       # a suite, or a part of one
 memory=$((8 << 20)) # KiB that a suite may take: a driver gone astray must not take the machine with it
 swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
 
@@ -47,17 +50,22 @@ for manifest in "${drivers[@]}"; do
   known=tests/drivers/known/$name
   left_out=$(grep -v '^#' "$known" 2>/dev/null | grep . | awk '{ print $1 }' | paste -sd: || true)
   for suite in "${suites[@]}"; do
-    log=$build/drivers_${name}_$suite.log
+    program=$build/tests/test_${suite%%:*}
+    log=$build/drivers_${name}_$(tr ':/' '__' <<<"$suite").log
     begin=$SECONDS
     rc=0
     (
       ulimit -v $memory
+      if [[ $suite == *:* ]]; then
+        part=${suite#*:}
+        export GTEST_TOTAL_SHARDS=${part#*/} GTEST_SHARD_INDEX=$((${part%/*} - 1))
+      fi
       VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest DERMIS_PICTURES=$pictures timeout $seconds \
-        "$build/tests/test_$suite" --gtest_filter="-$left_out"
+        "$program" --gtest_filter="-$left_out"
     ) >"$log" 2>&1 || rc=$?
     of_suite=0 # tests that are left out
     if [[ -n $left_out ]]; then
-      of_suite=$("$build/tests/test_$suite" --gtest_list_tests --gtest_filter="$left_out" | grep -c '^  ' || true)
+      of_suite=$("$program" --gtest_list_tests --gtest_filter="$left_out" | grep -c '^  ' || true)
     fi
     printf '%-14s %-24s %4s passed, %2s failed, %2s skipped, %3s known, %4s s%s\n' "$name" "$suite" \
       "$(grep -c '^\[       OK \]' "$log" || true)" "$(grep -c '^\[  FAILED  \].* (.* ms)$' "$log" || true)" \
