@@ -1,17 +1,11 @@
 #include "integration/command/bench/record/counted_host.hpp"
 
+#include "integration/demo_engine/dermis_calls.hpp"
+
 #include <fmt/format.h>
 
 namespace dermis::tools {
 namespace {
-
-dermis_source source_of(const std::string& name, const std::string& text) {
-  dermis_source source = DERMIS_SOURCE_INIT;
-  source.name = name.c_str();
-  source.text = text.data();
-  source.length = text.size();
-  return source;
-}
 
 // A perspective camera looking down -z: focal length 2, half the height being 1; near plane at .1 units.
 void set_camera(dermis_frame& frame) {
@@ -44,9 +38,9 @@ std::string CountedHost::open(const CountedInput& input) {
 
   dermis_profile profile = DERMIS_PROFILE_INIT;
   profile.id = 1;
-  profile.source = source_of(input.profile_name, input.profile);
+  profile.source = demo::source_of(input.profile_name, input.profile);
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-  desc.source = source_of(input.name, input.graph);
+  desc.source = demo::source_of(input.name, input.graph);
   desc.width = input.width;
   desc.height = input.height;
   desc.profiles = &profile;
