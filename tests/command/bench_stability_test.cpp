@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include <fstream>
+#include <map>
+#include <set>
 
 namespace dermis::test {
 namespace {
@@ -18,15 +20,16 @@ TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
                                "--updates", "20000", "--json", rows, "--html", page});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
-  // Three cases of two settings of sap and one of burley; none of them keeps a history; two formulas.
-  EXPECT_EQ(document["rows"].size(), 3u * 3u + 2u);
+  // Three cases of two settings of sap and two of burley, and a fourth of the one that keeps a history; two
+  // formulas.
+  EXPECT_EQ(document["rows"].size(), 3u * 4u + 1u + 2u);
   for (const auto& row : document["rows"]) {
     EXPECT_TRUE(row["holds"]) << row;
     EXPECT_EQ(row["nonfinite_pixels"], 0) << row;
     EXPECT_LE(row["max_abs_error"], row["bound"]) << row;
     EXPECT_EQ(row["recovered_after_frames"].is_null(), row["case"] != "history_poisoned") << row;
   }
-  EXPECT_THAT(outcome.out, HasSubstr("0 of 11 rows do not hold"));
+  EXPECT_THAT(outcome.out, HasSubstr("0 of 15 rows do not hold"));
 }
 
 TEST_F(BenchStability, LeadsHistoryAstrayWhereARatioIsNotOne) {
@@ -43,6 +46,34 @@ TEST_F(BenchStability, LeadsHistoryAstrayWhereARatioIsNotOne) {
     else
       EXPECT_EQ(row["max_abs_error"], 0.0) << row;
   }
+}
+
+// Light over frames has a history by its overlay alone; only guided samples are asked how many they are.
+TEST_F(BenchStability, AsksATechniqueWhatItHas) {
+  const std::string techniques = write("techniques.json", R"({ "dermis_benchmark": 1, "techniques": [
+    { "technique": "burley", "setting": "alone", "graph": "configs/graphs/burley.json" },
+    { "technique": "burley", "setting": "accumulated", "graph": "configs/graphs/burley.json",
+      "overlays": ["configs/overlays/accumulate.json"] },
+    { "technique": "afis_guided", "setting": "ccv", "graph": "configs/graphs/afis_guided.json",
+      "set": { "guidance": "ccv" } } ] })");
+  const std::string rows = path("rows.json");
+  const Outcome outcome = run({"bench", "stability", "--file", techniques, "--cases",
+                               "velocity_nan,samples_in_a_tile,samples_under_exposure_x16,"
+                               "depth_reversed_infinite_far,size_changes_every_frame,d_0_of_blue",
+                               "--json", rows});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
+  std::map<std::string, std::set<std::string>> asked;
+  for (const auto& row : document["rows"]) {
+    EXPECT_TRUE(row["holds"]) << row;
+    asked[row["technique"]].insert(row["case"]);
+  }
+  std::set<std::string> of_all{"depth_reversed_infinite_far", "size_changes_every_frame", "d_0_of_blue"};
+  EXPECT_EQ(asked["burley alone"], of_all);
+  of_all.insert("velocity_nan");
+  EXPECT_EQ(asked["burley accumulated"], of_all);
+  of_all.merge(std::set<std::string>{"samples_in_a_tile", "samples_under_exposure_x16"});
+  EXPECT_EQ(asked["afis_guided ccv"], of_all);
 }
 
 TEST_F(BenchStability, RefusesNamesThatNothingHas) {

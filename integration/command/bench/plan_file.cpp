@@ -123,6 +123,11 @@ TechniqueRequest read_technique(const Document& document, ObjectReader& object, 
   if (const auto text = object.string("setting")) request.setting = *text;
   if (const auto path = object.string("graph")) request.graph = shipped(std::string(*path));
   if (const auto flag = object.boolean("heat_map", Need::optional)) request.heat_map = *flag;
+  if (const NodeId list = object.array("overlays", 1, most_entries, Need::optional); list.valid())
+    for (const NodeId one : children(document, list))
+      if (const auto path =
+              read_string(document, one, fmt::format("an overlay of {}", object.what()), diagnostics))
+        request.overlays.push_back(shipped(std::string(*path)));
   const NodeId set = object.object("set", Need::optional);
   if (!set.valid()) return request;
   for (const NodeId one : children(document, set)) {

@@ -36,7 +36,7 @@ struct ErrorTimeFile {
   uint32_t self_window = 0; // side of the square in the picture's middle that it is measured on; 0: all
 };
 
-// The keys technique, setting, graph, set and heat_map of an entry; whoever calls finishes the object.
+// The keys technique, setting, graph, overlays, set and heat_map of an entry; whoever calls finishes the object.
 TechniqueRequest read_technique(const Document& document, ObjectReader& object, Diagnostics& diagnostics);
 
 // The optional key camera of an entry.

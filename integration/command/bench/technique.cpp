@@ -45,6 +45,20 @@ double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassK
   return 1;
 }
 
+// Vulkan's depth, 0 to 1, of view distances in host units; distance 0: nothing there.
+std::vector<float> depth_buffer_of(std::span<const float> distances,
+                                   const subsurface::Matrix4& clip_from_view) {
+  const subsurface::Matrix4& m = clip_from_view;
+  const bool reversed = m[14] == 0 ? m[10] > 0 : m[11] > 0; // what is nearer has the larger value
+  std::vector<float> depth;
+  depth.reserve(distances.size());
+  for (const float distance : distances)
+    depth.push_back(distance == 0 ? (reversed ? 0.0f : 1.0f)
+                                  : static_cast<float>((m[11] - m[10] * double(distance)) /
+                                                       (m[15] - m[14] * double(distance))));
+  return depth;
+}
+
 } // namespace
 
 demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHost& host,
@@ -99,14 +113,19 @@ demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoic
   return demo::success();
 }
 
-demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& frame, bool follows) {
-  const SlotChoice slots = choose_slots(loaded_.graph, frame);
+demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& frame, bool follows,
+                                                       DepthGiven depth) {
+  SlotChoice slots = choose_slots(loaded_.graph, frame);
   if (!slots.problem.empty()) return input_error(request_.graph, slots.problem);
   if (auto ready = prepare(frame, slots, follows); !ready) return ready.error();
+  if (depth == DepthGiven::depth_buffer)
+    for (SlotData& data : slots.data)
+      if (data.slot == "depth") data.texels = depth_buffer_of(data.texels, frame.description.clip_from_view);
   for (const SlotData& data : slots.data)
     if (auto given = device_->upload(data.slot, data.texels, data.channels); !given) return given.error();
   device_->skip_to(std::exchange(next_frame_index_, 0));
   frame_ = c_frame(frame.description);
+  if (depth == DepthGiven::depth_buffer) frame_.depth_kind = DERMIS_DEPTH_DEVICE;
   if (!follows) frame_.flags |= DERMIS_FRAME_RESET_HISTORY;
   if (auto ran = device_->run(frame_); !ran) return ran.error();
   return device_->read_rgb("scattered_light");

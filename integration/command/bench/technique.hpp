@@ -28,6 +28,12 @@ struct TechniqueCounts { // of one frame
   std::string unknown_kind;              // then: its kind
 };
 
+// What a frame's depth is handed over as.
+enum class DepthGiven : uint8_t {
+  view_distance, // as captures have it
+  depth_buffer,  // what a depth test with the frame's own projection leaves; nothing there: the far plane
+};
+
 // Keeps its graph on the device from frame to frame as long as size and slots fit. One thread.
 class TechniqueRun {
 public:
@@ -40,7 +46,8 @@ public:
   // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel. `follows`: it comes
   // after the frame that was scattered last, so histories go on, where the graph says so also over another
   // size; otherwise they begin anew.
-  demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false);
+  demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false,
+                                           DepthGiven depth = DepthGiven::view_distance);
   // The next frame is the first of a new graph: frame numbers and histories begin again.
   void start_anew() { device_.reset(); }
   // The next frame has this number, if it is higher than the one that would follow.

@@ -28,8 +28,12 @@ struct StabilityRow {
 demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const StabilityCase& asked,
                                                    const std::string& name);
 
-// The sampler, the albedo inversion and the control weight at the ends of their ranges; moving means kept in
-// half floats over `updates` frames beside their fp64 twins.
-std::vector<StabilityRow> formula_rows(uint64_t updates);
+// A row of technique "formula".
+StabilityRow formula_row(std::string name, double error, double bound, bool finite = true);
+
+// The sampler, the albedo inversion and the control weight at the ends of their ranges.
+std::vector<StabilityRow> formula_rows();
+// Moving values kept in half floats over `updates` frames beside their fp64 twins.
+std::vector<StabilityRow> moving_rows(uint64_t updates);
 
 } // namespace dermis::tools

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace dermis::tools {
 namespace {
@@ -37,11 +38,12 @@ bool asked_for(const std::vector<std::string>& only, std::string_view name) {
   return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
 }
 
-std::vector<StabilityCase> cases_asked_for(const std::vector<std::string>& only) {
+std::vector<StabilityCase> cases_asked_for(const std::vector<std::string>& only, bool quick) {
   std::vector<StabilityCase> asked;
-  for (const auto& list : {light_cases(), shape_cases(), time_cases(), motion_cases()})
+  for (const auto& list : {light_cases(), shape_cases(), depth_cases(), tile_cases(), time_cases(),
+                           motion_cases(), guidance_cases()})
     for (const StabilityCase& one : list)
-      if (asked_for(only, one.name)) asked.push_back(one);
+      if (asked_for(only, one.name) && !(quick && one.large)) asked.push_back(one);
   return asked;
 }
 
@@ -116,12 +118,13 @@ ExitCode bench_stability(const Session& session, const BenchStabilityOptions& as
   if (options.quick && options.techniques.empty()) quicken(*techniques);
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
-  const std::vector<StabilityCase> cases = cases_asked_for(options.cases);
+  const std::vector<StabilityCase> cases = cases_asked_for(options.cases, options.quick);
   std::vector<StabilityRow> rows;
   std::vector<std::string> notes;
-  for (StabilityRow& row : formula_rows(options.updates))
-    if (asked_for(options.cases, row.name) && asked_for(options.techniques, row.technique))
-      rows.push_back(std::move(row));
+  for (std::vector<StabilityRow>& list : std::array{formula_rows(), moving_rows(options.updates)})
+    for (StabilityRow& row : list)
+      if (asked_for(options.cases, row.name) && asked_for(options.techniques, row.technique))
+        rows.push_back(std::move(row));
   const std::vector<CaptureProfile> profiles = stability_profiles();
   Progress progress(progress_style(session.quiet, false), "stability", "case",
                     cases.size() * techniques->size());

@@ -78,6 +78,41 @@ StabilityCase black_half() {
   return made;
 }
 
+// Half of the picture has no profile and a thousand times the light, of which nothing must come over.
+StabilityCase glare_beside() {
+  StabilityCase made;
+  made.name = "glare_without_profile";
+  made.given = [](uint32_t) {
+    CapturedFrame frame = sound_frame();
+    for (uint32_t y = 0; y < stability_side; ++y)
+      for (uint32_t x = stability_side / 2; x < stability_side; ++x) {
+        set_light(frame, x, y, 1000);
+        frame.profile[y * stability_side + x] = 0;
+      }
+    return frame;
+  };
+  made.wanted = [](uint32_t) { return 1.0; };
+  made.bound = furnace;
+  return made;
+}
+
+// Light that a float can only just tell from 1000, for as long as variances take to become negative.
+StabilityCase trembling() {
+  StabilityCase made;
+  made.name = "light_1000_within_a_step";
+  made.frames = 32;
+  made.given = [](uint32_t frame) {
+    CapturedFrame out = sound_frame();
+    for (size_t i = 0; i < out.lighting.values.size(); ++i)
+      out.lighting.values[i] = (i + frame) % 2 == 0 ? 1000.0f : std::nextafter(1000.0f, 2000.0f);
+    return out;
+  };
+  made.wanted = [](uint32_t) { return 1000.0; };
+  made.scale = 1000;
+  made.bound = furnace;
+  return made;
+}
+
 } // namespace
 
 std::vector<CaptureProfile> stability_profiles() {
@@ -86,7 +121,14 @@ std::vector<CaptureProfile> stability_profiles() {
   for (double& dmfp : wide.dmfp_mm)
     dmfp *= 2;
   subsurface::derive(wide);
-  return {{1, grey_profile()}, {2, wide}};
+  const auto with_blue = [](std::string name, double share) {
+    subsurface::Profile made = grey_profile();
+    made.name = std::move(name);
+    made.dmfp_mm[2] *= share;
+    subsurface::derive(made);
+    return made;
+  };
+  return {{1, grey_profile()}, {2, wide}, {3, with_blue("no_blue", 0)}, {4, with_blue("narrow_blue", 1e-3)}};
 }
 
 CapturedFrame sound_frame(uint32_t width, uint32_t height, double d_px) {
@@ -94,11 +136,15 @@ CapturedFrame sound_frame(uint32_t width, uint32_t height, double d_px) {
   return plane_frame(width, height, d_px, profiles);
 }
 
+void set_texture(CapturedFrame& frame) {
+  for (uint32_t y = 0; y < frame.description.height; ++y)
+    for (uint32_t x = 0; x < frame.description.width; ++x)
+      set_light(frame, x, y, static_cast<float>(0.5 + 0.4 * std::sin(x * 0.2) * std::cos(y * 0.3)));
+}
+
 CapturedFrame textured_frame() {
   CapturedFrame frame = sound_frame();
-  for (uint32_t y = 0; y < stability_side; ++y)
-    for (uint32_t x = 0; x < stability_side; ++x)
-      set_light(frame, x, y, static_cast<float>(0.5 + 0.4 * std::sin(x * 0.2) * std::cos(y * 0.3)));
+  set_texture(frame);
   return frame;
 }
 
@@ -131,6 +177,8 @@ std::vector<StabilityCase> light_cases() {
           uniform("light_faint", 1e-4f, 4e-3),     // half floats are 6e-8 apart below 6e-5
           uniform("light_brightest", 6e4f, furnace),
           uniform("light_too_bright", 1e6f, furnace),
+          trembling(),
+          glare_beside(),
           albedo,
           black_half(),
           masked("isolated_pixel", [](uint32_t x, uint32_t y) { return x == 13 && y == 17; }),

@@ -70,7 +70,7 @@ StabilityCase frame_number(std::string_view name, uint64_t index) {
   made.frames = 3;
   made.given = made.same_as = [](uint32_t) { return textured_frame(); };
   made.frame_index = index;
-  made.mean_square = true;
+  made.judged = Judged::light_rms;
   made.bound =
       0.08; // of light between .1 and .9: two frames' noise of 16 samples, .057 of the noisiest technique
   return made;

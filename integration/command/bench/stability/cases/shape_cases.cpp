@@ -1,9 +1,11 @@
 // Distances, slopes, sizes and radii at their limits.
 #include "integration/command/bench/stability/cases.hpp"
 
+#include "passes/subsurface/kinds.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace dermis::tools {
 namespace {
@@ -48,33 +50,60 @@ StabilityCase without_scattering(std::string_view name, float scale) {
   return made;
 }
 
-// The right half has a depth that is none; the left one goes on as if there were nothing.
-StabilityCase odd_depth(std::string_view name, float depth) {
-  const auto with = [depth](bool damaged) {
-    return [depth, damaged](uint32_t) {
-      CapturedFrame frame = sound_frame();
-      for (uint32_t y = 0; y < stability_side; ++y)
-        for (uint32_t x = stability_side / 2; x < stability_side; ++x) {
-          frame.depth.at(x, y, 0) = damaged ? depth : 0.0f;
-          frame.profile[y * stability_side + x] = damaged ? 1 : 0;
-        }
-      return frame;
-    };
-  };
+// Of the third profile blue comes out as it went in, beside red and green that scatter.
+StabilityCase without_blue() {
   StabilityCase made;
-  made.name = name;
-  made.given = with(true);
-  made.same_as = with(false);
-  made.bound = furnace;
+  made.name = "d_0_of_blue";
+  made.given = [](uint32_t) {
+    CapturedFrame frame = textured_frame();
+    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{3});
+    return frame;
+  };
+  made.first_channel = 2;
   return made;
 }
 
-StabilityCase far_plane(std::string_view name, float metres) {
-  return furnace_of(name, [metres] {
+// Of the fourth profile blue has a thousandth of the width: no sample that red asks for says anything of it.
+StabilityCase narrow_blue() {
+  return furnace_of("d_of_blue_1e-3", [] {
     CapturedFrame frame = sound_frame();
-    std::fill(frame.depth.values.begin(), frame.depth.values.end(), metres);
+    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{4});
     return frame;
   });
+}
+
+// Light and dark from pixel to pixel, where d has just become wide enough to scatter: what a camera that
+// comes closer sees all at once.
+StabilityCase begins_to_scatter() {
+  constexpr double leaves = 0.0354;     // share of the light beyond the pixel's inscribed circle, 9.16 d
+  constexpr double sample = 1.0 / 16.0; // what one says where light is drawn from all radii, as by burley
+  StabilityCase made;
+  made.name = "d_begins_to_scatter";
+  made.given = [](uint32_t) {
+    CapturedFrame frame =
+        with_scale(sound_frame(), static_cast<float>(1.001 * subsurface::copy_below_d_px / stability_d_px));
+    for (uint32_t y = 0; y < stability_side; ++y)
+      for (uint32_t x = 0; x < stability_side; ++x)
+        set_light(frame, x, y, (x + y) % 2 == 0 ? 1.0f : 0.0f);
+    return frame;
+  };
+  made.asked = Asked::of_profile;
+  made.bound = std::max(leaves, sample) + furnace;
+  return made;
+}
+
+// Another size in each frame, histories going on.
+StabilityCase resized() {
+  StabilityCase made;
+  made.name = "size_changes_every_frame";
+  made.frames = 8;
+  made.given = [](uint32_t frame) {
+    constexpr std::array<uint32_t, 4> widths{48, 31, 64, 17};
+    return sound_frame(widths[frame % widths.size()], widths[(frame + 1) % widths.size()]);
+  };
+  made.wanted = [](uint32_t) { return 1.0; };
+  made.bound = furnace;
+  return made;
 }
 
 } // namespace
@@ -84,31 +113,24 @@ std::vector<StabilityCase> shape_cases() {
   StabilityCase endless =
       furnace_of("scatter_scale_infinity", [] { return with_scale(sound_frame(), infinity); });
   StabilityCase widest = sized("size_16384x64", 16384, 64);
+  StabilityCase odd = sized("size_1919x1079", 1919, 1079);
+  odd.large = true;
   widest.may_be_refused = true; // where images have a border, the last columns have no room on the device
-  StabilityCase all_sky;
-  all_sky.name = "nothing_but_sky";
-  all_sky.given = [](uint32_t) {
-    CapturedFrame frame = sound_frame();
-    std::fill(frame.depth.values.begin(), frame.depth.values.end(), 0.0f);
-    return frame;
-  };
-  all_sky.finite_only = true;
   return {grazing("grazing_85", 85),
           grazing("grazing_89", 89),
           grazing("grazing_89_9", 89.9),
-          odd_depth("depth_zero_beside", 0),
-          odd_depth("depth_nan_beside", not_a_number),
-          odd_depth("depth_infinity_beside", infinity),
-          odd_depth("depth_negative_beside", -1),
-          far_plane("depth_1e-6_m", 1e-6f),
-          far_plane("depth_1e6_m", 1e6f),
-          all_sky,
           sized("size_1x1", 1, 1),
           sized("size_1x7", 1, 7),
           sized("size_131x3", 131, 3),
+          sized("size_8191x3", 8191, 3),
+          odd,
           widest,
+          resized(),
           without_scattering("d_1e-30", 1e-30f),
           without_scattering("d_1e-6", 1e-6f),
+          without_blue(),
+          narrow_blue(),
+          begins_to_scatter(),
           without_scattering("scatter_scale_negative", -1),
           no_number,
           endless,
