@@ -89,5 +89,14 @@ TEST(StabilityJudge, SamplesAreComparedByTheirMeanBesideTheEdgeAndInTheirTile) {
   EXPECT_DOUBLE_EQ(judge(white(Judged::samples_in_tile), 0, uneven, nullptr).error, 64 / (8 + 56.0 / 64));
 }
 
+TEST(StabilityJudge, SamplesThatNobodyHandedOutOrTookNeverHold) {
+  StabilityAnswer none = white_answer();
+  none.samples.clear();
+  const StabilityAnswer zero = white_answer(0);
+  for (const Judged judged : {Judged::samples_at_edge, Judged::samples_in_tile, Judged::mean_samples})
+    for (const StabilityAnswer& found : {none, zero})
+      EXPECT_GT(judge(white(judged), 0, found, &zero).error, 1e30);
+}
+
 } // namespace
 } // namespace dermis::tools

@@ -88,12 +88,22 @@ double samples_in_tile(const CapturedFrame& frame, const StabilityAnswer& answer
           }).value();
       if (mean > 0) worst = std::max(worst, most / mean);
     }
-  return worst;
+  return worst > 0 ? worst : infinity;
 }
 
 double mean_samples(const CapturedFrame& frame, const StabilityAnswer& found, const StabilityAnswer& sound) {
   const auto all = [](uint32_t, uint32_t) { return true; };
-  return std::abs(samples_of(frame, found, all).value() / samples_of(frame, sound, all).value() - 1);
+  const double difference =
+      std::abs(samples_of(frame, found, all).value() / samples_of(frame, sound, all).value() - 1);
+  return std::isfinite(difference) ? difference : infinity; // NaN would hold
+}
+
+double samples_error(const StabilityCase& asked, const CapturedFrame& frame, const StabilityAnswer& found,
+                     const StabilityAnswer* sound) {
+  if (found.samples.size() != frame.lighting.values.size()) return infinity; // nothing was handed out
+  if (asked.judged == Judged::samples_at_edge) return samples_at_edge(frame, found);
+  if (asked.judged == Judged::samples_in_tile) return samples_in_tile(frame, found);
+  return sound != nullptr ? mean_samples(frame, found, *sound) : infinity;
 }
 
 } // namespace
@@ -130,13 +140,9 @@ Judgement judge(const StabilityCase& asked, uint32_t t, const StabilityAnswer& f
     judgement.error = errors.edges();
     break;
   case Judged::mean_samples:
-    judgement.error = mean_samples(frame, found, *sound);
-    break;
   case Judged::samples_at_edge:
-    judgement.error = samples_at_edge(frame, found);
-    break;
   case Judged::samples_in_tile:
-    judgement.error = samples_in_tile(frame, found);
+    judgement.error = samples_error(asked, frame, found, sound);
     break;
   }
   return judgement;
