@@ -230,11 +230,13 @@ vec3 sap_d_px(sap_texel own) {
   return profiles[min(own.id, 255u)].d_mm.rgb * (own.reach / sap_footprint(own.depth));
 }
 
-// Mean of three lights weighted by mass, a convex one: it stays within them.
+// Mean of three lights weighted by mass, a convex one: where they are alike it is what they are. Where they are not, its
+// differences round, and next to nothing beside glare would come out as less than nothing.
 sap_sum sap_blend(vec3 weight_a, vec3 a, vec3 weight_b, vec3 b, sap_sum rest) {
   vec3 total = weight_a + weight_b + rest.mass;
   vec3 scale = 1.0 / max(total, vec3(sap_negligible));
-  return sap_sum(rest.light + weight_a * scale * (a - rest.light) + weight_b * scale * (b - rest.light), total);
+  vec3 mean = rest.light + weight_a * scale * (a - rest.light) + weight_b * scale * (b - rest.light);
+  return sap_sum(max(mean, vec3(0.0)), total);
 }
 
 #endif

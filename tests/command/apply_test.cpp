@@ -143,6 +143,20 @@ TEST_F(Captures, ValuesThatAreNotFiniteAreTakenAsZeroCountedAndReported) {
   EXPECT_THAT(apply({"--json"}).out, HasSubstr("\"sanitised_values\": 2"));
 }
 
+TEST_F(Captures, WhatIsTooBrightWithoutAProfileEndsAtTheBrightestFloat) {
+  constexpr float most = std::numeric_limits<float>::max();
+  Plane plane;
+  plane.light = filled(plane.width, plane.height, 3, most);
+  plane.profile = filled(plane.width, plane.height, 1, 0);
+  write_plane(path("capture"), plane);
+  write_channel(path("capture"), "albedo", filled(plane.width, plane.height, 3, 65504));
+  write_channel(path("capture"), "specular", filled(plane.width, plane.height, 3, most));
+  const Outcome outcome = apply();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const float value : picture("combined.exr").values)
+    EXPECT_EQ(value, most);
+}
+
 TEST_F(Captures, AnImageOfAnotherSizeIsNamedAndNothingIsWritten) {
   write_plane(path("capture"));
   write_channel(path("capture"), "depth", filled(31, 32, 1, 1.0f));

@@ -16,20 +16,22 @@ class BenchStability : public CommandTest {};
 TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
   const std::string rows = path("rows.json"), page = path("rows.html");
   const Outcome outcome = run({"bench", "stability", "--techniques", "formula,sap,burley", "--cases",
-                               "light_nan,history_poisoned,size_1x7,velocity_nan,xi_1,guidance_updates_at_1",
+                               "light_nan,glare_in_the_dark,history_poisoned,size_1x7,velocity_nan,xi_1,"
+                               "guidance_updates_at_1",
                                "--updates", "20000", "--json", rows, "--html", page});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
-  // Three cases of two settings of sap and two of burley, and a fourth of the one that keeps a history; two
+  // Four cases of two settings of sap and two of burley, and a fifth of the one that keeps a history; two
   // formulas.
-  EXPECT_EQ(document["rows"].size(), 3u * 4u + 1u + 2u);
+  EXPECT_EQ(document["rows"].size(), 4u * 4u + 1u + 2u);
   for (const auto& row : document["rows"]) {
     EXPECT_TRUE(row["holds"]) << row;
     EXPECT_EQ(row["nonfinite_pixels"], 0) << row;
+    EXPECT_EQ(row["negative_pixels"], 0) << row;
     EXPECT_LE(row["max_abs_error"], row["bound"]) << row;
     EXPECT_EQ(row["recovered_after_frames"].is_null(), row["case"] != "history_poisoned") << row;
   }
-  EXPECT_THAT(outcome.out, HasSubstr("0 of 15 rows do not hold"));
+  EXPECT_THAT(outcome.out, HasSubstr("0 of 19 rows do not hold"));
 }
 
 TEST_F(BenchStability, LeadsHistoryAstrayWhereARatioIsNotOne) {

@@ -38,6 +38,21 @@ TEST(StabilityJudge, SeesASinglePixelAndWhatIsNotFinite) {
   EXPECT_EQ(judgement.nonfinite, 1u);
 }
 
+// An error may lie within its bound and light be less than none.
+TEST(StabilityJudge, CountsPixelsBelowZeroWhereverTheyAre) {
+  StabilityCase asked = white(Judged::light);
+  asked.margin = 4;
+  asked.finite_only = true;
+  StabilityAnswer found = white_answer();
+  found.light[index(0, 0, 2)] = -1e-6f;
+  found.light[index(9, 9)] = found.light[index(9, 9, 1)] = -1;
+  found.light[index(10, 9)] = -infinity;
+  found.light[index(11, 9)] = -0.0f;
+  const Judgement judgement = judge(asked, 0, found, nullptr);
+  EXPECT_EQ(judgement.negative, 2u);
+  EXPECT_EQ(judgement.nonfinite, 1u);
+}
+
 TEST(StabilityJudge, LooksAtItsChannelsAndInsideOfItsMarginAlone) {
   StabilityCase asked = white(Judged::light);
   asked.first_channel = 2;

@@ -15,6 +15,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace dermis::tools {
 namespace {
@@ -61,14 +62,15 @@ demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& s
 }
 
 // What the host does with what comes back: scattered light is there already times albedo where there is a
-// profile.
+// profile. Where there is none, light is as bright as the capture says.
 Image combine(const CapturedFrame& frame, const std::vector<float>& lighting) {
   Image combined = Image::sized(frame.lighting.width, frame.lighting.height, 3);
   for (size_t i = 0; i < combined.values.size(); ++i) {
-    const float albedo =
-        frame.albedo.values.empty() || frame.profile[i / 3] != 0 ? 1.0f : frame.albedo.values[i];
+    const float albedo = frame.albedo.values.empty() || frame.profile[i / 3] != 0
+                             ? 1.0f
+                             : std::min(frame.albedo.values[i], 1.0f);
     const float specular = frame.specular.values.empty() ? 0.0f : frame.specular.values[i];
-    combined.values[i] = lighting[i] * albedo + specular;
+    combined.values[i] = std::min(lighting[i] * albedo + specular, std::numeric_limits<float>::max());
   }
   return combined;
 }

@@ -52,7 +52,7 @@ struct StabilityCase {
   uint32_t damage_ends =
       0;               // frames from here on are sound: how many more until the error is within the bound
   bool follows = true; // false: every frame is a cut
-  bool finite_only = false;                     // nothing but finite values is asked
+  bool finite_only = false;                     // nothing is asked but finite values, none below 0
   bool may_be_refused = false;                  // a graph may say that it cannot be made for this size
   bool large = false;                           // millions of pixels, hundreds of frames: not for a quick run
   DepthGiven depth = DepthGiven::view_distance; // of `given`; `same_as` gives distances

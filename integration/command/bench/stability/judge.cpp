@@ -119,10 +119,13 @@ Judgement judge(const StabilityCase& asked, uint32_t t, const StabilityAnswer& f
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x) {
       const size_t i = size_t{y} * width + x;
-      bool finite = true;
-      for (size_t c = 0; c < 3; ++c)
+      bool finite = true, negative = false;
+      for (size_t c = 0; c < 3; ++c) {
         finite = finite && std::isfinite(found.light[3 * i + c]);
+        negative = negative || found.light[3 * i + c] < 0;
+      }
       judgement.nonfinite += finite ? 0 : 1;
+      judgement.negative += finite && negative ? 1 : 0;
       const bool inside =
           x >= asked.margin && x + asked.margin < width && y >= asked.margin && y + asked.margin < height;
       if (!finite || asked.finite_only || frame.profile[i] == 0 || !inside) continue;

@@ -14,6 +14,7 @@ struct StabilityAnswer {
 
 struct Judgement {
   uint64_t nonfinite = 0; // pixels
+  uint64_t negative = 0;  // pixels, of those that are finite
   double error = 0;       // as StabilityCase::judged says
 };
 

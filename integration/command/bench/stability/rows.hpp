@@ -15,12 +15,13 @@ struct StabilityRow {
       technique; // technique "formula": the closed forms in fp64, or moving values in half floats
   uint64_t frames = 1;
   uint64_t nonfinite_pixels = 0; // most in one frame
+  uint64_t negative_pixels = 0;  // likewise
   double max_abs_error = 0;      // in units of the brightest light
   double bound = 0;
   std::optional<uint32_t>
       recovered_after_frames; // after the last damaged one; nullopt: nothing to recover from
 
-  bool holds() const { return nonfinite_pixels == 0 && max_abs_error <= bound; }
+  bool holds() const { return nonfinite_pixels == 0 && negative_pixels == 0 && max_abs_error <= bound; }
 };
 
 // One case of one technique; nullopt where it keeps no history and the case asks for one. Errors: those of

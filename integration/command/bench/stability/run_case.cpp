@@ -65,6 +65,7 @@ demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const Stab
   for (uint32_t t = 0; t < asked.frames; ++t) {
     const Judgement judgement = judge(asked, t, (*found)[t], asked.same_as ? &sound[t] : nullptr);
     row.nonfinite_pixels = std::max(row.nonfinite_pixels, judgement.nonfinite);
+    row.negative_pixels = std::max(row.negative_pixels, judgement.negative);
     if (t >= asked.first_judged) row.max_abs_error = std::max(row.max_abs_error, judgement.error);
     if (asked.damage_ends > 0 && t >= asked.damage_ends && !row.recovered_after_frames &&
         judgement.error <= asked.bound)

@@ -61,6 +61,7 @@ Report make_report(const Session& session, const std::vector<StabilityRow>& rows
                           {"technique", "technique"},
                           {"frames", "frames"},
                           {"nonfinite_pixels", "not finite, pixels"},
+                          {"negative_pixels", "below 0, pixels"},
                           {"max_abs_error", "largest error"},
                           {"bound", "bound"},
                           {"recovered_after_frames", "frames to recover"},
@@ -69,7 +70,8 @@ Report make_report(const Session& session, const std::vector<StabilityRow>& rows
     ReportValue recovered;
     if (row.recovered_after_frames) recovered = int64_t{*row.recovered_after_frames};
     report.table.rows.push_back({row.name, row.technique, static_cast<int64_t>(row.frames),
-                                 static_cast<int64_t>(row.nonfinite_pixels), row.max_abs_error, row.bound,
+                                 static_cast<int64_t>(row.nonfinite_pixels),
+                                 static_cast<int64_t>(row.negative_pixels), row.max_abs_error, row.bound,
                                  recovered, row.holds()});
   }
   return report;
@@ -101,8 +103,9 @@ std::string text_of(const std::vector<StabilityRow>& rows, const std::vector<std
     text += fmt::format("left out: {}\n", note);
   for (const StabilityRow& row : rows)
     if (!row.holds())
-      text += fmt::format("does not hold: {} with {}: {} pixels not finite, error {:.3g}, bound {:.3g}\n",
-                          row.name, row.technique, row.nonfinite_pixels, row.max_abs_error, row.bound);
+      text += fmt::format(
+          "does not hold: {} with {}: {} pixels not finite, {} below 0, error {:.3g}, bound {:.3g}\n",
+          row.name, row.technique, row.nonfinite_pixels, row.negative_pixels, row.max_abs_error, row.bound);
   return text;
 }
 

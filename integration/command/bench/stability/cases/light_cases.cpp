@@ -96,6 +96,27 @@ StabilityCase glare_beside() {
   return made;
 }
 
+// The brightest light there is beside none, on pixels at many depths, so that the dark ones keep next to
+// nothing of what glares around them. Next to nothing is not less than nothing.
+StabilityCase glare_in_the_dark() {
+  constexpr float step = 2e-3f; // metres: two d
+  StabilityCase made;
+  made.name = "glare_in_the_dark";
+  made.frames = 8;
+  made.given = [](uint32_t frame) {
+    CapturedFrame out = sound_frame();
+    for (uint32_t y = 0; y < stability_side; ++y)
+      for (uint32_t x = 0; x < stability_side; ++x) {
+        const uint32_t hash = (31 * x + 17 * y + x * y) % 23;
+        set_light(out, x, y, (hash + frame) % 3 == 0 ? largest_half : 0);
+        out.depth.at(x, y, 0) = 1 + step * static_cast<float>(hash % 7);
+      }
+    return out;
+  };
+  made.finite_only = true;
+  return made;
+}
+
 // Light that a float can only just tell from 1000, for as long as variances take to become negative.
 StabilityCase trembling() {
   StabilityCase made;
@@ -179,6 +200,7 @@ std::vector<StabilityCase> light_cases() {
           uniform("light_too_bright", 1e6f, furnace),
           trembling(),
           glare_beside(),
+          glare_in_the_dark(),
           albedo,
           black_half(),
           masked("isolated_pixel", [](uint32_t x, uint32_t y) { return x == 13 && y == 17; }),
