@@ -23,7 +23,7 @@ vec4 spline_read(texture2D level, vec2 at) {
          after.y * (before.x * pyramid_read(level, vec2(a.x, b.y)) + after.x * pyramid_read(level, b));
 }
 
-// Adds a level's light and mask with its share of what is left; returns what is left after it.
+// Adds a level's light and mask with its share of what is left; returns what is left after it, never less than nothing.
 vec3 add_level(texture2D level, int index, uint id, vec3 d_px, vec2 pixel, vec3 left, inout vec3 sum, inout vec3 total) {
   vec3 share = index == 0 ? sap_lookup(id, sap_plain, 1, d_px) : left * sap_lookup(id, sap_plain, index + 1, d_px);
   if (max(share.r, max(share.g, share.b)) >= least_share) {
@@ -31,7 +31,7 @@ vec3 add_level(texture2D level, int index, uint id, vec3 d_px, vec2 pixel, vec3 
     sum += share * light.rgb;
     total += share * light.a;
   }
-  return left - share;
+  return max(left - share, vec3(0.0));
 }
 
 void main() {
@@ -50,7 +50,7 @@ void main() {
     vec3 d_px = profiles[min(id, 255u)].d_mm.rgb * (scale / sap_footprint(depth));
     vec3 centre = sap_lookup(id, sap_plain, 0, d_px);
     vec3 direct = profile_direct(id), left = 1.0 - centre;
-    vec3 sum = (centre - direct) * light, total = centre - direct; // what never scatters needs no surface around
+    vec3 total = max(centre - direct, vec3(0.0)), sum = total * light; // what never scatters needs no surface around
     vec2 at = vec2(pixel);
     left = add_level(level_0_image, 0, id, d_px, at, left, sum, total);
     left = add_level(level_1_image, 1, id, d_px, at, left, sum, total);

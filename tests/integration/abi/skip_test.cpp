@@ -183,7 +183,7 @@ TEST_F(Skip, LightThatIsOnlyCopiedComesOutTheSameWhereverAlbedoIsApplied) {
       options.text = read_text("configs/graphs/skin.json");
       if (through)
         options.overlays = {R"({ "dermis_overlay": 1, "edits": [
-          { "set": "/settings/copied_too", "to": { "bool": true } },
+          { "set": "/settings/copied", "to": { "enum": ["scattered"], "default": "scattered" } },
           { "set": "/passes/combine/set/copied", "to": "scattered" } ] })"};
       options.unbound = {"scatter_scale", "scattered_light"};
       graph = make_graph(options);

@@ -65,8 +65,8 @@ inline constexpr double furnace = 2e-3; // bound of a white furnace through half
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN(),
                        infinity = std::numeric_limits<float>::infinity();
 
-// Four profiles: ids 1 and 2, the second twice as wide; 3, of which blue does not scatter, and 4, of which it
-// has a thousandth of the width.
+// Five profiles: ids 1 and 2, the second twice as wide; 3, of which blue does not scatter, and 4 and 5, of
+// which it has a thousandth and a hundredth of the width.
 std::vector<CaptureProfile> stability_profiles();
 // A white plane under light 1, all of profile 1.
 CapturedFrame sound_frame(uint32_t width = stability_side, uint32_t height = stability_side,

@@ -97,7 +97,7 @@ StabilityCase glare_beside() {
 }
 
 // The brightest light there is beside none, on pixels at many depths, so that the dark ones keep next to
-// nothing of what glares around them. Next to nothing is not less than nothing.
+// nothing of what glares around them, blue least of all. Next to nothing is not less than nothing.
 StabilityCase glare_in_the_dark() {
   constexpr float step = 2e-3f; // metres: two d
   StabilityCase made;
@@ -110,6 +110,7 @@ StabilityCase glare_in_the_dark() {
         const uint32_t hash = (31 * x + 17 * y + x * y) % 23;
         set_light(out, x, y, (hash + frame) % 3 == 0 ? largest_half : 0);
         out.depth.at(x, y, 0) = 1 + step * static_cast<float>(hash % 7);
+        if (x < stability_side / 2) out.profile[y * stability_side + x] = 5;
       }
     return out;
   };
@@ -149,7 +150,11 @@ std::vector<CaptureProfile> stability_profiles() {
     subsurface::derive(made);
     return made;
   };
-  return {{1, grey_profile()}, {2, wide}, {3, with_blue("no_blue", 0)}, {4, with_blue("narrow_blue", 1e-3)}};
+  return {{1, grey_profile()},
+          {2, wide},
+          {3, with_blue("no_blue", 0)},
+          {4, with_blue("narrow_blue", 1e-3)},
+          {5, with_blue("blue_of_a_hundredth", 1e-2)}};
 }
 
 CapturedFrame sound_frame(uint32_t width, uint32_t height, double d_px) {

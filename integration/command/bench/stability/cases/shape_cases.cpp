@@ -72,6 +72,19 @@ StabilityCase narrow_blue() {
   });
 }
 
+// Each pixel at a depth of its own, d and more from those beside it, of which blue has a hundredth: what they
+// say of it is at the end of what floats hold.
+StabilityCase far_apart() {
+  return furnace_of("surfaces_far_apart", [] {
+    constexpr float step = 3e-3f; // metres: three d
+    CapturedFrame frame = sound_frame(stability_side, stability_side, 1000);
+    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{5});
+    for (uint32_t i = 0; i < frame.depth.values.size(); ++i)
+      frame.depth.values[i] = 1 + step * static_cast<float>(i * 37 % 251);
+    return frame;
+  });
+}
+
 // Light and dark from pixel to pixel, where d has just become wide enough to scatter: what a camera that
 // comes closer sees all at once.
 StabilityCase begins_to_scatter() {
@@ -130,6 +143,7 @@ std::vector<StabilityCase> shape_cases() {
           without_scattering("d_1e-6", 1e-6f),
           without_blue(),
           narrow_blue(),
+          far_apart(),
           begins_to_scatter(),
           without_scattering("scatter_scale_negative", -1),
           no_number,
