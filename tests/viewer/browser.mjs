@@ -16,7 +16,7 @@ const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '
 export async function open(url, scheme = 'light', ready = 'body') {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: scheme, offline: true });
   const page = await context.newPage();
-  page.setDefaultTimeout(10000);
+  page.setDefaultTimeout(60000); // machines that do much else take their time
   const problems = [];
   page.on('pageerror', (error) => problems.push(String(error)));
   page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) problems.push(message.text()); });
