@@ -61,7 +61,8 @@ TEST_F(BenchStability, AsksATechniqueWhatItHas) {
   const std::string rows = path("rows.json");
   const Outcome outcome = run({"bench", "stability", "--file", techniques, "--cases",
                                "velocity_nan,samples_in_a_tile,samples_under_exposure_x16,"
-                               "depth_reversed_infinite_far,size_changes_every_frame,d_0_of_blue",
+                               "depth_reversed_infinite_far,size_changes_every_frame,d_0_of_blue,"
+                               "anything_anywhere,anything_under_even_light",
                                "--json", rows});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
@@ -70,7 +71,8 @@ TEST_F(BenchStability, AsksATechniqueWhatItHas) {
     EXPECT_TRUE(row["holds"]) << row;
     asked[row["technique"]].insert(row["case"]);
   }
-  std::set<std::string> of_all{"depth_reversed_infinite_far", "size_changes_every_frame", "d_0_of_blue"};
+  std::set<std::string> of_all{"depth_reversed_infinite_far", "size_changes_every_frame", "d_0_of_blue",
+                               "anything_anywhere", "anything_under_even_light"};
   EXPECT_EQ(asked["burley alone"], of_all);
   of_all.insert("velocity_nan");
   EXPECT_EQ(asked["burley accumulated"], of_all);

@@ -85,5 +85,6 @@ std::vector<StabilityCase> motion_cases();
 std::vector<StabilityCase> depth_cases();
 std::vector<StabilityCase> tile_cases();
 std::vector<StabilityCase> guidance_cases();
+std::vector<StabilityCase> random_cases();
 
 } // namespace dermis::tools

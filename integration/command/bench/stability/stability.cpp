@@ -41,7 +41,7 @@ bool asked_for(const std::vector<std::string>& only, std::string_view name) {
 std::vector<StabilityCase> cases_asked_for(const std::vector<std::string>& only, bool quick) {
   std::vector<StabilityCase> asked;
   for (const auto& list : {light_cases(), shape_cases(), depth_cases(), tile_cases(), time_cases(),
-                           motion_cases(), guidance_cases()})
+                           motion_cases(), guidance_cases(), random_cases()})
     for (const StabilityCase& one : list)
       if (asked_for(only, one.name) && !(quick && one.large)) asked.push_back(one);
   return asked;
