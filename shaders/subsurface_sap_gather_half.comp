@@ -38,10 +38,10 @@ vec4 gather(int k, ivec2 pixel, vec3 light) {
   vec3 centre = sap_lookup(id, sap_half, 0, d_px);
   float confidence;
   sap_sum rest = sap_from_coarser(odd_of(k), 0, own, light, 1, confidence);
-  rest.mass *= 1.0 - centre;
+  rest.mass *= max(1.0 - centre, vec3(0.0));
   confidence = mix(confidence, 1.0, centre[profiles[min(id, 255u)].widest]);
   vec3 direct = profile_direct(id); // what never scatters needs no surface around
-  vec3 mean = sap_blend(centre - direct, light, vec3(0.0), light, rest).light;
+  vec3 mean = sap_blend(max(centre - direct, vec3(0.0)), light, vec3(0.0), light, rest).light;
   return vec4(mix(mean, light, direct), confidence);
 }
 

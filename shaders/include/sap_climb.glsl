@@ -19,7 +19,7 @@ uvec4 climb(ivec2 odd, int level, sap_texel own, vec3 light, int layers, bool sm
   sap_sum rest = sap_sum(here.light, vec3(0.0));
   if (!last)
     rest = sap_from_coarser(odd, level, own, here.light, layers, confidence);
-  rest.mass *= 1.0 - share;
+  rest.mass *= max(1.0 - share, vec3(0.0));
   sap_sum blend = sap_blend(share * here.mass, here.light, vec3(0.0), here.light, rest);
   float widest = share[profiles[min(own.id, 255u)].widest];
   float sure = mix(confidence, here.mass.r, widest);

@@ -18,11 +18,11 @@ vec4 gather(ivec2 odd, sap_texel own) {
     near = sap_tent(0, own, 1);
   float confidence;
   sap_sum rest = sap_from_coarser(odd, 0, own, light, SAP_COARSE_LAYERS, confidence);
-  rest.mass *= 1.0 - centre - tent;
+  rest.mass *= max(1.0 - centre - tent, vec3(0.0));
   uint widest = profiles[min(own.id, 255u)].widest;
   confidence = mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
   vec3 direct = profile_direct(own.id); // what never scatters needs no surface around
-  vec3 mean = sap_blend((centre - direct) * own.mass, light, tent * near.mass, near.light, rest).light;
+  vec3 mean = sap_blend(max(centre - direct, vec3(0.0)) * own.mass, light, tent * near.mass, near.light, rest).light;
   return vec4(mix(mean, light, direct), confidence);
 }
 

@@ -53,6 +53,19 @@ TEST(StabilityJudge, CountsPixelsBelowZeroWhereverTheyAre) {
   EXPECT_EQ(judgement.nonfinite, 1u);
 }
 
+TEST(StabilityJudge, LightMayBeAnythingUpToTheBrightest) {
+  StabilityCase asked = white(Judged::light_beyond);
+  asked.scale = 2;
+  StabilityAnswer found = white_answer();
+  found.light[index(3, 3)] = 0;
+  found.light[index(4, 3)] = 2;
+  EXPECT_EQ(judge(asked, 0, found, nullptr).error, 0);
+  found.light[index(5, 3)] = 2.5f;
+  EXPECT_DOUBLE_EQ(judge(asked, 0, found, nullptr).error, 0.25);
+  found.light[index(6, 3)] = -1;
+  EXPECT_DOUBLE_EQ(judge(asked, 0, found, nullptr).error, 0.5);
+}
+
 TEST(StabilityJudge, LooksAtItsChannelsAndInsideOfItsMarginAlone) {
   StabilityCase asked = white(Judged::light);
   asked.first_channel = 2;

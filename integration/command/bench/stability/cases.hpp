@@ -19,6 +19,7 @@ namespace dermis::tools {
 enum class Judged : uint8_t {
   light,           // each pixel; the largest error
   light_rms,       // of a frame, the root of the mean square
+  light_beyond,    // how far light is below 0 or above `scale`, in units of it
   tile_edges,      // means of columns and of rows that lie alike in tiles; how far one is off all of them
   mean_samples,    // the mean number of samples, in units of that of `same_as`
   samples_at_edge, // least number of samples over the mean of it in the columns beside the middle

@@ -66,6 +66,10 @@ Mean samples_of(const CapturedFrame& frame, const StabilityAnswer& answer, Count
   return mean;
 }
 
+double beyond(double share) {
+  return std::max({0.0, -share, share - 1});
+}
+
 double samples_at_edge(const CapturedFrame& frame, const StabilityAnswer& answer) {
   const uint32_t middle = frame.description.width / 2;
   const double mean = samples_of(frame, answer, [&](uint32_t x, uint32_t) {
@@ -130,10 +134,14 @@ Judgement judge(const StabilityCase& asked, uint32_t t, const StabilityAnswer& f
           x >= asked.margin && x + asked.margin < width && y >= asked.margin && y + asked.margin < height;
       if (!finite || asked.finite_only || frame.profile[i] == 0 || !inside) continue;
       for (size_t c = asked.first_channel; c < 3; ++c)
-        errors.add(x, y, (double(found.light[3 * i + c]) - double(wanted[3 * i + c])) / asked.scale);
+        if (asked.judged == Judged::light_beyond)
+          errors.add(x, y, beyond(double(found.light[3 * i + c]) / asked.scale));
+        else
+          errors.add(x, y, (double(found.light[3 * i + c]) - double(wanted[3 * i + c])) / asked.scale);
     }
   switch (asked.judged) {
   case Judged::light:
+  case Judged::light_beyond:
     judgement.error = errors.largest;
     break;
   case Judged::light_rms:

@@ -7,10 +7,11 @@
 namespace dermis::tools {
 namespace {
 
-constexpr std::array values{not_a_number, infinity,  -infinity, 0.0f,  -0.0f,  -1.0f, 1e-45f,
-                            1e-40f,       0x1p-126f, 6e-8f,     1e-5f, 0.5f,   1.0f,  1e3f,
-                            65504.0f,     65520.0f,  0x1p31f,   1e30f, -1e30f, 3e38f, -3e38f};
+constexpr std::array any_value{not_a_number, infinity,  -infinity, 0.0f,  -0.0f,  -1.0f, 1e-45f,
+                               1e-40f,       0x1p-126f, 6e-8f,     1e-5f, 0.5f,   1.0f,  1e3f,
+                               65504.0f,     65520.0f,  0x1p31f,   1e30f, -1e30f, 3e38f, -3e38f};
 constexpr std::array<uint8_t, 7> ids{0, 1, 2, 3, 4, 5, 200}; // the last one has no profile
+constexpr std::array dim_light{0.0f, 1e-3f, 0.5f, 1.0f};     // of light
 constexpr std::array shares{256u, 8u, 1u};                   // one of so many pixels
 
 // Numbers that differ from place to place and repeat from run to run (splitmix64).
@@ -30,10 +31,12 @@ private:
 
 void spoil(Image& image, uint32_t share, Dice& dice) {
   for (float& value : image.values)
-    if (dice.below(share) == 0) value = values[dice.below(values.size())];
+    if (dice.below(share) == 0) value = any_value[dice.below(any_value.size())];
 }
 
-CapturedFrame spoiled(uint32_t t, bool even_light) {
+enum class Light : uint8_t { any, even, at_most_1 };
+
+CapturedFrame spoiled(uint32_t t, Light light) {
   Dice dice(t);
   const uint32_t share = shares[t % shares.size()];
   CapturedFrame frame = sound_frame();
@@ -45,16 +48,17 @@ CapturedFrame spoiled(uint32_t t, bool even_light) {
     spoil(*image, share, dice);
   for (uint8_t& id : frame.profile)
     if (dice.below(share) == 0) id = ids[dice.below(ids.size())];
-  if (!even_light) spoil(frame.lighting, share, dice);
+  if (light == Light::any) spoil(frame.lighting, share, dice);
+  for (float& value : frame.lighting.values)
+    if (light == Light::at_most_1) value = dim_light[dice.below(dim_light.size())];
   return frame;
 }
 
-StabilityCase anything(std::string_view name, bool even_light) {
+StabilityCase anything(std::string_view name, Light light) {
   StabilityCase made;
   made.name = name;
   made.frames = 24;
-  made.given = [even_light](uint32_t t) { return spoiled(t, even_light); };
-  made.finite_only = !even_light;
+  made.given = [light](uint32_t t) { return spoiled(t, light); };
   made.bound = furnace;
   return made;
 }
@@ -62,7 +66,11 @@ StabilityCase anything(std::string_view name, bool even_light) {
 } // namespace
 
 std::vector<StabilityCase> random_cases() {
-  return {anything("anything_anywhere", false), anything("anything_under_even_light", true)};
+  StabilityCase anywhere = anything("anything_anywhere", Light::any);
+  anywhere.finite_only = true;
+  StabilityCase most_1 = anything("anything_under_light_up_to_1", Light::at_most_1);
+  most_1.judged = Judged::light_beyond;
+  return {anywhere, anything("anything_under_even_light", Light::even), most_1};
 }
 
 } // namespace dermis::tools
