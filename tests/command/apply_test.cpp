@@ -157,6 +157,24 @@ TEST_F(Captures, WhatIsTooBrightWithoutAProfileEndsAtTheBrightestFloat) {
     EXPECT_EQ(value, most);
 }
 
+// What is not rendered is not written by any pass: whatever the device's memory held must not come out.
+TEST_F(Captures, OutsideOfTheRenderRectangleLightIsAsItCame) {
+  Plane plane;
+  plane.light = filled(plane.width, plane.height, 3, 0.25f);
+  write_plane(path("capture"), plane);
+  write_channel(path("capture"), "albedo", filled(plane.width, plane.height, 3, 0.5f));
+  std::string text = read("capture/frame.json");
+  const std::string whole = "[0, 0, 32, 32]";
+  text.replace(text.find(whole), whole.size(), "[3, 5, 17, 11]");
+  write("capture/frame.json", text);
+  const Outcome outcome = apply();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const float value : picture("scattered.exr").values)
+    EXPECT_NEAR(value, 0.25f, 1e-3f);
+  for (const float value : picture("combined.exr").values)
+    EXPECT_NEAR(value, 0.125f, 1e-3f);
+}
+
 TEST_F(Captures, AnImageOfAnotherSizeIsNamedAndNothingIsWritten) {
   write_plane(path("capture"));
   write_channel(path("capture"), "depth", filled(31, 32, 1, 1.0f));

@@ -61,14 +61,29 @@ demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& s
   return demo::success();
 }
 
+bool was_rendered(const CapturedFrame& frame, size_t pixel) {
+  const Rectangle& render = frame.description.render;
+  const size_t x = pixel % frame.description.width, y = pixel / frame.description.width;
+  return x >= render.x && x < size_t{render.x} + render.width && y >= render.y &&
+         y < size_t{render.y} + render.height;
+}
+
+// Where the graph wrote nothing, outside of what was rendered, the light as it came.
+Image scattered_light(const CapturedFrame& frame, std::vector<float> written) {
+  Image light{frame.lighting.width, frame.lighting.height, 3, std::move(written)};
+  for (size_t i = 0; i < light.values.size(); ++i)
+    if (!was_rendered(frame, i / 3)) light.values[i] = frame.lighting.values[i];
+  return light;
+}
+
 // What the host does with what comes back: scattered light is there already times albedo where there is a
 // profile. Where there is none, light is as bright as the capture says.
 Image combine(const CapturedFrame& frame, const std::vector<float>& lighting) {
   Image combined = Image::sized(frame.lighting.width, frame.lighting.height, 3);
   for (size_t i = 0; i < combined.values.size(); ++i) {
-    const float albedo = frame.albedo.values.empty() || frame.profile[i / 3] != 0
-                             ? 1.0f
-                             : std::min(frame.albedo.values[i], 1.0f);
+    const bool is_colour = frame.profile[i / 3] != 0 && was_rendered(frame, i / 3);
+    const float albedo =
+        frame.albedo.values.empty() || is_colour ? 1.0f : std::min(frame.albedo.values[i], 1.0f);
     const float specular = frame.specular.values.empty() ? 0.0f : frame.specular.values[i];
     combined.values[i] = std::min(lighting[i] * albedo + specular, std::numeric_limits<float>::max());
   }
@@ -90,7 +105,7 @@ demo::Result<> write_frame(const CapturedFrame& frame, const std::string& name, 
   if (!device.has("scattered_light")) return demo::success();
   auto scattered = device.read_rgb("scattered_light");
   if (!scattered) return scattered.error();
-  return write("scattered.exr", {frame.lighting.width, frame.lighting.height, 3, scattered.take()});
+  return write("scattered.exr", scattered_light(frame, scattered.take()));
 }
 
 demo::Result<> apply_frame(Run& run, const CapturedFrame& frame, const std::string& name, OutputFolder& out) {
