@@ -132,10 +132,11 @@ template <class Real> struct SapClimb {
     Scattered<Real> result;
     for (size_t c = 0; c < 3; ++c) {
       const Real near = centre[c] * own.mass, mid = share[c] * here.mass[c],
-                 far = (1 - centre[c] - share[c]) * rest.mass[c];
+                 far = std::max(1 - centre[c] - share[c], Real(0)) * rest.mass[c];
       const Real total = near + mid + far, scale = 1 / std::max(total, Real(sap_negligible));
-      result.light[c] = rest.light[c] + near * scale * (own.light[c] - rest.light[c]) +
+      const Real mean = rest.light[c] + near * scale * (own.light[c] - rest.light[c]) +
                         mid * scale * (here.light[c] - rest.light[c]);
+      result.light[c] = std::max(mean, Real(0)); // what differences leave by rounding is no light
       result.mass[c] = total;
     }
     result.confidence = centre[widest] * own.mass + share[widest] * here.mass[widest] +
