@@ -17,9 +17,9 @@ command -v npm >/dev/null || optional_packages+=(npm)
 # What the fuzz targets need beside them.
 fuzz_packages=(clang libclang-rt-14-dev)
 
-# What compares the interface with its baseline, and a foreign renderer to run between; without them these tests are skipped.
+# A third-party renderer that an example embeds Dermis in; without it that test is skipped.
 # shellcheck disable=SC2034
-interface_packages=(abigail-tools libplacebo-dev)
+interface_packages=(libplacebo-dev)
 
 # What the full tests build the library for Windows with.
 # shellcheck disable=SC2034
