@@ -30,7 +30,9 @@ void main() {
   packed_reservoir packed;
   for (uint i = 0u; i < 4u; ++i)
     packed.words[i] = reservoirs_data[4u * element_of(pixel) + i];
-  vec3 came = texture_light(texel, resolve(domain, unpack_reservoir(packed))); // the albedo at x2 is not known
+  vec3 came = resolve(domain, unpack_reservoir(packed)); // traced light contains no albedo; that at x2 is not known
+  if (settings.texturing != TEXTURING_DEMODULATE)
+    came = texture_light(texel, came);
   vec3 direct = mix(vec3(1.0), profile_direct(id), greaterThan(domain.d, vec3(0.0)));
   vec3 light = mix(came, pixel_light(texel), direct);
   imageStore(scattered_image, texel, vec4(round_to_half(light), 1.0));

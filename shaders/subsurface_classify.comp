@@ -12,6 +12,7 @@
 #include "counters.glsl"
 #include "half.glsl"
 #include "light_range.glsl"
+#include "pixel_light.glsl"
 #include "radius.glsl"
 #include "sanitise.glsl"
 #include "tile_packing.glsl"
@@ -29,15 +30,6 @@ shared uvec3 low_of[block_tiles], high_of[block_tiles];
 
 uint class_of(uint widest) {
   return widest > below_a_pixel ? class_scatter : widest == below_a_pixel ? class_copy : class_none;
-}
-
-vec3 light_of(ivec2 texel) {
-  vec3 light = clean_light(texelFetch(lighting_image, texel, 0).rgb);
-  if (settings.texturing != TEXTURING_POST && has_albedo()) {
-    vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-    light *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
-  }
-  return round_to_half(light);
 }
 
 ivec2 run_pixel(ivec2 first, int i) { return first + ivec2(i & 7, i >> 3); }
@@ -107,7 +99,7 @@ void gather_light(ivec2 first, uint mask, uint tile) {
   vec3 low = vec3(largest_half), high = vec3(0.0);
   bool any = mask != 0u;
   while (mask != 0u) {
-    vec3 light = light_of(texel_of(run_pixel(first, findLSB(mask))));
+    vec3 light = round_to_half(pixel_light(texel_of(run_pixel(first, findLSB(mask)))));
     mask &= mask - 1u;
     low = min(low, light);
     high = max(high, light);

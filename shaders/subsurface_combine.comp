@@ -7,6 +7,7 @@
 #include "tiles.glsl"
 #include "half.glsl"
 #include "sanitise.glsl"
+#include "texturing.glsl"
 
 void main() {
   ivec2 pixel;
@@ -22,17 +23,15 @@ void main() {
   vec3 albedo = vec3(1.0);
   if (has_albedo() && (settings.result == RESULT_COLOR || settings.texturing != TEXTURING_POST))
     albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-  if (settings.texturing == TEXTURING_PRE_POST)
-    albedo = sqrt(albedo);
   vec3 color = vec3(0.0);
   bool copies = has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
-  if (copies) {
+  if (copies) { // rounded as scattered light is
     color = clean_light(texelFetch(unscattered_image, texel, 0).rgb);
-    color = round_to_half(settings.texturing != TEXTURING_POST ? color * albedo : color); // as it comes through
+    color = round_to_half(clean_light(apply_albedo_before(settings.texturing, albedo, color)));
   } else {
     color = texelFetch(scattered_image, texel, 0).rgb;
   }
-  if (settings.result == RESULT_COLOR && settings.texturing != TEXTURING_PRE)
-    color *= albedo;
+  if (settings.result == RESULT_COLOR)
+    color = apply_albedo_after(settings.texturing, albedo, color);
   imageStore(lighting_image, texel, vec4(round_to_half(color), 1.0));
 }

@@ -6,7 +6,7 @@
 #include "environment.glsl"
 #include "tiles.glsl"
 #include "half.glsl"
-#include "sanitise.glsl"
+#include "pixel_light.glsl"
 
 void main() {
   ivec2 pixel;
@@ -14,10 +14,5 @@ void main() {
   if (!listed_pixel(pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
-  vec3 light = clean_light(texelFetch(lighting_image, texel, 0).rgb);
-  if (settings.texturing != TEXTURING_POST && has_albedo()) {
-    vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-    light *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
-  }
-  imageStore(scattered_image, texel, vec4(round_to_half(light), 1.0));
+  imageStore(scattered_image, texel, vec4(round_to_half(pixel_light(texel)), 1.0));
 }

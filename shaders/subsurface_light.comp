@@ -4,8 +4,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_light.bindings.glsl"
 #include "environment.glsl"
+#include "pixel_light.glsl"
 #include "radius.glsl"
-#include "sanitise.glsl"
 #include "tile_packing.glsl"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -25,11 +25,7 @@ void main() {
     bool scatters = has_scattered() && depth > 0.0 && projected_d(d.w, depth) >= copy_below_d_px;
     if (has_classes())
       scatters = scatters && class_of_tile(classes_data[(pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3)]) == class_scatter;
-    vec3 through = light;
-    if (settings.texturing != TEXTURING_POST && has_albedo()) {
-      vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-      through *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
-    }
+    vec3 through = texture_light(texel, light);
     vec3 scattered = texelFetch(scattered_image, texel, 0).rgb;
     light = scatters ? vec3(d.r > 0.0 ? scattered.r : through.r, d.g > 0.0 ? scattered.g : through.g,
                             d.b > 0.0 ? scattered.b : through.b)

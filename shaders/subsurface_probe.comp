@@ -13,6 +13,7 @@
 #include "half.glsl"
 #include "hash.glsl"
 #include "patch.glsl"
+#include "pixel_light.glsl"
 #include "profile.glsl"
 #include "radius.glsl"
 #include "sanitise.glsl"
@@ -31,15 +32,6 @@ const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
 shared uint listed[lanes];   // tiles of the run with subsurface, in order
 shared uint listed_count;
 shared vec3 sums[lanes], weights[lanes];
-
-vec3 light_of(ivec2 texel) {
-  vec3 light = clean_light(texelFetch(lighting_image, texel, 0).rgb);
-  if (settings.texturing != TEXTURING_POST && has_albedo()) {
-    vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-    light *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
-  }
-  return light;
-}
 
 // Depth of a pixel of the profile, mm; else 0.
 float depth_of(ivec2 pixel, uint id) {
@@ -105,7 +97,7 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
       vec2 sides = pixel_footprint(there);
       vec3 k = kernel(profile, p, pixel, q, there, surface) * (sides.x * sides.y * surface.area);
       weight += k;
-      light += k * light_of(texel_of(q));
+      light += k * pixel_light(texel_of(q));
     }
   }
   sums[lane] = light;
@@ -120,7 +112,7 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
   }
   if (!counts)
     return -1.0;
-  vec3 own = light_of(texel), direct = profile_direct(id);
+  vec3 own = pixel_light(texel), direct = profile_direct(id);
   vec3 truth = mix(sums[0] / max(weights[0], vec3(1e-30)), own, direct);
   truth = mix(own, truth, vec3(greaterThan(profile.d.rgb, vec3(0.0))));
   vec3 shown = has_scattered() && !copied ? texelFetch(scattered_image, texel, 0).rgb : own;

@@ -5,7 +5,7 @@
 #include "subsurface_pyramid_setup.bindings.glsl"
 #include "environment.glsl"
 #include "half.glsl"
-#include "sanitise.glsl"
+#include "pixel_light.glsl"
 #include "pyramid.glsl"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -33,11 +33,7 @@ void main() {
     ivec2 texel = texel_of(pixel);
     uint id = texelFetch(material_image, texel, 0).r;
     if (id != 0u) {
-      light = vec4(clean_light(texelFetch(lighting_image, texel, 0).rgb), 1.0);
-      if (settings.texturing != TEXTURING_POST && has_albedo()) {
-        vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-        light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
-      }
+      light = vec4(pixel_light(texel), 1.0);
       if (settings.profiles == PROFILES_APART)
         light.a = beside_another_profile(pixel, id) ? mixed_mask : apart_scale;
     }

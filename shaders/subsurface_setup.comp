@@ -6,7 +6,7 @@
 #include "environment.glsl"
 #include "tiles.glsl"
 #include "half.glsl"
-#include "sanitise.glsl"
+#include "pixel_light.glsl"
 #include "shared_patch.glsl"
 
 void main() {
@@ -21,11 +21,7 @@ void main() {
   vec4 light = vec4(0.0);
   vec2 slope = vec2(0.0);
   if (id != 0u) {
-    light.rgb = clean_light(texelFetch(lighting_image, texel, 0).rgb);
-    if (settings.texturing != TEXTURING_POST && has_albedo()) {
-      vec3 albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
-      light.rgb *= settings.texturing == TEXTURING_PRE ? albedo : sqrt(albedo);
-    }
+    light.rgb = pixel_light(texel);
     float depth = own_depth();
     light.a = 1.0;
     if (depth > 0.0 && !copy_only) {

@@ -150,7 +150,7 @@ demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
   return demo::success();
 }
 
-// Light that carries albedo is another quantity than the truth, which is before albedo.
+// Only 'post' scatters the light that the reference scatters: irradiance before albedo.
 bool textured_before(const Graph& graph, const CompileChoices& choices) {
   for (size_t i = 0; i < graph.settings.size(); ++i) {
     const SettingDeclaration& setting = graph.settings[i];
@@ -174,7 +174,7 @@ bool transmits(const Graph& graph, const CompileChoices& choices) {
 
 // Nothing to compare with: no scattered light handed out, no subsurface pixel, or not asked for.
 std::string why_no_error(const Run& run) {
-  if (run.textured_before) return "'texturing' puts albedo into the light that is scattered";
+  if (run.textured_before) return "the reference needs 'texturing' = 'post'";
   if (run.options.graph == no_graph) return "rendered without a graph";
   if (run.options.subset == 0) return "not asked for (--subset 0)";
   if (run.last_scattered.empty()) return "the graph does not export 'scattered_light'";

@@ -137,11 +137,12 @@ constexpr KindSetting real(std::string_view name, double standard, double least,
 }
 
 // Settings that several kinds declare with the same meaning.
-inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre"};
+inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre", "demodulate"};
 inline constexpr KindSetting texturing =
     choice("texturing", texturing_options,
            "where albedo is applied: after scattering (keeps texture detail), "
-           "its square root on both sides, or before");
+           "its square root on both sides, or before; demodulate: lighting already contains albedo, which "
+           "is divided out before scattering and multiplied back after it");
 } // namespace setting
 
 } // namespace dermis::subsurface

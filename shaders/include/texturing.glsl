@@ -1,0 +1,25 @@
+// Where albedo is applied. Include after bindings with the setting `texturing`.
+#ifndef DERMIS_TEXTURING_GLSL
+#define DERMIS_TEXTURING_GLSL
+
+// Darker albedo counts as this when it is divided out: a texel of almost no albedo says almost nothing about the light on
+// it. The same bound on both sides of scattering, so that light that does not scatter comes back as it was.
+const float demodulation_floor = 1.0 / 64.0;
+
+vec3 apply_albedo_before(int texturing, vec3 albedo, vec3 light) {
+  if (texturing == TEXTURING_DEMODULATE)
+    return light / max(albedo, vec3(demodulation_floor));
+  if (texturing == TEXTURING_POST)
+    return light;
+  return light * (texturing == TEXTURING_PRE ? albedo : sqrt(albedo));
+}
+
+vec3 apply_albedo_after(int texturing, vec3 albedo, vec3 light) {
+  if (texturing == TEXTURING_DEMODULATE)
+    return light * max(albedo, vec3(demodulation_floor));
+  if (texturing == TEXTURING_PRE)
+    return light;
+  return light * (texturing == TEXTURING_POST ? albedo : sqrt(albedo));
+}
+
+#endif

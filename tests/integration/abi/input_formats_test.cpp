@@ -1,0 +1,325 @@
+// Inputs as other engines have them: light that contains albedo, packed light, profile ids in other
+// images than r8_uint.
+
+#include "integration/demo_engine/render/pipeline.hpp"
+#include "material_ids.spv.h"
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <cmath>
+
+namespace dermis::abi_test {
+namespace {
+
+constexpr uint32_t side = 64;
+constexpr size_t pixels = size_t{side} * side;
+
+struct InputFormats : DermisTest {
+  static GraphOptions options_of(const std::string& graph) {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/" + graph + ".json");
+    options.unbound = {"albedo",   "scatter_scale", "scattered_light", "thickness", "back_lighting",
+                       "velocity", "sampling",      "importance",      "normal"};
+    return options;
+  }
+
+  // The picture of one frame, RGB; the graph's frames are numbered from 1, so that all graphs draw the
+  // same samples.
+  std::vector<float> picture(dermis_graph graph) {
+    last_frame = 0;
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    const uint32_t channels = demo::find_pixel_format(images.at("lighting").format)->channels;
+    const std::vector<float> all = texels("lighting");
+    std::vector<float> rgb;
+    for (size_t i = 0; i < all.size(); ++i)
+      if (i % channels < 3) rgb.push_back(all[i]);
+    return rgb;
+  }
+};
+
+float largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  float largest = 0.0f;
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+// ---- lighting that contains albedo ------------------------------------------------------------------
+
+// A checkerboard of 8x8 squares; the dark squares of the blue channel are just above the floor of 1/64.
+float albedo_at(uint32_t x, uint32_t y, uint32_t c) {
+  const bool bright = ((x / 8 + y / 8) & 1) != 0;
+  return bright ? 0.9f : c == 2 ? 0.02f : 0.2f;
+}
+
+std::vector<float> image_of(const std::function<float(uint32_t, uint32_t, uint32_t)>& value) {
+  std::vector<float> texels;
+  for (uint32_t y = 0; y < side; ++y)
+    for (uint32_t x = 0; x < side; ++x)
+      for (uint32_t c = 0; c < 4; ++c)
+        texels.push_back(c == 3 ? 1.0f : value(x, y, c));
+  return texels;
+}
+
+struct Demodulation : InputFormats, testing::WithParamInterface<const char*> {
+  dermis_graph graph_with_albedo(const char* texturing) {
+    GraphOptions options = options_of(GetParam());
+    std::erase(options.unbound, "albedo");
+    options.formats.emplace_back("lighting", VK_FORMAT_R32G32B32A32_SFLOAT);
+    options.formats.emplace_back("albedo", VK_FORMAT_R32G32B32A32_SFLOAT);
+    const dermis_graph graph = make_graph(options);
+    const std::string json = '"' + std::string(texturing) + '"';
+    EXPECT_EQ(dermis_graph_set_setting(graph, "texturing", json.c_str(), nullptr), DERMIS_OK)
+        << dermis_last_error();
+    make_images(graph);
+    upload("albedo", image_of(albedo_at));
+    return graph;
+  }
+};
+
+// Under even irradiance nothing changes, whatever the texture is: two roundings to half precision, of
+// 2^-11 each.
+TEST_P(Demodulation, KeepsTextureUnderEvenLight) {
+  const dermis_graph graph = graph_with_albedo("demodulate");
+  const auto textured = [](uint32_t x, uint32_t y, uint32_t c) { return 0.5f * albedo_at(x, y, c); };
+  upload("lighting", image_of(textured));
+  const std::vector<float> shown = picture(graph);
+  for (uint32_t y = 0, i = 0; y < side; ++y)
+    for (uint32_t x = 0; x < side; ++x)
+      for (uint32_t c = 0; c < 3; ++c, ++i) {
+        ASSERT_NEAR(shown[i], textured(x, y, c), 0.5f * 0x1p-10f) << x << " " << y << " " << c;
+      }
+}
+
+// Lighting times albedo with `demodulate` shows what irradiance shows with `post`.
+TEST_P(Demodulation, EqualsIrradianceTexturedAfterwards) {
+  const auto irradiance = [](uint32_t x, uint32_t, uint32_t) { return x < side / 2 ? 1.0f : 0.25f; };
+  const auto albedo = [](uint32_t x, uint32_t y, uint32_t) { return albedo_at(x, y, 0); };
+  dermis_graph graph = graph_with_albedo("post");
+  upload("albedo", image_of(albedo));
+  upload("lighting", image_of(irradiance));
+  const std::vector<float> expected = picture(graph);
+  graph = graph_with_albedo("demodulate");
+  upload("albedo", image_of(albedo));
+  upload("lighting",
+         image_of([&](uint32_t x, uint32_t y, uint32_t c) { return irradiance(x, y, c) * albedo(x, y, c); }));
+  EXPECT_LT(largest_difference(picture(graph), expected), 2 * 0x1p-10f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Graphs, Demodulation, testing::Values("burley", "pyramid", "sap", "skin"),
+                         [](const auto& one) { return std::string(one.param); });
+
+// ---- packed light -----------------------------------------------------------------------------------
+
+TEST_F(InputFormats, LightingMayBeB10g11r11) {
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(host->physical_device, VK_FORMAT_B10G11R11_UFLOAT_PACK32, &properties);
+  if ((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) == 0)
+    GTEST_SKIP() << "this device cannot store to B10G11R11_UFLOAT_PACK32";
+  std::vector<std::vector<float>> pictures;
+  for (const VkFormat format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_B10G11R11_UFLOAT_PACK32}) {
+    GraphOptions options = options_of("sap");
+    options.formats.emplace_back("lighting", format);
+    const dermis_graph graph = make_graph(options);
+    make_images(graph);
+    pictures.push_back(picture(graph));
+  }
+  // Values up to 1 are stored with 5 bits behind the point (blue) and may be truncated.
+  EXPECT_LT(largest_difference(pictures[0], pictures[1]), 0x1p-5f);
+}
+
+// ---- profile ids ------------------------------------------------------------------------------------
+
+std::vector<float> striped_ids() { // profile 1, none, and one of which no profile was given
+  std::vector<float> ids;
+  for (uint32_t i = 0; i < pixels; ++i)
+    ids.push_back(static_cast<float>(i % side / 24));
+  return ids;
+}
+
+TEST_F(InputFormats, MaterialMayBeAnyUnsignedInteger) {
+  for (const char* graph_name : {"burley", "sap"}) {
+    std::vector<std::vector<float>> pictures;
+    for (const VkFormat format : {VK_FORMAT_R8_UINT, VK_FORMAT_R16_UINT, VK_FORMAT_R32_UINT}) {
+      GraphOptions options = options_of(graph_name);
+      options.formats.emplace_back("material", format);
+      const dermis_graph graph = make_graph(options);
+      make_images(graph);
+      upload("material", striped_ids());
+      pictures.push_back(picture(graph));
+    }
+    EXPECT_EQ(pictures[1], pictures[0]) << graph_name << " r16_uint";
+    EXPECT_EQ(pictures[2], pictures[0]) << graph_name << " r32_uint";
+  }
+}
+
+// Runs integration/examples/material_ids.comp over `source` into the image of slot `material`.
+struct IdExtraction : InputFormats {
+  void extract_ids(VkImageView source, int32_t first_bit, int32_t bits) {
+    const VkShaderStageFlags compute = VK_SHADER_STAGE_COMPUTE_BIT;
+    auto layout = demo::create_layout(
+        *host, {{{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, compute}, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, compute}}},
+        8, compute);
+    ASSERT_TRUE(layout) << layout.error().text;
+    VkShaderModuleCreateInfo module_info{};
+    module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    module_info.codeSize = sizeof material_ids_spirv;
+    module_info.pCode = material_ids_spirv;
+    VkShaderModule module = VK_NULL_HANDLE;
+    ASSERT_EQ(host->vk.vkCreateShaderModule(host->device, &module_info, nullptr, &module), VK_SUCCESS);
+    VkComputePipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  nullptr,
+                  0,
+                  VK_SHADER_STAGE_COMPUTE_BIT,
+                  module,
+                  "main",
+                  nullptr};
+    info.layout = layout->layout.handle;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    ASSERT_EQ(host->vk.vkCreateComputePipelines(host->device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+              VK_SUCCESS);
+    auto pool = demo::create_descriptor_pool(*host, 1);
+    ASSERT_TRUE(pool) << pool.error().text;
+    auto set = demo::allocate_set(*host, *pool, layout->sets[0]);
+    ASSERT_TRUE(set) << set.error().text;
+    const demo::Image& material = images.at("material");
+    demo::write_image(*host, *set, 0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, source, VK_IMAGE_LAYOUT_GENERAL,
+                      VK_NULL_HANDLE);
+    demo::write_image(*host, *set, 1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, material.view,
+                      VK_IMAGE_LAYOUT_GENERAL, VK_NULL_HANDLE);
+    const demo::ImageState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
+    const demo::ImageState written{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                   VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
+    const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+      demo::transition(*host, commands, material, at_rest, written);
+      host->vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+      const VkDescriptorSet bound = *set;
+      host->vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, info.layout, 0, 1, &bound, 0,
+                                       nullptr);
+      const std::array<int32_t, 2> field{first_bit, bits};
+      host->vk.vkCmdPushConstants(commands, info.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof field,
+                                  field.data());
+      host->vk.vkCmdDispatch(commands, side / 8, side / 8, 1);
+      demo::transition(*host, commands, material, written, at_rest);
+      return demo::success();
+    });
+    ASSERT_TRUE(ran) << ran.error().text;
+    host->vk.vkDestroyPipeline(host->device, pipeline, nullptr);
+    host->vk.vkDestroyShaderModule(host->device, module, nullptr);
+  }
+
+  // As the host's own pass needs it: the image for `material` is also a storage image.
+  void make_graph_with_cleared_ids() {
+    make_images(make_graph(options_of("burley")));
+    demo::ImageDesc desc;
+    desc.format = VK_FORMAT_R8_UINT;
+    desc.width = desc.height = side;
+    desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    auto material = demo::create_image(*host, desc);
+    ASSERT_TRUE(material) << material.error().text;
+    images["material"] = material.take();
+    fill("material", [](uint32_t, uint32_t) { return 0.0f; });
+  }
+};
+
+TEST_F(IdExtraction, FromABitFieldOfAPackedImage) {
+  make_graph_with_cleared_ids();
+  demo::ImageDesc desc;
+  desc.format = VK_FORMAT_R32_UINT;
+  desc.width = desc.height = side;
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  auto packed = demo::create_image(*host, desc);
+  ASSERT_TRUE(packed) << packed.error().text;
+  std::vector<float> values;
+  for (const float id : striped_ids())
+    values.push_back(id * 4096.0f + 5.0f); // bits 12 to 15; other bits mean something else
+  const demo::ImageState general{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                 VK_ACCESS_2_MEMORY_READ_BIT};
+  ASSERT_TRUE(demo::upload_image(*host, *packed, values, 1, general));
+  extract_ids(packed->view, 12, 4);
+  EXPECT_EQ(texels("material"), striped_ids());
+}
+
+TEST_F(IdExtraction, FromStencil) {
+  make_graph_with_cleared_ids();
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.extent = {side, side, 1};
+  info.mipLevels = info.arrayLayers = 1;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  for (const VkFormat format : {VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT}) {
+    VkFormatProperties properties{};
+    vkGetPhysicalDeviceFormatProperties(host->physical_device, format, &properties);
+    if ((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0) info.format = format;
+  }
+  ASSERT_NE(info.format, VK_FORMAT_UNDEFINED) << "every device has one of these two";
+  VkImage image = VK_NULL_HANDLE;
+  ASSERT_EQ(host->vk.vkCreateImage(host->device, &info, nullptr, &image), VK_SUCCESS);
+  VkMemoryRequirements needs{};
+  host->vk.vkGetImageMemoryRequirements(host->device, image, &needs);
+  VkMemoryAllocateInfo allocation{};
+  allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  allocation.allocationSize = needs.size;
+  while ((needs.memoryTypeBits >> allocation.memoryTypeIndex & 1u) == 0)
+    ++allocation.memoryTypeIndex;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  ASSERT_EQ(host->vk.vkAllocateMemory(host->device, &allocation, nullptr, &memory), VK_SUCCESS);
+  ASSERT_EQ(host->vk.vkBindImageMemory(host->device, image, memory, 0), VK_SUCCESS);
+  VkImageViewCreateInfo view_info{};
+  view_info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  view_info.image = image;
+  view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view_info.format = info.format;
+  view_info.subresourceRange = {VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0, 1};
+  VkImageView view = VK_NULL_HANDLE;
+  ASSERT_EQ(host->vk.vkCreateImageView(host->device, &view_info, nullptr, &view), VK_SUCCESS);
+
+  std::vector<std::byte> ids;
+  for (const float id : striped_ids())
+    ids.push_back(std::byte(static_cast<uint8_t>(id)));
+  auto staging = demo::upload_buffer(*host, ids, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  ASSERT_TRUE(staging) << staging.error().text;
+  const auto filled = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+    VkImageMemoryBarrier2 barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0, 1};
+    VkDependencyInfo dependency{};
+    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    host->vk.vkCmdPipelineBarrier2(commands, &dependency);
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_STENCIL_BIT, 0, 0, 1};
+    copy.imageExtent = {side, side, 1};
+    host->vk.vkCmdCopyBufferToImage(commands, staging->buffer, image, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+    barrier.oldLayout = VK_IMAGE_LAYOUT_GENERAL;
+    host->vk.vkCmdPipelineBarrier2(commands, &dependency);
+    return demo::success();
+  });
+  ASSERT_TRUE(filled) << filled.error().text;
+  extract_ids(view, 0, 8);
+  EXPECT_EQ(texels("material"), striped_ids());
+  host->vk.vkDestroyImageView(host->device, view, nullptr);
+  host->vk.vkDestroyImage(host->device, image, nullptr);
+  host->vk.vkFreeMemory(host->device, memory, nullptr);
+}
+
+} // namespace
+} // namespace dermis::abi_test
