@@ -165,6 +165,9 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
                 error.text);
   context->device.vk.vkGetPhysicalDeviceQueueFamilyProperties(desc.physical_device,
                                                               &context->queue_family_count, nullptr);
+  context->has_foreign_queues =
+      has_device_extension(desc.get_instance_proc_addr, desc.instance, desc.physical_device,
+                           VK_EXT_QUEUE_FAMILY_FOREIGN_EXTENSION_NAME);
   context->profile = vulkan::device_profile(context->device);
   context->kinds = subsurface::make_kinds();
   context->pipeline_cache = desc.pipeline_cache;

@@ -23,6 +23,7 @@ struct dermis_context_t {
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
   dermis::vulkan::KernelStore kernels; // of all graphs; refers to `device`
   uint32_t queue_family_count = 0;     // of the physical device
+  bool has_foreign_queues = false;     // the physical device has VK_EXT_queue_family_foreign
   uint32_t frames_in_flight = 2;
   std::atomic<bool> lost = false; // once set every call but destroy returns DEVICE_LOST
   std::mutex mutex;               // guards `graphs`

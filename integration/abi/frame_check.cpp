@@ -104,18 +104,16 @@ dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot&
                           const dermis_image_state& state) {
   const Log& log = view.context->log;
   const char* const function = record_function(view);
-  const uint32_t own = view.context->device.queue_family;
   if (state.access != 0 && state.stages == 0)
     return bad_argument(log, "{}: bindings[{}].{} ('{}') has access {:#x} but no stages", function, index,
                         which, slot.name, state.access);
   if (state.layout == VK_IMAGE_LAYOUT_MAX_ENUM)
     return bad_argument(log, "{}: bindings[{}].{}.layout ('{}') is not a layout", function, index, which,
                         slot.name);
-  if (state.queue_family != VK_QUEUE_FAMILY_IGNORED && state.queue_family != own &&
-      state.queue_family >= view.context->queue_family_count)
-    return bad_argument(log, "{}: bindings[{}].{}.queue_family ('{}') is {}, the device has {} families",
-                        function, index, which, slot.name, state.queue_family,
-                        view.context->queue_family_count);
+  FamilyText text;
+  const std::string_view problem = family_problem(*view.context, ResourceType::image, state, text);
+  if (!problem.empty())
+    return bad_argument(log, "{}: bindings[{}].{} ('{}'): {}", function, index, which, slot.name, problem);
   return DERMIS_OK;
 }
 

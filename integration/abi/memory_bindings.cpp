@@ -22,20 +22,14 @@ dermis_result refuse(const Place& place, fmt::format_string<Arguments...> text, 
 
 dermis_result check_state(const dermis_view_t& view, const Place& place, const Slot& slot, const char* which,
                           const dermis_image_state& state) {
-  const uint32_t own = view.context->device.queue_family;
-  const bool family =
-      state.queue_family == VK_QUEUE_FAMILY_IGNORED || state.queue_family == own ||
-      (slot.type == ResourceType::buffer && state.queue_family < view.context->queue_family_count);
   if (state.access != 0 && state.stages == 0)
     return refuse(place, ".{} ('{}') has access {:#x} but no stages", which, slot.name, state.access);
   if (state.layout != VK_IMAGE_LAYOUT_UNDEFINED)
     return refuse(place, ".{}.layout ('{}') is {}, expected UNDEFINED: only images have layouts", which,
                   slot.name, static_cast<uint32_t>(state.layout));
-  if (!family)
-    return refuse(place, ".{}.queue_family ('{}') is {}, {}", which, slot.name, state.queue_family,
-                  slot.type == ResourceType::buffer
-                      ? fmt::string_view("which the device does not have")
-                      : fmt::string_view("expected IGNORED for acceleration structures"));
+  FamilyText text;
+  const std::string_view problem = family_problem(*view.context, slot.type, state, text);
+  if (!problem.empty()) return refuse(place, ".{} ('{}'): {}", which, slot.name, problem);
   return DERMIS_OK;
 }
 
@@ -110,7 +104,56 @@ dermis_result check_states(const dermis_view_t& view, const Place& place, const 
   return check_state(view, place, slot, "after", after);
 }
 
+// "3", or the name of a special value.
+fmt::string_view family_name(uint32_t family, std::array<char, 16>& number) {
+  switch (family) {
+  case VK_QUEUE_FAMILY_IGNORED:
+    return "VK_QUEUE_FAMILY_IGNORED";
+  case VK_QUEUE_FAMILY_EXTERNAL:
+    return "VK_QUEUE_FAMILY_EXTERNAL";
+  case VK_QUEUE_FAMILY_FOREIGN_EXT:
+    return "VK_QUEUE_FAMILY_FOREIGN_EXT";
+  default:
+    return {number.data(), fmt::format_to_n(number.data(), number.size(), "{}", family).size};
+  }
+}
+
 } // namespace
+
+std::string_view family_problem(const dermis_context_t& context, ResourceType type,
+                                const dermis_image_state& state, FamilyText& text) {
+  std::array<char, 16> number;
+  const fmt::string_view family = family_name(state.queue_family, number);
+  const auto say = [&](auto format, const auto&... arguments) {
+    const auto end = fmt::format_to_n(text.data(), text.size(), format, arguments...);
+    return std::string_view{text.data(), std::min(end.size, text.size())};
+  };
+  if (state.transfer > 1) return say(FMT_STRING("transfer is {}, expected 0 or 1"), state.transfer);
+  const bool own = state.queue_family == context.device.queue_family;
+  if (state.transfer == 0) {
+    if (state.queue_family == 0 || own || state.queue_family == VK_QUEUE_FAMILY_IGNORED) return {};
+    return say(FMT_STRING("queue_family is {} and transfer 0; set transfer to 1 for an ownership transfer, "
+                          "or queue_family to 0 for none"),
+               family);
+  }
+  if (type == ResourceType::acceleration_structure)
+    return "transfer is 1, expected 0: the host transfers the memory below an acceleration structure";
+  switch (state.queue_family) {
+  case VK_QUEUE_FAMILY_EXTERNAL:
+    return {};
+  case VK_QUEUE_FAMILY_FOREIGN_EXT:
+    if (context.has_foreign_queues) return {};
+    return say(FMT_STRING("queue_family is {}, which needs {}; the device lacks it"), family,
+               VK_EXT_QUEUE_FAMILY_FOREIGN_EXTENSION_NAME);
+  case VK_QUEUE_FAMILY_IGNORED:
+    return say(FMT_STRING("queue_family is {} and transfer 1; set transfer to 0 for no ownership transfer"),
+               family);
+  default:
+    if (state.queue_family < context.queue_family_count) return {};
+    return say(FMT_STRING("queue_family is {}, the device has {} families"), family,
+               context.queue_family_count);
+  }
+}
 
 dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
   const Log& log = view.context->log;

@@ -7,8 +7,14 @@
 namespace dermis::abi {
 
 inline vulkan::HostState host_state(const dermis_image_state& state) {
-  return {state.layout, state.queue_family, state.stages, state.access};
+  const uint32_t family = state.transfer != 0 ? state.queue_family : VK_QUEUE_FAMILY_IGNORED;
+  return {state.layout, family, state.stages, state.access};
 }
+
+// What is wrong with the queue family of a state, as "field is value, explanation"; empty: nothing.
+using FamilyText = std::array<char, 256>;
+std::string_view family_problem(const dermis_context_t& context, ResourceType type,
+                                const dermis_image_state& state, FamilyText& text);
 
 // Checks every field and fills program.buffers and program.structures. ARGUMENT or VERSION with a message
 // that names the field. Allocates nothing.

@@ -48,6 +48,11 @@ constexpr const char* why_rays = "with DERMIS_CONTEXT_RAY_QUERY: passes that tra
 
 } // namespace
 
+bool has_device_extension(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                          VkPhysicalDevice physical_device, std::string_view name) {
+  return has(extensions_of(get_instance_proc_addr, instance, physical_device), name);
+}
+
 std::array<dermis_requirement, requirement_count>
 requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
                 VkPhysicalDevice physical_device) {

@@ -4,6 +4,7 @@
 #include "integration/include/dermis/dermis.h"
 
 #include <array>
+#include <string_view>
 
 namespace dermis::abi {
 
@@ -15,5 +16,9 @@ inline constexpr uint32_t first_ray_requirement =
 std::array<dermis_requirement, requirement_count>
 requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
                 VkPhysicalDevice physical_device);
+
+// Whether the physical device offers the extension; the device may have been created without it.
+bool has_device_extension(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                          VkPhysicalDevice physical_device, std::string_view name);
 
 } // namespace dermis::abi

@@ -161,8 +161,8 @@ static dermis_source source_of(const char* path, char* room) {
 int main(int argc, char** argv) {
   static char graph_text[FILE_ROOM], profile_text[FILE_ROOM], overlay_text[FILE_ROOM];
   const char* unbound[] = {"albedo", "scatter_scale", "scattered_light"};
-  const dermis_image_state general = {VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
-                                      VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
+  const dermis_image_state general = {VK_IMAGE_LAYOUT_GENERAL, 0,
+                                      VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, 0};
   dermis_context_desc context_desc = DERMIS_CONTEXT_DESC_INIT;
   dermis_graph_desc graph_desc = DERMIS_GRAPH_DESC_INIT;
   dermis_profile skin = DERMIS_PROFILE_INIT;

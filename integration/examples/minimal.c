@@ -28,8 +28,8 @@ static VkClearColorValue contents_of(const char* slot) {
 int main(int argc, char** argv) {
   static char graph_text[65536], profile_text[65536];
   const char* unbound[] = {"albedo", "scatter_scale", "scattered_light"};
-  const dermis_image_state general = {VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
-                                      VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
+  const dermis_image_state general = {VK_IMAGE_LAYOUT_GENERAL, 0,
+                                      VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, 0};
   dermis_context_desc context_desc = DERMIS_CONTEXT_DESC_INIT;
   dermis_graph_desc graph_desc = DERMIS_GRAPH_DESC_INIT;
   dermis_profile skin = DERMIS_PROFILE_INIT;

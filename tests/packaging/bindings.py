@@ -143,7 +143,7 @@ def run(engine, side=64):
         handles = (ctypes.c_uint64 * 2)()
         value = {b"depth": 0.5}.get(slot.name, 1.0)
         engine.engine_image(slot.format, side, slot.usage, value, slot.name == b"material", ctypes.addressof(handles))
-        rests = filled("dermis_image_state", layout=1, queue_family=0xffffffff, stages=1 << 16, access=1 << 16)  # ALL_COMMANDS, MEMORY_WRITE
+        rests = filled("dermis_image_state", layout=1, stages=1 << 16, access=1 << 16)  # ALL_COMMANDS, MEMORY_WRITE
         bindings.append(filled("dermis_image_binding", slot=slot.id, format=slot.format, image=handles[0],
                                view=handles[1], width=side, height=side, before=rests, after=rests))
     bound = (types["dermis_image_binding"] * len(bindings))(*bindings)

@@ -83,7 +83,7 @@ demo::Result<> set_settings(dermis_graph graph, const DeviceGraphRequest& reques
 }
 
 dermis_image_state c_state(const demo::ImageState& state) {
-  return {state.layout, VK_QUEUE_FAMILY_IGNORED, state.stages, state.access};
+  return {state.layout, 0, state.stages, state.access, 0};
 }
 
 } // namespace

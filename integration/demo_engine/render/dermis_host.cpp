@@ -327,7 +327,6 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
                       VkCommandBuffer commands, uint64_t frame_index) {
   dermis_image_state rests{};
   rests.layout = resting.layout;
-  rests.queue_family = VK_QUEUE_FAMILY_IGNORED;
   rests.stages = resting.stages;
   rests.access = resting.access;
   std::vector<dermis_image_binding> bindings;

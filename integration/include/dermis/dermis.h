@@ -650,11 +650,17 @@ DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_kinds(dermis_context con
 
 /* ---- each frame ------------------------------------------------------------------------------------------ */
 
+/* The state of an image, a buffer or an acceleration structure outside of the recorded commands. With `transfer` 1 the
+ * commands acquire it from `queue_family` (in `before`) or release it to that family (in `after`); the host records the
+ * other half, with old and new layout both `layout`. Acceleration structures are not transferred. */
 typedef struct dermis_image_state {
   VkImageLayout layout;
-  uint32_t queue_family; /* VK_QUEUE_FAMILY_IGNORED: no ownership transfer */
+  uint32_t queue_family;   /* with transfer 1: the index of a family, VK_QUEUE_FAMILY_EXTERNAL, or
+                              VK_QUEUE_FAMILY_FOREIGN_EXT of a device that was created with VK_EXT_queue_family_foreign;
+                              else 0 or VK_QUEUE_FAMILY_IGNORED */
   VkPipelineStageFlags2 stages;
   VkAccessFlags2 access;
+  uint32_t transfer;       /* 0: no queue family ownership transfer; 1: between queue_family and the context's family */
 } dermis_image_state;
 
 typedef struct dermis_image_binding {
@@ -674,7 +680,7 @@ typedef struct dermis_image_binding {
 } dermis_image_binding;
 #define DERMIS_IMAGE_BINDING_INIT \
   {sizeof(dermis_image_binding), 0, VK_FORMAT_UNDEFINED, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, \
-   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, 0, 0, 0}
+   {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}, 0, 0, 0}
 
 /* A buffer of yours at a slot of type BUFFER. Layouts of the states are VK_IMAGE_LAYOUT_UNDEFINED. */
 typedef struct dermis_buffer_binding {
@@ -688,10 +694,10 @@ typedef struct dermis_buffer_binding {
 } dermis_buffer_binding;
 #define DERMIS_BUFFER_BINDING_INIT \
   {sizeof(dermis_buffer_binding), 0, 0, VK_NULL_HANDLE, 0, 0, \
-   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}}
+   {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}}
 
 /* A top-level acceleration structure at a slot of type ACCELERATION_STRUCTURE. `before` also stands for the builds of all
- * that lies below it. Layouts are VK_IMAGE_LAYOUT_UNDEFINED, queue families VK_QUEUE_FAMILY_IGNORED. */
+ * that lies below it. Layouts of the states are VK_IMAGE_LAYOUT_UNDEFINED, `transfer` is 0. */
 typedef struct dermis_acceleration_structure_binding {
   size_t struct_size;
   uint32_t slot;          /* dermis_slot.id */
@@ -701,7 +707,7 @@ typedef struct dermis_acceleration_structure_binding {
 } dermis_acceleration_structure_binding;
 #define DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT \
   {sizeof(dermis_acceleration_structure_binding), 0, 0, VK_NULL_HANDLE, \
-   {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, VK_QUEUE_FAMILY_IGNORED, 0, 0}}
+   {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}}
 
 typedef enum dermis_depth_kind {
   DERMIS_DEPTH_DEVICE = 0,      /* what the depth test wrote, for clip_from_view; reversed and infinite are fine */

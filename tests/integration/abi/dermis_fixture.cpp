@@ -172,7 +172,7 @@ std::vector<dermis_image_binding> DermisTest::bindings(dermis_graph graph) {
     binding.view = image->second.view;
     binding.width = image->second.width;
     binding.height = image->second.height;
-    binding.before = {sampled.layout, VK_QUEUE_FAMILY_IGNORED, sampled.stages, sampled.access};
+    binding.before = {sampled.layout, 0, sampled.stages, sampled.access, 0};
     binding.after = binding.before;
     bound.push_back(binding);
   }

@@ -54,8 +54,8 @@ TEST_F(Record, ImagesComeBackInTheStateThatWasAskedFor) {
   make_images(graph);
   auto bound = bindings(graph);
   for (auto& binding : bound) {
-    binding.after = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_QUEUE_FAMILY_IGNORED,
-                     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
+    binding.after = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0, VK_PIPELINE_STAGE_2_COPY_BIT,
+                     VK_ACCESS_2_TRANSFER_READ_BIT, 0};
   }
   dermis_frame one = frame(bound);
   ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
@@ -65,6 +65,24 @@ TEST_F(Record, ImagesComeBackInTheStateThatWasAskedFor) {
         *host, image,
         {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
     EXPECT_TRUE(read) << name;
+  }
+}
+
+TEST_F(Record, ImagesAreReleasedToAndAcquiredFromOutside) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  auto bound = bindings(graph);
+  for (auto& binding : bound)
+    binding.after.queue_family = binding.before.queue_family = VK_QUEUE_FAMILY_EXTERNAL;
+  for (const uint32_t acquired : {0u, 1u, 1u}) { // the first frame finds them as they were made
+    for (auto& binding : bound) {
+      binding.before.transfer = acquired;
+      binding.before.queue_family = acquired == 1 ? VK_QUEUE_FAMILY_EXTERNAL : 0;
+      binding.after.transfer = 1;
+    }
+    dermis_frame one = frame(bound);
+    ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
   }
 }
 

@@ -61,7 +61,11 @@ TEST_F(Frames, WithAWrongFieldAreRefusedByItsName) {
       {"before.layout", [](auto&, auto& b) { b[0].before.layout = VK_IMAGE_LAYOUT_MAX_ENUM; }},
       {"after.layout", [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_MAX_ENUM; }},
       {"but no stages", [](auto&, auto& b) { b[0].after.stages = 0; }},
-      {"the device has 1 families", [](auto&, auto& b) { b[0].before.queue_family = 1; }},
+      {"the device has 1 families",
+       [](auto&, auto& b) {
+         b[0].before.queue_family = 1;
+         b[0].before.transfer = 1;
+       }},
       {"layer_count 0, which means all layers", [](auto&, auto& b) { b[0].layer = 1; }},
       {"a second time", [](auto&, auto& b) { b[1].slot = b[0].slot; }},
       {"clip_from_view", [](auto& f, auto&) { f.clip_from_view[1] = 1; }},

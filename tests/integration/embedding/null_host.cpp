@@ -64,8 +64,8 @@ void NullHost::make_bindings() {
     binding.height = slot.height;
     binding.image = device.make_image();
     binding.view = device.make_view();
-    binding.before = binding.after = {VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
-                                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT};
+    binding.before = binding.after = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                      VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
     bindings_.push_back(binding);
   }
 }

@@ -1,0 +1,123 @@
+// Queue families of states: zeroed memory transfers nothing, special families have names.
+
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr uint32_t own_family = 1, family_count = 3;
+bool foreign_queues = false; // Vulkan's functions have no user pointer; tests of this file run one by one
+
+VKAPI_ATTR void VKAPI_CALL three_families(VkPhysicalDevice, uint32_t* count, VkQueueFamilyProperties* out) {
+  for (uint32_t i = 0; out != nullptr && i < *count; ++i)
+    out[i] = {VK_QUEUE_COMPUTE_BIT, 1, 64, {1, 1, 1}};
+  *count = family_count;
+}
+VKAPI_ATTR VkResult VKAPI_CALL extensions(VkPhysicalDevice, const char*, uint32_t* count,
+                                          VkExtensionProperties* out) {
+  if (out != nullptr && foreign_queues)
+    std::strcpy(out->extensionName, VK_EXT_QUEUE_FAMILY_FOREIGN_EXTENSION_NAME);
+  *count = foreign_queues ? 1 : 0;
+  return VK_SUCCESS;
+}
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL load(VkInstance instance, const char* name) {
+  if (std::strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&three_families);
+  if (std::strcmp(name, "vkEnumerateDeviceExtensionProperties") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&extensions);
+  return NullDevice::loader()(instance, name);
+}
+
+struct QueueFamilies : testing::Test {
+  NullHost host;
+  std::vector<dermis_image_binding> bindings;
+  dermis_frame frame = DERMIS_FRAME_INIT;
+
+  void make(bool with_foreign_queues) {
+    foreign_queues = with_foreign_queues;
+    dermis_context_desc desc = host.context_desc();
+    desc.get_instance_proc_addr = load;
+    desc.queue_family = own_family;
+    ASSERT_EQ(host.make_context(desc), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+    frame = host.frame_at(1);
+    bindings.assign(frame.bindings, frame.bindings + frame.binding_count);
+    frame.bindings = bindings.data();
+  }
+
+  // Source and destination family of each barrier that names two, in order.
+  std::vector<std::pair<uint32_t, uint32_t>> transfers() {
+    std::vector<std::pair<uint32_t, uint32_t>> found;
+    uint32_t count = 0;
+    const dermis_command* commands = nullptr;
+    EXPECT_EQ(dermis_graph_commands(host.graph, &frame, &count, &commands), DERMIS_OK) << dermis_last_error();
+    for (uint32_t i = 0; i < count; ++i) {
+      if (commands[i].type != DERMIS_COMMAND_BARRIER) continue;
+      const VkDependencyInfo& info = *commands[i].dependency;
+      for (uint32_t b = 0; b < info.imageMemoryBarrierCount; ++b)
+        if (const VkImageMemoryBarrier2& barrier = info.pImageMemoryBarriers[b];
+            barrier.srcQueueFamilyIndex != barrier.dstQueueFamilyIndex)
+          found.emplace_back(barrier.srcQueueFamilyIndex, barrier.dstQueueFamilyIndex);
+    }
+    ++frame.frame_index;
+    ++frame.completed_frame_index;
+    return found;
+  }
+};
+
+TEST_F(QueueFamilies, ZeroedMemoryTransfersNothing) {
+  make(false);
+  for (dermis_image_binding& binding : bindings) {
+    std::memset(&binding.before, 0, sizeof binding.before);
+    std::memset(&binding.after, 0, sizeof binding.after);
+    binding.before.layout = binding.after.layout = VK_IMAGE_LAYOUT_GENERAL;
+  }
+  EXPECT_TRUE(transfers().empty());
+  bindings[0].before.queue_family = bindings[0].after.queue_family = VK_QUEUE_FAMILY_IGNORED;
+  EXPECT_TRUE(transfers().empty());
+  bindings[0].before.queue_family = bindings[0].after.queue_family = own_family;
+  EXPECT_TRUE(transfers().empty());
+}
+
+TEST_F(QueueFamilies, TransfersReachFamilyZeroAndSpecialFamilies) {
+  make(true);
+  for (const uint32_t family : {0u, 2u, VK_QUEUE_FAMILY_EXTERNAL, VK_QUEUE_FAMILY_FOREIGN_EXT}) {
+    bindings[0].before.queue_family = bindings[0].after.queue_family = family;
+    bindings[0].before.transfer = bindings[0].after.transfer = 1;
+    EXPECT_THAT(transfers(),
+                testing::ElementsAre(std::pair{family, own_family}, std::pair{own_family, family}));
+  }
+  bindings[0].before.queue_family = bindings[0].after.queue_family = own_family;
+  EXPECT_TRUE(transfers().empty()) << "a family keeps what it owns";
+}
+
+TEST_F(QueueFamilies, ThatFitNothingAreRefusedByName) {
+  make(false);
+  const std::tuple<const char*, uint32_t, uint32_t> wrong[] = {
+      {"bindings[0].after ('lighting'): queue_family is 2 and transfer 0; set transfer to 1", 2, 0},
+      {"queue_family is VK_QUEUE_FAMILY_EXTERNAL and transfer 0", VK_QUEUE_FAMILY_EXTERNAL, 0},
+      {"queue_family is VK_QUEUE_FAMILY_IGNORED and transfer 1", VK_QUEUE_FAMILY_IGNORED, 1},
+      {"queue_family is 3, the device has 3 families", 3, 1},
+      {"queue_family is VK_QUEUE_FAMILY_FOREIGN_EXT, which needs VK_EXT_queue_family_foreign",
+       VK_QUEUE_FAMILY_FOREIGN_EXT, 1},
+      {"transfer is 2, expected 0 or 1", 0, 2},
+  };
+  for (const auto& [text, family, transfer] : wrong) {
+    bindings[0].after.queue_family = family;
+    bindings[0].after.transfer = transfer;
+    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT) << text;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(text));
+  }
+}
+
+} // namespace
+} // namespace dermis::abi_test
