@@ -21,6 +21,7 @@ constexpr std::array host_usages{Usage::sampled_image,         Usage::storage_im
                                  Usage::acceleration_structure};
 constexpr std::array<std::string_view, 3> type_words{"bool", "int", "real"};
 constexpr std::array types{SettingType::boolean, SettingType::integer, SettingType::real};
+constexpr std::array<std::string_view, 2> scope_words{"graph", "frame"};
 
 bool is_name(std::string_view text) {
   if (text.empty() || text.size() > limits::name_bytes) return false;
@@ -104,6 +105,7 @@ HostKindSetting read_setting(const Document& document, NodeId node, Diagnostics&
   setting.minimum = object.number("min", -most, most, range).value_or(0.0);
   setting.maximum = object.number("max", -most, most, range).value_or(0.0);
   setting.unit = object.string("unit", Need::optional).value_or("");
+  setting.per_frame = object.word("per", scope_words, Need::optional).value_or(0) == 1;
   setting.doc = object.string("doc", Need::optional).value_or("");
   object.finish();
   return setting;
@@ -179,6 +181,7 @@ KindId HostKinds::add(HostKindDeclaration kind, KindRegistry& registry) {
     added.maximum = setting.maximum;
     added.unit = setting.unit;
     added.doc = setting.doc;
+    added.per_frame = setting.per_frame;
   }
   PassKind made;
   made.name = kept.declared.name;
@@ -214,6 +217,7 @@ std::string write_host_kinds(const HostKinds& kinds) {
       if (setting.type != SettingType::boolean)
         json.member("min", setting.minimum).member("max", setting.maximum);
       if (!setting.unit.empty()) json.member("unit", setting.unit);
+      if (setting.per_frame) json.member("per", scope_words[1]);
       if (!setting.doc.empty()) json.member("doc", setting.doc);
       json.close();
     }

@@ -22,6 +22,7 @@ struct HostKindSetting {
   std::string name, unit, doc;
   SettingType type = SettingType::boolean; // boolean, integer or real
   double default_value = 0.0, minimum = 0.0, maximum = 0.0;
+  bool per_frame = false; // as KindSetting::per_frame
 };
 
 struct HostKindDeclaration {

@@ -41,6 +41,8 @@ struct KindSetting {
   std::span<const std::string_view> options = {}; // for enumeration
   std::string_view unit;                          // "px", "mm", "taps", or "" when dimensionless
   std::string_view doc;
+  bool per_frame = false; // its value may differ from frame to frame and from view to view: a weight or a
+                          // threshold. False: all frames of a compiled graph run with one value
 };
 
 enum class DispatchShape : uint8_t {

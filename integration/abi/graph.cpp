@@ -1,6 +1,5 @@
 #include "integration/abi/graph.hpp"
 
-#include "framegraph/model/expression.hpp"
 #include "integration/abi/graph_desc.hpp"
 #include "integration/abi/report.hpp"
 
@@ -87,66 +86,6 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   return DERMIS_OK;
 }
 
-// Does a new value change which passes run?
-bool changes_passes(const Program& program, const std::vector<SettingValue>& values) {
-  for (const PassDeclaration& pass : program.graph.passes)
-    if (pass.when.valid() &&
-        evaluate(program.graph, pass.when, program.settings) != evaluate(program.graph, pass.when, values))
-      return true;
-  return false;
-}
-
-dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const std::string& json,
-                          dermis_report* report) {
-  const Log& log = graph.context->log;
-  const std::shared_ptr<Program> kept = keep_newest(graph.own);
-  const Program& program = *kept;
-  const auto& declared = program.graph.settings;
-  const auto at = std::find_if(declared.begin(), declared.end(),
-                               [&](const SettingDeclaration& setting) { return setting.name == name; });
-  Diagnostics diagnostics;
-  if (at == declared.end()) {
-    std::string known;
-    for (const SettingDeclaration& setting : declared)
-      known += fmt::format("{}'{}'", known.empty() ? "" : ", ", setting.name);
-    diagnostics.add(DiagnosticId::host_argument, {},
-                    fmt::format("dermis_graph_set_setting: graph '{}' has no setting '{}'; it has {}",
-                                program.graph.name, name, known.empty() ? "none" : known));
-    return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
-  }
-  const auto value = read_setting(*at, json, diagnostics);
-  if (!value) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
-
-  std::vector<SettingValue> values = program.settings;
-  values[static_cast<size_t>(at - declared.begin())] = *value;
-  ProgramInput input = graph.input;
-  const auto given = std::find_if(input.settings.begin(), input.settings.end(),
-                                  [&](const HostSetting& setting) { return setting.name == name; });
-  if (given == input.settings.end())
-    input.settings.push_back({name, json});
-  else
-    given->json = json;
-  const auto index = static_cast<uint32_t>(at - declared.begin());
-  if (at->by_budget || changes_passes(program, values))
-    return replace_programs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
-  std::vector<std::vector<choice::Outcome>> outcomes; // by view
-  for_each_view(graph, [&](dermis_view_t& view) {
-    const std::lock_guard lock(view.mutex);
-    outcomes.push_back(outcomes_with(newest(view), view.chooser, graph.context->kinds, index, *value));
-  });
-  const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
-  if (result != DERMIS_OK) return result;
-  size_t v = 0; // from here on nothing fails
-  for_each_view(graph, [&](dermis_view_t& view) {
-    const std::lock_guard lock(view.mutex);
-    Program& changed = newest(view);
-    changed.settings[index] = *value;
-    changed.outcomes.swap(outcomes[v++]);
-  });
-  graph.input = std::move(input);
-  return result;
-}
-
 } // namespace
 
 dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
@@ -216,22 +155,6 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uin
     input.width = width;
     input.height = height;
     return replace_programs(*graph, std::move(input), dermis::vulkan::HistoryReason::resized, report);
-  });
-}
-
-extern "C" dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name,
-                                                              const char* json, dermis_report* report) {
-  if (report != nullptr) *report = nullptr;
-  if (graph == nullptr) return bad_argument({}, "dermis_graph_set_setting: graph is NULL");
-  const Log& log = graph->context->log;
-  return guarded(log, "dermis_graph_set_setting", [&] {
-    if (name == nullptr) return bad_argument(log, "dermis_graph_set_setting: name is NULL");
-    if (json == nullptr) return bad_argument(log, "dermis_graph_set_setting: json is NULL");
-    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_set_setting");
-        alive != DERMIS_OK)
-      return alive;
-    const std::lock_guard changing(graph->changing);
-    return set_setting(*graph, name, json, report);
   });
 }
 

@@ -58,7 +58,8 @@ dermis_result read_settings(const Log& log, const dermis_pass_kind& given, HostK
       return bad_argument(log, "{}: kind.settings[{}].type is {}, expected 0..{}", registering, i,
                           static_cast<int>(setting.type), setting_types.size() - 1);
     kind.settings.push_back({text_of(setting.name), text_of(setting.unit), text_of(setting.doc),
-                             setting_types[type], setting.default_value, setting.minimum, setting.maximum});
+                             setting_types[type], setting.default_value, setting.minimum, setting.maximum,
+                             setting.per_frame != 0});
   }
   return DERMIS_OK;
 }

@@ -149,6 +149,14 @@ void make_room_for_bindings(Program& program) {
   program.structures.resize(program.slots.size());
 }
 
+void name_options(Program& program) {
+  for (const SettingDeclaration& declared : program.graph.settings) {
+    std::vector<const char*>& names = program.option_names.emplace_back();
+    for (const std::string& option : declared.options)
+      names.push_back(option.c_str());
+  }
+}
+
 // What any of the plans wants of an image the host must provide.
 std::vector<Slot> slots_of(const Program& program) {
   std::vector<Slot> slots = make_slots(program.graph, program.variants.front().compiled->plan);
@@ -250,6 +258,7 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   }
   candidate->slots = slots_of(*candidate);
   make_room_for_bindings(*candidate);
+  name_options(*candidate);
 
   candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
   if (!compile_missing(input.shaders, candidate->graph, context.kinds, diagnostics))
@@ -281,6 +290,7 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
   candidate->settings = of.settings;
   candidate->slots = of.slots;
   make_room_for_bindings(*candidate);
+  name_options(*candidate);
   if (of.kernels == nullptr) candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
   vulkan::KernelStore& kernels = of.kernels != nullptr ? *of.kernels : *candidate->kernels;
   if (const vulkan::Error error = make_executors(context, input, history, kernels, *candidate))

@@ -88,6 +88,7 @@ struct Program {
   std::vector<Variant> variants;                // by Outcome::plan
   uint32_t outcome = 0;                         // recorded last, or to be recorded first
   std::vector<SettingValue> settings;           // by Graph::settings: choices by budget at their defaults
+  std::vector<std::vector<const char*>> option_names; // by Graph::settings, into `graph`
   std::vector<Slot> slots;
   std::vector<vulkan::HostImage>
       images; // by slot; filled at each record, so that recording allocates nothing

@@ -46,6 +46,9 @@ template <>
 inline constexpr size_t first_version_size<dermis_pass_timing> = offsetof(dermis_pass_timing, nanoseconds) +
                                                                  sizeof(uint64_t);
 template <>
+inline constexpr size_t first_version_size<dermis_setting> = offsetof(dermis_setting, options) +
+                                                             sizeof(const char* const*);
+template <>
 inline constexpr size_t first_version_size<dermis_budget> = offsetof(dermis_budget, calibration) +
                                                             sizeof(const dermis_source*);
 template <>

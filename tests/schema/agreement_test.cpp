@@ -355,7 +355,7 @@ TEST(Schema, OfPassKindsAgreesWithTheParserOnMutatedFiles) {
         { "name": "studio.bloom", "doc": "d", "side_effects": true, "note": "n",
           "ports": [ { "name": "light", "usage": "sampled_image", "doc": "d", "note": "n" },
                      { "name": "glow", "usage": "storage_image_write", "optional": true } ],
-          "settings": [ { "name": "level", "type": "real", "default": 1, "min": 0, "max": 4.5, "unit": "px", "doc": "d" },
+          "settings": [ { "name": "level", "type": "real", "default": 1, "min": 0, "max": 4.5, "per": "frame", "unit": "px", "doc": "d" },
                         { "name": "taps", "type": "int", "default": 3, "min": 1, "max": 9, "note": "n" },
                         { "name": "wide", "type": "bool", "default": 1 } ] },
         { "name": "studio.count", "ports": [ { "name": "sums", "usage": "storage_buffer_update" } ] } ] })")};

@@ -451,6 +451,39 @@ typedef struct dermis_history {
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_histories(dermis_graph graph, uint32_t* count,
                                                             dermis_history* histories);
 
+typedef enum dermis_setting_type {
+  DERMIS_SETTING_BOOL = 0,
+  DERMIS_SETTING_INT = 1,
+  DERMIS_SETTING_REAL = 2,
+  DERMIS_SETTING_OPTION = 3, /* one of dermis_setting.options */
+  DERMIS_SETTING_TYPE_FORCE_32BIT = 0x7fffffff
+} dermis_setting_type;
+
+/* A setting that the graph declares. Strings and options live until the next reload, resize, set_setting or destroy. */
+typedef struct dermis_setting {
+  size_t struct_size;
+  const char* name;
+  dermis_setting_type type;
+  uint32_t per_frame;         /* 1: frames may differ in the value, it is a weight or a threshold of passes. 0: the value
+                                 belongs to the compiled graph */
+  const char* unit;           /* "px"; "" for none */
+  const char* note;           /* what the graph says about the setting; "" for nothing */
+  double minimum, maximum;    /* inclusive */
+  double default_value;       /* bool: 0 or 1; option: index into options */
+  double value;               /* of the next frame; of a chosen setting: of the last frame */
+  uint32_t set;               /* 1: the host has set the value */
+  uint32_t chosen;            /* 1: the library chooses the value in each frame by the budget, until the host sets it */
+  const char* const* options; /* names; NULL where the type is not OPTION */
+  uint32_t option_count;
+} dermis_setting;
+#define DERMIS_SETTING_INIT \
+  {sizeof(dermis_setting), NULL, DERMIS_SETTING_BOOL, 0, NULL, NULL, 0, 0, 0, 0, 0, 0, NULL, 0}
+
+/* The settings that the graph declares, in the order of the file, with the values of the graph's own view. Two-call
+ * array. Thread: beside. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_settings(dermis_graph graph, uint32_t* count,
+                                                           dermis_setting* settings);
+
 /* Sets a declared setting from JSON text ("16", "true", "\"post\""), effective at the next record. A value that
  * changes which passes run recompiles here. For all views. Thread: beside. Errors: ARGUMENT, CONFIG, and those of
  * creation. */
@@ -577,7 +610,7 @@ typedef struct dermis_kind_setting {
   const char* unit;         /* "px"; NULL or "": none */
   const char* doc;          /* may be NULL */
   dermis_kind_setting_type type;
-  uint32_t reserved;        /* 0 */
+  uint32_t per_frame;       /* 1: the value may differ from frame to frame and from view to view; 0: a graph has one value */
   double default_value;     /* bool: 0 or 1 */
   double minimum, maximum;  /* inclusive; of int and real */
 } dermis_kind_setting;

@@ -28,11 +28,13 @@ constexpr Port ports[] = {
 };
 
 constexpr KindSetting settings[] = {
-    setting::real("weight", 0.1, 0.001, 1, "", "of a new frame, at least"),
-    setting::real("clip", 1.5, 0, 64, "standard deviations",
-                  "of the 3x3 pixels around, that history may lie from their mean; 0: as far as it likes"),
-    setting::real("follow", 3, 0, 64, "standard errors",
-                  "beyond which the light of a tile has changed, and history's with it; 0: it never does"),
+    setting::per_frame(setting::real("weight", 0.1, 0.001, 1, "", "of a new frame, at least")),
+    setting::per_frame(setting::real(
+        "clip", 1.5, 0, 64, "standard deviations",
+        "of the 3x3 pixels around, that history may lie from their mean; 0: as far as it likes")),
+    setting::per_frame(setting::real(
+        "follow", 3, 0, 64, "standard errors",
+        "beyond which the light of a tile has changed, and history's with it; 0: it never does")),
 };
 
 } // namespace

@@ -13,8 +13,8 @@ constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format:
 constexpr std::string_view doubts_doc =
     "by tile of the render rectangle: how far off it is expected to be, 0 = not at all";
 
-constexpr KindSetting below =
-    setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel may be sampled");
+constexpr KindSetting below = setting::per_frame(
+    setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel may be sampled"));
 
 constexpr Port doubt_ports[] = {
     {"scattered", Usage::sampled_image, false, "texture2D",
@@ -41,9 +41,9 @@ constexpr Port contrast_ports[] = {
     {"doubts", Usage::storage_buffer_write, false, "uint", doubts_doc, {}},
 };
 constexpr KindSetting contrast_settings[] = {
-    setting::real(
+    setting::per_frame(setting::real(
         "least", 0.01, 0, 4, "",
-        "mean distance from the tile's mean, of exposed luminance, below which light counts as even"),
+        "mean distance from the tile's mean, of exposed luminance, below which light counts as even")),
 };
 
 constexpr Port allot_ports[] = {
@@ -79,7 +79,7 @@ constexpr KindSetting mend_settings[] = {
     setting::real("lod_bias", -1.5, -8, 4, "levels",
                   "on the level whose texels have the area that a sample stands for"),
     below,
-    setting::real("share", 0.5, 0, 1, "", "of the samples in the result"),
+    setting::per_frame(setting::real("share", 0.5, 0, 1, "", "of the samples in the result")),
 };
 
 } // namespace

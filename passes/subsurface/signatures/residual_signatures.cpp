@@ -102,25 +102,26 @@ constexpr KindSetting lod_bias = setting::real(
     "lod_bias", -1.5, -8, 4, "levels", "on the level whose texels have the area that a sample stands for");
 
 constexpr KindSetting brightness_settings[] = {
-    setting::real(
+    setting::per_frame(setting::real(
         "tolerance", 0.06, 0.001, 100, "",
-        "change of the logarithm of a surface's light, beside that of all light, that is none, at least"),
+        "change of the logarithm of a surface's light, beside that of all light, that is none, at least")),
 };
 
 constexpr KindSetting blend_settings[] = {
     samples,
     lod_bias,
-    setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel is sampled"),
-    setting::real("share", 0.5, 0, 1, "", "of the samples in the result"),
+    setting::per_frame(setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel is sampled")),
+    setting::per_frame(setting::real("share", 0.5, 0, 1, "", "of the samples in the result")),
 };
 
 constexpr KindSetting residual_settings[] = {
     samples,
     lod_bias,
-    setting::real("below", 0.988, 0, 2, "", "confidence below which a pixel is sampled"),
-    setting::real("often_below", 0.85, 0, 2, "",
-                  "confidence below which it is in one frame of four, not of sixteen"),
-    setting::real("alpha", 0.2, 0.01, 1, "", "weight of what is new in the running ratio, at least"),
+    setting::per_frame(setting::real("below", 0.988, 0, 2, "", "confidence below which a pixel is sampled")),
+    setting::per_frame(setting::real("often_below", 0.85, 0, 2, "",
+                                     "confidence below which it is in one frame of four, not of sixteen")),
+    setting::per_frame(
+        setting::real("alpha", 0.2, 0.01, 1, "", "weight of what is new in the running ratio, at least")),
     {.name = "eager",
      .type = SettingType::integer,
      .default_value = integer_value(6),

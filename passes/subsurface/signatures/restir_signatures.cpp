@@ -77,7 +77,8 @@ constexpr Port temporal_ports[] = {
 
 constexpr KindSetting temporal_settings[] = {
     shift,
-    setting::real("cap", 20, 0, 1000, "times the frame", "that history counts for at most"),
+    setting::per_frame(
+        setting::real("cap", 20, 0, 1000, "times the frame", "that history counts for at most")),
 };
 
 constexpr Port spatial_ports[] = {

@@ -136,6 +136,12 @@ constexpr KindSetting real(std::string_view name, double standard, double least,
           .doc = doc};
 }
 
+// A view may have its own value, and each frame another one.
+constexpr KindSetting per_frame(KindSetting setting) {
+  setting.per_frame = true;
+  return setting;
+}
+
 // Settings that several kinds declare with the same meaning.
 inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre", "demodulate"};
 inline constexpr KindSetting texturing =

@@ -69,6 +69,7 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   dermis_memory memory = DERMIS_MEMORY_INIT;
   dermis_frame frame = DERMIS_FRAME_INIT;
   expect_argument_error(dermis_graph_slots(nullptr, &count, nullptr), "graph");
+  expect_argument_error(dermis_graph_settings(nullptr, &count, nullptr), "graph");
   expect_argument_error(dermis_graph_describe(nullptr, DERMIS_DESCRIBE_JSON, &size, nullptr), "graph");
   expect_argument_error(dermis_graph_memory(nullptr, &memory), "graph");
   expect_argument_error(dermis_graph_timings(nullptr, 0, &count, nullptr), "graph");

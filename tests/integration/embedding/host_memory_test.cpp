@@ -247,6 +247,7 @@ TEST_F(HostMemory, ARefusedQuestionCanBeAskedAgain) {
       [&] { return dermis_graph_memory(host.graph, &memory); },
       [&] { return dermis_graph_heaps(host.graph, &count, nullptr); },
       [&] { return dermis_graph_slots(host.graph, &count, nullptr); },
+      [&] { return dermis_graph_settings(host.graph, &count, nullptr); },
       [&] { return dermis_graph_histories(host.graph, &count, nullptr); },
   };
   uint64_t refusals = 0;

@@ -55,6 +55,7 @@ struct Threads : ::testing::Test {
       EXPECT_EQ(dermis_graph_memory(host.graph, &memory), DERMIS_OK);
       uint32_t count = 0;
       EXPECT_EQ(dermis_graph_slots(host.graph, &count, nullptr), DERMIS_OK);
+      EXPECT_EQ(dermis_graph_settings(host.graph, &count, nullptr), DERMIS_OK);
       EXPECT_EQ(dermis_graph_heaps(host.graph, &count, nullptr), DERMIS_OK);
       size_t size = 0;
       EXPECT_EQ(dermis_graph_describe(host.graph, DERMIS_DESCRIBE_TEXT, &size, nullptr), DERMIS_OK);

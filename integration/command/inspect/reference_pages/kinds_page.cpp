@@ -73,6 +73,7 @@ std::string kinds_page(const KindRegistry& kinds) {
       "# Pass kinds\n\nMade by `dermis docs` from the signatures in `passes/`. `read` and `write` name the "
       "side of a pass on which a port stands; what it does with the\nresource decides stages, accesses and "
       "layouts. How large the resource has to be at least stands behind it (D0229). "
+      "A setting that is marked \"per frame\" may differ between the views of a graph. "
       "[techniques.md](techniques.md) tells what the kinds are for.\n";
   for (uint32_t k = 0; k < kinds.size(); ++k) {
     const PassKind& kind = kinds[KindId{k}];
@@ -94,9 +95,10 @@ std::string kinds_page(const KindRegistry& kinds) {
     if (kind.settings.empty()) continue;
     out += "\n| setting | default | | |\n|---|---|---|---|\n";
     for (const KindSetting& setting : kind.settings)
-      out += fmt::format("| `{}` | {} | {}{} | {} |\n", setting.name,
+      out += fmt::format("| `{}` | {} | {}{}{} | {} |\n", setting.name,
                          value_text(setting, setting.default_value), range_text(setting),
-                         setting.unit.empty() ? "" : fmt::format(" {}", setting.unit), cell(setting.doc));
+                         setting.unit.empty() ? "" : fmt::format(" {}", setting.unit),
+                         setting.per_frame ? "; per frame" : "", cell(setting.doc));
   }
   return out;
 }

@@ -1,0 +1,180 @@
+// Settings as a host sees them: listed with types, ranges and values, and read back.
+
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+void DERMIS_CALL record_nothing(void*, const dermis_pass_call*) {}
+
+// Two kinds of the host: "weight" of studio.mix may differ from frame to frame, all else may not.
+dermis_result register_kinds(dermis_context context) {
+  dermis_port port = DERMIS_PORT_INIT;
+  port.name = "picture";
+  port.usage = DERMIS_PORT_STORAGE_IMAGE_UPDATE;
+  dermis_kind_setting values[2] = {DERMIS_KIND_SETTING_INIT, DERMIS_KIND_SETTING_INIT};
+  values[0].name = "weight";
+  values[0].per_frame = 1;
+  values[1].name = "radius";
+  for (dermis_kind_setting& value : values) {
+    value.type = DERMIS_KIND_SETTING_REAL;
+    value.maximum = 1;
+  }
+  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
+  kind.name = "studio.mix";
+  kind.ports = &port;
+  kind.settings = values;
+  kind.port_count = 1;
+  kind.setting_count = 2;
+  kind.record = record_nothing;
+  return dermis_register_pass_kind(context, &kind);
+}
+
+const std::string graph_text = R"({ "dermis": 1, "name": "settings",
+  "settings": {
+    "on": { "bool": true },
+    "count": { "int": 4, "min": 1, "max": 9, "unit": "samples", "note": "a pixel" },
+    "how": { "enum": ["fast", "good", "best"], "default": "good" },
+    "weight": { "real": 0.5, "min": 0, "max": 1 },
+    "radius": { "real": 0.25, "min": 0, "max": 1 },
+    "both": { "real": 0.5, "min": 0, "max": 1 },
+    "threshold": { "real": 0.5, "min": 0, "max": 1 } },
+  "imports": { "light": { "format": "rgba16f", "size": "view" } },
+  "passes": [
+    { "pass": "one", "kind": "studio.mix", "write": { "picture": "light" },
+      "set": { "weight": "$weight", "radius": "$radius" } },
+    { "pass": "two", "kind": "studio.mix", "write": { "picture": "light" },
+      "set": { "weight": "$both", "radius": "$both" } },
+    { "pass": "three", "kind": "studio.mix", "write": { "picture": "light" }, "when": "threshold > 0.1",
+      "set": { "weight": "$threshold" } } ],
+  "exports": ["light"] })";
+
+std::vector<dermis_setting> settings_of(dermis_graph graph) {
+  uint32_t count = 0;
+  EXPECT_EQ(dermis_graph_settings(graph, &count, nullptr), DERMIS_OK) << dermis_last_error();
+  std::vector<dermis_setting> all(count, dermis_setting DERMIS_SETTING_INIT);
+  EXPECT_EQ(dermis_graph_settings(graph, &count, all.data()), DERMIS_OK) << dermis_last_error();
+  return all;
+}
+
+dermis_setting named(const std::vector<dermis_setting>& all, std::string_view name) {
+  const auto found = std::ranges::find_if(all, [&](const dermis_setting& one) { return one.name == name; });
+  EXPECT_NE(found, all.end()) << name;
+  return found != all.end() ? *found : dermis_setting DERMIS_SETTING_INIT;
+}
+
+struct Settings : testing::Test {
+  NullHost host;
+  void SetUp() override {
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+  }
+  void make(const std::string& text) {
+    ASSERT_EQ(register_kinds(host.context), DERMIS_OK) << dermis_last_error();
+    dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+    desc.source = source_of(text, "graph.json");
+    desc.width = desc.height = 16;
+    dermis_report report = nullptr;
+    ASSERT_EQ(dermis_graph_create(host.context, &desc, &host.graph, &report), DERMIS_OK)
+        << dermis_report_text(report);
+    dermis_report_destroy(report);
+  }
+  void set(const char* name, const char* json) const {
+    ASSERT_EQ(dermis_graph_set_setting(host.graph, name, json, nullptr), DERMIS_OK) << dermis_last_error();
+  }
+};
+
+TEST_F(Settings, AreListedWithTypeRangeUnitAndOptions) {
+  make(graph_text);
+  const auto all = settings_of(host.graph);
+  ASSERT_EQ(all.size(), 7u);
+  EXPECT_STREQ(all[0].name, "on") << "in the order of the file";
+  EXPECT_EQ(all[0].type, DERMIS_SETTING_BOOL);
+  EXPECT_EQ(all[0].maximum, 1.0);
+  EXPECT_EQ(all[0].default_value, 1.0);
+  EXPECT_EQ(all[0].options, nullptr);
+  const dermis_setting count = named(all, "count");
+  EXPECT_EQ(count.type, DERMIS_SETTING_INT);
+  EXPECT_EQ(count.minimum, 1.0);
+  EXPECT_EQ(count.maximum, 9.0);
+  EXPECT_EQ(count.value, 4.0);
+  EXPECT_STREQ(count.unit, "samples");
+  EXPECT_STREQ(count.note, "a pixel");
+  const dermis_setting how = named(all, "how");
+  EXPECT_EQ(how.type, DERMIS_SETTING_OPTION);
+  ASSERT_EQ(how.option_count, 3u);
+  EXPECT_STREQ(how.options[2], "best");
+  EXPECT_EQ(how.maximum, 2.0);
+  EXPECT_EQ(how.default_value, 1.0);
+  const dermis_setting weight = named(all, "weight");
+  EXPECT_EQ(weight.type, DERMIS_SETTING_REAL);
+  EXPECT_STREQ(weight.unit, "");
+  EXPECT_STREQ(weight.note, "");
+}
+
+TEST_F(Settings, AreReadBackAsTheyWereSet) {
+  make(graph_text);
+  set("on", "false");
+  set("count", "7");
+  set("how", "\"best\"");
+  set("weight", "0.125");
+  EXPECT_EQ(dermis_graph_set_setting(host.graph, "radius", "2", nullptr), DERMIS_ERROR_CONFIG);
+  const auto all = settings_of(host.graph);
+  EXPECT_EQ(named(all, "on").value, 0.0);
+  EXPECT_EQ(named(all, "count").value, 7.0);
+  EXPECT_EQ(named(all, "count").default_value, 4.0);
+  EXPECT_EQ(named(all, "how").value, 2.0);
+  EXPECT_EQ(named(all, "weight").value, 0.125);
+  EXPECT_EQ(named(all, "radius").value, 0.25) << "a refused value is not there";
+  EXPECT_EQ(named(all, "weight").set, 1u);
+  EXPECT_EQ(named(all, "radius").set, 0u);
+}
+
+TEST_F(Settings, OfFramesAreThoseThatOnlyFrameSettingsFollow) {
+  make(graph_text);
+  std::vector<std::string> per_frame;
+  for (const dermis_setting& one : settings_of(host.graph))
+    if (one.per_frame != 0) per_frame.emplace_back(one.name);
+  EXPECT_THAT(per_frame, ElementsAre("weight"))
+      << "radius and both are of the plan, threshold decides which passes run, nothing follows the others";
+}
+
+TEST_F(Settings, OfAShippedGraphSayWhatViewsMayChange) {
+  ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+  const auto all = settings_of(host.graph);
+  EXPECT_EQ(named(all, "accumulate_weight").per_frame, 1u);
+  EXPECT_EQ(named(all, "accumulate_clip").per_frame, 1u);
+  EXPECT_EQ(named(all, "samples").per_frame, 0u);
+  EXPECT_EQ(named(all, "texturing").per_frame, 0u);
+}
+
+TEST_F(Settings, ThatTheLibraryChoosesSaySoUntilTheyAreSet) {
+  const std::string text = read_text("configs/graphs/skin.json");
+  make(text);
+  EXPECT_EQ(named(settings_of(host.graph), "technique").chosen, 1u);
+  set("technique", "\"separable\"");
+  const dermis_setting technique = named(settings_of(host.graph), "technique");
+  EXPECT_EQ(technique.chosen, 0u);
+  EXPECT_EQ(technique.set, 1u);
+  EXPECT_STREQ(technique.options[static_cast<size_t>(technique.value)], "separable");
+}
+
+TEST_F(Settings, WrongArgumentsAreNamed) {
+  make(graph_text);
+  uint32_t count = 0;
+  EXPECT_EQ(dermis_graph_settings(nullptr, &count, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("dermis_graph_settings: graph is NULL"));
+  EXPECT_EQ(dermis_graph_settings(host.graph, nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("count is NULL"));
+}
+
+} // namespace
+} // namespace dermis::abi_test
