@@ -30,6 +30,7 @@ struct ValidateOptions {
   std::string profiles;           // folder of the profiles that captures name
   std::string sarif;              // file for the messages as SARIF, - for standard output; "": none
   GraphParts parts;               // of the graphs among the files
+  bool diagnose = false;          // name usual mistakes of integration in captured frames
 };
 ExitCode validate(const Session& session, const ValidateOptions& options);
 

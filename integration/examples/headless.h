@@ -135,7 +135,7 @@ static VkImage headless_image(headless* host, VkFormat format, uint32_t width, u
   return made.image;
 }
 
-static size_t headless_read_file(const char* path, char* text, size_t room) {
+static inline size_t headless_read_file(const char* path, char* text, size_t room) {
   FILE* file = fopen(path, "rb");
   size_t length;
   if (file == NULL) headless_die("cannot read", path);

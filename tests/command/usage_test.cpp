@@ -77,7 +77,7 @@ TEST_F(Usage, ASettingOutsideItsRangeOrOfTheWrongTypeIsRefused) {
   EXPECT_THAT(type.err, HasSubstr("expected an integer, found 'many'"));
   const Outcome word = run({"explain", burley, "--set", "texturing=posst"});
   EXPECT_EQ(word.exit_code, 2);
-  EXPECT_THAT(word.err, HasSubstr("'post', 'pre_post' or 'pre'"));
+  EXPECT_THAT(word.err, HasSubstr("'post', 'pre_post', 'pre' or 'demodulate'"));
 }
 
 TEST_F(Usage, ASlotThatIsNotOptionalCannotBeLeftUnbound) {

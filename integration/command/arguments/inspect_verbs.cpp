@@ -29,6 +29,8 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--profiles", options.profiles,
                         "Folder of profiles that captures name [configs/profiles]")
             ->type_name("DIR");
+        verb.add_flag("--diagnose", options.diagnose,
+                      "Name usual mistakes of integration in captured frames; fail where one is found");
         add_parts(verb, options.parts);
         add_kinds(verb, options.parts);
         verb.add_option("--sarif", options.sarif,

@@ -5,6 +5,7 @@
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "integration/command/expect/expectation.hpp"
+#include "integration/command/inspect/diagnose.hpp"
 #include "integration/command/inspect/file_kind.hpp"
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/output.hpp"
@@ -55,22 +56,26 @@ bool check_expectations(const Document& document, Diagnostics& diagnostics) {
   return read_expectations(document, diagnostics).has_value();
 }
 
-bool check_capture(const Document& document, const std::string& path, const std::string& profiles,
-                   const std::vector<std::string>& roots, Diagnostics& diagnostics) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  const uint32_t errors = diagnostics.count(Severity::error);
-  std::optional<CapturedFrame> frame =
-      read_description(document, folder, profiles_folder(profiles), diagnostics, roots);
-  if (frame) read_pictures(folder, document, *frame, diagnostics, roots);
-  return diagnostics.count(Severity::error) == errors;
-}
-
 struct CheckedFile {
   std::string path;
   std::string_view kind = "unreadable";
   bool good = false;
   std::string about = {}; // a line on what the file holds
 };
+
+void check_capture(const Document& document, const ValidateOptions& options, Diagnostics& diagnostics,
+                   CheckedFile& checked) {
+  const std::filesystem::path folder = std::filesystem::path(checked.path).parent_path();
+  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint32_t warnings = diagnostics.count(Severity::warning);
+  std::optional<CapturedFrame> frame =
+      read_description(document, folder, profiles_folder(options.profiles), diagnostics, options.parts.roots);
+  if (frame) read_pictures(folder, document, *frame, diagnostics, options.parts.roots);
+  checked.good = diagnostics.count(Severity::error) == errors;
+  if (!checked.good || !options.diagnose) return;
+  checked.about = diagnose_frame(*frame, document.where(document.root()), diagnostics);
+  checked.good = diagnostics.count(Severity::warning) == warnings;
+}
 
 CheckedFile check_file(const std::string& path, const ValidateOptions& options, Diagnostics& diagnostics) {
   const std::optional<Document> document = read_input(path, diagnostics);
@@ -91,7 +96,7 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
     checked.good = check_expectations(*document, diagnostics);
     break;
   case FileKindId::capture:
-    checked.good = check_capture(*document, path, options.profiles, options.parts.roots, diagnostics);
+    check_capture(*document, options, diagnostics, checked);
     break;
   case FileKindId::overlay:
     checked.good = check_overlay(*document, diagnostics);
@@ -147,6 +152,11 @@ ExitCode validate(const Session& session, const ValidateOptions& options) {
       std::any_of(files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == graph_kind; });
   if (!options.parts.overlays.empty() && !has_graph && !diagnostics.has_errors())
     return fail(session, ExitCode::usage, "--overlay needs a graph among the files");
+  const auto capture = file_kinds()[static_cast<size_t>(FileKindId::capture)].name;
+  const bool has_capture =
+      std::any_of(files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == capture; });
+  if (options.diagnose && !has_capture && !diagnostics.has_errors())
+    return fail(session, ExitCode::usage, "--diagnose needs captured frames among the files");
   const bool all_good =
       std::all_of(files.begin(), files.end(), [](const CheckedFile& one) { return one.good; });
   print_diagnostics(session, diagnostics);
