@@ -71,9 +71,14 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
     return refused_size(log, read, "dermis_graph_create: desc", stated_size(given),
                         first_version_size<dermis_graph_desc>);
+  if (desc.keep != 0)
+    return bad_argument(log, "dermis_graph_create: desc.keep is {:#x}, expected 0: only a reload can keep",
+                        desc.keep);
   auto graph = std::make_unique<dermis_graph_t>(context);
   Diagnostics diagnostics;
-  if (const dermis_result result = read_graph_desc(log, desc, graph->input, diagnostics); result != DERMIS_OK)
+  if (const dermis_result result =
+          read_graph_desc(log, "dermis_graph_create", desc, graph->input, diagnostics);
+      result != DERMIS_OK)
     return result;
   Candidates candidates;
   dermis_result result =
@@ -86,11 +91,31 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   return DERMIS_OK;
 }
 
+// Rebuilds the graph from what it was built from and what the description replaces of that.
+dermis_result reload(dermis_graph_t& graph, const dermis_graph_desc* given, dermis_report* report) {
+  constexpr const char* function = "dermis_graph_reload";
+  const Log& log = graph.context->log;
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
+    return refused_size(log, read, "dermis_graph_reload: desc", stated_size(given),
+                        first_version_size<dermis_graph_desc>);
+  const std::lock_guard changing(graph.changing);
+  ProgramInput input = graph.input;
+  input.included.clear(); // files may have changed
+  Diagnostics diagnostics;
+  if (const dermis_result result = read_graph_desc(log, function, desc, input, diagnostics);
+      result != DERMIS_OK)
+    return result;
+  const bool resized = input.width != graph.input.width || input.height != graph.input.height;
+  return replace_programs(graph, std::move(input),
+                          resized ? vulkan::HistoryReason::resized : vulkan::HistoryReason::reloaded, report,
+                          std::move(diagnostics));
+}
+
 } // namespace
 
 dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
-                               dermis_report* report) {
-  Diagnostics diagnostics;
+                               dermis_report* report, Diagnostics&& diagnostics) {
   Candidates candidates;
   const dermis_result built = build_candidates(graph, input, reason, diagnostics, candidates);
   const dermis_result result = conclude(graph.context->log, built, std::move(diagnostics), report);
@@ -119,23 +144,16 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
   });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_source* source,
+extern "C" dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_graph_desc* desc,
                                                          dermis_report* report) {
   if (report != nullptr) *report = nullptr;
   if (graph == nullptr) return bad_argument({}, "dermis_graph_reload: graph is NULL");
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_reload", [&] {
-    if (source == nullptr) return bad_argument(log, "dermis_graph_reload: source is NULL");
+    if (desc == nullptr) return bad_argument(log, "dermis_graph_reload: desc is NULL");
     if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_reload"); alive != DERMIS_OK)
       return alive;
-    const std::lock_guard changing(graph->changing);
-    ProgramInput input = graph->input;
-    input.included.clear(); // files may have changed
-    if (const dermis_result result =
-            read_source(log, "dermis_graph_reload: source", *source, input.source_name, input.source_text);
-        result != DERMIS_OK)
-      return result;
-    return replace_programs(*graph, std::move(input), dermis::vulkan::HistoryReason::reloaded, report);
+    return reload(*graph, desc, report);
   });
 }
 

@@ -89,9 +89,9 @@ template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
 const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant);
 
 // Builds candidates for all views from `input`; they take over at the next record. On failure nothing has
-// changed. Under graph.changing.
+// changed. Under graph.changing. `diagnostics`: what reading `input` found; an error fails the call.
 dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
-                               dermis_report* report);
+                               dermis_report* report, Diagnostics&& diagnostics = {});
 
 // What both the functions of a graph and of a view do; `function` names the one that was called.
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);

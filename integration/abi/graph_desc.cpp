@@ -8,12 +8,10 @@
 namespace dermis::abi {
 namespace {
 
-constexpr const char* function = "dermis_graph_create";
-
 // Calls `use(i, element)` for each element of a caller's array, stepped by the first element's struct_size.
 template <class T, class Use>
-dermis_result for_each(const Log& log, const char* field, const T* items, uint32_t count, const T& defaults,
-                       Use use) {
+dermis_result for_each(const Log& log, const char* function, const char* field, const T* items,
+                       uint32_t count, const T& defaults, Use use) {
   if (count == 0) return DERMIS_OK;
   if (items == nullptr)
     return bad_argument(log, "{}: desc.{} is NULL and its count is {}", function, field, count);
@@ -31,10 +29,10 @@ dermis_result for_each(const Log& log, const char* field, const T* items, uint32
   return DERMIS_OK;
 }
 
-dermis_result read_profiles(const Log& log, const dermis_graph_desc& desc, ProgramInput& input,
-                            Diagnostics& diagnostics) {
+dermis_result read_profiles(const Log& log, const char* function, const dermis_graph_desc& desc,
+                            ProgramInput& input, Diagnostics& diagnostics) {
   return for_each<dermis_profile>(
-      log, "profiles", desc.profiles, desc.profile_count, DERMIS_PROFILE_INIT,
+      log, function, "profiles", desc.profiles, desc.profile_count, DERMIS_PROFILE_INIT,
       [&](uint32_t i, const dermis_profile& profile) {
         const std::string field = fmt::format("{}: desc.profiles[{}]", function, i);
         if (profile.id == 0 || profile.id > largest_profile_id)
@@ -59,7 +57,8 @@ dermis_result read_profiles(const Log& log, const dermis_graph_desc& desc, Progr
       });
 }
 
-dermis_result read_unbound(const Log& log, const dermis_graph_desc& desc, ProgramInput& input) {
+dermis_result read_unbound(const Log& log, const char* function, const dermis_graph_desc& desc,
+                           ProgramInput& input) {
   if (desc.unbound_count > 0 && desc.unbound == nullptr)
     return bad_argument(log, "{}: desc.unbound is NULL and its count is {}", function, desc.unbound_count);
   for (uint32_t i = 0; i < desc.unbound_count; ++i) {
@@ -69,13 +68,12 @@ dermis_result read_unbound(const Log& log, const dermis_graph_desc& desc, Progra
   return DERMIS_OK;
 }
 
-dermis_result read_overlays(const Log& log, const dermis_graph_desc& desc, ProgramInput& input) {
+dermis_result read_overlays(const Log& log, const char* function, const dermis_graph_desc& desc,
+                            ProgramInput& input) {
   if (desc.reserved_too != 0)
     return bad_argument(log, "{}: desc.reserved_too is {}, expected 0", function, desc.reserved_too);
-  input.include = desc.include;
-  input.include_user = desc.include_user;
-  return for_each<dermis_source>(log, "overlays", desc.overlays, desc.overlay_count, DERMIS_SOURCE_INIT,
-                                 [&](uint32_t i, const dermis_source& source) {
+  return for_each<dermis_source>(log, function, "overlays", desc.overlays, desc.overlay_count,
+                                 DERMIS_SOURCE_INIT, [&](uint32_t i, const dermis_source& source) {
                                    SourceText overlay;
                                    const dermis_result result = read_source(
                                        log, fmt::format("{}: desc.overlays[{}]", function, i).c_str(), source,
@@ -86,9 +84,10 @@ dermis_result read_overlays(const Log& log, const dermis_graph_desc& desc, Progr
                                  });
 }
 
-dermis_result read_formats(const Log& log, const dermis_graph_desc& desc, ProgramInput& input) {
+dermis_result read_formats(const Log& log, const char* function, const dermis_graph_desc& desc,
+                           ProgramInput& input) {
   return for_each<dermis_slot_format>(
-      log, "formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
+      log, function, "formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
       [&](uint32_t i, const dermis_slot_format& given) {
         if (given.name == nullptr) return bad_argument(log, "{}: desc.formats[{}].name is NULL", function, i);
         if (given.reserved != 0)
@@ -127,19 +126,42 @@ dermis_result check_view_size(const Log& log, const char* of, uint32_t width, ui
                       largest_view);
 }
 
-dermis_result read_graph_desc(const Log& log, const dermis_graph_desc& desc, ProgramInput& input,
-                              Diagnostics& diagnostics) {
-  if (desc.reserved != 0)
-    return bad_argument(log, "{}: desc.reserved is {}, expected 0", function, desc.reserved);
-  dermis_result result =
-      read_source(log, "dermis_graph_create: desc.source", desc.source, input.source_name, input.source_text);
-  if (result == DERMIS_OK) result = check_view_size(log, function, desc.width, desc.height);
-  input.width = desc.width;
-  input.height = desc.height;
-  if (result == DERMIS_OK) result = read_unbound(log, desc, input);
-  if (result == DERMIS_OK) result = read_formats(log, desc, input);
-  if (result == DERMIS_OK) result = read_overlays(log, desc, input);
-  if (result == DERMIS_OK) result = read_profiles(log, desc, input, diagnostics);
+dermis_result read_graph_desc(const Log& log, const char* function, const dermis_graph_desc& desc,
+                              ProgramInput& input, Diagnostics& diagnostics) {
+  if ((desc.keep & ~DERMIS_KEEP_ALL) != 0)
+    return bad_argument(log, "{}: desc.keep is {:#x}, known bits are {:#x}", function, desc.keep,
+                        DERMIS_KEEP_ALL);
+  const auto replaces = [&](uint32_t part) { return (desc.keep & part) == 0; };
+  dermis_result result = DERMIS_OK;
+  if (replaces(DERMIS_KEEP_SOURCE))
+    result = read_source(log, fmt::format("{}: desc.source", function).c_str(), desc.source,
+                         input.source_name, input.source_text);
+  if (result == DERMIS_OK && replaces(DERMIS_KEEP_SIZE)) {
+    result = check_view_size(log, function, desc.width, desc.height);
+    input.width = desc.width;
+    input.height = desc.height;
+  }
+  if (result == DERMIS_OK && replaces(DERMIS_KEEP_UNBOUND)) {
+    input.unbound.clear();
+    result = read_unbound(log, function, desc, input);
+  }
+  if (result == DERMIS_OK && replaces(DERMIS_KEEP_FORMATS)) {
+    input.formats.clear();
+    result = read_formats(log, function, desc, input);
+  }
+  if (replaces(DERMIS_KEEP_INCLUDE)) {
+    input.include = desc.include;
+    input.include_user = desc.include_user;
+  }
+  if (result == DERMIS_OK && replaces(DERMIS_KEEP_OVERLAYS)) {
+    input.overlays.clear();
+    result = read_overlays(log, function, desc, input);
+  }
+  if (result == DERMIS_OK && replaces(DERMIS_KEEP_PROFILES)) {
+    input.profiles.clear();
+    input.tables.reset();
+    result = read_profiles(log, function, desc, input, diagnostics);
+  }
   return result;
 }
 

@@ -13,8 +13,9 @@ dermis_result read_source(const Log& log, const char* what, const dermis_source&
                           std::string& text);
 dermis_result check_view_size(const Log& log, const char* function, uint32_t width, uint32_t height);
 
-// Fills `input` but its profiles. Profile texts are parsed into it too; their errors go to `diagnostics`.
-dermis_result read_graph_desc(const Log& log, const dermis_graph_desc& desc, ProgramInput& input,
-                              Diagnostics& diagnostics);
+// Replaces what of `input` is not in desc.keep. Errors in the texts of profiles go to `diagnostics`.
+// `function` is named in messages.
+dermis_result read_graph_desc(const Log& log, const char* function, const dermis_graph_desc& desc,
+                              ProgramInput& input, Diagnostics& diagnostics);
 
 } // namespace dermis::abi

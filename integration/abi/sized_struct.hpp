@@ -35,7 +35,7 @@ template <>
 inline constexpr size_t first_version_size<dermis_slot_format> = offsetof(dermis_slot_format, reserved) +
                                                                  sizeof(uint32_t);
 template <>
-inline constexpr size_t first_version_size<dermis_graph_desc> = offsetof(dermis_graph_desc, reserved) +
+inline constexpr size_t first_version_size<dermis_graph_desc> = offsetof(dermis_graph_desc, keep) +
                                                                 sizeof(uint32_t);
 template <>
 inline constexpr size_t first_version_size<dermis_slot> = offsetof(dermis_slot, bound) + sizeof(uint32_t);

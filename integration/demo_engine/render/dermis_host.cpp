@@ -244,9 +244,11 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
 
 Result<bool> reload_graph(DermisHost& host, const std::string& text) {
   const std::string name = "reloaded graph";
-  const dermis_source source = source_of(name, text);
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(name, text);
+  desc.keep = DERMIS_KEEP_ALL & ~DERMIS_KEEP_SOURCE;
   Report report;
-  const dermis_result result = dermis_graph_reload(host.graph, &source, &report.handle);
+  const dermis_result result = dermis_graph_reload(host.graph, &desc, &report.handle);
   if (result == DERMIS_ERROR_CONFIG) return false;
   if (result != DERMIS_OK) return dermis_error("dermis_graph_reload", result, report.handle);
   if (auto done = query_slots(host); !done) return done.error();

@@ -300,6 +300,16 @@ typedef struct dermis_slot_format {
  * reload only. */
 typedef uint32_t(DERMIS_CALL* dermis_include_fn)(void* user, const char* name, dermis_source* source);
 
+/* What dermis_graph_reload keeps as the graph has it (dermis_graph_desc.keep). Those fields are then not read. */
+#define DERMIS_KEEP_SOURCE 0x1u
+#define DERMIS_KEEP_SIZE 0x2u
+#define DERMIS_KEEP_PROFILES 0x4u
+#define DERMIS_KEEP_UNBOUND 0x8u
+#define DERMIS_KEEP_FORMATS 0x10u
+#define DERMIS_KEEP_OVERLAYS 0x20u
+#define DERMIS_KEEP_INCLUDE 0x40u /* include and include_user */
+#define DERMIS_KEEP_ALL 0x7fu
+
 typedef struct dermis_graph_desc {
   size_t struct_size;
   dermis_source source;
@@ -310,8 +320,8 @@ typedef struct dermis_graph_desc {
   const char* const* unbound;
   const dermis_slot_format* formats; /* formats of the images to be bound; others: first declared */
   uint32_t format_count;
-  uint32_t reserved;               /* 0 */
-  const dermis_source* overlays;   /* applied to the graph one after the other, also at each reload */
+  uint32_t keep;                   /* of dermis_graph_reload: DERMIS_KEEP_...; 0 in dermis_graph_create */
+  const dermis_source* overlays;   /* applied to the graph one after the other */
   uint32_t overlay_count;
   uint32_t reserved_too;           /* 0 */
   dermis_include_fn include;       /* NULL: nothing can be included; else callable as long as the graph lives */
@@ -330,10 +340,12 @@ DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source
  * SHADER, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context, const dermis_graph_desc* desc,
                                                          dermis_graph* graph, dermis_report* report);
-/* Builds a new graph beside the running one and swaps it in at the next record of each view. On failure nothing changes. Histories
- * and settings are carried over by name where they agree; what is not is listed in the report.
- * Thread: beside. Errors: as dermis_graph_create. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_source* source,
+/* Builds what dermis_graph_create would build from desc, next to the running graph, and swaps it in at the next
+ * record of each view. `desc.keep` names what stays as it is: DERMIS_KEEP_ALL & ~DERMIS_KEEP_SOURCE replaces only
+ * the text of the graph, DERMIS_KEEP_ALL reads included files again. On failure nothing changes. Histories and
+ * settings are carried over by name where they agree; the report lists what is not. A new size acts as
+ * dermis_graph_resize. Thread: beside. Errors: as dermis_graph_create. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_graph_desc* desc,
                                                          dermis_report* report);
 /* Kernels from GLSL of the host's instead of those that the library was built with, so that shaders can be worked on
  * while the program runs. `open` delivers "subsurface_combine.comp" and what it includes, "include/tiles.glsl"; bindings

@@ -218,7 +218,7 @@ TEST_F(KeptHistory, AReloadedGraphReadsWhatItKeptBefore) {
     for (int i = 0; i < 6; ++i) {
       if (reload && i % 2 == 0) {
         const dermis_source source = source_of(text, "skin.json");
-        EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+        EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
       }
       EXPECT_EQ(lit_frame(float(i + 1) / 8).skips & DERMIS_SKIP_HISTORY, 0u) << "frame " << i;
     }
@@ -239,7 +239,7 @@ TEST_F(KeptHistory, AFrameThatWasTakenBackNeverHappened) {
       if (i == 4) set_budget(0);
       if (i == 6) { // the first of a graph made anew
         const dermis_source source = source_of(text, "skin.json");
-        EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+        EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
       }
       if (lose) lost_frame(i % 3 == 0 ? DERMIS_FRAME_RESET_HISTORY : 0);
       lit_frame(float(i + 1) / 8);

@@ -79,10 +79,13 @@ dermis_context_desc DermisTest::context_desc() {
   return desc;
 }
 
-dermis_result DermisTest::create_graph(const GraphOptions& options, dermis_graph* graph,
-                                       dermis_report* report) {
+namespace {
+
+// Calls use(desc) with a description that says what `options` say.
+template <class Use> dermis_result described(const GraphOptions& options, Use use) {
   const std::string text = options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
-  const std::string skin = read_text("configs/profiles/skin.json");
+  const std::string skin =
+      options.profile.empty() ? read_text("configs/profiles/skin.json") : options.profile;
   dermis_profile profile = DERMIS_PROFILE_INIT;
   profile.id = 1;
   profile.source = source_of(skin, "skin.json");
@@ -113,7 +116,22 @@ dermis_result DermisTest::create_graph(const GraphOptions& options, dermis_graph
   desc.overlay_count = static_cast<uint32_t>(overlays.size());
   desc.include = options.include;
   desc.include_user = options.include_user;
-  return dermis_graph_create(context, &desc, graph, report);
+  return use(desc);
+}
+
+} // namespace
+
+dermis_result DermisTest::create_graph(const GraphOptions& options, dermis_graph* graph,
+                                       dermis_report* report) {
+  return described(options, [&](const dermis_graph_desc& desc) {
+    return dermis_graph_create(context, &desc, graph, report);
+  });
+}
+
+dermis_result DermisTest::reload_graph(dermis_graph graph, const GraphOptions& options,
+                                       dermis_report* report) {
+  return described(options,
+                   [&](const dermis_graph_desc& desc) { return dermis_graph_reload(graph, &desc, report); });
 }
 
 dermis_graph DermisTest::make_graph(const GraphOptions& options) {

@@ -35,6 +35,7 @@ struct GraphOptions {
   dermis_include_fn include = nullptr;
   void* include_user = nullptr;
   bool profiles = true; // false: none
+  std::string profile;  // text; empty: configs/profiles/skin.json
 };
 
 struct DermisTest : testing::Test {
@@ -45,6 +46,8 @@ struct DermisTest : testing::Test {
 
   dermis_context_desc context_desc();
   dermis_result create_graph(const GraphOptions& options, dermis_graph* graph,
+                             dermis_report* report = nullptr);
+  dermis_result reload_graph(dermis_graph graph, const GraphOptions& options,
                              dermis_report* report = nullptr);
   dermis_graph
   make_graph(const GraphOptions& options = {}); // fails the test on an error; destroyed in TearDown

@@ -195,7 +195,7 @@ TEST_F(GraphLife, OverlaysApplyAtCreationAndAtEachReload) {
   EXPECT_THAT(described(wide, DERMIS_DESCRIBE_TEXT),
               HasSubstr("set      /resources/light/format  (overlay.json:7:14)"));
   const dermis_source source = source_of(burley, "graph.json");
-  EXPECT_EQ(dermis_graph_reload(wide, &source, nullptr), DERMIS_OK);
+  EXPECT_EQ(reload_text(wide, source), DERMIS_OK);
   EXPECT_GT(transient_bytes(wide), transient_bytes(narrow));
 
   options.overlays = {"{ \"dermis_overlay\": 1, \"edits\": [ { \"remove\": \"/passes/none\" } ] }"};
@@ -239,10 +239,10 @@ TEST_F(GraphLife, IncludedFilesComeFromTheHostOncePerCreationAndReload) {
   EXPECT_EQ(dermis_graph_resize(graph, 32, 32, nullptr), DERMIS_OK);
   EXPECT_EQ(delivery.calls, 1u) << "not asked again";
   const dermis_source source = source_of(including, "graph.json");
-  EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK);
+  EXPECT_EQ(reload_text(graph, source), DERMIS_OK);
   EXPECT_EQ(delivery.calls, 2u);
   delivery.text.clear();
-  EXPECT_EQ(dermis_graph_reload(graph, &source, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_EQ(reload_text(graph, source, &report), DERMIS_ERROR_CONFIG);
   EXPECT_THAT(take(report).all, HasSubstr("parts/classify.json"));
   EXPECT_EQ(dermis_graph_resize(graph, 64, 64, nullptr), DERMIS_OK) << "the running graph kept its own";
 }
@@ -272,10 +272,10 @@ TEST_F(GraphLife, AFailedReloadLeavesTheRunningGraphBitIdentical) {
       if (!reload) continue;
       const std::string broken = with("\"subsurface.burley\"", "\"subsurface.nothing\"");
       const dermis_source source = source_of(broken, "broken.json");
-      EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_ERROR_CONFIG);
+      EXPECT_EQ(reload_text(graph, source), DERMIS_ERROR_CONFIG);
       const std::string cut = burley.substr(0, burley.size() / 2);
       const dermis_source half = source_of(cut, "half.json");
-      EXPECT_EQ(dermis_graph_reload(graph, &half, nullptr), DERMIS_ERROR_CONFIG);
+      EXPECT_EQ(reload_text(graph, half), DERMIS_ERROR_CONFIG);
       EXPECT_EQ(dermis_graph_resize(graph, 0, 0, nullptr), DERMIS_ERROR_ARGUMENT);
       EXPECT_EQ(dermis_graph_set_setting(graph, "samples", "1e9", nullptr), DERMIS_ERROR_CONFIG);
     }
@@ -296,7 +296,7 @@ TEST_F(GraphLife, AReloadTakesOverAtTheNextRecordAndKeepsSettings) {
   const std::string renamed = with("\"pass\": \"scatter\"", "\"pass\": \"walk\"");
   const dermis_source source = source_of(renamed, "renamed.json");
   dermis_report report = nullptr;
-  ASSERT_EQ(dermis_graph_reload(graph, &source, &report), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(reload_text(graph, source, &report), DERMIS_OK) << dermis_last_error();
   dermis_report_destroy(report);
   for (int i = 0; i < 3; ++i) {
     dermis_frame next = frame(bound);
@@ -306,7 +306,7 @@ TEST_F(GraphLife, AReloadTakesOverAtTheNextRecordAndKeepsSettings) {
 
   const std::string poorer = with("\"min\": 4, \"max\": 4096", "\"min\": 4, \"max\": 32");
   const dermis_source lower = source_of(poorer, "poorer.json");
-  ASSERT_EQ(dermis_graph_reload(graph, &lower, &report), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(reload_text(graph, lower, &report), DERMIS_OK) << dermis_last_error();
   EXPECT_THAT(take(report).names, Contains("setting_not_carried")) << "64 is beyond the new range";
 }
 

@@ -87,7 +87,7 @@ TEST_F(Histories, GoOnOverAReloadAndARescaledSizeButNotOverAnother) {
   run(2);
   const std::string text = read_text("configs/graphs/burley.json");
   const dermis_source source = source_of(text, "graph.json");
-  ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
   run(1);
   expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
@@ -119,7 +119,7 @@ TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
   make(options);
   run(2);
   const dermis_source source = source_of(text, "graph.json");
-  ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
   const auto before = told(graph);
   ASSERT_EQ(before.size(), 2u); // ratio and place
   EXPECT_EQ(named(before, "ratio").valid, 0u);

@@ -177,7 +177,7 @@ TEST_F(HostKinds, OutliveAReload) {
   dermis_frame one = frame(bound);
   ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
   const dermis_source source = source_of(graph_text, "bloom.json");
-  ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
   dermis_frame two = frame(bound);
   ASSERT_EQ(record(graph, two), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(calls.size(), 4u);

@@ -50,7 +50,7 @@ TEST_F(InFlight, AReplacedProgramLivesUntilTheDeviceHasFinishedItsFrames) {
   const dermis_source source = source_of(text, "burley.json");
   for (uint64_t index = 1; index <= 8; ++index) {
     run(graph, bound, index);
-    ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
   }
   // TearDown asks the validation layer, which knows when an object in use was destroyed.
 }

@@ -59,8 +59,7 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   EXPECT_EQ(report, nullptr) << "a report that was not made is NULL";
   expect_argument_error(dermis_graph_create(nullptr, &desc, &graph, &report), "context");
   EXPECT_EQ(graph, nullptr);
-  dermis_source source = DERMIS_SOURCE_INIT;
-  expect_argument_error(dermis_graph_reload(nullptr, &source, &report), "graph");
+  expect_argument_error(dermis_graph_reload(nullptr, &desc, &report), "graph");
   expect_argument_error(dermis_graph_reload_shaders(nullptr, nullptr, nullptr, &report), "graph");
   expect_argument_error(dermis_graph_resize(nullptr, 1, 1, &report), "graph");
   expect_argument_error(dermis_graph_set_setting(nullptr, "a", "1", &report), "graph");

@@ -25,6 +25,15 @@ inline dermis_source source_of(const std::string& text, const char* name) { // p
   return source;
 }
 
+// Reloads the graph with another text; all else stays as it is.
+inline dermis_result reload_text(dermis_graph graph, const dermis_source& source,
+                                 dermis_report* report = nullptr) {
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source;
+  desc.keep = DERMIS_KEEP_ALL & ~DERMIS_KEEP_SOURCE;
+  return dermis_graph_reload(graph, &desc, report);
+}
+
 inline std::vector<dermis_slot> slots_of(dermis_graph graph) { // none where that fails
   uint32_t count = 0;
   if (dermis_graph_slots(graph, &count, nullptr) != DERMIS_OK) return {};

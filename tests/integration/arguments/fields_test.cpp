@@ -58,7 +58,7 @@ struct Fields : testing::Test {
 TEST_F(Fields, OfAGraphThatAreWrongAreNamedOneByOne) {
   using Change = std::function<void(Description&)>;
   const std::pair<const char*, Change> changes[] = {
-      {"desc.reserved is 1", [](auto& d) { d.desc.reserved = 1; }},
+      {"desc.keep is 0x1, expected 0", [](auto& d) { d.desc.keep = DERMIS_KEEP_SOURCE; }},
       {"desc.reserved_too is 1", [](auto& d) { d.desc.reserved_too = 1; }},
       {"desc.source.text is NULL", [](auto& d) { d.desc.source.text = nullptr; }},
       {"desc.source.length is 0", [](auto& d) { d.desc.source.length = 0; }},
@@ -131,9 +131,13 @@ TEST_F(Fields, OfCallsOnAGraphThatAreNullAreNamed) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
   };
-  refused(dermis_graph_reload(host.graph, nullptr, nullptr), "dermis_graph_reload: source is NULL");
-  const dermis_source empty = DERMIS_SOURCE_INIT;
-  refused(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: source.text is NULL");
+  refused(dermis_graph_reload(host.graph, nullptr, nullptr), "dermis_graph_reload: desc is NULL");
+  dermis_graph_desc empty = DERMIS_GRAPH_DESC_INIT;
+  refused(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: desc.source.text is NULL");
+  empty.keep = DERMIS_KEEP_SOURCE;
+  refused(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: the size is 0x0");
+  empty.keep = DERMIS_KEEP_ALL + 1;
+  refused(dermis_graph_reload(host.graph, &empty, nullptr), "desc.keep is 0x80, known bits are 0x7f");
   refused(dermis_graph_resize(host.graph, 0, 1, nullptr), "dermis_graph_resize: the size is 0x1");
   refused(dermis_graph_set_setting(host.graph, nullptr, "1", nullptr), "name is NULL");
   refused(dermis_graph_set_setting(host.graph, "samples", nullptr, nullptr), "json is NULL");

@@ -94,7 +94,7 @@ struct Commands : CameraTest {
     for (uint64_t index = 1; index <= 8; ++index) {
       const dermis_source source = source_of(text, "graph.json");
       if (index == 3) {
-        EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+        EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
       }
       if (index == 5) {
         EXPECT_EQ(dermis_graph_resize(graph, side - 7, side - 1, nullptr), DERMIS_OK) << dermis_last_error();

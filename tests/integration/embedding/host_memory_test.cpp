@@ -2,6 +2,7 @@
 // allocation is told and leaves nothing behind.
 
 #include "tests/framegraph/test_tier.hpp"
+#include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
 #include <gmock/gmock.h>
@@ -116,7 +117,7 @@ TEST_F(HostMemory, AllOfItGoesBack) {
   dermis_source source = DERMIS_SOURCE_INIT;
   source.text = wrong.data();
   source.length = wrong.size();
-  EXPECT_EQ(dermis_graph_reload(host.graph, &source, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_EQ(reload_text(host.graph, source, &report), DERMIS_ERROR_CONFIG);
   host.destroy();
   EXPECT_GT(heap.blocks, 0u) << "the report is still there";
   EXPECT_NE(std::string(dermis_report_text(report)), "");

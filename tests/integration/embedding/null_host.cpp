@@ -80,7 +80,7 @@ void NullHost::give_up_views() {
 
 dermis_result NullHost::reload(const std::string& text) const { // allocates nothing itself: tests count
   const dermis_source source = source_of(text.empty() ? own_graph() : text, "burley.json");
-  return dermis_graph_reload(graph, &source, nullptr);
+  return reload_text(graph, source);
 }
 
 dermis_frame NullHost::frame_at(uint64_t index) const {

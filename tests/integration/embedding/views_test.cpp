@@ -100,7 +100,7 @@ TEST_F(Views, AReloadKeepsTheHistoryOfEach) {
   const Change reload = [&](dermis_graph graph, uint64_t index) {
     const dermis_source source = source_of(text, "graph.json");
     if (index == 4) {
-      ASSERT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+      ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
     }
   };
   const auto light = together(3, last, reload);

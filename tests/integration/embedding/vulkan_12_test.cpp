@@ -25,7 +25,7 @@ struct Vulkan12 : CameraTest {
         const std::string text = read_text("configs/graphs/burley.json");
         const dermis_source source = source_of(text, "burley.json");
         if (index == 3) {
-          EXPECT_EQ(dermis_graph_reload(graph, &source, nullptr), DERMIS_OK) << dermis_last_error();
+          EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
         }
         submit(index, [&](VkCommandBuffer into) {
           dermis_frame frame = frame_of(camera, index);

@@ -3,6 +3,7 @@
 
 #include "integration/command/bench/record/counted_host.hpp"
 #include "tests/framegraph/test_tier.hpp"
+#include "tests/integration/abi/sources.hpp"
 
 #include <gtest/gtest.h>
 
@@ -86,7 +87,7 @@ TEST_P(FailingDevice, AFailedReloadLeavesTheGraphAsItWas) {
   source.name = given.name.c_str();
   source.text = given.graph.data();
   source.length = given.graph.size();
-  fail_each_creation(host, [&] { return dermis_graph_reload(host.graph(), &source, nullptr); });
+  fail_each_creation(host, [&] { return abi_test::reload_text(host.graph(), source); });
 }
 
 TEST_P(FailingDevice, WhatAReloadReplacesIsGoneOnceItsFramesAreDone) {
@@ -100,7 +101,7 @@ TEST_P(FailingDevice, WhatAReloadReplacesIsGoneOnceItsFramesAreDone) {
   source.text = given.graph.data();
   source.length = given.graph.size();
   for (uint32_t round = 0; round < 5; ++round) {
-    ASSERT_EQ(dermis_graph_reload(host.graph(), &source, nullptr), DERMIS_OK);
+    ASSERT_EQ(abi_test::reload_text(host.graph(), source), DERMIS_OK);
     for (uint32_t frame = 0; frame <= frames_in_flight; ++frame)
       ASSERT_EQ(host.record_frame(), DERMIS_OK);
     EXPECT_EQ(host.device().alive(), alive);

@@ -4,6 +4,7 @@
 // DERMIS_SOAK_FRAMES: how many frames (300; ./test.sh --full: 20 times 5,000); DERMIS_SOAK_SEED: which;
 // DERMIS_SOAK_VALIDATION=0: without the validation layer.
 
+#include "tests/integration/abi/sources.hpp"
 #include "tests/integration/soak/memory_counts.hpp"
 #include "tests/integration/soak/object_counts.hpp"
 #include "tests/integration/soak/stage.hpp"
@@ -188,7 +189,7 @@ struct Soak : DermisTest {
       const bool broken = chance(0.5);
       if (broken) text.resize(text.size() * (1 + random.below(98)) / 100);
       const dermis_source source = source_of(text, "graph.json");
-      EXPECT_EQ(dermis_graph_reload(stage.graph, &source, nullptr), broken ? DERMIS_ERROR_CONFIG : DERMIS_OK)
+      EXPECT_EQ(reload_text(stage.graph, source), broken ? DERMIS_ERROR_CONFIG : DERMIS_OK)
           << dermis_last_error();
       ++(broken ? totals.refused_reloads : totals.reloads);
     }
