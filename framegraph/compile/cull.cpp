@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace dermis {
 namespace {
@@ -12,12 +13,12 @@ namespace {
 struct Culler {
   CompileContext& c;
 
-  PassId following{};  // whose reads are looked at
-  bool missed = false; // it needs one that stands behind it
+  PassId following{};                         // whose reads are looked at
+  std::vector<uint64_t>& waiting = c.waiting; // bit set of passes that are needed and not yet followed
 
   void need(PassId pass, Reason::Why why, uint32_t a = 0, uint32_t b = 0) {
     if (c.input->reasons && !c.live[pass.value]) c.because(Reason::About::pass, pass.value, why, a, b);
-    missed |= (int{c.live[pass.value] == 0} & int{following < pass}) != 0;
+    waiting[pass.value / 64] |= uint64_t{c.live[pass.value] == 0} << pass.value % 64;
     c.live[pass.value] = 1;
   }
 
@@ -53,15 +54,18 @@ struct Culler {
 
   // Most passes stand behind those that they need: the last one first, once.
   void follow_all() {
-    std::vector<uint8_t>& followed = c.seen;
-    followed.assign(c.live.size(), 0);
-    for (missed = true; missed;) {
-      missed = false;
-      for (auto pass = static_cast<uint32_t>(c.live.size()); pass-- > 0;) {
-        if (!c.live[pass] || followed[pass]) continue;
-        followed[pass] = 1;
-        following = PassId{pass};
-        follow(following);
+    for (bool any = true; any;) {
+      any = false;
+      for (size_t word = waiting.size(); word-- > 0;) {
+        uint64_t below = ~uint64_t{0}; // passes of this word that come before the one followed last
+        while (const uint64_t left = waiting[word] & below) {
+          const auto bit = static_cast<uint32_t>(std::bit_width(left) - 1);
+          below = (uint64_t{1} << bit) - 1;
+          waiting[word] &= ~(uint64_t{1} << bit);
+          any = true;
+          following = PassId{static_cast<uint32_t>(word * 64 + bit)};
+          follow(following);
+        }
       }
     }
   }
@@ -174,6 +178,7 @@ struct Culler {
 void cull(CompileContext& c) {
   const auto passes = static_cast<uint32_t>(c.graph->passes.size());
   c.live.assign(passes, 0);
+  c.waiting.assign((passes + 63) / 64, 0);
   c.reported.assign(c.graph->resources.size(), 0);
   Culler culler{c};
   for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {

@@ -226,6 +226,7 @@ struct CompileContext {
   bool overwrites = false;                            // some value is written over another
   // cull
   std::vector<uint8_t> live;
+  std::vector<uint64_t> waiting; // bit set of passes that are needed and whose reads were not looked at
   std::vector<uint8_t> reported; // by resource: one root cause, one diagnostic
   std::vector<Queue> queue;      // by pass, where there are two
   // usage

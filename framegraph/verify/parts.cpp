@@ -31,6 +31,24 @@ std::vector<ResourceParts> parts_of(const Plan& plan) {
   return parts;
 }
 
+std::vector<uint32_t> used_parts(const Plan& plan, const std::vector<ResourceParts>& parts) {
+  std::vector<uint32_t> used(parts.size(), 0);
+  std::vector<std::vector<uint8_t>> seen(parts.size());
+  const auto use = [&](uint32_t resource, const SubresourceRange& range) {
+    if (used[resource] == parts[resource].count()) return;
+    seen[resource].resize(parts[resource].count(), 0);
+    parts[resource].for_each_in(range, [&](uint32_t part) {
+      used[resource] += seen[resource][part] == 0 ? 1 : 0;
+      seen[resource][part] = 1;
+    });
+  };
+  for (const PlanAccess& access : plan.accesses)
+    use(access.resource, access.range);
+  for (const PlanBarrier& barrier : plan.barriers)
+    use(barrier.resource, barrier.range);
+  return used;
+}
+
 bool meet(const SubresourceRange& a, const SubresourceRange& b) {
   return a.first_mip < b.first_mip + b.mips && b.first_mip < a.first_mip + a.mips &&
          a.first_layer < b.first_layer + b.layers && b.first_layer < a.first_layer + a.layers;

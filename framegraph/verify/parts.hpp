@@ -4,7 +4,9 @@
 
 #include "framegraph/compile/plan.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace dermis {
@@ -15,25 +17,32 @@ struct ResourceParts {
 
   uint32_t count() const { return static_cast<uint32_t>((mips.size() - 1) * (layers.size() - 1)); }
 
-  SubresourceRange begin_of(uint32_t part) const { // its first mip of its first layer
-    const auto columns = static_cast<uint32_t>(layers.size() - 1);
-    return {mips[part / columns], 1, layers[part % columns], 1};
-  }
-
   // Calls with the number of each part that begins in the range.
   template <class Visit> void for_each_in(const SubresourceRange& range, Visit visit) const {
     const auto columns = static_cast<uint32_t>(layers.size() - 1);
-    for (uint32_t m = 0; m + 1 < mips.size(); ++m) {
-      if (mips[m] < range.first_mip || mips[m] >= range.first_mip + range.mips) continue;
-      for (uint32_t l = 0; l < columns; ++l)
-        if (layers[l] >= range.first_layer && layers[l] < range.first_layer + range.layers)
-          visit(m * columns + l);
-    }
+    const auto [first_row, end_row] = between(mips, range.first_mip, range.mips);
+    const auto [first_column, end_column] = between(layers, range.first_layer, range.layers);
+    for (uint32_t m = first_row; m < end_row; ++m)
+      for (uint32_t l = first_column; l < end_column; ++l)
+        visit(m * columns + l);
+  }
+
+private:
+  // Which rows or columns begin within the range.
+  static std::pair<uint32_t, uint32_t> between(const std::vector<uint16_t>& cuts, uint32_t first,
+                                               uint32_t count) {
+    const auto place = [&](uint32_t value) {
+      return static_cast<uint32_t>(std::lower_bound(cuts.begin(), cuts.end() - 1, value) - cuts.begin());
+    };
+    return {place(first), place(first + count)};
   }
 };
 
 // By resource. `plan` must pass verify_structure().
 std::vector<ResourceParts> parts_of(const Plan& plan);
+
+// By resource: how many of the parts any access or barrier touches.
+std::vector<uint32_t> used_parts(const Plan& plan, const std::vector<ResourceParts>& parts);
 
 // Have the two ranges a mip of a layer in common?
 bool meet(const SubresourceRange& a, const SubresourceRange& b);

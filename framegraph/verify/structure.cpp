@@ -5,14 +5,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <span>
 #include <tuple>
+#include <utility>
 
 namespace dermis {
 namespace {
 
 constexpr uint32_t most_mips = 32; // of an image whose sides are 32-bit numbers
-// A hostile plan could lay all that it has into the same bytes.
-constexpr uint64_t most_shared_pairs = 1u << 25;
 
 struct Checker {
   const Plan& plan;
@@ -80,6 +82,7 @@ struct Checker {
         expect(placement.size <= plan.heaps[placement.heap].size &&
                    placement.offset <= plan.heaps[placement.heap].size - placement.size,
                "a placement reaches beyond its heap", i);
+      expect(placement.size > 0, "a placement holds no byte", i);
       expect(placement.first_use <= placement.last_use &&
                  placement.last_use < std::max<size_t>(plan.passes.size(), 1),
              "a placement is alive outside of the frame", i);
@@ -87,28 +90,56 @@ struct Checker {
     shared_memory();
   }
 
-  // In the order of the heap: behind a placement's end nothing overlaps it.
+  static std::pair<uint32_t, uint32_t> lifetime(const Placement& placement) {
+    return placement.persistent ? std::pair(0u, UINT32_MAX)
+                                : std::pair(placement.first_use, placement.last_use);
+  }
+
+  // Histories among each other, and transients among each other. Memory that a history shares with transients
+  // can be judged only by a run over several frames.
   void shared_memory() {
     std::vector<size_t> sorted(plan.placements.size());
     for (size_t i = 0; i < sorted.size(); ++i)
       sorted[i] = i;
-    std::sort(sorted.begin(), sorted.end(), [&](size_t a, size_t b) {
-      const Placement &left = plan.placements[a], &right = plan.placements[b];
-      return std::tie(left.heap, left.offset, a) < std::tie(right.heap, right.offset, b);
-    });
-    uint64_t pairs = 0;
-    for (size_t i = 0; i < sorted.size(); ++i)
-      for (size_t k = i + 1; k < sorted.size() && objections.size() < most_objections; ++k) {
-        const Placement &lower = plan.placements[sorted[i]], &upper = plan.placements[sorted[k]];
-        if (upper.heap != lower.heap || upper.offset - lower.offset >= lower.size) break;
-        if (++pairs > most_shared_pairs) return expect(false, "too many placements share memory to go on", i);
-        // What a history lends while it holds nothing, only a run over several frames can tell.
-        const bool lent = lower.persistent != upper.persistent;
-        const bool together = (lower.persistent && upper.persistent) ||
-                              (lower.first_use <= upper.last_use && upper.first_use <= lower.last_use);
-        expect(lent || !together || !share_memory(lower, upper),
-               "placements alive at the same time share memory", std::max(sorted[i], sorted[k]));
+    const auto key = [&](size_t i) {
+      const Placement& placement = plan.placements[i];
+      return std::tuple(placement.persistent, placement.heap, lifetime(placement).first, i);
+    };
+    std::sort(sorted.begin(), sorted.end(), [&](size_t a, size_t b) { return key(a) < key(b); });
+    for (size_t i = 0; i < sorted.size();) {
+      const Placement& first = plan.placements[sorted[i]];
+      size_t end = i;
+      while (end < sorted.size() && plan.placements[sorted[end]].persistent == first.persistent &&
+             plan.placements[sorted[end]].heap == first.heap)
+        ++end;
+      shared_memory({sorted.data() + i, end - i});
+      i = end;
+    }
+  }
+
+  // Of one heap, sorted by first use. Those that are alive share no byte, so that a new one has to be
+  // compared with its two neighbours only.
+  void shared_memory(std::span<const size_t> sorted) {
+    std::map<uint64_t, size_t> alive;                    // by offset
+    std::set<std::pair<uint32_t, uint64_t>> by_last_use; // last use and offset of each that is alive
+    for (const size_t i : sorted) {
+      const Placement& own = plan.placements[i];
+      while (!by_last_use.empty() && by_last_use.begin()->first < lifetime(own).first) {
+        alive.erase(by_last_use.begin()->second);
+        by_last_use.erase(by_last_use.begin());
       }
+      const auto next = alive.lower_bound(own.offset);
+      const auto refuses = [&](size_t other) {
+        const bool shares = share_memory(own, plan.placements[other]);
+        expect(!shares, "placements alive at the same time share memory", std::max(i, other));
+        return shares;
+      };
+      if ((next != alive.end() && refuses(next->second)) ||
+          (next != alive.begin() && refuses(std::prev(next)->second)))
+        continue;
+      alive.emplace(own.offset, i);
+      by_last_use.emplace(lifetime(own).second, own.offset);
+    }
   }
 
   // Only reads can be left out; what stands in for another stands behind it.

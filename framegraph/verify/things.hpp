@@ -4,12 +4,14 @@
 // share no byte; images and buffers whose placements overlap share those that the placements share. Every
 // access leaves an *event* on its thing, which remembers at which stages later work is ordered behind it and
 // where a write is visible. Barriers extend both along execution chains (Vulkan 1.3, "Execution and Memory
-// Dependencies"), on the bytes of their own thing alone: an event of a larger thing then falls into pieces.
+// Dependencies"), on the bytes of their own thing alone. memory.hpp keeps the events by the bytes they are
+// on.
 //
 //  read    Every earlier write to the same bytes is ordered before it, the last one to the same thing is
 //          visible to it, and the contents are defined and are those of the frame meant: written that many
 //          frames ago, or before the first.
-//  write   Every earlier access to the same bytes is ordered before it, every earlier write is available, and
+//  write   Goes to this frame's instance. Every earlier access to the same bytes is ordered before it, every
+//  earlier write is available, and
 //          the last one visible to it unless it was read since: then the wait for the reader is enough.
 //  maybe   A read that depends on the validity of a history counts as if it happened, but nobody may
 //          rely on it.
@@ -44,17 +46,11 @@ struct Visible {
   Queue queue;
   Stage stages;
   Access access;
-};
 
-struct Bytes { // of a heap
-  uint64_t begin = 0, end = UINT64_MAX;
-
-  bool meets(const Bytes& other) const { return begin < other.end && other.begin < end; }
-  bool within(const Bytes& other) const { return begin >= other.begin && end <= other.end; }
+  bool operator==(const Visible&) const = default;
 };
 
 struct Event {
-  Bytes bytes;       // on which it is what is said here
   Stage stages = 0;  // where it happened; 0 for a layout transition, which only chains
   Access writes = 0; // 0: a read
   bool is_write = false;
@@ -66,10 +62,12 @@ struct Event {
   std::array<int64_t, queues> since{never, never}; // by queue: the pass from which on that is so
   bool available = false;
   std::vector<Visible> visible;
+
+  bool operator==(const Event&) const = default;
 };
 
 struct Thing {
-  uint32_t owner = 0;               // into Machine::instances
+  uint32_t owner = 0;               // into Memory::instances
   uint32_t placement = no_instance; // or the host's
   bool image = false;
   bool with_host = false;    // not ours to touch now
@@ -80,13 +78,16 @@ struct Thing {
   bool defined = false; // contents mean something
   int64_t of_frame = 0; // what was written last: below 0 as the executor made it
   Layout layout = Layout::undefined;
-  std::vector<Event> events;
+  bool written = false; // since other instances left something on its bytes
 };
 
 // One instance of a resource: its parts follow each other among the things.
 struct InstanceThings {
   uint32_t first = 0, count = 0;
-  uint32_t placement = no_instance;
+  uint32_t used_things = 0;             // that the plan ever touches
+  uint32_t written_things = 0;          // see Thing::written
+  uint32_t space = 0;                   // its heap, or what the host bound
+  uint64_t begin = 0, end = UINT64_MAX; // bytes there
 };
 
 } // namespace dermis

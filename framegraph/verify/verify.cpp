@@ -3,7 +3,7 @@
 
 #include "framegraph/verify/verify.hpp"
 
-#include "framegraph/verify/overlaps.hpp"
+#include "framegraph/verify/memory.hpp"
 #include "framegraph/verify/parts.hpp"
 #include "framegraph/verify/structure.hpp"
 #include "framegraph/verify/things.hpp"
@@ -16,50 +16,61 @@
 namespace dermis {
 namespace {
 
-// A hostile plan could divide images, and accesses by barriers for some of their bytes, without end.
-constexpr uint64_t most_things = 1u << 18, most_pieces = 1u << 21;
-// Nor could it let all its memory meet without end: each access is held against earlier ones to the same
-// bytes. A chain of 4,096 passes, the longest that a graph may have, takes 3.3e8 looks.
-constexpr uint64_t most_looks = 1u << 30;
+// A hostile plan could divide images without end, and let everything meet in the same memory. A chain of
+// 4,096 passes, the longest that a graph may have, takes 1.5e5 looks.
+constexpr uint64_t max_things = 1u << 20, max_looks = 1u << 27;
+
+// Waits of one queue for the other one that show it more than the waits before them, in their order.
+struct Waits {
+  std::vector<int64_t> until; // the pass that the other queue has done by then
+  std::vector<int64_t> at;    // the pass that waits
+
+  void add(int64_t pass, int64_t now) {
+    if (!until.empty() && until.back() >= pass) return;
+    until.push_back(pass);
+    at.push_back(now);
+  }
+  bool knows(int64_t pass) const { return !until.empty() && until.back() >= pass; }
+  // The pass that was the first to know.
+  int64_t since(int64_t pass) const {
+    return at[static_cast<size_t>(std::lower_bound(until.begin(), until.end(), pass) - until.begin())];
+  }
+};
 
 struct Machine {
   const Plan& plan;
   const std::vector<ResourceParts> parts; // by resource
-  std::vector<Thing> things = {};
-  std::vector<InstanceThings> instances = {};
-  std::vector<uint32_t> first_instance = {};           // by resource: into instances
-  std::vector<std::vector<uint32_t>> overlapping = {}; // by instance: others with a byte in common
+  Memory memory = Memory(plan);
+  std::vector<uint32_t> first_instance = {}; // by resource: into Memory::instances
+  std::vector<uint8_t> in_place = {};        // by resource: this frame is written over the oldest one
   std::vector<std::string> objections = {};
   uint32_t frame = 0;
   Queue queue = Queue::main;                             // that runs now
   int64_t now = 0;                                       // which pass, counted through all frames
   std::array<std::vector<int64_t>, queues> reached = {}; // by queue and point: the pass behind which it was
   std::array<size_t, queues> points_before = {};         // those of earlier frames
-  std::array<int64_t, queues> waited = {};               // by queue: the last pass of the other one it knows
+  std::array<Waits, queues> waits = {};                  // by the queue that waits
   int64_t frame_began = 0;                               // behind which pass
-  uint64_t pieces = 0;                                   // that barriers made of events
-  uint64_t looks = 0;                                    // at what shares memory
+  uint64_t looks = 0;                                    // at events
 
   void prepare() {
+    const std::vector<uint32_t> used = used_parts(plan, parts);
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       const PlanResource& resource = plan.resources[r];
-      first_instance.push_back(static_cast<uint32_t>(instances.size()));
+      first_instance.push_back(static_cast<uint32_t>(memory.instances.size()));
       for (uint32_t i = 0; i < resource.instance_count; ++i) {
         Thing thing;
-        thing.owner = static_cast<uint32_t>(instances.size());
         thing.image = resource.type == ResourceType::image;
         if (resource.first_instance != no_instance) thing.placement = resource.first_instance + i;
         thing.with_host = resource.first_instance == no_instance;
-        instances.push_back({static_cast<uint32_t>(things.size()), parts[r].count(), thing.placement});
-        things.insert(things.end(), parts[r].count(), thing);
+        memory.add_instance(thing, parts[r].count(), used[r]);
       }
     }
-    overlapping = overlaps_of(plan, instances);
-    // As if the executor had just made them.
+    in_place.assign(plan.resources.size(), 0);
+    for (const PlanHistory& history : plan.histories)
+      in_place[history.resource] = plan.resources[history.resource].instance_count == history.frames;
     for_each_kept([&](const PlanHistory&, uint32_t back, Layout layout, uint32_t index) {
-      things[index].defined = true;
-      things[index].of_frame = -int64_t{back};
-      things[index].layout = layout;
+      memory.set_kept(index, -int64_t{back}, layout);
     });
   }
 
@@ -83,7 +94,7 @@ struct Machine {
   template <class Visit>
   void for_each_part(uint32_t resource, uint32_t frames_back, const SubresourceRange& range,
                      Visit visit) const {
-    const uint32_t first = instances[instance_of(resource, frames_back)].first;
+    const uint32_t first = memory.instances[instance_of(resource, frames_back)].first;
     parts[resource].for_each_in(range, [&](uint32_t part) { visit(first + part); });
   }
 
@@ -93,66 +104,34 @@ struct Machine {
           fmt::format("frame {}, {}: resource {}@-{}: {}", frame, where, resource, frames_back, what));
   }
 
-  // Counts what is looked at; false, and an objection, once it is too much to go on.
-  bool may_look(uint64_t count) {
-    looks += count;
-    if (looks <= most_looks) return true;
-    if (looks - count <= most_looks)
-      complain(
-          fmt::format("accesses meet in memory more than {} times: too often to be verified", most_looks));
-    return false;
-  }
+  // Whether the check has taken too long to go on.
+  bool is_over() const { return looks > max_looks; }
 
-  template <class Visit> void for_each_overlapping(uint32_t index, Visit visit) {
-    visit(things[index], true);
-    for (const uint32_t i : overlapping[things[index].owner])
-      for (uint32_t t = instances[i].first; t < instances[i].first + instances[i].count; ++t) {
-        if (!may_look(1 + things[t].events.size())) return;
-        visit(things[t], false);
-      }
-  }
-
-  Bytes bytes_of(uint32_t index) const {
-    const uint32_t placement = things[index].placement;
-    if (placement == no_instance) return {}; // the host's: nothing else lies there
-    const Placement& memory = plan.placements[placement];
-    return {memory.offset, memory.offset + memory.size};
-  }
-
-  // What a barrier for these bytes orders of an event, and what it does not, part ways.
-  void divide(std::vector<Event>& events, const Bytes& by, Stage source) {
-    for (size_t e = 0; e < events.size(); ++e) {
-      const Bytes whole = events[e].bytes;
-      if (whole.within(by) || !whole.meets(by) || !starts_from(events[e], source)) continue;
-      if (++pieces > most_pieces) return complain("barriers divide memory into too many pieces");
-      const auto cut = [&](uint64_t at) { // the upper piece stands behind the lower one
-        events[e].bytes.end = at;
-        events.insert(events.begin() + static_cast<std::ptrdiff_t>(e) + 1, events[e]);
-        events[++e].bytes = {at, whole.end};
-      };
-      if (whole.begin < by.begin) cut(by.begin);
-      if (whole.end > by.end) cut(by.end);
-    }
-  }
-
-  bool renewed_in_place(uint32_t resource) const {
-    return std::any_of(plan.histories.begin(), plan.histories.end(), [&](const PlanHistory& history) {
-      return history.resource == resource && plan.resources[resource].instance_count == history.frames;
+  // Calls with the events of the thing itself and of what shares memory with it, as the waits so far left
+  // them.
+  template <class Visit> void for_each_meeting(uint32_t index, Visit visit) {
+    ++looks;
+    memory.for_each_meeting(index, [&](ThingEvents& there, bool own) {
+      looks += 1 + there.events.size();
+      if (is_over()) return;
+      for (Event& event : there.events)
+        apply_waits(event);
+      visit(there, own);
     });
   }
 
   void begin_frame() {
-    for (Thing& thing : things)
+    for (Thing& thing : memory.things)
       thing.handed_back = false;
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
-      if (renewed_in_place(r)) continue; // it holds the oldest frame still
+      if (in_place[r] != 0) continue; // it holds the oldest frame still
       for_each_part(r, 0, plan.resources[r].whole(), [&](uint32_t index) {
-        Thing& current = things[index];
+        Thing& current = memory.things[index];
         current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
       });
     }
     for_each_kept([&](const PlanHistory& history, uint32_t back, Layout layout, uint32_t index) {
-      if (things[index].layout != layout)
+      if (memory.things[index].layout != layout)
         object("is not in the layout the plan promises at the start of a frame", history.resource, back,
                "start");
     });
@@ -168,6 +147,13 @@ struct Machine {
     if (stages != 0) event.since[index_of(queue)] = std::min(event.since[index_of(queue)], now);
   }
 
+  static void show(Event& event, const Visible& to) {
+    const bool shown = std::any_of(event.visible.begin(), event.visible.end(), [&](const Visible& one) {
+      return one.queue == to.queue && (to.stages & ~one.stages) == 0 && (to.access & ~one.access) == 0;
+    });
+    if (!shown) event.visible.push_back(to);
+  }
+
   void extend(Event& event, const PlanBarrier& barrier) const {
     if (!starts_from(event, barrier.source_stages)) return;
     const bool direct =
@@ -175,21 +161,24 @@ struct Machine {
     order(event, barrier.destination_stages);
     if (!event.is_write) return;
     if (direct && (event.writes & ~barrier.source_access) == 0) event.available = true;
-    if (event.available)
-      event.visible.push_back({queue, barrier.destination_stages, barrier.destination_access});
+    if (event.available) show(event, {queue, barrier.destination_stages, barrier.destination_access});
   }
 
-  // Whatever the other queue had done by then, or had been ordered behind.
-  void wait_for_pass(int64_t pass) {
-    const size_t other = index_of(other_than(queue));
-    for (Thing& thing : things)
-      for (Event& event : thing.events) {
-        const bool done = event.queue != queue && event.at <= pass;
-        if (!done && (event.ordered[other] == 0 || event.since[other] > pass)) continue;
-        order(event, everything);
-        event.available = true;
-        if (event.is_write) event.visible.push_back({queue, everything, everything});
-      }
+  // A wait orders and shows whatever the other queue had done by then, or had been ordered behind. What one
+  // wait changes may be what another one of the other queue passes on.
+  void apply_waits(Event& event) const {
+    for (uint32_t unchanged = 0, q = 0; unchanged < queues; q ^= 1u, ++unchanged) {
+      const size_t other = q ^ 1u;
+      if (event.ordered[q] == everything) continue;
+      int64_t wanted = event.ordered[other] != 0 ? event.since[other] : never;
+      if (index_of(event.queue) == other) wanted = std::min(wanted, event.at);
+      if (wanted == never || !waits[q].knows(wanted)) continue;
+      event.ordered[q] = everything;
+      event.since[q] = std::min(event.since[q], waits[q].since(wanted));
+      event.available = true;
+      if (event.is_write) show(event, {static_cast<Queue>(q), everything, everything});
+      unchanged = 0;
+    }
   }
 
   void complain(std::string what) {
@@ -204,11 +193,8 @@ struct Machine {
       complain(
           fmt::format("frame {}, {}: waits for point {} of the other queue, which is not reached before it",
                       frame, where, point));
-    else if (wanted > 0) { // else the frames before the first, which nobody waits for
-      wait_for_pass(reached[other][wanted - 1]);
-      int64_t& known = waited[index_of(queue)];
-      known = std::max(known, reached[other][wanted - 1]);
-    }
+    else if (wanted > 0) // else the frames before the first, which nobody waits for
+      waits[index_of(queue)].add(reached[other][wanted - 1], now);
   }
 
   void reach(uint32_t point, const std::string& where) {
@@ -220,9 +206,8 @@ struct Machine {
   }
 
   // A transition, as a write that its own barrier has made available.
-  Event left_by(const PlanBarrier& barrier, const Bytes& bytes) const {
+  Event left_by(const PlanBarrier& barrier) const {
     Event event;
-    event.bytes = bytes;
     event.is_write = event.available = true;
     event.queue = queue;
     event.at = now;
@@ -267,7 +252,8 @@ struct Machine {
   }
 
   void run(const PlanBarrier& barrier, uint32_t index, const std::string& where) {
-    Thing& thing = things[index];
+    if (is_over()) return;
+    Thing& thing = memory.things[index];
     const auto wrong = [&](const char* what) { object(what, barrier.resource, barrier.frames_back, where); };
     if (barrier.to_host) {
       if (thing.placement != no_instance) wrong("is handed to the host, but is not the host's");
@@ -280,7 +266,7 @@ struct Machine {
       if (!thing.with_host) wrong("is taken over from the host twice");
       thing.with_host = barrier.to_host;
       thing.layout = barrier.new_layout;
-      thing.events = {left_by(barrier, bytes_of(index))};
+      memory.add_write(index, left_by(barrier));
       return;
     }
     if (thing.with_host) wrong("has a barrier while it is the host's");
@@ -294,22 +280,19 @@ struct Machine {
       if (!barrier.to_host && barrier.new_layout == Layout::undefined) wrong("is moved to no layout");
       thing.defined = false;
     }
-    const Bytes bytes = bytes_of(index);
-    for_each_overlapping(index, [&](Thing& other, bool own) {
-      divide(other.events, bytes, barrier.source_stages);
-      for (Event& event : other.events) {
-        if (!event.bytes.meets(bytes)) continue;
+    memory.isolate(index);
+    for_each_meeting(index, [&](ThingEvents& there, bool) {
+      for (Event& event : there.events) {
         extend(event, barrier);
         if (!transition) continue;
         if (!starts_from(event, barrier.source_stages))
           wrong("changes layout before an earlier access is done");
         if (event.is_write && !event.available) wrong("changes layout before an earlier write is available");
       }
-      if (transition && !own) other.defined = false;
     });
     if (!transition) return;
     if (!release) thing.layout = barrier.new_layout;
-    thing.events = {left_by(barrier, bytes)};
+    memory.add_write(index, left_by(barrier));
     thing.with_host = barrier.to_host;
   }
 
@@ -334,11 +317,13 @@ struct Machine {
   }
 
   void check(const PlanAccess& access, uint32_t index, const std::string& where) {
-    const Thing& thing = things[index];
+    if (is_over()) return;
+    const Thing& thing = memory.things[index];
     const auto wrong = [&](const char* what) { object(what, access.resource, access.frames_back, where); };
     const Access as_read = access.access & ~all_write_access, as_write = access.access & all_write_access;
     const bool reads = as_read != 0, writes = as_write != 0;
     if (thing.with_host) return wrong("is touched while it is the host's");
+    if (writes && access.frames_back > 0) wrong("is written, but it holds an earlier frame");
     if (thing.in_transfer || (thing.queue != queue && (thing.image || reads)))
       wrong("is touched by a queue that it does not belong to");
     if (thing.image && thing.layout != access.layout)
@@ -347,17 +332,10 @@ struct Machine {
     if (reads && thing.defined && thing.placement != no_instance &&
         plan.placements[thing.placement].persistent && thing.of_frame != int64_t{frame} - access.frames_back)
       wrong("is read, but holds the contents of another frame");
-    const Bytes bytes = bytes_of(index);
-    for_each_overlapping(index, [&](const Thing& other, bool own) {
-      bool followed = false,
-           certain = false; // by an access of every frame; this event, or a piece of it, is one
-      for (size_t e = other.events.size(); e-- > 0;) {
-        const Event& event = other.events[e];
-        const bool piece = e + 1 < other.events.size() && event.at == other.events[e + 1].at &&
-                           event.access == other.events[e + 1].access;
-        followed |= !piece && certain;
-        certain = event.certain || (piece && certain);
-        if (!event.bytes.meets(bytes)) continue;
+    for_each_meeting(index, [&](const ThingEvents& there, bool own) {
+      bool followed = false; // by an access of every frame
+      for (size_t e = there.events.size(); e-- > 0;) {
+        const Event& event = there.events[e];
         const bool ordered = (access.stages & ~event.ordered[index_of(queue)]) == 0;
         if ((event.is_write || writes) && !ordered) wrong("is touched before an earlier access is done");
         if (writes && event.is_write && !event.available)
@@ -367,6 +345,7 @@ struct Machine {
         // Where it was read since, in this frame whatever is valid, the wait for the reader is enough.
         if (writes && event.is_write && !followed && !visible(event, access.stages, as_write))
           wrong("is written where the last write is not visible");
+        followed |= event.certain;
       }
     });
   }
@@ -385,29 +364,21 @@ struct Machine {
              where);
   }
 
-  void leave(const PlanAccess& access, uint32_t index, bool first_of_pass) {
-    const Access writes = access.access & all_write_access;
-    Thing& thing = things[index];
-    if (writes != 0) {
-      for_each_overlapping(index, [&](Thing& other, bool own) {
-        if (!own) other.defined = false;
-      });
-      // Everything before is ordered before this write, so whatever waits for the write waits for it too.
-      if (first_of_pass) thing.events.clear();
-      thing.defined = true;
-      thing.of_frame = int64_t{frame} - access.frames_back;
-      thing.queue = queue;
-    }
+  void leave(const PlanAccess& access, uint32_t index) {
     Event event;
-    event.bytes = bytes_of(index);
     event.access = &access;
     event.stages = access.stages;
-    event.writes = writes;
-    event.is_write = writes != 0;
+    event.writes = access.access & all_write_access;
+    event.is_write = event.writes != 0;
     event.certain = access.when == ReadWhen::always;
     event.queue = queue;
     event.at = now;
-    thing.events.push_back(event);
+    if (!event.is_write) return memory.add_read(index, event);
+    Thing& thing = memory.things[index];
+    thing.defined = true;
+    thing.of_frame = int64_t{frame} - access.frames_back;
+    thing.queue = queue;
+    memory.add_write(index, event);
   }
 
   // Passes that `after` names stand before this one; those of the other queue are waited for.
@@ -415,8 +386,8 @@ struct Machine {
     const auto [first, last] =
         std::equal_range(plan.orderings.begin(), plan.orderings.end(), PlanOrdering{0, position});
     for (auto at = first; at != last; ++at) {
-      const bool known =
-          plan.passes[at->earlier].queue == queue || waited[index_of(queue)] > frame_began + at->earlier;
+      const bool known = plan.passes[at->earlier].queue == queue ||
+                         waits[index_of(queue)].knows(frame_began + at->earlier + 1);
       if (at->earlier >= position || !known)
         complain(
             fmt::format("frame {}, {}: does not come after pass {}, as it is to", frame, where, at->earlier));
@@ -434,18 +405,9 @@ struct Machine {
       check(accesses[a], where);
       check_own_texels(accesses, pass.access_count, accesses[a], where);
     }
-    for (uint32_t a = 0; a < pass.access_count; ++a) {
-      const ResourceParts& own = parts[accesses[a].resource];
-      own.for_each_in(accesses[a].range, [&](uint32_t part) {
-        const SubresourceRange at = own.begin_of(part);
-        const bool first = std::none_of(accesses, accesses + a, [&](const PlanAccess& earlier) {
-          return earlier.resource == accesses[a].resource && earlier.frames_back == accesses[a].frames_back &&
-                 meet(earlier.range, at);
-        });
-        const uint32_t instance = instance_of(accesses[a].resource, accesses[a].frames_back);
-        leave(accesses[a], instances[instance].first + part, first);
-      });
-    }
+    for (uint32_t a = 0; a < pass.access_count; ++a)
+      for_each_part(accesses[a].resource, accesses[a].frames_back, accesses[a].range,
+                    [&](uint32_t index) { leave(accesses[a], index); });
     run(plan.barriers.data() + pass.first_barrier + pass.barrier_count, pass.release_count, true, where);
     reach(pass.signal, where);
   }
@@ -453,15 +415,16 @@ struct Machine {
   void run_frame() {
     begin_frame();
     frame_began = now;
-    for (uint32_t p = 0; p < plan.passes.size(); ++p)
+    for (uint32_t p = 0; p < plan.passes.size() && !is_over(); ++p, ++looks)
       run(plan.passes[p], fmt::format("pass {}", p));
+    if (is_over()) return;
     queue = Queue::main;
     ++now;
     wait(plan.final_wait, "final batch");
     run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, false, "final batch");
     for (uint32_t r = 0; r < plan.resources.size(); ++r)
       if (plan.resources[r].first_instance == no_instance &&
-          !things[instances[first_instance[r]].first].handed_back)
+          !memory.things[memory.instances[first_instance[r]].first].handed_back)
         object("is not handed back to the host", r, 0, "end");
     for (size_t q = 0; q < queues; ++q)
       points_before[q] = reached[q].size();
@@ -471,9 +434,9 @@ struct Machine {
 
 } // namespace
 
-std::vector<std::string> verify(const Plan& plan) {
+Verdict verify(const Plan& plan) {
   auto objections = verify_structure(plan);
-  if (!objections.empty()) return objections;
+  if (!objections.empty()) return {std::move(objections), ""};
   uint32_t frames = 3; // the first, one that follows it, and one that follows a frame like itself
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
@@ -483,12 +446,16 @@ std::vector<std::string> verify(const Plan& plan) {
   uint64_t things = 0;
   for (size_t r = 0; r < parts.size(); ++r)
     things += uint64_t{parts[r].count()} * plan.resources[r].instance_count;
-  if (things > most_things) return {"the plan tells too many parts of images apart"};
+  if (things > max_things)
+    return {{}, fmt::format("it divides its images into {} parts, more than {}", things, max_things)};
   Machine machine{plan, std::move(parts)};
   machine.prepare();
-  for (uint32_t f = 0; f < frames && machine.objections.empty(); ++f)
+  for (uint32_t f = 0; f < frames && machine.objections.empty() && !machine.is_over(); ++f)
     machine.run_frame();
-  return std::move(machine.objections);
+  Verdict verdict{std::move(machine.objections), ""};
+  if (machine.is_over())
+    verdict.not_verified = fmt::format("its accesses meet in memory more than {} times", max_looks);
+  return verdict;
 }
 
 } // namespace dermis

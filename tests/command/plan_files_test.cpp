@@ -1,5 +1,6 @@
 // dermis plan: what is saved can be verified alone and compared with what the graph gives now.
 
+#include "framegraph/serial/plan_file.hpp"
 #include "tests/command/command_fixture.hpp"
 
 #include <fstream>
@@ -95,6 +96,38 @@ TEST_F(PlanFiles, APlanWithAHazardIsRefusedWithTheNamesOfPassAndResource) {
   const Outcome outcome = run({"plan", "verify", write("bad.plan", bad)});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0322 plan_refused"), HasSubstr("is '")));
+}
+
+// Seventeen images of a million parts together, which no graph can have.
+TEST_F(PlanFiles, APlanThatTakesTooLongIsNotVerified) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  Diagnostics diagnostics;
+  std::optional<SavedPlan> saved = read_plan("a.plan", contents(path("a.plan")), diagnostics);
+  ASSERT_TRUE(saved);
+  Plan& plan = saved->plan;
+  for (uint32_t i = 0; i < 17; ++i) {
+    PlanResource image;
+    image.mips = 31;
+    image.layers = 2048;
+    image.first_instance = static_cast<uint32_t>(plan.placements.size());
+    const auto resource = static_cast<uint32_t>(plan.resources.size());
+    plan.placements.push_back({resource, static_cast<uint32_t>(plan.heaps.size()), 0, 64, 64});
+    plan.heaps.push_back({0xffffffffu, 64, 64});
+    plan.resources.push_back(image);
+    saved->names.resources.push_back("image");
+    for (uint16_t layer = 0; layer < 2048; ++layer) {
+      ++plan.final_barrier_count;
+      PlanBarrier& barrier = plan.barriers.emplace_back();
+      barrier.resource = resource;
+      barrier.range = {static_cast<uint16_t>(layer % 31), 1, layer, 1};
+    }
+  }
+  const std::string file = write("large.plan", write_plan(*saved));
+  const Outcome outcome = run({"plan", "verify", file});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0327 plan_not_verified"), HasSubstr("the plan is not verified"),
+                                 Not(HasSubstr("defect")), Not(HasSubstr("report"))));
+  EXPECT_THAT(outcome.out, IsEmpty());
 }
 
 TEST_F(PlanFiles, AGraphDoesNotDifferFromItsSavedPlan) {

@@ -281,10 +281,10 @@ TEST(History, TheVerifierRefusesAFrameThatIsWrittenOverTooEarly) {
   Plan freely = compiled(blend("own")).plan;
   for (PlanAccess& access : freely.accesses)
     access.own_texels = false;
-  EXPECT_FALSE(verify(freely).empty());
+  EXPECT_FALSE(verify(freely).objections.empty());
   Plan flat = compiled(blend("a")).plan;
   flat.resources[flat.histories.at(0).resource].instance_count = 1;
-  EXPECT_FALSE(verify(flat).empty());
+  EXPECT_FALSE(verify(flat).objections.empty());
 }
 
 TEST(History, ItsValidityNeverChangesThePacking) {
@@ -358,11 +358,11 @@ TEST(Verify, AReaderThatMayBeLeftOutShowsAWriterNothing) {
     plan.barriers[pass.first_barrier].source_access = plan.barriers[pass.first_barrier].destination_access =
         0;
   }
-  EXPECT_FALSE(verify(plan).empty());
+  EXPECT_FALSE(verify(plan).objections.empty());
   EXPECT_NE(first_hazard(plan), "");
   for (PlanAccess& access : plan.accesses) // were it always read, that would do
     access.when = ReadWhen::always;
-  EXPECT_TRUE(verify(plan).empty());
+  EXPECT_TRUE(verify(plan).objections.empty());
   EXPECT_EQ(first_hazard(plan), "");
 }
 

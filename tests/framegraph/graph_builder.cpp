@@ -221,8 +221,10 @@ CompiledPlan compiled(const GraphBuilder& builder, const CompileInput& input) {
   for (const Diagnostic& diagnostic : diagnostics.list)
     ADD_FAILURE() << diagnostic_info(diagnostic.id).name << ": " << diagnostic.text;
   if (!plan) return {};
-  for (const std::string& objection : verify(plan->plan))
+  const Verdict verdict = verify(plan->plan);
+  for (const std::string& objection : verdict.objections)
     ADD_FAILURE() << "verifier: " << objection;
+  EXPECT_EQ(verdict.not_verified, "");
   EXPECT_EQ(&builder.graph, input.graph);
   return *std::move(plan);
 }

@@ -49,7 +49,7 @@ struct GraphBuilder {
   CompileInput input(uint32_t width = 64, uint32_t height = 64) const;
 };
 
-// Compiles, expects success and that the verifier accepts the plan; fails the test otherwise.
+// Compiles, expects success and that the verifier proves the plan; fails the test otherwise.
 CompiledPlan compiled(const GraphBuilder& builder);
 CompiledPlan compiled(const GraphBuilder& builder, const CompileInput& input);
 

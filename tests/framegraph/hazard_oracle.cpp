@@ -414,6 +414,7 @@ struct Oracle {
     const bool owned = host(o.resource) && with_host(at);
     if (accesses(o)) {
       if (owned) return "is the host's";
+      if (written(o) != 0 && o.access->frames_back > 0) return "writes an earlier frame";
       if (image(o) && layout(o, at) != o.access->layout) return "is in another layout";
       if (read(o) != 0 && !defined(at)) return "is read undefined";
       if (read(o) != 0 && !right_frame(at)) return "reads another frame";

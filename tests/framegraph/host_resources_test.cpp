@@ -208,7 +208,7 @@ TEST(HostResources, AreTakenOverReadAtTheComputeStageAndHandedBack) {
   const Compiled result = compiled(*loaded.graph, device);
   ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
   const Plan& plan = result.plan->plan;
-  EXPECT_TRUE(verify(plan).empty());
+  EXPECT_TRUE(verify(plan).objections.empty());
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "trace");
   const auto barriers_of = [&](ResourceType type, bool from, bool to) {
     return std::count_if(plan.barriers.begin(), plan.barriers.end(), [&](const PlanBarrier& barrier) {

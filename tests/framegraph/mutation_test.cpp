@@ -48,7 +48,7 @@ TEST(Mutation, NoBarrierOfAThousandPlansCanBeDropped) {
   uint64_t dropped = 0;
   for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b, ++dropped)
-      ASSERT_FALSE(verify(without_barrier(plan, b)).empty()) << "seed " << seed << ", barrier " << b;
+      ASSERT_FALSE(verify(without_barrier(plan, b)).objections.empty()) << "seed " << seed << ", barrier " << b;
   });
   EXPECT_GT(dropped, 10000u);
 }
@@ -73,7 +73,7 @@ TEST(Mutation, NoAliasDependencyCanBeLost) {
       Plan mutant = plan;
       mutant.barriers[b].source_stages = stage::none;
       mutant.barriers[b].source_access = access::none;
-      ASSERT_FALSE(verify(mutant).empty()) << "seed " << seed << ", barrier " << b;
+      ASSERT_FALSE(verify(mutant).objections.empty()) << "seed " << seed << ", barrier " << b;
       ++lost;
     }
   });
@@ -94,7 +94,7 @@ TEST(Mutation, AFlippedHistorySlotIsRefusedOrChangesThePixels) {
     for_each_flipped_slot(plan, [&](const Plan& mutant, const std::string& what) {
       if (HasFatalFailure()) return;
       expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
-      if (verify(mutant).empty()) {
+      if (verify(mutant).objections.empty()) {
         EXPECT_FALSE(agrees(interpret(mutant, {frames, seed, 1, 0}), truth))
             << "seed " << seed << ": " << what;
       }

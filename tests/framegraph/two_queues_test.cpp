@@ -111,7 +111,7 @@ TEST(TwoQueues, AfterIsAPointBetweenPassesOfTwoQueues) {
   Plan mutant = whole.plan;
   mutant.passes[3].wait =
       std::exchange(mutant.passes[2].wait, no_point); // nothing of `aside` is needed before
-  EXPECT_THAT(verify(mutant).front(), HasSubstr("pass 2: does not come after pass 1, as it is to"));
+  EXPECT_THAT(verify(mutant).objections.front(), HasSubstr("pass 2: does not come after pass 1, as it is to"));
   EXPECT_NE(first_hazard(mutant), "");
 }
 
@@ -123,7 +123,7 @@ TEST(TwoQueues, AfterIsNoPointBetweenPassesOfOneQueue) {
   ASSERT_EQ(plan.orderings.size(), 1u);
   Plan mutant = plan;
   std::swap(mutant.orderings[0].earlier, mutant.orderings[0].later);
-  EXPECT_THAT(verify(mutant).front(), HasSubstr("does not come after"));
+  EXPECT_THAT(verify(mutant).objections.front(), HasSubstr("does not come after"));
   EXPECT_NE(first_hazard(mutant), "");
 }
 
@@ -180,7 +180,7 @@ TEST(TwoQueues, WhateverOrderThePointsAllowGivesThePixelsThatTheGraphMeans) {
 
 void expect_no_needless_barrier(const Plan& plan, uint64_t seed) {
   for (uint32_t b = 0; b < plan.barriers.size(); ++b)
-    EXPECT_FALSE(verify(without_barrier(plan, b)).empty()) << "seed " << seed << ": without barrier " << b;
+    EXPECT_FALSE(verify(without_barrier(plan, b)).objections.empty()) << "seed " << seed << ": without barrier " << b;
 }
 
 // Another pass reads a buffer in other ways, behind one for which a wait had made it visible. These seeds
@@ -207,7 +207,7 @@ void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, 
         [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
           for_each_mutant(plan, [&](const Plan& mutant, const std::string& what) {
             ++dropped;
-            EXPECT_FALSE(verify(mutant).empty()) << "seed " << seed << ": " << what;
+            EXPECT_FALSE(verify(mutant).objections.empty()) << "seed " << seed << ": " << what;
             if (seed < judged_twice) {
               EXPECT_NE(first_hazard(mutant), "") << "seed " << seed << ": " << what;
             }

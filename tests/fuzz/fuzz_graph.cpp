@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   input.view_height = 48;
   const auto plan = compile(input, diagnostics);
   if (!plan) return fuzz::demand_error(diagnostics);
-  fuzz::demand(verify(plan->plan).empty(), "the verifier refuses a plan of the compiler");
+  fuzz::demand(verify(plan->plan).objections.empty(), "the verifier refuses a plan of the compiler");
   fuzz::demand(!plan_json(*graph, kinds, *plan).empty() && !plan_dot(*graph, kinds, *plan).empty(),
                "a plan cannot be written");
   return 0;

@@ -95,7 +95,9 @@ Observation observe(const LoadedGraph& loaded, const ExpectedCase& inputs) {
   const std::vector<std::string> codes = std::move(out.facts.diagnostics);
   out.facts = facts_of(loaded.graph, loaded.kinds, *compiled);
   out.facts.diagnostics = codes;
-  out.objections = verify(compiled->plan);
+  Verdict verdict = verify(compiled->plan);
+  out.objections = std::move(verdict.objections);
+  out.not_verified = std::move(verdict.not_verified);
   return out;
 }
 

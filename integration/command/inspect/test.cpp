@@ -72,20 +72,22 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
   if (!observed.objections.empty())
     return {expected.name, false, "the verifier refuses the plan: this is a defect of the compiler",
             joined(observed.objections)};
+  const std::string note =
+      observed.not_verified.empty() ? "" : fmt::format("the plan is not verified: {}", observed.not_verified);
   if (!expected.facts) {
     if (!update) return {expected.name, false, "the case has no \"expect\"; --update writes one", ""};
     fresh = observed.facts;
-    return {expected.name, true, "", ""};
+    return {expected.name, true, note, ""};
   }
   const Facts found = narrow(observed.facts, *expected.facts);
-  if (found == *expected.facts) return {expected.name, true, "", ""};
+  if (found == *expected.facts) return {expected.name, true, note, ""};
   if (update) {
     // A case that had no plan and has one now, or the other way round, is stated anew as a whole.
     Facts of_plan = *expected.facts;
     of_plan.diagnostics.clear();
     const bool was_planned = of_plan != Facts{};
     fresh = was_planned && observed.facts.passes ? found : observed.facts;
-    return {expected.name, true, "", ""};
+    return {expected.name, true, note, ""};
   }
   return {expected.name, false, "what was compiled is not what is expected (-), but (+)",
           diff_lines(facts_json(*expected.facts), facts_json(found)) + joined(observed.messages)};
@@ -168,7 +170,7 @@ void tell(const Session& session, const Run& run) {
   print_diagnostics(session, run.diagnostics);
   if (session.json) return;
   for (const TestResult& one : run.suite.results)
-    if (!one.ok)
+    if (!one.message.empty())
       fmt::print(stderr, "{}: case '{}': {}\n{}", run.suite.name, one.name, one.message, one.details);
   const size_t count = run.suite.results.size();
   if (run.updated > 0)

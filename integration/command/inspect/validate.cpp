@@ -25,7 +25,7 @@ namespace dermis::tools {
 namespace {
 
 bool check_graph(const Document& document, const std::string& path, const GraphParts& parts,
-                 Diagnostics& diagnostics) {
+                 Diagnostics& diagnostics, bool& verified) {
   auto overlays = read_overlays(parts.overlays, diagnostics);
   if (!overlays) return false;
   const std::optional<LoadedGraph> loaded =
@@ -34,11 +34,15 @@ bool check_graph(const Document& document, const std::string& path, const GraphP
   const CompileChoices choices = read_choices(loaded->graph);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, default_size, choices, diagnostics);
   if (!compiled) return false;
-  const std::vector<std::string> objections = verify(compiled->plan);
-  for (const std::string& objection : objections)
+  const Verdict verdict = verify(compiled->plan);
+  for (const std::string& objection : verdict.objections)
     diagnostics.add(DiagnosticId::internal_defect, document.where(document.root()),
                     fmt::format("the verifier refuses the plan: {}", objection));
-  return objections.empty();
+  verified = verdict.not_verified.empty();
+  if (!verified)
+    diagnostics.add(DiagnosticId::plan_not_verified, document.where(document.root()),
+                    fmt::format("the plan is not verified: {}", verdict.not_verified));
+  return verdict.objections.empty();
 }
 
 bool check_profile(const Document& document, Diagnostics& diagnostics, std::string& about) {
@@ -61,6 +65,7 @@ struct CheckedFile {
   std::string_view kind = "unreadable";
   bool good = false;
   std::string about = {}; // a line on what the file holds
+  bool verified = true;   // the plan of a graph; false: the verifier gave up
 };
 
 void check_capture(const Document& document, const ValidateOptions& options, Diagnostics& diagnostics,
@@ -84,7 +89,7 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
   CheckedFile checked{path, file_kinds()[static_cast<size_t>(kind)].name};
   switch (kind) {
   case FileKindId::graph:
-    checked.good = check_graph(*document, path, options.parts, diagnostics);
+    checked.good = check_graph(*document, path, options.parts, diagnostics, checked.verified);
     break;
   case FileKindId::profile:
     checked.good = check_profile(*document, diagnostics, checked.about);
@@ -162,13 +167,15 @@ ExitCode validate(const Session& session, const ValidateOptions& options) {
   print_diagnostics(session, diagnostics);
   for (const CheckedFile& one : files)
     if (one.good && options.sarif != "-")
-      say(session, fmt::format("{}: {}, no problems\n{}", one.path, one.kind,
+      say(session, fmt::format("{}: {}, {}\n{}", one.path, one.kind,
+                               one.verified ? "no problems" : "plan not verified",
                                one.about.empty() ? "" : fmt::format("  {}\n", one.about)));
   if (session.json) {
     JsonWriter answer;
     answer.open_object().member("ok", all_good).key("files").open_array();
     for (const CheckedFile& one : files) {
       answer.open_object(true).member("file", one.path).member("kind", one.kind).member("ok", one.good);
+      if (!one.verified) answer.member("verified", false);
       if (!one.about.empty()) answer.member("about", one.about);
       answer.close();
     }

@@ -30,15 +30,20 @@ std::string with_names(const SavedPlan& saved, const std::string& objection) {
 
 ExitCode plan_verify(const Session& session, const PlanVerifyOptions& options) {
   Diagnostics diagnostics;
+  bool all_proven = true;
   for (const std::string& file : options.files) {
     const auto bytes = read_plan_bytes(file, diagnostics);
     const auto saved = bytes ? read_plan(file, *bytes, diagnostics) : std::nullopt;
     if (!saved) continue;
     const SourceLocation where{{static_cast<uint32_t>(diagnostics.files.size()) - 1}, 0, 0, ""};
-    const std::vector<std::string> objections = verify(saved->plan);
-    for (const std::string& objection : objections)
+    const Verdict verdict = verify(saved->plan);
+    all_proven &= verdict.proven();
+    for (const std::string& objection : verdict.objections)
       diagnostics.add(DiagnosticId::plan_refused, where, with_names(*saved, objection));
-    if (objections.empty())
+    if (!verdict.not_verified.empty())
+      diagnostics.add(DiagnosticId::plan_not_verified, where,
+                      fmt::format("the plan is not verified: {}", verdict.not_verified));
+    if (verdict.proven())
       say(session, fmt::format("{}: {} passes, {} barriers: no hazard\n", file, saved->plan.passes.size(),
                                saved->plan.barriers.size()));
   }
@@ -47,7 +52,7 @@ ExitCode plan_verify(const Session& session, const PlanVerifyOptions& options) {
   } else {
     print_diagnostics(session, diagnostics);
   }
-  return diagnostics.has_errors() ? ExitCode::problems : ExitCode::ok;
+  return all_proven && !diagnostics.has_errors() ? ExitCode::ok : ExitCode::problems;
 }
 
 } // namespace dermis::tools

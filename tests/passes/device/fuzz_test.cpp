@@ -71,7 +71,7 @@ protected:
     auto compiled = compile(input, diagnostics);
     EXPECT_TRUE(compiled) << decisions.name << ": " << format_as_json(diagnostics);
     if (!compiled) return std::nullopt;
-    EXPECT_EQ(verify(compiled->plan), std::vector<std::string>{}) << decisions.name;
+    EXPECT_EQ(verify(compiled->plan).objections, std::vector<std::string>{}) << decisions.name;
     return std::move(compiled->plan);
   }
 
