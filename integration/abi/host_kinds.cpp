@@ -81,22 +81,7 @@ dermis_result add(dermis_context_t& context, const dermis_pass_kind* given) {
   kind.side_effects = desc.side_effects != 0;
   if (const dermis_result result = read_ports(log, desc, kind); result != DERMIS_OK) return result;
   if (const dermis_result result = read_settings(log, desc, kind); result != DERMIS_OK) return result;
-  if (const KindProblem problem = problem_of(kind); !problem.text.empty())
-    return bad_argument(log, "{}: kind.{}", registering, problem.text);
-
-  const std::lock_guard lock(context.mutex);
-  if (!context.graphs.empty())
-    return bad_argument(log, "{}: the context has graphs already; register '{}' before the first",
-                        registering, kind.name);
-  HostPasses& passes = context.host_passes;
-  if (passes.kinds.size() == limits::host_kinds)
-    return bad_argument(log, "{}: the context has {} kinds already", registering, limits::host_kinds);
-  if (context.kinds.find(kind.name).valid())
-    return bad_argument(log, "{}: there is a kind '{}' already", registering, kind.name);
-  passes.recorders.reserve(passes.recorders.size() + 1); // from here on nothing may fail half way
-  const KindId id = passes.kinds.add(std::move(kind), context.kinds);
-  passes.recorders.push_back({id, desc.record, desc.user});
-  return DERMIS_OK;
+  return add_host_kind(context, std::move(kind), desc.record, desc.user);
 }
 
 double number_of(const SettingValue& value) {
@@ -119,6 +104,27 @@ dermis_pass_port port_of(const vulkan::HostPort& port) {
 }
 
 } // namespace
+
+dermis_result add_host_kind(dermis_context_t& context, HostKindDeclaration kind, dermis_pass_fn record,
+                            void* user) {
+  const Log& log = context.log;
+  if (const KindProblem problem = problem_of(kind); !problem.text.empty())
+    return bad_argument(log, "{}: kind.{}", registering, problem.text);
+
+  const std::lock_guard lock(context.mutex);
+  if (!context.graphs.empty())
+    return bad_argument(log, "{}: the context has graphs already; register '{}' before the first",
+                        registering, kind.name);
+  HostPasses& passes = context.host_passes;
+  if (passes.kinds.size() == limits::host_kinds)
+    return bad_argument(log, "{}: the context has {} kinds already", registering, limits::host_kinds);
+  if (context.kinds.find(kind.name).valid())
+    return bad_argument(log, "{}: there is a kind '{}' already", registering, kind.name);
+  passes.recorders.reserve(passes.recorders.size() + 1); // from here on nothing may fail half way
+  const KindId id = passes.kinds.add(std::move(kind), context.kinds);
+  passes.recorders.push_back({id, record, user});
+  return DERMIS_OK;
+}
 
 void fill_host_pass(const vulkan::HostPass& call, HostPassCall& out) {
   std::transform(call.ports.begin(), call.ports.end(), out.ports.begin(), port_of);

@@ -21,6 +21,10 @@ struct HostPasses {
   std::vector<Recorder> recorders; // by kind of `kinds`
 };
 
+// Makes a kind known to the graphs of a context that has none yet; see dermis_register_pass_kind.
+dermis_result add_host_kind(dermis_context_t& context, HostKindDeclaration kind, dermis_pass_fn record,
+                            void* user);
+
 // A call as the host sees it. `call` points into the two arrays.
 struct HostPassCall {
   std::array<dermis_pass_port, limits::host_kind_ports> ports;

@@ -39,6 +39,14 @@ std::string deliver_text(const std::string& path, std::string_view text) {
   return written ? "" : fmt::format("cannot write to standard output: {}", std::strerror(errno));
 }
 
+std::string deliver_page(const std::string& path, std::string_view text) {
+  const files::path folder = files::path(path).parent_path();
+  std::error_code problem;
+  if (path != "-" && !folder.empty()) files::create_directories(folder, problem);
+  if (problem) return fmt::format("cannot make the folder '{}': {}", folder.string(), problem.message());
+  return deliver_text(path, text);
+}
+
 OutputFolder::~OutputFolder() {
   if (!first_made_.empty()) remove_if_empty(first_made_);
 }

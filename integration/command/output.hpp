@@ -9,6 +9,8 @@ namespace dermis::tools {
 // Writes `text` to the file `path`, whole or not at all, or for "-" to standard output. Returns what went
 // wrong, "" for nothing.
 std::string deliver_text(const std::string& path, std::string_view text);
+// The same for a page, whose folder is made where there is none.
+std::string deliver_page(const std::string& path, std::string_view text);
 
 // A folder that pictures are written to. Made if it is not there; removed again at the end if it was made
 // here and is still empty, so that a verb that failed leaves nothing behind.

@@ -22,7 +22,7 @@ using NamedValue = std::pair<std::string, std::string>;
 struct GraphParts {
   std::vector<std::string> overlays; // files, applied in this order
   std::vector<std::string> roots; // folders that files may be read from which others name, beside their own
-  std::vector<std::string> kinds; // files of the host's pass kinds, for verbs that do not run the graph
+  std::vector<std::string> kinds; // files of the host's pass kinds
 };
 
 struct ValidateOptions {
@@ -103,6 +103,7 @@ struct TestOptions {
   bool update = false;            // state what is observed instead of comparing
   std::string junit;              // file for results; "": none
   std::vector<std::string> roots; // folders of included files and of overlays that cases name
+  std::vector<std::string> kinds; // files of the host's pass kinds
 };
 ExitCode test(const Session& session, const TestOptions& options);
 
@@ -187,6 +188,7 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options);
 struct SheetOptions {
   std::string scene = shipped("configs/scenes/bust.json"), out;
   std::vector<std::string> graphs, profiles; // files; empty: those that ship
+  std::vector<std::string> kinds;            // files of the host's pass kinds
   std::vector<std::string> roots;            // folders that the scene may read from, beside its own
   Size size{320, 180};                       // of one picture
 };
@@ -226,16 +228,18 @@ ExitCode compare(const Session& session, const CompareOptions& options);
 
 struct BenchCompileOptions {
   std::string shapes = shipped("tests/benchmark/shapes.json");
-  std::string graphs;     // folder of graph files to measure instead; "": none
-  std::string json, html; // files to write; "": none
-  bool optimize = false;  // also the level that takes seconds a graph
-  bool quick = false;     // smaller and fewer, to see that it runs: in the suites below as well
+  std::string graphs;             // folder of graph files to measure instead; "": none
+  std::vector<std::string> kinds; // files of the host's pass kinds
+  std::string json, html;         // files to write; "": none
+  bool optimize = false;          // also the level that takes seconds a graph
+  bool quick = false;             // smaller and fewer, to see that it runs: in the suites below as well
 };
 ExitCode bench_compile(const Session& session, const BenchCompileOptions& options);
 
 struct BenchRecordOptions {
   std::string graphs = shipped("configs/graphs"), profile = shipped("configs/profiles/skin.json");
-  std::string json, html; // files to write; "": none
+  std::vector<std::string> kinds; // files of the host's pass kinds
+  std::string json, html;         // files to write; "": none
   Size size{1280, 720};
 };
 ExitCode bench_record(const Session& session, const BenchRecordOptions& options);
@@ -307,6 +311,7 @@ struct BenchBudgetOptions {
   uint32_t frames = 32;                    // judged, of each run
   uint32_t repetitions = 3;                // timed runs of a budget
   std::string head;                        // folder of the head scan, for scenes that show it; "": none
+  std::vector<std::string> kinds;          // files of the host's pass kinds
   std::string json, html;                  // files to write; "": none
   std::string cache = "build/bench_truth"; // folder for references; "": none is kept
   bool quick = false;
@@ -317,7 +322,8 @@ struct BenchSkipOptions {
   std::string graph = shipped("configs/graphs/skin.json"), profile = shipped("configs/profiles/skin.json");
   Size size{1280, 720}; // of a small view the fixed cost of 22 dispatches is a large share
   uint32_t repetitions = 31;
-  std::string json, html; // files to write; "": none
+  std::vector<std::string> kinds; // files of the host's pass kinds
+  std::string json, html;         // files to write; "": none
   bool quick = false;
 };
 ExitCode bench_skip(const Session& session, const BenchSkipOptions& options);

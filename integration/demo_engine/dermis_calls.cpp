@@ -39,7 +39,7 @@ dermis_source source_of(const std::string& name, const std::string& text) {
 }
 
 Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool rays_wanted,
-                      std::shared_ptr<dermis_context_t>& context) {
+                      std::shared_ptr<dermis_context_t>& context, const ContextHooks& hooks) {
   if (context != nullptr) return success();
   dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
   if (host.timestamp_mask != 0) desc.flags |= DERMIS_CONTEXT_TIMINGS;
@@ -53,7 +53,10 @@ Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool ra
   dermis_context made = nullptr;
   const dermis_result result = dermis_context_create(&desc, &made);
   if (result != DERMIS_OK) return dermis_error("dermis_context_create", result);
-  context.reset(made, dermis_context_destroy);
+  std::shared_ptr<dermis_context_t> owned(made, dermis_context_destroy);
+  if (hooks.prepare)
+    if (auto prepared = hooks.prepare(made); !prepared) return prepared;
+  context = std::move(owned);
   return success();
 }
 

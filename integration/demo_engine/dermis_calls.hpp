@@ -1,6 +1,7 @@
 #pragma once
 // What whoever calls Dermis for a VulkanHost has in common: a context of its device, texts, and errors.
 
+#include "integration/demo_engine/context_hooks.hpp"
 #include "integration/demo_engine/result.hpp"
 #include "integration/demo_engine/vulkan_host.hpp"
 #include "integration/include/dermis/dermis.h"
@@ -26,8 +27,8 @@ Error dermis_error(const char* call, dermis_result result, dermis_report report 
 dermis_source source_of(const std::string& name, const std::string& text);
 
 // Made once, into `context`, one of the host's. With times where the device has timestamps, with ray queries
-// where the host enabled them and they are `wanted`. Errors: environment.
+// where the host enabled them and they are `wanted`. Errors: environment, those of `hooks.prepare`.
 Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool rays_wanted,
-                      std::shared_ptr<dermis_context_t>& context);
+                      std::shared_ptr<dermis_context_t>& context, const ContextHooks& hooks);
 
 } // namespace demo

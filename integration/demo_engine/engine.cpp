@@ -244,7 +244,8 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
         create_dermis_host(host,
                            {options.graph, info.profiles, options.settings, options.width, options.height,
                             options.overlays, options.include, options.shaders, options.budget_ms,
-                            options.metered, options.calibration, options.sampling, options.skips},
+                            options.metered, options.calibration, options.sampling, options.skips,
+                            options.hooks},
                            &stage.slots);
     if (!made) return made.error();
     dermis = made.take();

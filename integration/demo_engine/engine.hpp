@@ -2,6 +2,7 @@
 // Renders a scene frame by frame without a window, with or without Dermis, and hands out what an engine, its
 // graph and its user see: pictures, the graph's inputs as floats, the camera, device times.
 
+#include "integration/demo_engine/context_hooks.hpp"
 #include "integration/demo_engine/result.hpp"
 
 #include <array>
@@ -66,7 +67,8 @@ struct RenderOptions {
   // Are a frame's pictures read back? Empty: of every frame. The others come without them.
   std::function<bool(uint32_t frame)> pictures_of = {};
   std::function<bool(uint32_t frame)> inputs_of = {}; // the same of its inputs; empty: as of its pictures
-  NamedText calibration; // JSON of an earlier run's RenderSummary::calibration; "": the library's own
+  NamedText calibration;   // JSON of an earlier run's RenderSummary::calibration; "": the library's own
+  ContextHooks hooks = {}; // of a new stage's context
 };
 
 // Row by row from the top left; channels floats a pixel.

@@ -80,8 +80,8 @@ TEST_F(GraphFiles, ACycleNamesThePassesOnIt) {
 }
 
 TEST_F(GraphFiles, AFormatThatNoPortCanUseIsNamedWithBothSides) {
-  const std::string bad = write("bad.json", burley_with("\"material\": { \"format\": \"r8_uint\"",
-                                                        "\"material\": { \"format\": \"rgba16f\""));
+  const std::string bad = write("bad.json", burley_with(R"("format": ["r8_uint", "r16_uint", "r32_uint"])",
+                                                        R"("format": "rgba16f")"));
   const Outcome outcome = run({"validate", bad});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(bad + ":"), HasSubstr("'material'"), HasSubstr("rgba16f")));

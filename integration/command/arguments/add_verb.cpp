@@ -20,6 +20,10 @@ std::string check_named_value(const std::string& text) {
 
 } // namespace
 
+CLI::Option* repeat(CLI::Option* option) {
+  return option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
+}
+
 CLI::Option* add_size(CLI::App& verb, Size& size, const char* name) {
   return verb
       .add_option_function<std::string>(
@@ -30,42 +34,35 @@ CLI::Option* add_size(CLI::App& verb, Size& size, const char* name) {
 }
 
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name) {
-  verb.add_option_function<std::vector<std::string>>(
-          name,
-          [&settings](const std::vector<std::string>& all) {
-            for (const std::string& one : all) {
-              const size_t equals = one.find('=');
-              settings.emplace_back(one.substr(0, equals), one.substr(equals + 1));
-            }
-          },
-          "Value of a setting of the graph; may be repeated")
-      ->check(CLI::Validator(check_named_value, "NAME=VALUE"))
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  repeat(verb.add_option_function<std::vector<std::string>>(
+                 name,
+                 [&settings](const std::vector<std::string>& all) {
+                   for (const std::string& one : all) {
+                     const size_t equals = one.find('=');
+                     settings.emplace_back(one.substr(0, equals), one.substr(equals + 1));
+                   }
+                 },
+                 "Value of a setting of the graph; may be repeated")
+             ->check(CLI::Validator(check_named_value, "NAME=VALUE")));
 }
 
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what) {
-  verb.add_option("--root", roots, what)
-      ->type_name("DIR")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  repeat(verb.add_option("--root", roots, what)->type_name("DIR"));
 }
 
 void add_parts(CLI::App& verb, GraphParts& parts) {
-  verb.add_option("--overlay", parts.overlays, "Overlay to apply to the graph; may be repeated, in order")
-      ->type_name("FILE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  repeat(
+      verb.add_option("--overlay", parts.overlays, "Overlay to apply to the graph; may be repeated, in order")
+          ->type_name("FILE"));
   add_root(verb, parts.roots,
            "Folder that graph, scene, model or capture may read from, beside their own; may be repeated");
+  add_kinds(verb, parts.kinds);
 }
 
-void add_kinds(CLI::App& verb, GraphParts& parts) {
-  verb.add_option("--kinds", parts.kinds,
-                  "File of the host's pass kinds (dermis_export_pass_kinds); may be repeated")
-      ->type_name("FILE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+void add_kinds(CLI::App& verb, std::vector<std::string>& kinds) {
+  repeat(verb.add_option("--kinds", kinds,
+                         "File of the host's pass kinds (dermis_export_pass_kinds); may be repeated")
+             ->type_name("FILE"));
 }
 
 void add_common(CLI::App& verb, Session& session, bool json_is_file) {

@@ -17,11 +17,15 @@ namespace dermis::tools {
 inline constexpr uint32_t max_side = 16384; // pixels; dermis.h, dermis_graph_desc
 inline constexpr uint32_t max_frames = 100000;
 
+// The option may be repeated and takes one value each time, so that a positional may follow.
+CLI::Option* repeat(CLI::Option* option);
+
 CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
 void add_parts(CLI::App& verb, GraphParts& parts);
-void add_kinds(CLI::App& verb, GraphParts& parts);
+// --kinds alone, for verbs that take no other parts; add_parts() has it.
+void add_kinds(CLI::App& verb, std::vector<std::string>& kinds);
 void add_common(CLI::App& verb, Session& session, bool json_is_file);
 
 // One of some names, each of which stands for a value.

@@ -34,9 +34,9 @@ void add_head(CLI::App& verb, std::string& head) {
 
 // Those of a kind ("scenes") to which what is measured is narrowed.
 void add_only(CLI::App& verb, const std::string& kind, std::vector<std::string>& names) {
-  verb.add_option("--" + kind, names, "Only these " + kind + ", separated by commas")
-      ->type_name("NAME")
-      ->delimiter(',');
+  repeat(verb.add_option("--" + kind, names, "Only these " + kind + ", separated by commas")
+             ->type_name("NAME")
+             ->delimiter(','));
 }
 
 } // namespace
@@ -52,6 +52,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
         verb.add_option("--graphs", options.graphs, "Measure the graph files of a folder instead")
             ->type_name("DIR");
+        add_kinds(verb, options.kinds);
         verb.add_flag("--optimize", options.optimize, "Also the packing level that takes seconds a graph");
         add_quick(verb, options.quick);
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
@@ -63,6 +64,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, BenchRecordOptions& options) {
         verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")
             ->type_name("DIR");
+        add_kinds(verb, options.kinds);
         verb.add_option("--profile", options.profile, "Profile of id 1 [configs/profiles/skin.json]")
             ->type_name("FILE");
         add_size(verb, options.size);
@@ -75,11 +77,11 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       "dermis bench all --out build/bench", bench_all,
       [&invocation](CLI::App& verb, BenchAllOptions& options) {
         verb.add_option("--out,-o", options.out, "Folder for pages and rows")->required()->type_name("DIR");
-        const CLI::Option* suites = verb.add_option("--suites", options.suites,
-                                                    fmt::format("Only these, separated by commas: {}",
-                                                                format_list(bench_suite_names())))
-                                        ->type_name("NAME")
-                                        ->delimiter(',');
+        const CLI::Option* suites = repeat(verb.add_option("--suites", options.suites,
+                                                           fmt::format("Only these, separated by commas: {}",
+                                                                       format_list(bench_suite_names())))
+                                               ->type_name("NAME")
+                                               ->delimiter(','));
         invocation.offered[suites] = bench_suite_names();
         verb.add_option("--head", options.head, "Folder of the head scan, for the suites that can show it")
             ->type_name("DIR");
@@ -113,11 +115,12 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         verb.add_option("--graph", options.graph, "Graph with choices by budget [configs/graphs/skin.json]")
             ->type_name("FILE");
+        add_kinds(verb, options.kinds);
         verb.add_option("--calibration", options.calibration, "What dermis calibrate wrote for this device")
             ->type_name("FILE");
-        verb.add_option("--scenes", options.scenes, "Scenes of configs/scenes, separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
+        repeat(verb.add_option("--scenes", options.scenes, "Scenes of configs/scenes, separated by commas")
+                   ->type_name("NAME")
+                   ->delimiter(','));
         verb.add_option("--frames", options.frames, "Judged frames of each run [32]")
             ->check(CLI::Range(4u, max_frames));
         verb.add_option("--repetitions", options.repetitions,
@@ -137,10 +140,10 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--file", options.file, "Techniques [tests/benchmark/stability.json]")
             ->type_name("FILE");
         add_only(verb, "cases", options.cases);
-        verb.add_option("--techniques", options.techniques,
-                        "Only these techniques, or formula; separated by commas")
-            ->type_name("NAME")
-            ->delimiter(',');
+        repeat(verb.add_option("--techniques", options.techniques,
+                               "Only these techniques, or formula; separated by commas")
+                   ->type_name("NAME")
+                   ->delimiter(','));
         verb.add_option("--updates", options.updates,
                         "Updates of moving values that are kept in half floats [1000000]")
             ->check(CLI::Range(uint64_t{1000}, uint64_t{1} << 40));
@@ -154,6 +157,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, BenchSkipOptions& options) {
         add_size(verb, options.size);
         verb.add_option("--graph", options.graph, "Graph file [configs/graphs/skin.json]")->type_name("FILE");
+        add_kinds(verb, options.kinds);
         verb.add_option("--profile", options.profile, "Profile of the plane [configs/profiles/skin.json]")
             ->type_name("FILE");
         verb.add_option("--repetitions", options.repetitions, "Timed frames of each case [31]")

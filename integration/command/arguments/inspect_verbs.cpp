@@ -10,9 +10,9 @@ void add_two_queues(CLI::App& verb, bool& two_queues) {
 }
 
 void add_unbound(CLI::App& verb, std::vector<std::string>& unbound, const char* name = "--unbound") {
-  verb.add_option(name, unbound, "Optional slots that the host leaves out")
-      ->type_name("NAME")
-      ->delimiter(',');
+  repeat(verb.add_option(name, unbound, "Optional slots that the host leaves out")
+             ->type_name("NAME")
+             ->delimiter(','));
 }
 
 } // namespace
@@ -32,7 +32,6 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_flag("--diagnose", options.diagnose,
                       "Name usual mistakes of integration in captured frames; fail where one is found");
         add_parts(verb, options.parts);
-        add_kinds(verb, options.parts);
         verb.add_option("--sarif", options.sarif,
                         "File for the messages as SARIF 2.1.0, - for standard output")
             ->type_name("FILE");
@@ -59,7 +58,6 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_unbound(verb, options.unbound);
         add_two_queues(verb, options.two_queues);
         add_parts(verb, options.parts);
-        add_kinds(verb, options.parts);
         CLI::Option* frame =
             verb.add_flag("--frame", options.frame, "What the library chose for a frame, and why");
         verb.add_option("--scene", options.scene, "Scene of the frame [configs/scenes/bust.json]")
@@ -99,7 +97,6 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_unbound(verb, options.unbound);
         add_two_queues(verb, options.two_queues);
         add_parts(verb, options.parts);
-        add_kinds(verb, options.parts);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->excludes(html)
             ->type_name("FILE");
@@ -116,6 +113,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_root(verb, options.roots,
                  "Folder of included files and of overlays that cases name, beside the graph's own and the "
                  "folders given; may be repeated");
+        add_kinds(verb, options.kinds);
         verb.add_option("--junit", options.junit, "File for the results as JUnit XML")->type_name("FILE");
       });
 }
@@ -137,7 +135,6 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
             ->expected(1, 2)
             ->type_name("FILE");
         add_parts(verb, options.parts);
-        add_kinds(verb, options.parts);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
@@ -148,10 +145,9 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
         verb.get_option("--b-set")->group(group);
         add_unbound(verb, options.b_unbound, "--b-unbound");
         verb.get_option("--b-unbound")->group(group);
-        verb.add_option("--b-overlay", options.b_overlays, "Overlay to apply to the graph; may be repeated")
-            ->type_name("FILE")
-            ->expected(1)
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        repeat(verb.add_option("--b-overlay", options.b_overlays,
+                               "Overlay to apply to the graph; may be repeated")
+                   ->type_name("FILE"))
             ->group(group);
       });
   add_verb<PlanSaveOptions>(
@@ -160,7 +156,6 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, PlanSaveOptions& options) {
         verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
         add_parts(verb, options.parts);
-        add_kinds(verb, options.parts);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_two_queues(verb, options.two_queues);

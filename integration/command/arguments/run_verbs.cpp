@@ -163,23 +163,23 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_parts(verb, options.parts);
-        add_kinds(verb, options.parts);
       });
   add_verb<SheetOptions>(
       app, invocation, "sheet", "Render a scene with every technique and material into one picture",
       "dermis sheet --out out/sheet.png", sheet, [](CLI::App& verb, SheetOptions& options) {
         verb.add_option("scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
         verb.add_option("--out,-o", options.out, "Picture, PNG")->required()->type_name("FILE");
-        verb.add_option("--graphs", options.graphs,
-                        "Graph files, one row each, below one without a graph [those that ship]")
-            ->delimiter(',')
-            ->type_name("FILE ...");
-        verb.add_option(
-                "--profiles", options.profiles,
-                "Profile files, one column each, for all objects that scatter [skin, jade, marble, wax, "
-                "ketchup, milk]")
-            ->delimiter(',')
-            ->type_name("FILE ...");
+        repeat(verb.add_option("--graphs", options.graphs,
+                               "Graph files, separated by commas, one row each, below one without a graph "
+                               "[those that ship]")
+                   ->delimiter(',')
+                   ->type_name("FILE"));
+        add_kinds(verb, options.kinds);
+        repeat(verb.add_option("--profiles", options.profiles,
+                               "Profile files, separated by commas, one column each, for all objects that "
+                               "scatter [skin, jade, marble, wax, ketchup, milk]")
+                   ->delimiter(',')
+                   ->type_name("FILE"));
         add_size(verb, options.size);
         add_root(verb, options.roots, "Folder that the scene may read from, beside its own; may be repeated");
       });
@@ -236,16 +236,14 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("a", options.a, "PNG, EXR, or a folder of them")->required()->type_name("A");
         verb.add_option("b", options.b, "What it is compared with")->required()->type_name("B");
         verb.add_option("--heat", options.heat, "PNG for a picture of the differences")->type_name("FILE");
-        verb.add_option_function<std::vector<std::string>>(
-                "--region",
-                [&options](const std::vector<std::string>& all) {
-                  for (const std::string& one : all)
-                    parse_region(one, options.regions.emplace_back());
-                },
-                "Also these pixels alone; may be repeated")
-            ->check(CLI::Validator(check_region, "X,Y,WxH"))
-            ->expected(1)
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        repeat(verb.add_option_function<std::vector<std::string>>(
+                       "--region",
+                       [&options](const std::vector<std::string>& all) {
+                         for (const std::string& one : all)
+                           parse_region(one, options.regions.emplace_back());
+                       },
+                       "Also these pixels alone; may be repeated")
+                   ->check(CLI::Validator(check_region, "X,Y,WxH")));
         CLI::Option* flip = verb.add_flag("--flip", options.flip,
                                           "Also FLIP, the difference that a reader sees who flips between A "
                                           "and the reference B; of EXRs over the "

@@ -8,6 +8,7 @@
 #include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
 #include "integration/command/run/choice_report.hpp"
+#include "integration/command/run/host_passes.hpp"
 #include "integration/demo_engine/engine.hpp"
 
 #include <fmt/format.h>
@@ -74,6 +75,8 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
     const FileText file = open(name);
     return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
   };
+  HostPasses host_passes(loaded.host_kinds);
+  engine.hooks = host_passes.hooks();
   ChoiceReport report;
   demo::RenderCallbacks callbacks;
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {

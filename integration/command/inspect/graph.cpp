@@ -18,7 +18,7 @@ ExitCode write_view(const Session& session, const GraphOptions& options, const L
   if (!view.problem.empty()) return fail(session, ExitCode::environment, view.problem);
   if (view.page.empty()) return fail_graph(session, options.graph, diagnostics);
   print_diagnostics(session, diagnostics);
-  const std::string problem = deliver_text(options.html, view.page);
+  const std::string problem = deliver_page(options.html, view.page);
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   if (options.html != "-")
     say(session,

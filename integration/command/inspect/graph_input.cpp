@@ -90,8 +90,22 @@ std::string unknown(std::string_view what, std::string_view name, const Declarat
                      suggestion.empty() ? "it has " + list_words(names) : suggestion);
 }
 
-// The library's kinds and those of the files; nullopt when one of them has errors.
-std::optional<LoadedGraph> with_kinds(std::span<const std::string> files, Diagnostics& diagnostics) {
+std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
+                                         std::span<const std::string> kind_files, Diagnostics& diagnostics) {
+  if (!composed) return std::nullopt;
+  std::optional<LoadedGraph> known = load_kinds(kind_files, diagnostics);
+  if (!known) return std::nullopt;
+  LoadedGraph& loaded = *known;
+  loaded.changes = std::move(composed->changes);
+  std::optional<Graph> graph = read_graph(composed->document, loaded.kinds, diagnostics);
+  if (!graph) return std::nullopt;
+  loaded.graph = std::move(*graph);
+  return known;
+}
+
+} // namespace
+
+std::optional<LoadedGraph> load_kinds(std::span<const std::string> files, Diagnostics& diagnostics) {
   LoadedGraph loaded{subsurface::make_kinds(), nullptr, {}, {}, {}};
   const auto host = std::make_shared<HostKinds>();
   const uint32_t errors = diagnostics.count(Severity::error);
@@ -109,21 +123,6 @@ std::optional<LoadedGraph> with_kinds(std::span<const std::string> files, Diagno
   loaded.host_kinds = host;
   return diagnostics.count(Severity::error) == errors ? std::optional(std::move(loaded)) : std::nullopt;
 }
-
-std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
-                                         std::span<const std::string> kind_files, Diagnostics& diagnostics) {
-  if (!composed) return std::nullopt;
-  std::optional<LoadedGraph> known = with_kinds(kind_files, diagnostics);
-  if (!known) return std::nullopt;
-  LoadedGraph& loaded = *known;
-  loaded.changes = std::move(composed->changes);
-  std::optional<Graph> graph = read_graph(composed->document, loaded.kinds, diagnostics);
-  if (!graph) return std::nullopt;
-  loaded.graph = std::move(*graph);
-  return known;
-}
-
-} // namespace
 
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics) {
   return path == "-" ? parse_document("<stdin>", read_standard_input(), diagnostics)

@@ -24,6 +24,8 @@ struct LoadedGraph {
 
 inline constexpr Size default_size{1920, 1080}; // where nobody says one
 
+// The library's kinds and those of the files, without a graph; nullopt with errors in `diagnostics`.
+std::optional<LoadedGraph> load_kinds(std::span<const std::string> files, Diagnostics& diagnostics);
 // `path` "-" is standard input. nullopt with errors in `diagnostics`.
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics);
 // Opens what graph files may include: below the folder of `path`, then below each of `roots`.

@@ -95,7 +95,7 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
 
 // The graph with the overlays of a case; nullopt with `observation` filled where that cannot be had.
 std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase& one, const OpenFile& open,
-                                     Observation& observation) {
+                                     const std::vector<std::string>& kinds, Observation& observation) {
   Diagnostics diagnostics;
   std::optional<Document> graph = read_document(path, diagnostics);
   std::vector<Document> overlays;
@@ -108,12 +108,12 @@ std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase
   }
   std::optional<LoadedGraph> loaded;
   if (graph && overlays.size() == one.overlays.size())
-    loaded = load_graph(std::move(*graph), std::move(overlays), open, diagnostics);
+    loaded = load_graph(std::move(*graph), std::move(overlays), open, diagnostics, kinds);
   if (!loaded) observation = observe_messages(diagnostics);
   return loaded;
 }
 
-Run run_file(const std::string& path, bool update, const std::vector<std::string>& roots) {
+Run run_file(const std::string& path, const TestOptions& options, const std::vector<std::string>& roots) {
   Run run;
   run.suite.name = path;
   const std::optional<Document> document = read_document(path, run.diagnostics);
@@ -131,9 +131,9 @@ Run run_file(const std::string& path, bool update, const std::vector<std::string
     Observation observed;
     if (!files::is_regular_file(graph_path, ignored))
       observed.problem = fmt::format("there is no graph '{}' beside it", graph_path);
-    else if (const auto loaded = load_case(graph_path, (*cases)[i], open, observed))
+    else if (const auto loaded = load_case(graph_path, (*cases)[i], open, options.kinds, observed))
       observed = observe(*loaded, (*cases)[i]);
-    run.suite.results.push_back(judge((*cases)[i], observed, update, fresh[i]));
+    run.suite.results.push_back(judge((*cases)[i], observed, options.update, fresh[i]));
     run.updated += fresh[i].has_value();
   }
   const std::string& before = run.diagnostics.files[document->file.value].text;
@@ -203,7 +203,7 @@ ExitCode test(const Session& session, const TestOptions& options) {
     if (files::is_directory(path, ignored)) roots.push_back(path);
   std::vector<Run> runs;
   for (const std::string& path : paths) {
-    runs.push_back(run_file(path, options.update, roots));
+    runs.push_back(run_file(path, options, roots));
     if (runs.back().rewritten) problem = deliver_text(path, runs.back().text);
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
     tell(session, runs.back());

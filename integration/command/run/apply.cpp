@@ -8,6 +8,7 @@
 #include "integration/command/run/apply_slots.hpp"
 #include "integration/command/run/captured.hpp"
 #include "integration/command/run/device_graph.hpp"
+#include "integration/command/run/host_passes.hpp"
 #include "integration/command/run/pass_times.hpp"
 #include "integration/files/exr.hpp"
 
@@ -30,6 +31,7 @@ struct Run {
   DeviceGraphRequest request;
   PassTimes times;
   uint64_t runs = 0, all_runs = 0; // done, and to be done
+  demo::ContextHooks hooks = {};
 };
 
 // A frame that has other images or profiles than the one before needs a graph of its own; history starts
@@ -44,6 +46,7 @@ demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& s
   request.height = frame.description.height;
   request.settings = settings_as_json(run.loaded.graph, run.options.settings);
   request.unbound = slots.unbound;
+  request.hooks = run.hooks;
   for (const auto& [slot, format] : slots.formats)
     request.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
   for (const auto& one : frame.description.profiles)
@@ -154,6 +157,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
       check_sequence(session, options.frames, options.profiles, options.parts.roots);
   if (!sequence) return ExitCode::problems;
 
+  HostPasses host_passes(loaded->host_kinds); // outlives the device's context
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
   OutputFolder out;
@@ -161,6 +165,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
     return fail(session, ExitCode::environment, problem);
 
   Run run{session, options, *loaded, diagnostics.files.front().text, **host, nullptr, {}, {}};
+  run.hooks = host_passes.hooks();
   run.all_runs = sequence->folders.size() * uint64_t{options.repeat};
   Progress progress(progress_style(session.quiet, session.json), "apply", "frame", sequence->folders.size());
   for (size_t i = 0; i < sequence->folders.size(); ++i) {

@@ -5,6 +5,7 @@
 #include "integration/command/output.hpp"
 #include "integration/command/run/choice_sets.hpp"
 #include "integration/command/run/device_costs.hpp"
+#include "integration/command/run/host_passes.hpp"
 #include "integration/demo_engine/files.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,9 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const auto all = choice_sets(*loaded, options.size, diagnostics);
   if (all.empty()) return fail_graph(session, options.graph, diagnostics);
+  HostPasses host_passes(loaded->host_kinds);
   CostsRequest request;
+  request.hooks = host_passes.hooks();
   request.graph = options.graph;
   request.scene = options.scene;
   request.roots = options.parts.roots;

@@ -27,6 +27,7 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request, const std::
   engine.graph = request.graph;
   engine.overlays = request.overlays;
   engine.include = request.include;
+  engine.hooks = request.hooks;
   engine.width = request.size.width;
   engine.height = request.size.height;
   engine.frames = request.frames;

@@ -21,6 +21,7 @@ struct CostsRequest {
   uint32_t frames = 0;                       // of each run
   std::vector<std::vector<NamedValue>> sets; // one for each combination
   demo::NamedText calibration = {};          // to begin from; "": the library's own
+  demo::ContextHooks hooks = {};
 };
 
 // Runs of a request.

@@ -97,8 +97,10 @@ bool same_but_size(const DeviceGraphRequest& a, const DeviceGraphRequest& b) {
 demo::Result<std::unique_ptr<DeviceGraph>> DeviceGraph::create(demo::VulkanHost& host,
                                                                const DeviceGraphRequest& request) {
   std::unique_ptr<DeviceGraph> made(new DeviceGraph(host));
-  if (auto ready = demo::make_context(host, 1, false, host.tool_context); !ready) return ready.error();
+  if (auto ready = demo::make_context(host, 1, false, host.tool_context, request.hooks); !ready)
+    return ready.error();
   made->context_ = host.tool_context;
+  made->recorded_ = request.hooks.recorded;
   auto graph = create_graph(host.tool_context.get(), request);
   if (!graph) return graph.error();
   made->graph_ = *graph;
@@ -200,7 +202,7 @@ demo::Result<> DeviceGraph::run(dermis_frame frame) {
     frame.command_buffer = commands;
     const dermis_result result = dermis_graph_record(graph_, &frame);
     if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_record", result);
-    return demo::success();
+    return recorded_ ? recorded_() : demo::success();
   });
 }
 

@@ -3,11 +3,13 @@
 // waited for.
 
 #include "framegraph/compose/compose.hpp"
+#include "integration/demo_engine/context_hooks.hpp"
 #include "integration/demo_engine/vulkan_image.hpp"
 
 #include <dermis/dermis.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,6 +33,7 @@ struct DeviceGraphRequest {
   std::vector<std::pair<std::string, VkFormat>> formats;     // of slots
   std::vector<std::string> unbound;                          // optional slots
   std::vector<std::pair<std::string, std::string>> settings; // name, JSON text
+  demo::ContextHooks hooks = {}; // of the first graph's context, and of each frame
 };
 // Do both differ in size at most?
 bool same_but_size(const DeviceGraphRequest& a, const DeviceGraphRequest& b);
@@ -87,6 +90,7 @@ private:
   std::shared_ptr<dermis_context_t> context_; // the host's, which its graphs share
   dermis_graph graph_ = nullptr;
   std::vector<Slot> slots_;
+  std::function<demo::Result<>()> recorded_; // asked after each recorded frame, if not empty
   uint64_t frame_index_ = 0;
 };
 

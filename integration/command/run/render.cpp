@@ -6,6 +6,7 @@
 #include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
 #include "integration/command/run/choice_report.hpp"
+#include "integration/command/run/host_passes.hpp"
 #include "integration/command/run/pass_times.hpp"
 #include "integration/command/run/rendered_frame.hpp"
 #include "integration/command/run/truth_run.hpp"
@@ -15,6 +16,8 @@
 #include "integration/files/exr.hpp"
 #include "integration/files/png.hpp"
 #include "integration/files/roots.hpp"
+#include "passes/choice/defaults.hpp"
+#include "passes/choice/error_model.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -23,6 +26,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 namespace dermis::tools {
 namespace {
@@ -51,6 +55,7 @@ struct Run {
   ChoiceReport choices{};
   Trace trace{};
   bool transmission = false; // the graph adds light from behind before it scatters
+  bool by_rays = false;      // the last frame scattered by rays, which see more than the screen
 };
 
 demo::Result<> start(Run& run, const demo::RenderInfo& info) {
@@ -125,6 +130,14 @@ demo::Result<> write_pictures(Run& run, const demo::FrameOutputs& frame) {
   return demo::success();
 }
 
+bool scatters_by_rays(const std::string& technique) {
+  Diagnostics ignored;
+  const auto document = parse_document("errors", std::string(choice::default_errors_text()), ignored);
+  const auto errors = document ? choice::read_error_model(*document, ignored) : std::nullopt;
+  return errors && std::any_of(errors->techniques.begin(), errors->techniques.end(),
+                               [&](const auto& one) { return one.by_rays && one.name == technique; });
+}
+
 demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
   if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
   if (auto written = write_pictures(run, frame); !written) return written;
@@ -142,6 +155,7 @@ demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
   }
   if (frame.choice) run.choices.add(frame.frame, *frame.choice, frame.histories);
   if (!run.options.trace.empty()) run.trace.add(frame);
+  run.by_rays = frame.choice && scatters_by_rays(frame.choice->technique);
   run.exposure.add(captured->lighting.values, captured->profile);
   run.last = make_truth_frame(*captured);
   if (run.transmission) add_transmission(*captured, run.last);
@@ -176,6 +190,9 @@ bool transmits(const Graph& graph, const CompileChoices& choices) {
 std::string why_no_error(const Run& run) {
   if (run.textured_before) return "the reference needs 'texturing' = 'post'";
   if (run.options.graph == no_graph) return "rendered without a graph";
+  if (run.by_rays)
+    return "the technique traces rays, and the reference of screen space does not apply; "
+           "'dermis bench restir' has one that does";
   if (run.options.subset == 0) return "not asked for (--subset 0)";
   if (run.last_scattered.empty()) return "the graph does not export 'scattered_light'";
   if (subsurface_pixels(run.last.profile) == 0) return "no pixel of the last frame has a profile";
@@ -258,6 +275,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
 
   // The graph is read here first: its messages then come with excerpts and as JSON, and --set is checked.
   bool textured = false, transmission = false;
+  std::optional<HostPasses> host_passes;
   if (options.graph != no_graph) {
     Diagnostics diagnostics;
     const std::optional<LoadedGraph> loaded = load_graph(options.graph, parts, diagnostics);
@@ -273,6 +291,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     if (!compile_generic(*loaded, options.size, choices, diagnostics))
       return fail_graph(session, options.graph, diagnostics);
     engine.graph = options.graph;
+    host_passes.emplace(loaded->host_kinds);
+    engine.hooks = host_passes->hooks();
     for (const auto& [name, text] : loaded->overlays)
       engine.overlays.push_back({name, text});
     const auto files_of = [](OpenFile open) {
@@ -286,8 +306,9 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     engine.settings = settings_as_json(loaded->graph, options.settings);
     textured = textured_before(loaded->graph, choices);
     transmission = transmits(loaded->graph, choices);
-  } else if (!options.settings.empty() || !options.parts.overlays.empty() || !options.shaders.empty()) {
-    return fail(session, ExitCode::usage, "--set, --overlay and --shaders need a graph");
+  } else if (!options.settings.empty() || !options.parts.overlays.empty() || !options.parts.kinds.empty() ||
+             !options.shaders.empty()) {
+    return fail(session, ExitCode::usage, "--set, --overlay, --kinds and --shaders need a graph");
   }
 
   Run run{.session = session,

@@ -2,8 +2,10 @@
 // at.
 
 #include "framegraph/text/json_writer.hpp"
+#include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/output.hpp"
+#include "integration/command/run/host_passes.hpp"
 #include "integration/command/verbs.hpp"
 #include "integration/demo_engine/engine.hpp"
 #include "integration/files/png.hpp"
@@ -77,6 +79,9 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
     return fail(session, ExitCode::usage,
                 fmt::format("the sheet would have more than {} pixels along a side; use a smaller --size",
                             longest_side));
+  Diagnostics diagnostics;
+  const std::optional<LoadedGraph> known = load_kinds(options.kinds, diagnostics);
+  if (!known) return fail(session, ExitCode::problems, "the pass kinds cannot be used", &diagnostics);
   Sheet sheet(options.size, rows, columns);
   Progress progress(progress_style(session.quiet, session.json), "sheet", "picture",
                     static_cast<uint32_t>(rows * columns));
@@ -87,7 +92,9 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
         sheet.put(row, column, without);
         continue;
       }
+      HostPasses host_passes(known->host_kinds);
       demo::RenderOptions engine;
+      engine.hooks = host_passes.hooks();
       engine.scene = options.scene;
       engine.roots = options.roots;
       engine.width = options.size.width;

@@ -49,7 +49,8 @@ std::string list_files(const std::vector<std::string>& files) {
 std::optional<SavedPlan> look_at_files(Watch& watch) {
   const WatchOptions& options = watch.options;
   std::vector<std::string> files = {options.scene, options.graph};
-  files.insert(files.end(), options.parts.overlays.begin(), options.parts.overlays.end());
+  for (const auto* named : {&options.parts.overlays, &options.parts.kinds})
+    files.insert(files.end(), named->begin(), named->end());
   Diagnostics of_scene;
   if (const auto scene = demo::read_scene(options.scene, of_scene, options.parts.roots))
     for (const demo::SceneProfile& profile : scene->profiles)
@@ -100,6 +101,7 @@ std::vector<std::string> render_line(const Watch& watch) {
   add("--overlay", o.parts.overlays);
   if (compiles_shaders(watch)) add("--shaders", {o.shaders});
   add("--root", o.parts.roots);
+  add("--kinds", o.parts.kinds);
   for (const auto& [name, value] : o.settings)
     line.insert(line.end(), {"--set", name + "=" + value});
   return line;

@@ -23,7 +23,8 @@ struct DermisHost {
   std::vector<dermis_slot> slots;
   std::vector<std::string> slot_names; // slots' own strings end with the graph that is replaced
   std::vector<std::string> warnings;
-  Delivery shaders; // asked as long as the graph lives
+  Delivery shaders;                   // asked as long as the graph lives
+  std::function<Result<>()> recorded; // asked after each recorded frame, if not empty
 };
 
 namespace {
@@ -207,9 +208,10 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
   auto sources = read_sources(desc);
   if (!sources) return sources.error();
   DermisHandle host(new DermisHost);
-  if (auto ready = make_context(vulkan, frames_in_flight, true, vulkan.engine_context); !ready)
+  if (auto ready = make_context(vulkan, frames_in_flight, true, vulkan.engine_context, desc.hooks); !ready)
     return ready.error();
   host->context = vulkan.engine_context;
+  host->recorded = desc.hooks.recorded;
   const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.skips;
   if (!whole) known = nullptr;
   std::vector<std::string> unbound;
@@ -379,7 +381,7 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
   frame.depth_kind = DERMIS_DEPTH_DEVICE;
   const dermis_result result = dermis_graph_record(host.graph, &frame);
   if (result != DERMIS_OK) return dermis_error("dermis_graph_record", result);
-  return success();
+  return host.recorded ? host.recorded() : success();
 }
 
 std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index) {

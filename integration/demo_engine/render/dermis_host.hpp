@@ -1,6 +1,7 @@
 #pragma once
 // The engine's only acquaintance with Dermis: a context, a graph, and the targets it is given.
 
+#include "integration/demo_engine/context_hooks.hpp"
 #include "integration/demo_engine/engine.hpp"
 #include "integration/demo_engine/render/renderer.hpp"
 
@@ -23,6 +24,7 @@ struct DermisDesc {
   NamedText calibration = {};
   bool sampling = false; // bind `sampling`, which costs the graph a write
   bool skips = false;    // the same of `skips`
+  ContextHooks hooks = {};
 };
 
 struct DermisHost; // opaque: dermis.h stays in dermis_host.cpp

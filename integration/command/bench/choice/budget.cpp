@@ -10,6 +10,7 @@
 #include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/interrupt.hpp"
 #include "integration/command/run/choice_sets.hpp"
+#include "integration/command/run/host_passes.hpp"
 #include "integration/demo_engine/files.hpp"
 #include "integration/demo_engine/scene/read_scene.hpp"
 
@@ -160,12 +161,15 @@ std::string why_not(const BenchBudgetOptions& options) {
 ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
   const BenchBudgetOptions options = quickened(asked);
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, {}, diagnostics);
+  const std::optional<LoadedGraph> loaded =
+      load_graph(options.graph, {.overlays = {}, .roots = {}, .kinds = options.kinds}, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   auto sets = choice_sets(*loaded, options.size, diagnostics);
   if (sets.empty()) return fail_graph(session, options.graph, diagnostics);
+  HostPasses host_passes(loaded->host_kinds); // outlives the stage of the runs
   SceneRunRequest request;
   request.graph = options.graph;
+  request.hooks = host_passes.hooks();
   request.size = options.size;
   request.cache = options.cache;
   request.model = head_model(options.head);

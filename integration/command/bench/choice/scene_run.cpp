@@ -19,6 +19,7 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
   demo::RenderOptions engine;
   engine.scene = request.scene;
   engine.graph = request.graph;
+  engine.hooks = request.hooks;
   engine.model = request.model;
   engine.width = request.size.width;
   engine.height = request.size.height;

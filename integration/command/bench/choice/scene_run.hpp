@@ -27,6 +27,7 @@ struct SceneRunRequest {
   std::vector<NamedValue> set; // JSON texts
   demo::NamedText calibration; // "": the library's own
   std::string cache;           // folder for references
+  demo::ContextHooks hooks;
 };
 
 // What runs of one scene, size and rate share.

@@ -9,6 +9,7 @@
 #include "integration/command/run/apply_slots.hpp"
 #include "integration/command/run/captured.hpp"
 #include "integration/command/run/device_graph.hpp"
+#include "integration/command/run/host_passes.hpp"
 #include "passes/subsurface/environment.hpp"
 #include "passes/subsurface/image_reads.hpp"
 
@@ -46,6 +47,7 @@ struct SkipBench {
   LoadedGraph loaded, plain; // as it is; without what looks for flat light
   std::string text;
   std::vector<CaptureProfile> profiles;
+  demo::ContextHooks hooks;
   std::vector<Case> cases = {};
 
   const LoadedGraph& graph_of(const SkipCase& one) const { return one.skips ? loaded : plain; }
@@ -71,6 +73,7 @@ demo::Result<> prepare(SkipBench& bench, SkipCase from) {
     if (slot != "scattered_light")
       request.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
   request.unbound = one.slots.unbound;
+  request.hooks = bench.hooks;
   auto device = DeviceGraph::create(bench.host, request);
   if (!device) return device.error();
   one.device = device.take();
@@ -234,7 +237,8 @@ ExitCode failed(const Session& session, const demo::Error& error) {
 ExitCode bench_skip(const Session& session, const BenchSkipOptions& asked) {
   const BenchSkipOptions options = quickened(asked);
   Diagnostics diagnostics;
-  auto loaded = load_graph(options.graph, {}, diagnostics);
+  const GraphParts parts{.overlays = {}, .roots = {}, .kinds = options.kinds};
+  auto loaded = load_graph(options.graph, parts, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const std::string text = diagnostics.files.front().text;
   std::vector<Document> overlays;
@@ -242,16 +246,18 @@ ExitCode bench_skip(const Session& session, const BenchSkipOptions& asked) {
     overlays.push_back(std::move(*overlay));
   auto document = read_document(options.graph, diagnostics);
   auto plain = document ? load_graph(std::move(*document), std::move(overlays),
-                                     open_beside(options.graph, {}), diagnostics)
+                                     open_beside(options.graph, {}), diagnostics, options.kinds)
                         : std::nullopt;
   if (!plain) return fail_graph(session, options.graph, diagnostics);
   const auto profile_text = read_document(options.profile, diagnostics);
   const auto profile = profile_text ? subsurface::read_profile(*profile_text, diagnostics) : std::nullopt;
   if (!profile) return fail_graph(session, options.profile, diagnostics);
 
+  HostPasses host_passes(loaded->host_kinds); // outlives the device's context
   auto host = demo::create_vulkan_host({});
   if (!host) return failed(session, host.error());
-  SkipBench bench{**host, options, std::move(*loaded), std::move(*plain), text, {{1, *profile}}};
+  SkipBench bench{**host, options,         std::move(*loaded), std::move(*plain),
+                  text,   {{1, *profile}}, host_passes.hooks()};
   for (SkipCase& one : make_skip_cases(options.size.width, options.size.height, d_px, bench.profiles))
     if (auto ready = prepare(bench, std::move(one)); !ready) return failed(session, ready.error());
   Progress progress(progress_style(session.quiet, false), "skip", "frame", warm_up + options.repetitions);

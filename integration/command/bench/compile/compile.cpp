@@ -293,7 +293,7 @@ struct Bench {
     return true;
   }
 
-  bool add_given(const std::string& folder) {
+  bool add_given(const std::string& folder, const std::vector<std::string>& kinds) {
     std::vector<std::string> files;
     std::error_code error;
     for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
@@ -302,7 +302,8 @@ struct Bench {
     std::sort(files.begin(), files.end());
     std::vector<LoadedGraph> loaded;
     for (const std::string& file : files) {
-      std::optional<LoadedGraph> graph = load_graph(file, {}, diagnostics);
+      std::optional<LoadedGraph> graph =
+          load_graph(file, {.overlays = {}, .roots = {}, .kinds = kinds}, diagnostics);
       if (!graph) return false;
       loaded.push_back(std::move(*graph));
     }
@@ -333,7 +334,7 @@ ExitCode bench_compile(const Session& session, const BenchCompileOptions& option
     const KindRegistry kinds = benchmark_kinds();
     good = bench.add_times(*file, kinds) && bench.add_memory(*file, kinds, options.optimize);
   } else {
-    good = bench.add_given(options.graphs);
+    good = bench.add_given(options.graphs, options.kinds);
   }
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!good) return fail_graph(session, options.graphs, bench.diagnostics);

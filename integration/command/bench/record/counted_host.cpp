@@ -35,6 +35,8 @@ std::string CountedHost::open(const CountedInput& input) {
   context.device = device_.device();
   context.get_instance_proc_addr = NullDevice::loader();
   if (dermis_context_create(&context, &context_) != DERMIS_OK) return dermis_last_error();
+  if (input.hooks.prepare)
+    if (auto prepared = input.hooks.prepare(context_); !prepared) return prepared.error().text;
 
   dermis_profile profile = DERMIS_PROFILE_INIT;
   profile.id = 1;

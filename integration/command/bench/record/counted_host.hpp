@@ -1,6 +1,7 @@
 #pragma once
 // A host for measuring the library itself: a graph on a device that runs nothing, through the C interface.
 
+#include "integration/demo_engine/context_hooks.hpp"
 #include "integration/null_device/null_device.hpp"
 
 #include <dermis/dermis.h>
@@ -14,6 +15,7 @@ struct CountedInput {
   std::string name, graph; // name for messages, JSON text
   std::string profile_name, profile;
   uint32_t width = 0, height = 0;
+  demo::ContextHooks hooks = {};
 };
 
 // One thread at a time.

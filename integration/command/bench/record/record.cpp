@@ -7,7 +7,9 @@
 #include "integration/command/bench/record/counted_host.hpp"
 #include "integration/command/bench/report/report.hpp"
 #include "integration/command/bench/thread_time.hpp"
+#include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/output.hpp"
+#include "integration/command/run/host_passes.hpp"
 #include "integration/command/verbs.hpp"
 #include "integration/files/bytes.hpp"
 
@@ -82,6 +84,9 @@ Measured measure(const CountedInput& input, const std::string& name) {
   bool good = true;
   for (uint32_t i = 0; i < warm_frames; ++i)
     good = good && host.record_frame() == DERMIS_OK;
+  if (good && input.hooks.recorded)
+    if (auto run = input.hooks.recorded(); !run) result.problem = run.error().text;
+  if (!result.problem.empty()) return result;
   std::vector<double> times;
   times.reserve(samples);
   const uint64_t commands = host.device().commands(), barriers = host.device().barriers();
@@ -216,12 +221,16 @@ ExitCode bench_record(const Session& session, const BenchRecordOptions& options)
   std::string profile;
   if (const std::string problem = read_sources(options, graphs, profile); !problem.empty())
     return fail(session, ExitCode::problems, problem);
+  Diagnostics diagnostics;
+  const std::optional<LoadedGraph> known = load_kinds(options.kinds, diagnostics);
+  if (!known) return fail(session, ExitCode::problems, "the pass kinds cannot be used", &diagnostics);
   const bool table = !session.quiet && options.json != "-" && options.html != "-";
   if (table) print(table_head);
   std::vector<Row> rows;
   for (const Source& graph : graphs) {
-    const CountedInput input{graph.name, graph.text,         options.profile,
-                             profile,    options.size.width, options.size.height};
+    HostPasses host_passes(known->host_kinds);
+    const CountedInput input{graph.name,         graph.text,          options.profile,    profile,
+                             options.size.width, options.size.height, host_passes.hooks()};
     const Measured measured = measure(input, std::filesystem::path(graph.name).stem().string());
     if (!measured.problem.empty()) return fail(session, ExitCode::problems, measured.problem);
     if (table) print(table_line(measured.row));

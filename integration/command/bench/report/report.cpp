@@ -127,7 +127,7 @@ std::string deliver_report(const Report& report, const std::string& json, const 
     if (std::string problem = deliver_text(json, report_as_json(report)); !problem.empty()) return problem;
   if (!csv.empty())
     if (std::string problem = deliver_text(csv, report_as_csv(report)); !problem.empty()) return problem;
-  return html.empty() ? "" : deliver_text(html, report_as_html(report));
+  return html.empty() ? "" : deliver_page(html, report_as_html(report));
 }
 
 } // namespace dermis::tools
