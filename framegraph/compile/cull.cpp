@@ -132,7 +132,7 @@ struct Culler {
       auto& diagnostic = c.diagnostics->add(id, c.place_of(use), std::move(text));
       diagnostic.related.emplace_back(c.graph->resources[use.asked.value].where,
                                       fmt::format("'{}' is declared here", c.name(use.asked)));
-      relate_producers(diagnostic, use.asked);
+      relate_producers(diagnostic, use.asked, &use);
     };
     const std::string reader = fmt::format("pass '{}', port '{}'", c.name(use.pass), port.name);
     const std::string& resource = c.name(use.asked);
@@ -162,11 +162,24 @@ struct Culler {
     }
   }
 
-  // Where the passes stand that would write `resource`, on or off: the likely cause.
-  void relate_producers(Diagnostic& diagnostic, ResourceId resource) {
+  // Does the binding see the part of the image that the use asks for?
+  bool sees(const PortBinding& binding, const Use& use) const {
+    if (!c.split(use.asked)) return true;
+    const SubresourceRange& part = c.parts[use.part];
+    const ImagePart& seen = binding.part;
+    const auto within = [](uint32_t at, uint32_t first, uint32_t count) {
+      return at >= first && (count == 0 || at < first + count);
+    };
+    return within(part.first_mip, seen.first_mip, seen.mips) &&
+           within(part.first_layer, seen.first_layer, seen.layers);
+  }
+
+  // Lists the passes that would write `resource`, on or off: the likely cause. With a use, only those that
+  // would write the part that it asks for.
+  void relate_producers(Diagnostic& diagnostic, ResourceId resource, const Use* use = nullptr) {
     for (uint32_t i = 0; i < c.graph->passes.size(); ++i)
       for (const PortBinding& binding : c.graph->writes(c.graph->passes[i]))
-        if (binding.resource == resource)
+        if (binding.resource == resource && (use == nullptr || sees(binding, *use)))
           diagnostic.related.emplace_back(c.graph->place_of(binding),
                                           fmt::format("'{}' writes it and is {}", c.name(PassId{i}),
                                                       c.on[i] ? "on" : "off with these settings"));

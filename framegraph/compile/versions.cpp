@@ -67,8 +67,11 @@ struct VersionScan {
       const auto bad = std::find_if(c.uses.begin() + static_cast<std::ptrdiff_t>(first),
                                     c.uses.begin() + static_cast<std::ptrdiff_t>(end),
                                     [](const Use& use) { return use.trouble != Use::Trouble::none; });
-      for (size_t u = first; u < end && bad != c.uses.begin() + static_cast<std::ptrdiff_t>(end); ++u)
-        if (c.uses[u].trouble == Use::Trouble::none) c.uses[u].trouble = bad->trouble;
+      for (size_t u = first; u < end && bad != c.uses.begin() + static_cast<std::ptrdiff_t>(end); ++u) {
+        if (c.uses[u].trouble != Use::Trouble::none) continue;
+        c.uses[u].trouble = bad->trouble;
+        c.uses[u].part = bad->part; // which messages are about
+      }
       first = end;
     }
   }

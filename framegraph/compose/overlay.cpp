@@ -28,7 +28,8 @@ struct Edit {
   Composer& composer;
   uint32_t overlay; // its document
   NodeId target_node;
-  std::string what; // for messages: "'set' of edit 3"
+  std::string what;        // for messages: "'set' of edit 3"
+  NodeId edits, self = {}; // the list of edits, and this one
 
   EditTree& tree() const { return composer.tree; }
   SourceLocation target_place() const { return tree().documents[overlay].where(target_node); }
@@ -76,14 +77,17 @@ struct Edit {
   }
 
   // The item that all steps of the path but the last lead to; invalid after an error. `depth`: of that item.
-  ItemId parent_of(std::string_view path, const std::vector<std::string>& steps, uint32_t& depth) const {
+  // With `make`, what a graph or a pass may leave out is made where it is not there.
+  ItemId parent_of(std::string_view path, const std::vector<std::string>& steps, uint32_t& depth,
+                   bool make = false) const {
     if (steps.empty()) {
       refuse(fmt::format("{} gives '{}'; a path begins with '/'", what, shown(path)), "", path);
       return {};
     }
     ItemId at{0};
     for (depth = 1; depth < steps.size(); ++depth) {
-      const int child = find_step(tree(), at, steps[depth - 1]);
+      int child = find_step(tree(), at, steps[depth - 1]);
+      if (child < 0 && make) child = make_member(at, steps, depth);
       if (child < 0) {
         missing(at, path, steps[depth - 1]);
         return {};
@@ -91,6 +95,25 @@ struct Edit {
       at = tree()[at].children[static_cast<size_t>(child)];
     }
     return at;
+  }
+
+  // The position of a new, empty member of `parent` for step `depth` of the path; -1 where the format has
+  // none. Its place in the files is that of the edit.
+  int make_member(ItemId parent, const std::vector<std::string>& steps, uint32_t depth) const {
+    constexpr std::string_view of_graph[] = {"settings", "imports", "resources"};
+    constexpr std::string_view of_pass[] = {"set", "read", "write", "otherwise"};
+    const std::string& key = steps[depth - 1];
+    const auto is_in = [&](const auto& words) {
+      return std::find(std::begin(words), std::end(words), key) != std::end(words);
+    };
+    const bool list = depth == 1 && key == "exports";
+    const bool object =
+        (depth == 1 && is_in(of_graph)) || (depth == 3 && steps[0] == "passes" && is_in(of_pass));
+    if ((!list && !object) || tree().kind(parent) != NodeKind::object) return -1;
+    const ItemId fresh{static_cast<uint32_t>(tree().items.size())};
+    tree().items.push_back({overlay, list ? edits : self, target_node, key, {}});
+    tree()[parent].children.push_back(fresh);
+    return static_cast<int>(tree()[parent].children.size()) - 1;
   }
 
   void missing(ItemId parent, std::string_view path, std::string_view step) const {
@@ -113,7 +136,7 @@ struct Edit {
   void set(std::string_view path, NodeId value) const {
     const std::vector<std::string> steps = split_path(path);
     uint32_t depth = 0;
-    const ItemId parent = parent_of(path, steps, depth);
+    const ItemId parent = parent_of(path, steps, depth, true);
     if (!parent.valid()) return;
     const bool array = tree().kind(parent) == NodeKind::array;
     const int at = find_step(tree(), parent, steps.back());
@@ -219,12 +242,18 @@ bool check_overlay(const Document& document, Diagnostics& diagnostics) {
 void apply_overlay(Composer& composer, uint32_t overlay) {
   const Document& document = composer.tree.documents[overlay];
   const auto edits = read_edits(document, composer.diagnostics);
+  const NodeId list = document.find(document.root(), "edits");
+  std::vector<NodeId> nodes;
+  if (list.valid())
+    for (const NodeId edit : children(document, list))
+      nodes.push_back(edit);
   for (size_t i = 0; i < edits.size() && !composer.diagnostics.full(); ++i) {
     if (!edits[i]) continue;
     const EditDeclaration& declared = *edits[i];
     const std::string_view key = verbs[static_cast<size_t>(declared.verb)];
     const std::string_view target = document.text(declared.target);
-    const Edit edit{composer, overlay, declared.target, fmt::format("'{}' of {}", key, edit_name(i))};
+    const Edit edit{composer, overlay, declared.target, fmt::format("'{}' of {}", key, edit_name(i)),
+                    list,     nodes[i]};
     if (declared.verb == Verb::set)
       edit.set(target, declared.operand);
     else if (declared.verb == Verb::remove)

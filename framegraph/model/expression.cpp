@@ -78,6 +78,12 @@ private:
   }
 
   std::nullopt_t fail(DiagnosticId id, size_t at, std::string text, std::string suggestion = {}) {
+    const ForeignOperator foreign = foreign_operator(document_.text(node_), at);
+    if (id == DiagnosticId::bad_expression && !foreign.text.empty()) {
+      text = fmt::format("there is no operator '{}'; there are ==, !=, <, <=, >, >=, in, not, and, or",
+                         foreign.text);
+      if (!foreign.instead.empty()) suggestion = fmt::format("did you mean '{}'?", foreign.instead);
+    }
     diagnostics_
         .add(id, where_in_string(document_, node_, at, diagnostics_), fmt::format("{}: {}", what_, text))
         .suggestion = std::move(suggestion);

@@ -2,8 +2,10 @@
 
 #include "framegraph/text/utf8.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
+#include <iterator>
 
 namespace dermis {
 
@@ -22,6 +24,33 @@ bool is_digit(char c) {
 
 bool is_reserved_word(std::string_view word) {
   return word == "and" || word == "or" || word == "not" || word == "in" || word == "true" || word == "false";
+}
+
+ForeignOperator foreign_operator(std::string_view expression, size_t at) {
+  struct Known {
+    std::string_view text, instead;
+  };
+  constexpr Known translations[] = {{"=", "=="},    {"===", "=="},  {"!==", "!="}, {"<>", "!="},
+                                    {"~=", "!="},   {"=>", ">="},   {"=<", "<="},  {"&&", "and"},
+                                    {"&", "and"},   {"||", "or"},   {"|", "or"},   {"!", "not"},
+                                    {"AND", "and"}, {"And", "and"}, {"OR", "or"},  {"Or", "or"},
+                                    {"NOT", "not"}, {"Not", "not"}, {"IN", "in"},  {"In", "in"}};
+  constexpr std::string_view own[] = {"==", "!=", "<", "<=", ">", ">="}, signs = "=<>!&|+-*/%^~?";
+  const auto is_sign = [&](char c) { return signs.find(c) != std::string_view::npos; };
+  if (at >= expression.size()) return {};
+  const bool word = is_letter(expression[at]);
+  if (!word && !is_sign(expression[at])) return {};
+  const auto belongs = [&](char c) { return word ? is_letter(c) || is_digit(c) : is_sign(c); };
+  size_t begin = at, end = at;
+  while (begin > 0 && belongs(expression[begin - 1]))
+    --begin;
+  while (end < expression.size() && belongs(expression[end]))
+    ++end;
+  const std::string_view text = expression.substr(begin, end - begin);
+  for (const Known& one : translations)
+    if (one.text == text) return {text, one.instead};
+  const bool known = std::find(std::begin(own), std::end(own), text) != std::end(own);
+  return word || known ? ForeignOperator{} : ForeignOperator{text.substr(0, shown_bytes), {}};
 }
 
 std::string describe(const Token& token) {

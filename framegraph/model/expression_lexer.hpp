@@ -31,6 +31,13 @@ private:
 // and, or, not, in, true, false: no setting may bear such a name.
 bool is_reserved_word(std::string_view word);
 
+// The operator of other languages that covers byte `at`, such as "&&" or "+"; empty where there is none.
+struct ForeignOperator {
+  std::string_view text;
+  std::string_view instead; // what means the same here; empty: nothing does
+};
+ForeignOperator foreign_operator(std::string_view expression, size_t at);
+
 // "'<='", "the end": for messages.
 std::string describe(const Token& token);
 

@@ -126,6 +126,20 @@ TEST(Parts, WhatIsReadOfAnImageHasBeenWritten) {
   EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
   EXPECT_THAT(errors[0].text, HasSubstr("'chain'"));
   EXPECT_EQ(errors[0].where.line, b.graph.place_of(b.read(3, 0)).line);
+  EXPECT_EQ(errors[0].related.size(), 1u) << "the declaration: nobody writes mip 3";
+}
+
+TEST(Parts, OnlyWritersOfAMissingMipAreListed) {
+  auto b = pyramid();
+  b.graph.resources[1].mips = 4;
+  b.boolean("deep", false);
+  b.pass("down3", "test.need", {{"a", "chain#2"}}, {{"out", "chain#3"}}).when = b.when("deep");
+  std::swap(b.graph.passes[3], b.graph.passes[4]);
+  const auto errors = refused(b);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
+  ASSERT_EQ(errors[0].related.size(), 2u);
+  EXPECT_THAT(errors[0].related[1].second, HasSubstr("'down3' writes it and is off"));
 }
 
 TEST(Parts, TwoWritersOfOneMipAreRefusedOnce) {

@@ -165,6 +165,21 @@ TEST(Overlay, AnEditNamesWhatIsThere) {
       Id::edit_target, "overlay0.json:2:19", {"did you mean 'mix'?"});
 }
 
+TEST(Overlay, MayAddTheFirstSettingAndMembersOfAPass) {
+  const std::string graph = R"({ "dermis": 1, "name": "plain",
+  "resources": { "a": { "format": "rgba16f", "size": "view" } },
+  "passes": [ { "pass": "copy", "kind": "test.blur", "read": { "source": "light" }, "write": { "target": "a" } } ] })";
+  const Composed composed =
+      put_together(graph, {overlay(R"({ "set": "/settings/wide", "to": { "real": 3, "min": 0, "max": 8 } },
+                         { "set": "/imports/light", "to": { "format": "rgba16f", "size": "view" } },
+                         { "set": "/exports/-", "to": "a" },
+                         { "set": "/passes/copy/set/radius", "to": "$wide" })")});
+  ASSERT_TRUE(composed.graph) << all_messages(composed.diagnostics);
+  ASSERT_EQ(composed.graph->settings.size(), 1u);
+  EXPECT_EQ(composed.graph->settings[0].name, "wide");
+  ASSERT_EQ(composed.graph->passes.size(), 1u);
+}
+
 TEST(Overlay, WhatAnEarlierOneRemovedIsNamed) {
   const Composed composed =
       put_together(whole_graph(), {overlay(R"({ "remove": "/passes/copy" })"),

@@ -57,6 +57,22 @@ TEST(GraphErrors, AllRootCausesAreReportedInOneRunAndTheirConsequencesAreNot) {
   EXPECT_EQ(result.diagnostics.list[3].id, Id::unknown_resource);
 }
 
+TEST(GraphErrors, AnUnknownKindIsReportedOnceWithAllItsPasses) {
+  std::string text = whole_graph();
+  for (size_t at = 0; (at = text.find("\"test.blur\"", at)) != std::string::npos; ++at)
+    text.replace(at, 11, "\"host.bloom\"");
+  const size_t end = text.rfind("\"passes\": [") + 11;
+  text.insert(end, R"( { "pass": "extra", "kind": "host.bloom" },)");
+  const Read result = read(text);
+  ASSERT_EQ(result.diagnostics.list.size(), 1u) << all_messages(result.diagnostics);
+  const Diagnostic& one = result.diagnostics.list[0];
+  EXPECT_EQ(one.id, Id::unknown_kind);
+  EXPECT_NE(one.text.find("pass 'extra' and "), std::string::npos) << one.text;
+  ASSERT_FALSE(one.related.empty());
+  EXPECT_EQ(one.related[0].second, "pass 'blur' is of this kind, too");
+  EXPECT_NE(std::string(diagnostic_info(one.id).hint).find("--kinds FILE"), std::string::npos);
+}
+
 TEST(GraphErrors, SectionsOfTheWrongTypeSilenceWhatReferredToThem) {
   for (const char* section : {"settings", "imports", "resources", "passes"}) {
     std::string text = whole_graph();

@@ -6,6 +6,7 @@
 #include "framegraph/text/reader.hpp"
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,6 +37,7 @@ struct GraphReader {
   std::map<ResourceId, size_t> format_mismatches;
   // "requires" of choices: read when all imports are known.
   std::vector<std::pair<SettingId, NodeId>> option_requirements;
+  std::set<std::string, std::less<>> unknown_kinds; // reported, each with all its passes
   // Where each resource and pass is read from, by id.
   std::vector<NodeId> resource_nodes, pass_nodes;
 

@@ -13,18 +13,44 @@ namespace dermis {
 
 namespace {
 
+std::string name_of_pass(const GraphReader& reader, size_t index) {
+  const std::string& name = reader.graph.passes[index].name;
+  return name.empty() ? fmt::format("pass number {}", index + 1) : fmt::format("pass '{}'", name);
+}
+
+// The other passes of an unknown kind: one root cause, one message.
+std::vector<size_t> passes_of_kind(const GraphReader& reader, std::string_view name) {
+  std::vector<size_t> out;
+  for (size_t i = 0; i < reader.pass_nodes.size(); ++i) {
+    const NodeId pass = reader.pass_nodes[i];
+    if (reader.document[pass].kind != NodeKind::object) continue;
+    const NodeId kind = reader.document.find(pass, "kind");
+    if (kind.valid() && reader.document[kind].kind == NodeKind::string && reader.document.text(kind) == name)
+      out.push_back(i);
+  }
+  return out;
+}
+
 void read_kind(GraphReader& reader, ObjectReader& object, PassDeclaration& pass) {
   const auto name = object.string("kind");
   if (!name) return;
   pass.kind = reader.kinds.find(*name);
-  if (pass.kind.valid()) return;
+  if (pass.kind.valid() || reader.diagnostics.full() || !reader.unknown_kinds.emplace(*name).second) return;
+  constexpr size_t max_related = 16;
+  const std::vector<size_t> all = passes_of_kind(reader, *name);
+  const std::string who = all.size() < 2 ? "is"
+                                         : fmt::format("and {} other {} are", all.size() - 1,
+                                                       all.size() == 2 ? "pass" : "passes");
   std::vector<std::string_view> names;
   for (uint32_t i = 0; i < reader.kinds.size(); ++i)
     names.push_back(reader.kinds[{i}].name);
-  reader
-      .error(DiagnosticId::unknown_kind, reader.document.where(reader.document.find(object.node(), "kind")),
-             fmt::format("{} is of the kind '{}', which is not registered", object.what(), *name))
-      .suggestion = did_you_mean(*name, names);
+  Diagnostic& one = reader.error(
+      DiagnosticId::unknown_kind, reader.document.where(reader.document.find(object.node(), "kind")),
+      fmt::format("{} {} of the kind '{}', which is not registered", object.what(), who, *name));
+  one.suggestion = did_you_mean(*name, names);
+  for (size_t i = 1; i < std::min(all.size(), max_related + 1); ++i)
+    one.related.emplace_back(reader.document.where(reader.document.find(reader.pass_nodes[all[i]], "kind")),
+                             fmt::format("{} is of this kind, too", name_of_pass(reader, all[i])));
 }
 
 void read_queue(ObjectReader& object, PassDeclaration& pass) {
@@ -138,8 +164,7 @@ void read_passes(GraphReader& reader) {
   for (uint32_t i = 0; i < reader.graph.passes.size(); ++i) {
     PassDeclaration& pass = reader.graph.passes[i];
     const NodeId node = reader.pass_nodes[i];
-    const std::string what =
-        pass.name.empty() ? fmt::format("pass number {}", i + 1) : fmt::format("pass '{}'", pass.name);
+    const std::string what = name_of_pass(reader, i);
     ObjectReader object(reader.document, node, what, reader.diagnostics);
     if (reader.document[node].kind != NodeKind::object) {
       reader.unknown_writes = true;
