@@ -64,6 +64,18 @@ struct PortNeed {
   uint32_t square = 0, bytes = 0, more = 0; // square 0: `more` alone
 };
 
+// How much of a frame is in a history that a pass mixes it into.
+struct HistoryWeight {
+  enum class By : uint8_t {
+    share, // at least the setting
+    cap    // 1 part, beside as many of history as the setting says, at most
+  };
+  std::string_view port;    // that writes the history
+  std::string_view setting; // a real number
+  By by = By::share;
+  uint32_t frames = 1; // a texel takes part in one frame of so many, at least
+};
+
 struct PassKind {
   std::string_view name;   // "subsurface.burley"
   std::string_view shader; // file stem in shaders/, "" for kinds without one
@@ -78,6 +90,7 @@ struct PassKind {
   std::span<const PortNeed> needs = {}; // also of ports that the kind does not have; without one: any size
   std::span<const std::string_view> one_of = {}; // optional ports of which at least one has to be bound
   Features features = 0;                         // that its kernel needs of the device
+  std::span<const HistoryWeight> mixes = {};     // without one: a history holds the last frame only
 };
 
 // The kinds a graph may use. Order of registration is the order of KindId; names are unique.

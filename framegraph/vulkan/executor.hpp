@@ -38,6 +38,28 @@ struct EnvironmentBinding {
   std::span<const std::byte> contents{}; // at most `bytes`, the rest is zero; ignored for frame constants
 };
 
+// The static buffers of an environment on the device: all but frame constants, counters and samplers.
+// Executors of one environment share them; they live as long as one of these, or a frame in flight, uses
+// them.
+class EnvironmentTables {
+public:
+  // `device` must outlive the tables. Errors: host_memory, device_memory, device_lost, vulkan; `tables` is
+  // then unchanged. May throw std::bad_alloc. Free-threaded.
+  static Error create(const Device& device, std::span<const EnvironmentBinding> environment,
+                      std::shared_ptr<const EnvironmentTables>& tables);
+  ~EnvironmentTables();
+  uint64_t bytes() const noexcept; // of device memory
+
+  EnvironmentTables(const EnvironmentTables&) = delete;
+  EnvironmentTables& operator=(const EnvironmentTables&) = delete;
+  struct State; // internal
+  const State& state() const noexcept { return *state_; }
+
+private:
+  explicit EnvironmentTables(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
 // Why a history holds nothing worth reading.
 enum class HistoryReason : uint8_t {
   valid,       // it does
@@ -94,7 +116,9 @@ struct ExecutorInput { // nothing is kept but `device`; all the rest is copied o
   const Plan* plan = nullptr;                      // compiled with device_profile(*device)
   std::span<const KernelCode> kernels;             // at least those of the plan's kinds
   std::span<const EnvironmentBinding> environment; // may be empty
-  uint32_t frames_in_flight = 2;                   // 1 .. max_frames_in_flight
+  std::shared_ptr<const EnvironmentTables> tables =
+      nullptr;                   // made from `environment`; null: the executor makes them for itself
+  uint32_t frames_in_flight = 2; // 1 .. max_frames_in_flight
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE; // may be null
   const HeapPool* heap_pool = nullptr; // made with this plan among others: transients lie in its memory, and
                                        // no other user of it may run at the same time. Null: its own memory.
@@ -207,6 +231,12 @@ public:
   // of its own, never throws, submits or waits. One thread at a time per executor.
   RecordResult record(const FrameInput& frame) noexcept;
 
+  // The next recorded frame reads `tables`, which have the bindings of those before; frames in flight keep
+  // what they were recorded with. One thread at a time per executor.
+  void set_tables(const std::shared_ptr<const EnvironmentTables>& tables) noexcept;
+  // Lets go of tables that only frames up to `completed_frame_index` read. One thread at a time per executor.
+  void release_tables(uint64_t completed_frame_index) noexcept;
+
   // State of history `index` (Plan::histories) as the next recorded frame sees it; give `reset_history` as
   // that frame will. One thread at a time per executor.
   HistoryState history_state(uint32_t index, bool reset_history = false,
@@ -234,7 +264,7 @@ public:
   const Plan& plan() const noexcept;
   // Device memory that it took for heap `index` (Plan::heaps); bytes 0: it lies in the pool. Throws nothing.
   MemoryRequest heap_request(uint32_t index) const noexcept;
-  uint64_t constant_bytes() const noexcept; // device memory for set 1 and stand-ins of unbound ports
+  uint64_t constant_bytes() const noexcept; // device memory for set 1, without the tables
 
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;

@@ -42,6 +42,8 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
       build_program(context, input, history, graph.plans, errors, costs, diagnostics, candidates[0]);
   for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
     result = copy_program(context, input, *candidates[0], history, diagnostics, candidates[v]);
+  for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
+    apply_own_settings(*graph.others[v - 1], *candidates[v], diagnostics);
   if (result != DERMIS_OK || diagnostics.has_errors())
     return result; // errors of profiles come from the caller
   size_t v = 0;

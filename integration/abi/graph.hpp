@@ -18,10 +18,11 @@ struct dermis_view_t {
 
   dermis_context context = nullptr;
   dermis_graph graph = nullptr;
-  void* user = nullptr;                          // handed to passes of the host
-  mutable std::mutex mutex;                      // guards all that follows
-  std::shared_ptr<dermis::abi::Program> running; // recorded last; null before the first record
-  std::shared_ptr<dermis::abi::Program> next;    // takes over at the next record; null: none
+  void* user = nullptr;                           // handed to passes of the host
+  std::vector<dermis::abi::HostSetting> settings; // the view's own values. Guarded by graph->changing
+  mutable std::mutex mutex;                       // guards all that follows
+  std::shared_ptr<dermis::abi::Program> running;  // recorded last; null before the first record
+  std::shared_ptr<dermis::abi::Program> next;     // takes over at the next record; null: none
   // Replaced programs, until the frame they were recorded with last has completed. Each was replaced at a
   // different frame, and at most frames_in_flight frames are not complete.
   std::array<std::shared_ptr<dermis::abi::Program>, dermis::vulkan::max_frames_in_flight + 1> retired;
@@ -92,6 +93,9 @@ const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program
 // changed. Under graph.changing. `diagnostics`: what reading `input` found; an error fails the call.
 dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
                                dermis_report* report, Diagnostics&& diagnostics = {});
+
+// Gives the view's own values to a program that it will record; what does not fit is reported.
+void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics& diagnostics);
 
 // What both the functions of a graph and of a view do; `function` names the one that was called.
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);

@@ -42,18 +42,9 @@ dermis_result read_profiles(const Log& log, const char* function, const dermis_g
         for (const auto& other : input.profiles)
           if (other.id == profile.id)
             return bad_argument(log, "{}.id is {}, which an earlier entry has already", field, profile.id);
-        std::string name, text;
-        if (const dermis_result result =
-                read_source(log, (field + ".source").c_str(), profile.source, name, text);
-            result != DERMIS_OK)
-          return result;
-        const auto document = parse_document(name.empty() ? fmt::format("profile {}", profile.id) : name,
-                                             std::move(text), diagnostics);
-        std::optional<subsurface::Profile> read;
-        if (document) read = subsurface::read_profile(*document, diagnostics);
-        input.profiles.push_back(
-            {profile.id, read.value_or(subsurface::Profile{})}); // errors are in diagnostics
-        return DERMIS_OK;
+        subsurface::NumberedProfile& added = input.profiles.emplace_back();
+        added.id = profile.id;
+        return read_profile_source(log, (field + ".source").c_str(), profile.source, added, diagnostics);
       });
 }
 
@@ -117,6 +108,18 @@ dermis_result read_source(const Log& log, const char* what, const dermis_source&
                         limits::file_bytes);
   name = source.name == nullptr ? "" : source.name;
   text.assign(source.text, source.length);
+  return DERMIS_OK;
+}
+
+dermis_result read_profile_source(const Log& log, const char* what, const dermis_source& source,
+                                  subsurface::NumberedProfile& out, Diagnostics& diagnostics) {
+  std::string name, text;
+  if (const dermis_result result = read_source(log, what, source, name, text); result != DERMIS_OK)
+    return result;
+  const auto document =
+      parse_document(name.empty() ? fmt::format("profile {}", out.id) : name, std::move(text), diagnostics);
+  if (!document) return DERMIS_OK;
+  if (auto read = subsurface::read_profile(*document, diagnostics)) out.profile = std::move(*read);
   return DERMIS_OK;
 }
 

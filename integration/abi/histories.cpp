@@ -1,6 +1,7 @@
 // What a view's histories hold, and why they held nothing.
 
 #include "integration/abi/graph.hpp"
+#include "integration/abi/settling.hpp"
 #include "integration/abi/two_call.hpp"
 
 #include <algorithm>
@@ -29,28 +30,35 @@ dermis_history_reason reason_of(vulkan::HistoryReason reason) {
   return DERMIS_HISTORY_NEVER_WRITTEN;
 }
 
+struct KnownHistory {
+  vulkan::HistoryState state;
+  uint32_t settles_after = 1; // frames
+};
+
 // Those of a plan that are not among `all` yet, as its next frame would find them.
-void add_histories(const Variant& variant, const vulkan::Executor* before,
-                   std::vector<vulkan::HistoryState>& all) {
+void add_histories(const KindRegistry& kinds, const Program& program, const Variant& variant,
+                   const vulkan::Executor* before, std::vector<KnownHistory>& all) {
   for (uint32_t i = 0; i < variant.executor->history_count(); ++i) {
     vulkan::HistoryState state = variant.executor->history_state(i, false, before);
-    const auto same = [&](const vulkan::HistoryState& one) { return one.resource == state.resource; };
+    const auto same = [&](const KnownHistory& one) { return one.state.resource == state.resource; };
     if (std::any_of(all.begin(), all.end(), same)) continue;
     const vulkan::HistoryState own = variant.executor->history_state(i);
     if (!state.valid && !variant.recorded && own.lost == vulkan::HistoryReason::first_frame)
       state.lost = own.lost; // no plan was in between: it never ran
-    all.push_back(state);
+    all.push_back({state, settling_frames(kinds, variant.compiled->plan, i,
+                                          program.outcomes[program.outcome].settings)});
   }
 }
 
 // The plan that ran last, or will run first, before the others.
-std::vector<vulkan::HistoryState> histories_of(const dermis_view_t& view, const Program& program) {
-  std::vector<vulkan::HistoryState> all;
+std::vector<KnownHistory> histories_of(const dermis_view_t& view, const Program& program) {
+  const KindRegistry& kinds = view.context->kinds;
+  std::vector<KnownHistory> all;
   const uint32_t last = program.outcomes[program.outcome].plan;
   const vulkan::Executor* const before = recorded_before(view, program, last);
-  add_histories(program.variants[last], before, all);
+  add_histories(kinds, program, program.variants[last], before, all);
   for (uint32_t v = 0; v < program.variants.size(); ++v)
-    if (v != last) add_histories(program.variants[v], recorded_before(view, program, v), all);
+    if (v != last) add_histories(kinds, program, program.variants[v], recorded_before(view, program, v), all);
   return all;
 }
 
@@ -63,11 +71,13 @@ dermis_result get_histories(const dermis_view_t& view, const char* function, uin
   return fill_array(view.context->log, function, count, out, static_cast<uint32_t>(all.size()),
                     [&](uint32_t i) {
                       dermis_history history = DERMIS_HISTORY_INIT;
-                      history.name = all[i].resource.data(); // of a std::string of the executor
-                      history.valid = all[i].valid ? 1 : 0;
-                      history.age = all[i].age;
-                      history.reason = reason_of(all[i].lost);
-                      history.text = vulkan::history_reason_text(all[i].lost);
+                      const vulkan::HistoryState& state = all[i].state;
+                      history.name = state.resource.data(); // of a std::string of the executor
+                      history.valid = state.valid ? 1 : 0;
+                      history.age = state.age;
+                      history.reason = reason_of(state.lost);
+                      history.settles_after = all[i].settles_after;
+                      history.text = vulkan::history_reason_text(state.lost);
                       return history;
                     });
 }

@@ -71,6 +71,7 @@ dermis_memory describe_memory(dermis_graph_t& graph) {
     sum.history_bytes += one.history_bytes;
     sum.constant_bytes += one.constant_bytes;
   });
+  sum.constant_bytes += graph.input.device_tables->bytes();
   return sum;
 }
 

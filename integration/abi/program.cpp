@@ -87,16 +87,11 @@ template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& val
   return std::as_bytes(std::span<const T>(values));
 }
 
-// One executor for each plan; where there are several, their transients share memory.
-vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                             vulkan::KernelStore& kernels, Program& program) {
-  const std::vector<vulkan::KernelCode> codes = kernel_codes(input.shaders);
-  const subsurface::TableUse use = subsurface::table_use(program.graph, context.kinds);
-  if (!input.tables || input.tables->use != use)
-    input.tables =
-        std::make_shared<subsurface::KernelTables>(subsurface::make_kernel_tables(use, input.profiles));
-  const subsurface::KernelTables& tables = *input.tables;
-  const std::array<vulkan::EnvironmentBinding, 7> environment{{
+using Environment = std::array<vulkan::EnvironmentBinding, 7>;
+static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 7);
+
+Environment environment_of(const subsurface::KernelTables& tables) { // points into `tables`
+  return {{
       {vulkan::EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.profiles).size(), bytes_of(tables.profiles)},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.separable).size(),
@@ -106,13 +101,23 @@ vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vul
       {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.radial).size(), bytes_of(tables.radial)},
       {vulkan::EnvironmentType::counters, sizeof(subsurface::FrameCounters), {}},
   }};
-  static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 7);
+}
+
+// One executor for each plan; where there are several, their transients share memory.
+vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
+                             vulkan::KernelStore& kernels, Program& program) {
+  const std::vector<vulkan::KernelCode> codes = kernel_codes(input.shaders);
+  const subsurface::TableUse use = subsurface::table_use(program.graph, context.kinds);
+  if (!input.tables || input.tables->use != use)
+    if (vulkan::Error error = make_tables(context, use, input)) return error;
+  const Environment environment = environment_of(*input.tables);
   vulkan::ExecutorInput executor;
   executor.device = &context.device;
   executor.graph = &program.graph;
   executor.kinds = &context.kinds;
   executor.kernels = codes;
   executor.environment = environment;
+  executor.tables = input.device_tables;
   executor.frames_in_flight = context.frames_in_flight;
   executor.pipeline_cache = context.pipeline_cache;
   executor.kernel_store = &kernels;
@@ -133,14 +138,6 @@ vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vul
     if (vulkan::Error error = vulkan::Executor::create(executor, variant.executor)) return error;
   }
   return {};
-}
-
-dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
-  diagnostics.add(diagnostic_of(error.kind), {}, error.text);
-  if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
-  // The library built the executor's input: what does not fit there is a defect of the library, not of the
-  // host.
-  return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
 }
 
 void make_room_for_bindings(Program& program) {
@@ -205,6 +202,24 @@ std::vector<uint8_t> serving_passes(const Plan& plan, const KindRegistry& kinds)
 }
 
 } // namespace
+
+dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
+  diagnostics.add(diagnostic_of(error.kind), {}, error.text);
+  if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
+  // The library built the executor's input: what does not fit there is a defect of the library, not of the
+  // host.
+  return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
+}
+
+vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use, ProgramInput& input) {
+  auto tables =
+      std::make_shared<const subsurface::KernelTables>(subsurface::make_kernel_tables(use, input.profiles));
+  if (vulkan::Error error =
+          vulkan::EnvironmentTables::create(context.device, environment_of(*tables), input.device_tables))
+    return error;
+  input.tables = std::move(tables);
+  return {};
+}
 
 std::vector<choice::Outcome> outcomes_with(const Program& program, Chooser& chooser,
                                            const KindRegistry& kinds, uint32_t setting,

@@ -50,6 +50,8 @@ struct ProgramInput {
   RuntimeShaders shaders;
   std::shared_ptr<const subsurface::KernelTables>
       tables; // of `profiles`, as the last program used them; or null
+  std::shared_ptr<const vulkan::EnvironmentTables>
+      device_tables; // `tables` on the device: all views read them; or null
 };
 
 // An import or export as the host sees it; `id` is the position in Program::slots.
@@ -106,6 +108,12 @@ struct Program {
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
                             PlanCache& plans, const choice::ErrorModel& errors, choice::CostModel& costs,
                             Diagnostics& diagnostics, std::shared_ptr<Program>& program);
+
+// Adds the error to `diagnostics` and returns its result.
+dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics);
+
+// Fits the tables of input.profiles for what passes `use`, and puts them on the device.
+vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use, ProgramInput& input);
 
 // Nothing that makes it fails any more: what it compiled serves all graphs of the context.
 void share_kernels(Program& program) noexcept;

@@ -10,6 +10,9 @@ namespace {
 void collect(dermis_view_t& view, uint64_t completed) {
   for (auto& old : view.retired)
     if (old && old->last_frame <= completed) old.reset();
+  if (view.running)
+    for (const Variant& variant : view.running->variants)
+      variant.executor->release_tables(completed);
 }
 
 void take_over(dermis_view_t& view) {

@@ -60,12 +60,38 @@ dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* 
                                                               : double(declared.options.size()) - 1;
     setting.default_value = number_of(declared.default_value);
     setting.value = number_of(values[i]);
-    setting.set = is_set(view.graph->input.settings, declared.name) ? 1 : 0;
+    setting.set = is_set(view.settings, declared.name)                ? 2
+                  : is_set(view.graph->input.settings, declared.name) ? 1
+                                                                      : 0;
     setting.chosen = declared.by_budget && setting.set == 0 ? 1 : 0;
     setting.option_count = static_cast<uint32_t>(declared.options.size());
     setting.options = declared.options.empty() ? nullptr : kept->option_names[i].data();
     return setting;
   });
+}
+
+auto find_declared(const Graph& graph, const std::string& name) {
+  return std::find_if(graph.settings.begin(), graph.settings.end(),
+                      [&](const SettingDeclaration& setting) { return setting.name == name; });
+}
+
+void add_unknown(const char* function, const Graph& graph, const std::string& name,
+                 Diagnostics& diagnostics) {
+  std::string known;
+  for (const SettingDeclaration& setting : graph.settings)
+    known += fmt::format("{}'{}'", known.empty() ? "" : ", ", setting.name);
+  diagnostics.add(DiagnosticId::host_argument, {},
+                  fmt::format("{}: graph '{}' has no setting '{}'; it has {}", function, graph.name, name,
+                              known.empty() ? "none" : known));
+}
+
+void set_in(std::vector<HostSetting>& given, const std::string& name, const std::string& json) {
+  const auto at = std::find_if(given.begin(), given.end(),
+                               [&](const HostSetting& setting) { return setting.name == name; });
+  if (at == given.end())
+    given.push_back({name, json});
+  else
+    at->json = json;
 }
 
 // Does a new value change which passes run?
@@ -83,16 +109,10 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   const std::shared_ptr<Program> kept = keep_newest(graph.own);
   const Program& program = *kept;
   const auto& declared = program.graph.settings;
-  const auto at = std::find_if(declared.begin(), declared.end(),
-                               [&](const SettingDeclaration& setting) { return setting.name == name; });
   Diagnostics diagnostics;
+  const auto at = find_declared(program.graph, name);
   if (at == declared.end()) {
-    std::string known;
-    for (const SettingDeclaration& setting : declared)
-      known += fmt::format("{}'{}'", known.empty() ? "" : ", ", setting.name);
-    diagnostics.add(DiagnosticId::host_argument, {},
-                    fmt::format("dermis_graph_set_setting: graph '{}' has no setting '{}'; it has {}",
-                                program.graph.name, name, known.empty() ? "none" : known));
+    add_unknown("dermis_graph_set_setting", program.graph, name, diagnostics);
     return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
   }
   const auto value = read_setting(*at, json, diagnostics);
@@ -101,17 +121,13 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   std::vector<SettingValue> values = program.settings;
   values[static_cast<size_t>(at - declared.begin())] = *value;
   ProgramInput input = graph.input;
-  const auto given = std::find_if(input.settings.begin(), input.settings.end(),
-                                  [&](const HostSetting& setting) { return setting.name == name; });
-  if (given == input.settings.end())
-    input.settings.push_back({name, json});
-  else
-    given->json = json;
+  set_in(input.settings, name, json);
   const auto index = static_cast<uint32_t>(at - declared.begin());
   if (at->by_budget || changes_passes(program, values))
     return replace_programs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
-  std::vector<std::vector<choice::Outcome>> outcomes; // by view
+  std::vector<std::vector<choice::Outcome>> outcomes; // by view that has no value of its own
   for_each_view(graph, [&](dermis_view_t& view) {
+    if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
     outcomes.push_back(outcomes_with(newest(view), view.chooser, graph.context->kinds, index, *value));
   });
@@ -119,6 +135,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   if (result != DERMIS_OK) return result;
   size_t v = 0; // from here on nothing fails
   for_each_view(graph, [&](dermis_view_t& view) {
+    if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
     Program& changed = newest(view);
     changed.settings[index] = *value;
@@ -128,7 +145,84 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   return result;
 }
 
+// `json` NULL: the value of the graph again.
+dermis_result set_view_setting(dermis_view_t& view, const std::string& name, const char* json,
+                               dermis_report* report) {
+  constexpr const char* function = "dermis_view_set_setting";
+  const Log& log = view.context->log;
+  const std::lock_guard changing(view.graph->changing);
+  const std::shared_ptr<Program> kept = keep_newest(view);
+  const Graph& graph = kept->graph;
+  Diagnostics diagnostics;
+  const auto at = find_declared(graph, name);
+  if (at == graph.settings.end()) {
+    add_unknown(function, graph, name, diagnostics);
+    return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
+  }
+  const auto index = static_cast<uint32_t>(at - graph.settings.begin());
+  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->kinds);
+  if (per_frame[index] == 0) {
+    std::string own;
+    for (size_t i = 0; i < graph.settings.size(); ++i)
+      if (per_frame[i] != 0) own += fmt::format("{}'{}'", own.empty() ? "" : ", ", graph.settings[i].name);
+    diagnostics.add(
+        DiagnosticId::host_argument, {},
+        fmt::format("{}: setting '{}' belongs to the graph; dermis_graph_set_setting sets it for all "
+                    "views. A view can have its own value of {}",
+                    function, name, own.empty() ? "none" : own));
+    return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
+  }
+  std::vector<HostSetting> settings = view.settings;
+  std::optional<SettingValue> value;
+  if (json != nullptr) {
+    value = read_setting(*at, json, diagnostics);
+    if (!value) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
+    set_in(settings, name, json);
+  } else {
+    std::erase_if(settings, [&](const HostSetting& setting) { return setting.name == name; });
+    value = keep_newest(view.graph->own)->settings[index];
+  }
+  std::vector<choice::Outcome> outcomes;
+  {
+    const std::lock_guard lock(view.mutex);
+    outcomes = outcomes_with(newest(view), view.chooser, view.context->kinds, index, *value);
+  }
+  const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
+  if (result != DERMIS_OK) return result;
+  const std::lock_guard lock(view.mutex); // from here on nothing fails
+  Program& changed = newest(view);
+  changed.settings[index] = *value;
+  changed.outcomes.swap(outcomes);
+  view.settings.swap(settings);
+  return result;
+}
+
 } // namespace
+
+void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics& diagnostics) {
+  if (view.settings.empty()) return;
+  const Graph& graph = program.graph;
+  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->kinds);
+  for (const HostSetting& own : view.settings) {
+    const auto at = find_declared(graph, own.name);
+    const auto index = static_cast<size_t>(at - graph.settings.begin());
+    Diagnostics scratch; // the value was right for the graph before: not an error of this one
+    std::optional<SettingValue> value;
+    if (at != graph.settings.end() && per_frame[index] != 0) value = read_setting(*at, own.json, scratch);
+    if (!value) {
+      diagnostics.add(
+          DiagnosticId::setting_not_carried, at != graph.settings.end() ? at->where : SourceLocation{},
+          fmt::format("setting '{}' = {} of a view is not carried over: the new graph has no such "
+                      "setting per frame, or does not accept the value",
+                      own.name, own.json));
+      continue;
+    }
+    program.settings[index] = *value;
+    for (choice::Outcome& outcome : program.outcomes)
+      outcome.settings[index] = *value;
+  }
+}
+
 } // namespace dermis::abi
 
 using namespace dermis::abi;
@@ -154,5 +248,26 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph
       return alive;
     const std::lock_guard changing(graph->changing);
     return set_setting(*graph, name, json, report);
+  });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_settings(dermis_view view, uint32_t* count,
+                                                          dermis_setting* settings) {
+  constexpr const char* function = "dermis_view_settings";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function,
+                 [&] { return get_settings(*view, function, count, settings); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_set_setting(dermis_view view, const char* name,
+                                                             const char* json, dermis_report* report) {
+  constexpr const char* function = "dermis_view_set_setting";
+  if (report != nullptr) *report = nullptr;
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  const Log& log = view->context->log;
+  return guarded(log, function, [&] {
+    if (name == nullptr) return bad_argument(log, "{}: name is NULL", function);
+    if (const dermis_result alive = check_alive(*view->context, function); alive != DERMIS_OK) return alive;
+    return set_view_setting(*view, name, json, report);
   });
 }

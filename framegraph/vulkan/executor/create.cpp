@@ -175,7 +175,7 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   make_passes(*state, input);
   make_slots(*state);
   make_histories(*state, input);
-  if (Error error = create_environment(*state, input.environment)) return error;
+  if (Error error = create_environment(*state, input.environment, input.tables)) return error;
   if (Error error = create_kernels(*state, input)) return error;
   if (Error error = check_passes(*state, *input.kinds)) return error;
   if (Error error = check_host_passes(*state, input)) return error;

@@ -1,5 +1,5 @@
-// Descriptor set 1: one host-visible buffer with the frame constants of every frame in flight, then the
-// static tables; and a linear sampler.
+// Descriptor set 1: a host-visible buffer with frame constants and counters of every frame in flight, the
+// shared tables, and a linear sampler.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/shader/signature_check.hpp"
@@ -40,62 +40,28 @@ Error check_bindings(const Device& device, std::span<const EnvironmentBinding> b
   return {};
 }
 
-// Offset of each binding in the buffer; frame constants: of frame slot 0.
+// Offset of each binding in the executor's own buffer, of frame slot 0; tables have none there.
 std::vector<uint64_t> lay_out(State& state, std::span<const EnvironmentBinding> bindings) {
-  const VkPhysicalDeviceLimits& limits = state.device->properties.limits;
-  const uint64_t alignment = std::max<uint64_t>(
-      {limits.minUniformBufferOffsetAlignment, limits.minStorageBufferOffsetAlignment, 16});
+  const uint64_t alignment = table_alignment(*state.device);
   Environment& environment = state.environment;
   std::vector<uint64_t> offsets(bindings.size(), 0);
   uint64_t end = 0;
   for (size_t i = 0; i < bindings.size(); ++i) {
-    if (bindings[i].type == EnvironmentType::linear_sampler) continue;
+    if (bindings[i].type == EnvironmentType::linear_sampler || is_table(i, bindings[i])) continue;
     offsets[i] = end;
     const uint64_t stride = align_up(bindings[i].bytes, alignment);
-    const bool constants = i == 0 && bindings[i].type == EnvironmentType::uniform_buffer;
-    const bool counters = bindings[i].type == EnvironmentType::counters;
-    if (constants) {
-      environment.constants_bytes = bindings[i].bytes;
-      environment.constants_stride = stride;
-    }
-    if (counters) {
+    if (bindings[i].type == EnvironmentType::counters) {
       environment.counters_bytes = bindings[i].bytes;
       environment.counters_offset = end;
       environment.counters_stride = stride;
+    } else {
+      environment.constants_bytes = bindings[i].bytes;
+      environment.constants_stride = stride;
     }
-    end += stride * (constants || counters ? state.frames_in_flight : 1);
+    end += stride * state.frames_in_flight;
   }
   environment.total_bytes = end;
   return offsets;
-}
-
-Error create_buffer(State& state) {
-  const Device& device = *state.device;
-  Environment& environment = state.environment;
-  if (environment.total_bytes == 0) return {};
-  const VkBufferCreateInfo info = buffer_create_info(
-      {environment.total_bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &environment.buffer);
-  if (result != VK_SUCCESS) {
-    environment.buffer = VK_NULL_HANDLE;
-    return call_error(result, "vkCreateBuffer", "environment");
-  }
-  name_object(device, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(environment.buffer), "environment");
-  VkMemoryRequirements needs{};
-  device.vk.vkGetBufferMemoryRequirements(device.device, environment.buffer, &needs);
-  constexpr VkMemoryPropertyFlags visible =
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const MemoryRequest request{
-      MemoryPurpose::constants,           needs.memoryTypeBits, needs.size, needs.alignment, visible,
-      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
-  if (Error error = take_memory(device, request, "environment buffer", environment.memory)) return error;
-  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, environment.buffer,
-                                    environment.memory.memory, environment.memory.offset};
-  result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
-  if (result != VK_SUCCESS) return call_error(result, "vkBindBufferMemory2", "environment buffer");
-  environment.mapped = static_cast<std::byte*>(environment.memory.mapped);
-  std::memset(environment.mapped, 0, environment.total_bytes);
-  return {};
 }
 
 Error create_sampler(State& state) {
@@ -159,11 +125,9 @@ void write_sets(State& state, std::span<const EnvironmentBinding> bindings,
   const Environment& environment = state.environment;
   for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
     for (uint32_t i = 0; i < bindings.size(); ++i) {
-      const bool constants = i == 0 && environment.constants_bytes > 0;
+      if (is_table(i, bindings[i])) continue;
       const bool counters = bindings[i].type == EnvironmentType::counters;
-      const uint64_t stride = constants  ? environment.constants_stride
-                              : counters ? environment.counters_stride
-                                         : 0;
+      const uint64_t stride = counters ? environment.counters_stride : environment.constants_stride;
       const VkDescriptorBufferInfo buffer{environment.buffer, offsets[i] + slot * stride, bindings[i].bytes};
       const VkDescriptorImageInfo sampler{environment.sampler, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED};
       VkWriteDescriptorSet write{};
@@ -180,22 +144,59 @@ void write_sets(State& state, std::span<const EnvironmentBinding> bindings,
 
 } // namespace
 
-Error create_environment(State& state, std::span<const EnvironmentBinding> bindings) {
+uint64_t table_alignment(const Device& device) {
+  const VkPhysicalDeviceLimits& limits = device.properties.limits;
+  return std::max<uint64_t>(
+      {limits.minUniformBufferOffsetAlignment, limits.minStorageBufferOffsetAlignment, 16});
+}
+
+Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name, VkBuffer& buffer,
+                                MemoryBlock& memory) {
+  const VkBufferCreateInfo info =
+      buffer_create_info({bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &buffer);
+  if (result != VK_SUCCESS) {
+    buffer = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateBuffer", name);
+  }
+  name_object(device, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(buffer), name);
+  VkMemoryRequirements needs{};
+  device.vk.vkGetBufferMemoryRequirements(device.device, buffer, &needs);
+  constexpr VkMemoryPropertyFlags visible =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  const MemoryRequest request{
+      MemoryPurpose::constants,           needs.memoryTypeBits, needs.size, needs.alignment, visible,
+      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
+  if (Error error = take_memory(device, request, name, memory)) return error;
+  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, buffer, memory.memory,
+                                    memory.offset};
+  result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
+  if (result != VK_SUCCESS) return call_error(result, "vkBindBufferMemory2", name);
+  std::memset(memory.mapped, 0, bytes);
+  return {};
+}
+
+Error create_environment(State& state, std::span<const EnvironmentBinding> bindings,
+                         const std::shared_ptr<const EnvironmentTables>& tables) {
   if (bindings.empty()) return {};
   if (Error error = check_bindings(*state.device, bindings)) return error;
   const std::vector<uint64_t> offsets = lay_out(state, bindings);
-  if (Error error = create_buffer(state)) return error;
+  Environment& environment = state.environment;
+  if (environment.total_bytes > 0) {
+    if (Error error = create_environment_buffer(*state.device, environment.total_bytes, "environment",
+                                                environment.buffer, environment.memory))
+      return error;
+    environment.mapped = static_cast<std::byte*>(environment.memory.mapped);
+  }
   if (Error error = create_sampler(state)) return error;
   if (Error error = create_sets(state, bindings)) return error;
   write_sets(state, bindings, offsets);
-  for (size_t i = 0; i < bindings.size(); ++i) {
-    const bool constants = i == 0 && state.environment.constants_bytes > 0;
-    const bool table = !constants && (bindings[i].type == EnvironmentType::uniform_buffer ||
-                                      bindings[i].type == EnvironmentType::storage_buffer);
-    if (table && !bindings[i].contents.empty())
-      std::memcpy(state.environment.mapped + offsets[i], bindings[i].contents.data(),
-                  bindings[i].contents.size());
-  }
+  environment.tables = tables;
+  if (environment.tables == nullptr)
+    if (Error error = EnvironmentTables::create(*state.device, bindings, environment.tables)) return error;
+  environment.tables_of_slot.resize(state.frames_in_flight);
+  for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
+    refresh_tables(state, slot);
   return {};
 }
 

@@ -273,6 +273,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
 
   if (frame.taken_over) forget_histories(state, HistoryReason::switched);
   if (frame.before != nullptr) carry_ages(state, *frame.before->state_, frame.reset_history);
+  refresh_tables(state, frame_slot);
   write_frame_constants(state, frame_slot, frame.frame_constants);
   clear_counters(state, frame_slot);
   write_descriptors(state, frame_slot, frame);

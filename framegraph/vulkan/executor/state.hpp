@@ -67,6 +67,25 @@ struct Kernel { // one per pass kind that dispatches; shared by the executors th
   Kernel& operator=(const Kernel&) = delete;
 };
 
+struct TableBinding { // of descriptor set 1, in the buffer of the tables
+  uint32_t binding = 0;
+  VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  uint64_t offset = 0, bytes = 0;
+};
+
+struct EnvironmentTables::State {
+  const Device& device;
+  std::vector<TableBinding> bindings;
+  uint64_t bytes = 0;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  MemoryBlock memory;
+
+  explicit State(const Device& owner) : device(owner) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State();
+};
+
 struct Environment {             // descriptor set 1
   uint64_t constants_bytes = 0;  // 0: binding 0 is no uniform buffer
   uint64_t constants_stride = 0; // from one frame in flight to the next
@@ -79,7 +98,9 @@ struct Environment {             // descriptor set 1
   VkSampler sampler = VK_NULL_HANDLE;
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE; // null: no environment
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  std::vector<VkDescriptorSet> sets; // by frame slot
+  std::vector<VkDescriptorSet> sets;                                    // by frame slot
+  std::shared_ptr<const EnvironmentTables> tables;                      // that the next frame reads
+  std::vector<std::shared_ptr<const EnvironmentTables>> tables_of_slot; // that `sets` point into
 };
 
 struct PortWrite { // one descriptor that every frame writes
@@ -202,8 +223,18 @@ Error create_stand_ins(State& state);
 void destroy_stand_ins(State& state);
 
 // ---- environment.cpp
-Error create_environment(State& state, std::span<const EnvironmentBinding> bindings);
+Error create_environment(State& state, std::span<const EnvironmentBinding> bindings,
+                         const std::shared_ptr<const EnvironmentTables>& tables);
 void destroy_environment(State& state);
+uint64_t table_alignment(const Device& device); // of each binding's offset in a buffer
+// Host-visible memory for set 1, zeroed; `buffer` and `memory` are the caller's to free, also on an error.
+Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name, VkBuffer& buffer,
+                                MemoryBlock& memory);
+
+// ---- environment_tables.cpp
+bool is_table(size_t binding, const EnvironmentBinding& given); // its buffer is the same in every frame
+// Set 1 of a frame slot that no frame in flight uses points into the newest tables.
+void refresh_tables(State& state, uint32_t frame_slot) noexcept;
 void clear_counters(State& state, uint32_t frame_slot) noexcept;
 void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept;
 

@@ -201,7 +201,7 @@ typedef struct dermis_memory_block {
  * transient block may be used by commands of the host before and after a recorded frame, if these are ordered with the
  * frame by a barrier over ALL_COMMANDS and MEMORY_WRITE | MEMORY_READ: its contents are then the host's to lose. Blocks
  * go back one by one when no frame can use them any more. Called inside of create, reload, resize, set_setting,
- * record and destroy calls, by their threads. Must not call Dermis. */
+ * set_profile, record and destroy calls, by their threads. Must not call Dermis. */
 typedef VkResult(DERMIS_CALL* dermis_take_memory_fn)(void* user, const dermis_memory_request* request,
                                                      dermis_memory_block* block);
 typedef void(DERMIS_CALL* dermis_give_back_memory_fn)(void* user, const dermis_memory_block* block);
@@ -453,7 +453,8 @@ typedef struct dermis_history {
   uint32_t valid;               /* 1: the next frame, if it is no cut, finds what the frame before it wrote */
   uint32_t age;                 /* frames in a row that are in it; 0 where it is not valid */
   dermis_history_reason reason; /* why it is not valid; where it is, why it was not when it last was not */
-  uint32_t reserved;            /* 0 */
+  uint32_t settles_after;       /* frames after a change of a profile or of light until at most 1 % of the history
+                                   is from before the change, by the weights that are set. 1: the last frame only */
   const char* text;             /* the reason for people; static string */
 } dermis_history;
 #define DERMIS_HISTORY_INIT {sizeof(dermis_history), NULL, 0, 0, DERMIS_HISTORY_NEVER_WRITTEN, 0, NULL}
@@ -462,6 +463,15 @@ typedef struct dermis_history {
  * discarded do not count. Of the graph's own view. Two-call array. Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_histories(dermis_graph graph, uint32_t* count,
                                                             dermis_history* histories);
+
+/* Replaces profile `id` (1..255) by the one in *source, adds it, or removes it where source is NULL. No graph is
+ * built anew and no history is lost; only the first profile of a graph and the removal of the last one act as a
+ * reload. Frames in flight keep the old profile; each view reads the new one from its next record on. What a view
+ * accumulates over frames still shows the old profile for dermis_history.settles_after frames; the report says how
+ * many (D0625). Takes up to 0.3 s, next to recording. Kept over reloads with DERMIS_KEEP_PROFILES and over resizes.
+ * Thread: beside. Errors: as dermis_graph_create. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_profile(dermis_graph graph, uint32_t id,
+                                                              const dermis_source* source, dermis_report* report);
 
 typedef enum dermis_setting_type {
   DERMIS_SETTING_BOOL = 0,
@@ -476,14 +486,14 @@ typedef struct dermis_setting {
   size_t struct_size;
   const char* name;
   dermis_setting_type type;
-  uint32_t per_frame;         /* 1: frames may differ in the value, it is a weight or a threshold of passes. 0: the value
-                                 belongs to the compiled graph */
+  uint32_t per_frame;         /* 1: a view may have its own value (dermis_view_set_setting): a weight or a threshold.
+                                 0: the value belongs to the graph */
   const char* unit;           /* "px"; "" for none */
   const char* note;           /* what the graph says about the setting; "" for nothing */
   double minimum, maximum;    /* inclusive */
   double default_value;       /* bool: 0 or 1; option: index into options */
   double value;               /* of the next frame; of a chosen setting: of the last frame */
-  uint32_t set;               /* 1: the host has set the value */
+  uint32_t set;               /* 1: dermis_graph_set_setting has set the value; 2: dermis_view_set_setting has */
   uint32_t chosen;            /* 1: the library chooses the value in each frame by the budget, until the host sets it */
   const char* const* options; /* names; NULL where the type is not OPTION */
   uint32_t option_count;
@@ -871,7 +881,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_commands(dermis_graph graph, c
 
 /* A camera of a graph, beside the graph's own: an eye, a player of a split screen, a mirror. Views share the plan, the
  * pipelines, settings and budget; histories, transient memory, frame numbers and what is learned of times are each one's
- * own. All have the graph's allocated size and slots; each frame renders its own rectangle into its own images. */
+ * own, and so are settings that dermis_view_set_setting sets. All have the graph's allocated size and slots; each frame
+ * renders its own rectangle into its own images. */
 typedef struct dermis_view_desc {
   size_t struct_size;
   void* user; /* dermis_pass_call.view_user */
@@ -901,6 +912,14 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint6
                                                          uint32_t* count, dermis_pass_timing* timings);
 /* As dermis_graph_histories, for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(dermis_view view, uint32_t* count, dermis_history* histories);
+
+/* As dermis_graph_settings, with the values of this view. Thread: beside. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(dermis_view view, uint32_t* count, dermis_setting* settings);
+/* Gives this view its own value of a setting that is listed as per_frame, from its next record on, whatever the
+ * graph's value is; json NULL: the graph's value again. A setting of the graph is refused. Kept over reload and
+ * resize, as settings of the graph are. Thread: beside. Errors: ARGUMENT, CONFIG, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_set_setting(dermis_view view, const char* name, const char* json,
+                                                             dermis_report* report);
 
 #ifdef __cplusplus
 }

@@ -37,6 +37,8 @@ constexpr KindSetting settings[] = {
         "beyond which the light of a tile has changed, and history's with it; 0: it never does")),
 };
 
+constexpr HistoryWeight accumulate_mixes[] = {{"past_out", "weight"}};
+
 } // namespace
 
 const PassKind accumulate_kind{
@@ -47,6 +49,7 @@ const PassKind accumulate_kind{
     .settings = settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
+    .mixes = accumulate_mixes,
 };
 
 } // namespace dermis::subsurface

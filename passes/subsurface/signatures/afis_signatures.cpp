@@ -181,6 +181,8 @@ constexpr KindSetting guided_settings[] = {
      .doc = "control_out has 32 bits a channel"},
 };
 
+constexpr HistoryWeight guided_mixes[] = {{"guide_out", "eta"}, {"control_out", "eta_cv"}};
+
 } // namespace
 
 const PassKind afis_tiles_kind{
@@ -202,6 +204,7 @@ const PassKind guided_kind{
     .settings = guided_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
+    .mixes = guided_mixes,
 };
 
 const PassKind afis_kind{

@@ -132,6 +132,8 @@ constexpr KindSetting residual_settings[] = {
      .doc = "a pixel with less history takes twice the samples in every frame"},
 };
 
+constexpr HistoryWeight residual_mixes[] = {{"ratio_out", "alpha", HistoryWeight::By::share, 16}};
+
 } // namespace
 
 const PassKind blend_kind{
@@ -163,6 +165,7 @@ const PassKind residual_kind{
     .settings = residual_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
+    .mixes = residual_mixes,
 };
 
 } // namespace dermis::subsurface

@@ -137,6 +137,8 @@ constexpr Port resolve_ports[] = {
 
 constexpr KindSetting resolve_settings[] = {setting::texturing};
 
+constexpr HistoryWeight temporal_mixes[] = {{"merged", "cap", HistoryWeight::By::cap}};
+
 } // namespace
 
 const PassKind restir_initial_kind{
@@ -159,6 +161,7 @@ const PassKind restir_temporal_kind{
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
     .features = bit_of(Feature::ray_query),
+    .mixes = temporal_mixes,
 };
 
 const PassKind restir_spatial_kind{

@@ -72,8 +72,11 @@ TEST_F(TwoCalls, FillNoMoreOfAnArrayThanThereIsRoomFor) {
   });
   expect_array_law<dermis_slot>(
       [&](uint32_t* count, dermis_slot* items) { return dermis_graph_slots(host.graph, count, items); });
+  expect_array_law<dermis_setting>([&](uint32_t* count, dermis_setting* items) {
+    return dermis_graph_settings(host.graph, count, items);
+  });
   expect_array_law<dermis_setting>(
-      [&](uint32_t* count, dermis_setting* items) { return dermis_graph_settings(host.graph, count, items); });
+      [&](uint32_t* count, dermis_setting* items) { return dermis_view_settings(view, count, items); });
   expect_array_law<dermis_memory_request>([&](uint32_t* count, dermis_memory_request* items) {
     return dermis_graph_heaps(host.graph, count, items);
   });

@@ -177,6 +177,27 @@ TEST_F(HostMemory, ARefusedSettingLeavesTheGraphAsItWas) {
       [&] { still_records(); });
 }
 
+TEST_F(HostMemory, ARefusedProfileLeavesTheGraphAsItWas) {
+  make_graph();
+  const std::string marble = read_text("configs/profiles/marble.json");
+  refuse_each(
+      1, [&] { return host.set_profile(marble); }, [&] { still_records(); });
+  heap.calls = 0;
+  for (int i = 0; i < 4; ++i)
+    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(heap.calls, 0u) << "the new tables take over without memory";
+}
+
+TEST_F(HostMemory, ARefusedSettingOfAViewLeavesItAsItWas) {
+  make_graph();
+  dermis_view view = nullptr;
+  ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  uint64_t index = 0;
+  refuse_each(
+      1, [&] { return dermis_view_set_setting(view, "accumulate_weight", "0.5", nullptr); },
+      [&] { ASSERT_EQ(host.record(view, ++index), DERMIS_OK) << dermis_last_error(); });
+}
+
 TEST_F(HostMemory, ARefusedBudgetLeavesTheGraphAsItWas) {
   make_graph();
   size_t size = 0;

@@ -83,6 +83,11 @@ dermis_result NullHost::reload(const std::string& text) const { // allocates not
   return reload_text(graph, source);
 }
 
+dermis_result NullHost::set_profile(const std::string& text) const {
+  const dermis_source source = source_of(text, "profile.json");
+  return dermis_graph_set_profile(graph, 1, &source, nullptr);
+}
+
 dermis_frame NullHost::frame_at(uint64_t index) const {
   dermis_frame frame = DERMIS_FRAME_INIT;
   frame.command_buffer = device.command_buffer();

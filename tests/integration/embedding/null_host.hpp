@@ -24,6 +24,7 @@ public:
   void make_bindings();                                     // images for every slot
   void give_up_views();                                     // content_ids instead
   dermis_result reload(const std::string& text = "") const; // ""; the graph's own
+  dermis_result set_profile(const std::string& text) const; // number 1
   // The next frame of the graph, or of a view of it.
   dermis_result record();
   dermis_result record(dermis_view view, uint64_t index) const;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 namespace dermis::abi_test {
 namespace {
@@ -14,10 +15,14 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-void DERMIS_CALL record_nothing(void*, const dermis_pass_call*) {}
+// Keeps the settings of the call's pass, by its name.
+using Calls = std::map<std::string, std::vector<double>>;
+void DERMIS_CALL keep(void* user, const dermis_pass_call* call) {
+  (*static_cast<Calls*>(user))[call->pass].assign(call->settings, call->settings + call->setting_count);
+}
 
 // Two kinds of the host: "weight" of studio.mix may differ from frame to frame, all else may not.
-dermis_result register_kinds(dermis_context context) {
+dermis_result register_kinds(dermis_context context, Calls& calls) {
   dermis_port port = DERMIS_PORT_INIT;
   port.name = "picture";
   port.usage = DERMIS_PORT_STORAGE_IMAGE_UPDATE;
@@ -35,7 +40,8 @@ dermis_result register_kinds(dermis_context context) {
   kind.settings = values;
   kind.port_count = 1;
   kind.setting_count = 2;
-  kind.record = record_nothing;
+  kind.record = keep;
+  kind.user = &calls;
   return dermis_register_pass_kind(context, &kind);
 }
 
@@ -58,6 +64,13 @@ const std::string graph_text = R"({ "dermis": 1, "name": "settings",
       "set": { "weight": "$threshold" } } ],
   "exports": ["light"] })";
 
+std::vector<dermis_setting> settings_of(dermis_view view) {
+  uint32_t count = 0;
+  EXPECT_EQ(dermis_view_settings(view, &count, nullptr), DERMIS_OK) << dermis_last_error();
+  std::vector<dermis_setting> all(count, dermis_setting DERMIS_SETTING_INIT);
+  EXPECT_EQ(dermis_view_settings(view, &count, all.data()), DERMIS_OK) << dermis_last_error();
+  return all;
+}
 std::vector<dermis_setting> settings_of(dermis_graph graph) {
   uint32_t count = 0;
   EXPECT_EQ(dermis_graph_settings(graph, &count, nullptr), DERMIS_OK) << dermis_last_error();
@@ -73,20 +86,46 @@ dermis_setting named(const std::vector<dermis_setting>& all, std::string_view na
 }
 
 struct Settings : testing::Test {
+  Calls calls;
   NullHost host;
+  dermis_view view = nullptr;
   void SetUp() override {
     ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   }
   void make(const std::string& text) {
-    ASSERT_EQ(register_kinds(host.context), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(register_kinds(host.context, calls), DERMIS_OK) << dermis_last_error();
     dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
     desc.source = source_of(text, "graph.json");
     desc.width = desc.height = 16;
+    const std::string skin = read_text("configs/profiles/skin.json");
+    dermis_profile profile = DERMIS_PROFILE_INIT;
+    profile.id = 1;
+    profile.source = source_of(skin, "skin.json");
+    desc.profiles = &profile;
+    desc.profile_count = 1;
     dermis_report report = nullptr;
     ASSERT_EQ(dermis_graph_create(host.context, &desc, &host.graph, &report), DERMIS_OK)
         << dermis_report_text(report);
     dermis_report_destroy(report);
   }
+  void make_with_view() {
+    make(graph_text);
+    ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+  }
+  // What passes of the next frame are given as weight.
+  double weight_of_graph(const char* pass) {
+    EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    return calls.at(pass).front();
+  }
+  double weight_of_view(const char* pass) {
+    EXPECT_EQ(host.record(view, ++view_frame), DERMIS_OK) << dermis_last_error();
+    return calls.at(pass).front();
+  }
+  void set_for_view(const char* name, const char* json) const {
+    ASSERT_EQ(dermis_view_set_setting(view, name, json, nullptr), DERMIS_OK) << dermis_last_error();
+  }
+  uint64_t view_frame = 0;
   void set(const char* name, const char* json) const {
     ASSERT_EQ(dermis_graph_set_setting(host.graph, name, json, nullptr), DERMIS_OK) << dermis_last_error();
   }
@@ -165,6 +204,57 @@ TEST_F(Settings, ThatTheLibraryChoosesSaySoUntilTheyAreSet) {
   EXPECT_EQ(technique.chosen, 0u);
   EXPECT_EQ(technique.set, 1u);
   EXPECT_STREQ(technique.options[static_cast<size_t>(technique.value)], "separable");
+}
+
+TEST_F(Settings, OfAViewAreItsOwnWhereTheyArePerFrame) {
+  make_with_view();
+  set_for_view("weight", "0.75");
+  EXPECT_EQ(weight_of_view("one"), 0.75);
+  EXPECT_EQ(weight_of_graph("one"), 0.5);
+  set("weight", "0.25");
+  EXPECT_EQ(weight_of_view("one"), 0.75) << "the view's own value stays";
+  EXPECT_EQ(weight_of_graph("one"), 0.25);
+  EXPECT_EQ(named(settings_of(view), "weight").value, 0.75);
+  EXPECT_EQ(named(settings_of(view), "weight").set, 2u);
+  EXPECT_EQ(named(settings_of(host.graph), "weight").value, 0.25);
+  EXPECT_EQ(named(settings_of(host.graph), "weight").set, 1u);
+  set_for_view("weight", nullptr);
+  EXPECT_EQ(weight_of_view("one"), 0.25);
+  EXPECT_EQ(named(settings_of(view), "weight").set, 1u);
+}
+
+TEST_F(Settings, OfAViewGoOnOverAReloadThatAcceptsThem) {
+  make_with_view();
+  set_for_view("weight", "0.75");
+  ASSERT_EQ(host.reload(graph_text), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(weight_of_view("one"), 0.75);
+  set("threshold", "0.05"); // turns a pass off: the graph is built anew
+  EXPECT_EQ(weight_of_view("one"), 0.75);
+  std::string lower = graph_text;
+  const std::string range = R"("weight": { "real": 0.5, "min": 0, "max": 1 })";
+  lower.replace(lower.find(range), range.size(), R"("weight": { "real": 0.5, "min": 0, "max": 0.6 })");
+  dermis_report report = nullptr;
+  ASSERT_EQ(reload_text(host.graph, source_of(lower, "graph.json"), &report), DERMIS_OK)
+      << dermis_last_error();
+  EXPECT_THAT(dermis_report_text(report), HasSubstr("setting 'weight' = 0.75 of a view is not carried over"));
+  dermis_report_destroy(report);
+  EXPECT_EQ(weight_of_view("one"), 0.5);
+}
+
+TEST_F(Settings, OfTheGraphAreRefusedForAView) {
+  make_with_view();
+  for (const char* name : {"on", "count", "how", "radius", "both", "threshold"}) {
+    EXPECT_EQ(dermis_view_set_setting(view, name, "1", nullptr), DERMIS_ERROR_ARGUMENT) << name;
+    EXPECT_THAT(dermis_last_error(), HasSubstr("setting '" + std::string(name) + "' belongs to the graph"));
+    EXPECT_THAT(dermis_last_error(), HasSubstr("A view can have its own value of 'weight'"));
+  }
+  EXPECT_EQ(dermis_view_set_setting(view, "wieght", "1", nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("has no setting 'wieght'"));
+  EXPECT_EQ(dermis_view_set_setting(view, "weight", "1.5", nullptr), DERMIS_ERROR_CONFIG);
+  EXPECT_EQ(dermis_view_set_setting(view, nullptr, "1", nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("name is NULL"));
+  EXPECT_EQ(dermis_view_set_setting(nullptr, "weight", "1", nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("view is NULL"));
 }
 
 TEST_F(Settings, WrongArgumentsAreNamed) {

@@ -1,5 +1,6 @@
 // The thread contract of dermis.h. The laws here are the thread sanitizer's: the preset `tsan` runs them.
 
+#include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
 #include <gtest/gtest.h>
@@ -12,10 +13,12 @@ namespace dermis::abi_test {
 namespace {
 
 constexpr uint64_t frames = 300;
-constexpr int changes = 40;
+constexpr int changes = 48;
 
 struct Threads : ::testing::Test {
   NullHost host;
+  std::string skin = read_text("configs/profiles/skin.json"),
+              dipole = read_text("configs/profiles/skin_dipole.json");
   void SetUp() override {
     ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
     ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
@@ -30,7 +33,7 @@ struct Threads : ::testing::Test {
       thread.join();
   }
   void change(int number) const {
-    switch (number % 6) {
+    switch (number % 8) {
     case 0:
       EXPECT_EQ(host.reload(), DERMIS_OK);
       break;
@@ -48,6 +51,15 @@ struct Threads : ::testing::Test {
       dermis_budget budget = DERMIS_BUDGET_INIT;
       budget.milliseconds = static_cast<float>(number % 3);
       EXPECT_EQ(dermis_graph_set_budget(host.graph, &budget, nullptr), DERMIS_OK);
+      break;
+    }
+    case 5:
+      EXPECT_EQ(host.set_profile(number % 3 == 0 ? skin : dipole), DERMIS_OK);
+      break;
+    case 6: {
+      const dermis_result removed = dermis_graph_set_profile(host.graph, 1, nullptr, nullptr);
+      EXPECT_TRUE(removed == DERMIS_OK || removed == DERMIS_ERROR_ARGUMENT) << "another thread was first";
+      EXPECT_EQ(host.set_profile(skin), DERMIS_OK);
       break;
     }
     default: {
@@ -105,6 +117,12 @@ TEST_F(Threads, ViewsMayBeRecordedEachByItsThreadWhileTwoChangeTheGraph) {
   const auto record = [&](dermis_view view) {
     for (uint64_t index = 1; index <= frames; ++index) {
       ASSERT_EQ(host.record(view, index), DERMIS_OK) << dermis_last_error();
+      if (index % 16 == 0) {
+        ASSERT_EQ(
+            dermis_view_set_setting(view, "accumulate_weight", index % 32 == 0 ? "0.5" : nullptr, nullptr),
+            DERMIS_OK)
+            << dermis_last_error();
+      }
       dermis_choice choice = DERMIS_CHOICE_INIT;
       ASSERT_GE(dermis_view_choice(view, index - 1, &choice), DERMIS_OK) << dermis_last_error();
     }

@@ -1,0 +1,109 @@
+// Profiles of a graph, replaced while it runs.
+#include "integration/abi/graph.hpp"
+#include "integration/abi/graph_desc.hpp"
+#include "integration/abi/report.hpp"
+#include "integration/abi/settling.hpp"
+
+#include <algorithm>
+
+namespace dermis::abi {
+namespace {
+
+constexpr const char* function = "dermis_graph_set_profile";
+
+// How long the histories of the graph's own view show the profile that was replaced.
+void add_settling(const KindRegistry& kinds, const Program& program, uint32_t outcome, uint32_t id,
+                  Diagnostics& diagnostics) {
+  std::vector<ResourceId> known;
+  for (const Variant& variant : program.variants) {
+    const Plan& plan = variant.compiled->plan;
+    for (uint32_t h = 0; h < plan.histories.size(); ++h) {
+      const ResourceId declared = plan.resources[plan.histories[h].resource].declared;
+      const uint32_t frames = settling_frames(kinds, plan, h, program.outcomes[outcome].settings);
+      if (frames <= 1 || std::find(known.begin(), known.end(), declared) != known.end()) continue;
+      known.push_back(declared);
+      const ResourceDeclaration& resource = program.graph.resources[declared.value];
+      diagnostics.add(
+          DiagnosticId::profile_settles, resource.where,
+          fmt::format("profile {}: after {} frames at most 1 % of history '{}' is from before the "
+                      "change",
+                      id, frames, resource.name));
+    }
+  }
+}
+
+// `input.profiles` has changed; passes and plans are the same.
+dermis_result replace_tables(dermis_graph_t& graph, ProgramInput&& input, uint32_t id,
+                             dermis_report* report) {
+  dermis_context_t& context = *graph.context;
+  Diagnostics diagnostics;
+  if (const vulkan::Error error = make_tables(context, graph.input.tables->use, input)) {
+    const dermis_result result = refused(context, error, diagnostics);
+    return conclude(context.log, result, std::move(diagnostics), report);
+  }
+  {
+    const std::shared_ptr<Program> kept = keep_newest(graph.own);
+    const std::lock_guard lock(graph.own.mutex); // recording chooses an outcome
+    add_settling(context.kinds, *kept, kept->outcome, id, diagnostics);
+  }
+  const dermis_result result = conclude(context.log, DERMIS_OK, std::move(diagnostics), report);
+  if (result != DERMIS_OK) return result;
+  for_each_view(graph, [&](dermis_view_t& view) { // from here on nothing fails
+    const std::lock_guard lock(view.mutex);
+    for (const std::shared_ptr<Program>& program : {std::cref(view.running), std::cref(view.next)})
+      if (program)
+        for (const Variant& variant : program->variants)
+          variant.executor->set_tables(input.device_tables);
+  });
+  graph.input = std::move(input);
+  return result;
+}
+
+dermis_result set_profile(dermis_graph_t& graph, uint32_t id, const dermis_source* source,
+                          dermis_report* report) {
+  const Log& log = graph.context->log;
+  if (id == 0 || id > largest_profile_id)
+    return bad_argument(log, "{}: id is {}, expected 1..{}", function, id, largest_profile_id);
+  subsurface::NumberedProfile profile{id, {}};
+  Diagnostics diagnostics;
+  if (source != nullptr)
+    if (const dermis_result result =
+            read_profile_source(log, "dermis_graph_set_profile: source", *source, profile, diagnostics);
+        result != DERMIS_OK)
+      return result;
+  if (diagnostics.has_errors()) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
+  const std::lock_guard changing(graph.changing);
+  ProgramInput input = graph.input;
+  const auto at = std::find_if(input.profiles.begin(), input.profiles.end(),
+                               [&](const subsurface::NumberedProfile& one) { return one.id == id; });
+  if (source == nullptr) {
+    if (at == input.profiles.end())
+      return bad_argument(log, "{}: source is NULL, which removes a profile, but the graph has no profile {}",
+                          function, id);
+    input.profiles.erase(at);
+  } else if (at == input.profiles.end()) {
+    input.profiles.push_back(std::move(profile));
+  } else {
+    *at = std::move(profile);
+  }
+  if (input.profiles.empty() == graph.input.profiles.empty())
+    return replace_tables(graph, std::move(input), id, report);
+  input.tables.reset(); // passes that serve scattering come into the plan, or leave it
+  return replace_programs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
+}
+
+} // namespace
+} // namespace dermis::abi
+
+using namespace dermis::abi;
+
+extern "C" dermis_result DERMIS_CALL dermis_graph_set_profile(dermis_graph graph, uint32_t id,
+                                                              const dermis_source* source,
+                                                              dermis_report* report) {
+  if (report != nullptr) *report = nullptr;
+  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
+  return guarded(graph->context->log, function, [&] {
+    if (const dermis_result alive = check_alive(*graph->context, function); alive != DERMIS_OK) return alive;
+    return set_profile(*graph, id, source, report);
+  });
+}

@@ -1,0 +1,221 @@
+// Profiles that change while a graph runs: pictures are those of a new graph with the new profile, histories
+// go on, and frames in flight keep what they were recorded with.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include "passes/subsurface/kinds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+std::string profile_text(const std::string& name) {
+  return read_text("configs/profiles/" + name + ".json");
+}
+
+struct SetProfile : DermisTest {
+  static GraphOptions with(const std::string& graph, const std::string& profile) {
+    GraphOptions options;
+    options.text = read_text("configs/graphs/" + graph + ".json");
+    options.profile = profile_text(profile);
+    options.unbound = {"albedo",    "scatter_scale", "scattered_light",
+                       "thickness", "back_lighting", "velocity"};
+    return options;
+  }
+  static dermis_result set_profile(dermis_graph graph, const std::string& text, uint32_t id = 1,
+                                   dermis_report* report = nullptr) {
+    const dermis_source source = source_of(text, "profile.json");
+    return dermis_graph_set_profile(graph, id, &source, report);
+  }
+  // Frame `index`, whose light and noise are the same for each graph.
+  std::vector<float> picture(dermis_graph graph, uint64_t index) {
+    make_images(graph);
+    const auto bound = bindings(graph);
+    last_frame = index - 1;
+    dermis_frame one = frame(bound);
+    std::ranges::copy(one.clip_from_view, one.previous_clip_from_view); // a camera that stands still
+    for (size_t i = 0; i < 16; i += 5)
+      one.view_from_world[i] = one.previous_view_from_world[i] = 1;
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    return texels("lighting");
+  }
+  static uint32_t settles_after(dermis_graph graph, std::string_view history) {
+    uint32_t count = 0;
+    EXPECT_EQ(dermis_graph_histories(graph, &count, nullptr), DERMIS_OK);
+    std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
+    EXPECT_EQ(dermis_graph_histories(graph, &count, all.data()), DERMIS_OK);
+    for (const dermis_history& one : all)
+      if (one.name == history) return one.settles_after;
+    return 0;
+  }
+};
+
+double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double largest = 0;
+  for (size_t i = 0; i < a.size(); ++i)
+    largest = std::max(largest, std::abs(double{a[i]} - double{b[i]}));
+  return largest;
+}
+
+TEST_F(SetProfile, GivesThePicturesOfANewGraph) {
+  for (const char* graph_name : {"burley", "separable", "sap"})
+    for (const char* profile : {"marble", "skin_dipole", "skin_artist"}) {
+      const dermis_graph graph = make_graph(with(graph_name, "skin"));
+      const std::vector<float> skin = picture(graph, 1);
+      ASSERT_EQ(set_profile(graph, profile_text(profile)), DERMIS_OK) << dermis_last_error();
+      const std::vector<float> changed = picture(graph, 2);
+      const dermis_graph fresh = make_graph(with(graph_name, profile));
+      EXPECT_EQ(changed, picture(fresh, 2)) << graph_name << " " << profile;
+      EXPECT_NE(changed, skin) << graph_name << " " << profile;
+      ASSERT_EQ(set_profile(graph, profile_text("skin")), DERMIS_OK) << dermis_last_error();
+      const dermis_graph again = make_graph(with(graph_name, "skin"));
+      EXPECT_EQ(picture(graph, 3), picture(again, 3)) << graph_name << " " << profile;
+    }
+}
+
+TEST_F(SetProfile, LeavesRecordedFramesTheirOwn) {
+  const dermis_graph graph = make_graph(with("burley", "skin")), skin = make_graph(with("burley", "skin")),
+                     marble = make_graph(with("burley", "marble"));
+  const std::vector<float> expected = picture(skin, 1), later = picture(marble, 2);
+  make_images(graph);
+  const auto bound = bindings(graph);
+  last_frame = 0;
+  dermis_frame one = frame(bound);
+  const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+    one.command_buffer = commands;
+    EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(set_profile(graph, profile_text("marble")), DERMIS_OK) << dermis_last_error();
+    return demo::success(); // submitted after the profile has changed
+  });
+  ASSERT_TRUE(ran);
+  EXPECT_EQ(texels("lighting"), expected);
+  EXPECT_EQ(picture(graph, 2), later);
+}
+
+TEST_F(SetProfile, TakesEffectAfterADiscardedFrame) {
+  const dermis_graph graph = make_graph(with("burley", "skin")),
+                     marble = make_graph(with("burley", "marble"));
+  make_images(graph);
+  const auto bound = bindings(graph);
+  dermis_frame one = frame(bound);
+  const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+    one.command_buffer = commands;
+    EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+    return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
+  });
+  EXPECT_FALSE(ran);
+  ASSERT_EQ(set_profile(graph, profile_text("marble")), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_frame_discard(graph, 1), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(picture(graph, 1), picture(marble, 1));
+}
+
+TEST_F(SetProfile, KeepsHistoriesWhichSettleAsStated) {
+  constexpr uint64_t changed = 20; // frames with the old profile
+  GraphOptions skin = with("burley", "skin"), marble = with("burley", "marble");
+  skin.overlays = marble.overlays = {read_text("configs/overlays/accumulate.json")};
+  const dermis_graph graph = make_graph(skin), fresh = make_graph(marble);
+  for (const dermis_graph one : {graph, fresh}) // a running mean alone: what settles_after is computed from
+    for (const char* name : {"accumulate_clip", "accumulate_follow"})
+      ASSERT_EQ(dermis_graph_set_setting(one, name, "0", nullptr), DERMIS_OK) << dermis_last_error();
+  const uint32_t settles = settles_after(graph, "past");
+  EXPECT_EQ(settles, 44u) << "0.9^44 is 0.0097, 0.9^43 is 0.0108";
+  EXPECT_EQ(settles_after(graph, "past_place"), 1u);
+  double before = 0;
+  for (uint64_t index = 1; index <= changed; ++index)
+    before = largest_difference(picture(graph, index), picture(fresh, index));
+  ASSERT_GT(before, 0.05);
+  dermis_report report = nullptr;
+  ASSERT_EQ(set_profile(graph, profile_text("marble"), 1, &report), DERMIS_OK) << dermis_last_error();
+  const Said said = take(report);
+  EXPECT_THAT(said.names, testing::ElementsAre("profile_settles"));
+  EXPECT_THAT(said.texts, Contains(HasSubstr("after 44 frames at most 1 % of history 'past'")));
+  const double rounding = 2.0 / 1024; // of half floats near 1, twice
+  for (uint64_t index = changed + 1; index <= changed + settles; ++index) {
+    const double now = largest_difference(picture(graph, index), picture(fresh, index));
+    if (index == changed + settles / 4) {
+      EXPECT_GT(now, 0.1 * before) << "0.9^11 is 0.31";
+    }
+    if (index == changed + settles) {
+      EXPECT_LE(now, 0.01 * before + rounding);
+    }
+  }
+}
+
+TEST_F(SetProfile, OfTheFirstAndTheLastCompileAgain) {
+  GraphOptions none = with("burley", "skin");
+  none.profiles = false;
+  const dermis_graph graph = make_graph(none), empty = make_graph(none),
+                     skin = make_graph(with("burley", "skin"));
+  EXPECT_EQ(picture(graph, 1), picture(empty, 1));
+  ASSERT_EQ(set_profile(graph, profile_text("skin")), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(picture(graph, 2), picture(skin, 2));
+  ASSERT_EQ(set_profile(graph, profile_text("marble"), 7), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_graph_set_profile(graph, 7, nullptr, nullptr), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(picture(graph, 3), picture(skin, 3));
+  ASSERT_EQ(dermis_graph_set_profile(graph, 1, nullptr, nullptr), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(picture(graph, 4), picture(empty, 4));
+}
+
+TEST_F(SetProfile, IsKeptOverAReloadAndForNewViews) {
+  const dermis_graph graph = make_graph(with("sap", "skin")), marble = make_graph(with("sap", "marble"));
+  ASSERT_EQ(set_profile(graph, profile_text("marble")), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(picture(graph, 1), picture(marble, 1));
+  const std::string text = read_text("configs/graphs/sap.json");
+  ASSERT_EQ(reload_text(graph, source_of(text, "sap.json")), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(picture(graph, 2), picture(marble, 2));
+  dermis_view view = nullptr;
+  ASSERT_EQ(dermis_view_create(graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  const std::vector<float> expected = picture(marble, 3);
+  make_images(graph);
+  const auto bound = bindings(graph);
+  last_frame = 2;
+  dermis_frame one = frame(bound);
+  const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+    one.command_buffer = commands;
+    EXPECT_EQ(dermis_view_record(view, &one), DERMIS_OK) << dermis_last_error();
+    return demo::success();
+  });
+  ASSERT_TRUE(ran);
+  EXPECT_EQ(texels("lighting"), expected);
+}
+
+TEST_F(SetProfile, ThatIsWrongIsNamedAndChangesNothing) {
+  const dermis_graph graph = make_graph(with("burley", "skin")), skin = make_graph(with("burley", "skin"));
+  const auto refused = [](dermis_result result, const char* said) {
+    EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+  };
+  const std::string text = profile_text("marble");
+  refused(dermis_graph_set_profile(nullptr, 1, nullptr, nullptr), "graph is NULL");
+  refused(set_profile(graph, text, 0), "id is 0, expected 1..255");
+  refused(set_profile(graph, text, 256), "id is 256, expected 1..255");
+  refused(dermis_graph_set_profile(graph, 2, nullptr, nullptr), "the graph has no profile 2");
+  const dermis_source empty = DERMIS_SOURCE_INIT;
+  refused(dermis_graph_set_profile(graph, 1, &empty, nullptr), "source.text is NULL");
+  dermis_report report = nullptr;
+  EXPECT_EQ(set_profile(graph, "{ \"dermis_profile\": 1 }", 1, &report), DERMIS_ERROR_CONFIG);
+  EXPECT_THAT(take(report).all, HasSubstr("profile.json:1:1"));
+  EXPECT_EQ(picture(graph, 1), picture(skin, 1));
+}
+
+TEST(HistoryWeights, NamePortsAndSettingsOfTheirKinds) {
+  const KindRegistry kinds = subsurface::make_kinds();
+  size_t mixes = 0;
+  for (uint32_t k = 0; k < kinds.size(); ++k)
+    for (const HistoryWeight& mix : kinds[KindId{k}].mixes) {
+      ++mixes;
+      EXPECT_GE(find_port(kinds[KindId{k}], mix.port, PortSide::write), 0) << mix.port;
+      const int setting = find_setting(kinds[KindId{k}], mix.setting);
+      ASSERT_GE(setting, 0) << mix.setting;
+      EXPECT_EQ(kinds[KindId{k}].settings[static_cast<size_t>(setting)].type, SettingType::real);
+    }
+  EXPECT_GE(mixes, 4u);
+}
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,72 @@
+// What a replaced profile leaves on the device: nothing, once its frames are complete.
+
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dermis::abi_test {
+namespace {
+
+constexpr uint32_t frames_in_flight = 2;
+
+struct Profiles : testing::Test {
+  NullHost host;
+  std::string skin = read_text("configs/profiles/skin.json"),
+              marble = read_text("configs/profiles/marble.json");
+  void SetUp() override {
+    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+  }
+  void record(uint32_t frames) {
+    for (uint32_t i = 0; i < frames; ++i)
+      ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  }
+};
+
+TEST_F(Profiles, ThatAreReplacedAreGoneOnceTheirFramesAreDone) {
+  record(frames_in_flight);
+  const uint64_t alive = host.device.alive(), bytes = host.device.memory_bytes();
+  for (int round = 0; round < 4; ++round) {
+    ASSERT_EQ(host.set_profile(round % 2 == 0 ? marble : skin), DERMIS_OK) << dermis_last_error();
+    EXPECT_GT(host.device.alive(), alive) << "frames in flight keep the old tables";
+    record(frames_in_flight);
+    EXPECT_EQ(host.device.alive(), alive);
+    EXPECT_EQ(host.device.memory_bytes(), bytes);
+  }
+  for (int round = 0; round < 4; ++round) { // faster than frames
+    ASSERT_EQ(host.set_profile(marble), DERMIS_OK) << dermis_last_error();
+  }
+  record(frames_in_flight);
+  EXPECT_EQ(host.device.alive(), alive);
+}
+
+TEST_F(Profiles, OfAllViewsAreOneBuffer) {
+  dermis_memory one = DERMIS_MEMORY_INIT, two = DERMIS_MEMORY_INIT;
+  ASSERT_EQ(dermis_graph_memory(host.graph, &one), DERMIS_OK);
+  dermis_view view = nullptr;
+  ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_graph_memory(host.graph, &two), DERMIS_OK);
+  EXPECT_LT(two.constant_bytes - one.constant_bytes, 256u * 48u) << "less than a table of profiles";
+}
+
+TEST_F(Profiles, ThatTheDeviceHasNoMemoryForLeaveTheOldOnes) {
+  record(1);
+  uint64_t failures = 0;
+  for (uint64_t nth = 1;; ++nth) {
+    const uint64_t alive = host.device.alive();
+    host.device.fail_creation(nth, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+    const dermis_result result = host.set_profile(marble);
+    host.device.fail_creation(0, VK_SUCCESS);
+    if (result == DERMIS_OK) break;
+    ++failures;
+    EXPECT_EQ(result, DERMIS_ERROR_DEVICE_MEMORY) << dermis_last_error();
+    EXPECT_EQ(host.device.alive(), alive);
+    record(1);
+  }
+  EXPECT_GE(failures, 2u) << "a buffer and its memory";
+}
+
+} // namespace
+} // namespace dermis::abi_test
