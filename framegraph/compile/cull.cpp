@@ -1,6 +1,8 @@
 // Which passes run: those with side effects, those that write a bound export, and whatever these read.
 
 #include "framegraph/compile/phases.hpp"
+#include "framegraph/model/image_part.hpp"
+#include "framegraph/text/suggest.hpp"
 
 #include <fmt/format.h>
 
@@ -123,7 +125,8 @@ struct Culler {
       return;
     }
     if (missing && !needs_it(use)) {
-      c.because(Reason::About::pass, use.pass.value, Reason::Why::port_unbound, use.port, use.asked.value);
+      if (first_of_binding(use))
+        c.because(Reason::About::pass, use.pass.value, Reason::Why::port_unbound, use.port, use.asked.value);
       return;
     }
     if (c.reported[use.asked.value]) return;
@@ -132,7 +135,7 @@ struct Culler {
       auto& diagnostic = c.diagnostics->add(id, c.place_of(use), std::move(text));
       diagnostic.related.emplace_back(c.graph->resources[use.asked.value].where,
                                       fmt::format("'{}' is declared here", c.name(use.asked)));
-      relate_producers(diagnostic, use.asked, &use);
+      relate_producers(diagnostic, use);
     };
     const std::string reader = fmt::format("pass '{}', port '{}'", c.name(use.pass), port.name);
     const std::string& resource = c.name(use.asked);
@@ -145,7 +148,7 @@ struct Culler {
     case Use::Trouble::unwritten:
       return refuse(
           DiagnosticId::read_before_write,
-          fmt::format("{} reads '{}', which no pass that is on writes before it", reader, resource));
+          fmt::format("{} reads '{}', which no pass that is on writes before it", reader, seen_text(use)));
     case Use::Trouble::ambiguous:
       return refuse(DiagnosticId::ambiguous_version,
                     fmt::format("{} reads '{}' before any pass wrote it, and several write it later", reader,
@@ -157,29 +160,75 @@ struct Culler {
                       resource, c.name(use.resource)));
     case Use::Trouble::history_unwritten:
       return refuse(DiagnosticId::history_unwritten,
-                    fmt::format("{} reads '{}@-{}', but no pass that is on writes '{}'", reader, resource,
-                                use.frames_back, resource));
+                    fmt::format("{0} reads '{1}@-{2}', but no pass that is on writes '{1}'", reader,
+                                seen_text(use), use.frames_back));
+    case Use::Trouble::partly_unwritten:
+      return use.frames_back > 0
+                 ? refuse(DiagnosticId::history_unwritten,
+                          fmt::format("{} reads '{}@-{}', but no pass that is on writes {}", reader,
+                                      seen_text(use), use.frames_back, unwritten_parts(use)))
+                 : refuse(DiagnosticId::read_before_write,
+                          fmt::format("{} reads '{}', but no pass that is on writes {} before it", reader,
+                                      seen_text(use), unwritten_parts(use)));
     }
   }
 
-  // Does the binding see the part of the image that the use asks for?
-  bool sees(const PortBinding& binding, const Use& use) const {
-    if (!c.split(use.asked)) return true;
-    const SubresourceRange& part = c.parts[use.part];
-    const ImagePart& seen = binding.part;
-    const auto within = [](uint32_t at, uint32_t first, uint32_t count) {
-      return at >= first && (count == 0 || at < first + count);
-    };
-    return within(part.first_mip, seen.first_mip, seen.mips) &&
-           within(part.first_layer, seen.first_layer, seen.layers);
+  bool first_of_binding(const Use& use) const {
+    const Use* before = &use - 1;
+    return c.first_use[use.pass.value] == static_cast<uint32_t>(&use - c.uses.data()) ||
+           before->binding != use.binding;
   }
 
-  // Lists the passes that would write `resource`, on or off: the likely cause. With a use, only those that
-  // would write the part that it asks for.
-  void relate_producers(Diagnostic& diagnostic, ResourceId resource, const Use* use = nullptr) {
+  // What the port sees, as the file names it, without the frame.
+  std::string seen_text(const Use& use) const {
+    const PortBinding& binding = c.graph->bindings_of(c.graph->passes[use.pass.value])[use.binding];
+    return c.name(use.asked) + part_text(binding.part);
+  }
+
+  // Without the numbers that the part has all of.
+  ImagePart part_of(const Use& use) const {
+    const SubresourceRange& range = c.parts[use.part];
+    ImagePart part;
+    if (range.mips != c.extents[use.asked.value].mips) {
+      part.first_mip = static_cast<uint8_t>(range.first_mip);
+      part.mips = static_cast<uint8_t>(range.mips);
+    }
+    if (range.layers != c.facts[use.asked.value].layers) {
+      part.first_layer = range.first_layer;
+      part.layers = range.layers;
+    }
+    return part;
+  }
+
+  // The parts of the binding that nobody writes: "'chain#1' or 'chain#4..5'".
+  std::string unwritten_parts(const Use& use) const {
+    std::vector<std::string> names;
+    for (const Use* at = &use; at != c.uses.data() + c.first_use[use.pass.value + 1]; ++at) {
+      if (at->binding != use.binding || c.is_written(*at)) continue;
+      names.push_back(c.name(use.asked) + part_text(part_of(*at)));
+    }
+    return list_words(std::vector<std::string_view>(names.begin(), names.end()));
+  }
+
+  // Where the passes stand that would write what is missing, on or off: the likely cause.
+  void relate_producers(Diagnostic& diagnostic, const Use& use) {
+    relate_producers(diagnostic, use.asked, [&](const PortBinding& written) {
+      if (!c.split(use.asked)) return true;
+      for (const Use* at = &use; at != c.uses.data() + c.first_use[use.pass.value + 1]; ++at)
+        if (at->binding == use.binding && !c.is_written(*at) && meets(written.part, c.parts[at->part]))
+          return true;
+      return false;
+    });
+  }
+
+  void relate_producers(Diagnostic& diagnostic, ResourceId resource) {
+    relate_producers(diagnostic, resource, [](const PortBinding&) { return true; });
+  }
+
+  void relate_producers(Diagnostic& diagnostic, ResourceId resource, const auto& counts) {
     for (uint32_t i = 0; i < c.graph->passes.size(); ++i)
       for (const PortBinding& binding : c.graph->writes(c.graph->passes[i]))
-        if (binding.resource == resource && (use == nullptr || sees(binding, *use)))
+        if (binding.resource == resource && counts(binding))
           diagnostic.related.emplace_back(c.graph->place_of(binding),
                                           fmt::format("'{}' writes it and is {}", c.name(PassId{i}),
                                                       c.on[i] ? "on" : "off with these settings"));

@@ -41,7 +41,16 @@ struct Value {
 
 // One bound port of one pass that is on, or one of the parts of an image that it sees.
 struct Use {
-  enum class Trouble : uint8_t { none, unbound, unwritten, ambiguous, replaced, history_unwritten };
+  // partly_unwritten: of the parts that the port sees, some are written and others are not.
+  enum class Trouble : uint8_t {
+    none,
+    unbound,
+    unwritten,
+    ambiguous,
+    replaced,
+    history_unwritten,
+    partly_unwritten
+  };
   PassId pass;
   ResourceId resource;                                    // whose memory is accessed, after `otherwise`
   ResourceId asked;                                       // as bound in the file
@@ -187,6 +196,15 @@ struct MemoryGroup { // instances that may share a heap
   uint32_t buffers = 0, images = 0;
 };
 
+// Whether a port that names `seen` sees some of the range.
+inline bool meets(const ImagePart& seen, const SubresourceRange& range) {
+  const auto overlap = [](uint32_t first, uint32_t count, uint32_t other, uint32_t others) { // count 0: all
+    return first < other + others && (count == 0 || other < first + count);
+  };
+  return overlap(seen.first_mip, seen.mips, range.first_mip, range.mips) &&
+         overlap(seen.first_layer, seen.layers, range.first_layer, range.layers);
+}
+
 struct CompileContext {
   const CompileInput* input = nullptr;
   const Graph* graph = nullptr;
@@ -296,6 +314,10 @@ struct CompileContext {
   uint32_t part_index(const Use& use) const {
     return use.part == use.asked.value ? 0 : use.part - further_parts[use.asked.value] + 1;
   }
+  // Whether some pass writes what the use reads.
+  bool is_written(const Use& use) const {
+    return (use.frames_back > 0 ? final_value[use.part] : use.read_value) != no_value;
+  }
   // The use of a history that `use` stands in for, at the same port; nullptr if it does not.
   const Use* history_of(const Use& use) const {
     if (use.when != ReadWhen::history_invalid) return nullptr;
@@ -318,6 +340,7 @@ void choose(CompileContext& context);        // values of settings; which passes
 void find_parts(CompileContext& context);    // into which parts do ports divide images?
 void resolve_versions(
     CompileContext& context);                // which version each port reads and writes, `otherwise` applied
+void refuse_races(CompileContext& context);  // passes that read what they write
 void cull(CompileContext& context);          // which passes run: those that something bound needs
 void choose_queues(CompileContext& context); // which passes run beside the others
 void gather_usage(CompileContext& context);  // union of usages, deepest read

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace dermis {
@@ -44,19 +45,14 @@ struct VersionScan {
 
   // One use for each part that the port sees.
   void add_parts(Use use, const ImagePart& seen) {
-    const uint32_t end_mip = seen.mips == 0 ? UINT32_MAX : seen.first_mip + seen.mips;
-    const uint32_t end_layer = seen.layers == 0 ? UINT32_MAX : uint32_t{seen.first_layer} + seen.layers;
     for (uint32_t i = 0; i < c.facts[use.asked.value].parts; ++i) {
       use.part = c.part_number(use.asked, i);
-      const SubresourceRange& part = c.parts[use.part];
-      if (part.first_mip >= seen.first_mip && part.first_mip < end_mip &&
-          part.first_layer >= seen.first_layer && part.first_layer < end_layer)
-        c.uses.push_back(use);
+      if (meets(seen, c.parts[use.part])) c.uses.push_back(use);
     }
     part_uses += c.facts[use.asked.value].parts;
   }
 
-  // A port of which some part cannot be read is not bound at all.
+  // A port of which no part can be read is not bound; one of which some parts can is refused.
   void spread_trouble() {
     for (size_t first = 0; first < c.uses.size();) {
       const Use& one = c.uses[first];
@@ -64,16 +60,24 @@ struct VersionScan {
       while (end < c.uses.size() && c.uses[end].pass == one.pass && c.uses[end].port == one.port &&
              c.uses[end].binding == one.binding)
         ++end;
-      const auto bad = std::find_if(c.uses.begin() + static_cast<std::ptrdiff_t>(first),
-                                    c.uses.begin() + static_cast<std::ptrdiff_t>(end),
-                                    [](const Use& use) { return use.trouble != Use::Trouble::none; });
-      for (size_t u = first; u < end && bad != c.uses.begin() + static_cast<std::ptrdiff_t>(end); ++u) {
-        if (c.uses[u].trouble != Use::Trouble::none) continue;
-        c.uses[u].trouble = bad->trouble;
-        c.uses[u].part = bad->part; // which messages are about
-      }
+      spread_trouble(std::span(c.uses).subspan(first, end - first));
       first = end;
     }
+  }
+
+  // `uses` are the parts of one binding.
+  static void spread_trouble(std::span<Use> uses) {
+    using Trouble = Use::Trouble;
+    const auto has = [](Trouble trouble) {
+      return [trouble](const Use& use) { return use.trouble == trouble; };
+    };
+    const auto bad = std::find_if_not(uses.begin(), uses.end(), has(Trouble::none));
+    if (bad == uses.end()) return;
+    const bool missing = bad->trouble == Trouble::unwritten || bad->trouble == Trouble::history_unwritten;
+    const bool partly = missing && std::any_of(uses.begin(), uses.end(), has(Trouble::none));
+    const Trouble all = partly ? Trouble::partly_unwritten : bad->trouble;
+    for (Use& use : uses)
+      if (partly || use.trouble == Trouble::none) use.trouble = all;
   }
 
   void scan_uses(PassId pass) {

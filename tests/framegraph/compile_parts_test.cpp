@@ -107,7 +107,70 @@ TEST(Parts, AnEarlierFrameOfAMipThatNobodyWritesIsRefused) {
   const auto errors = refused(b);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::history_unwritten);
-  EXPECT_THAT(errors[0].text, HasSubstr("'kept@-1'"));
+  EXPECT_THAT(errors[0].text, HasSubstr("'kept#2@-1', but no pass that is on writes 'kept#2'"));
+}
+
+// What is left out of a chain at an optional port.
+Diagnostic half_written(const GraphBuilder& b, DiagnosticId id = DiagnosticId::read_before_write) {
+  const auto errors = refused(b);
+  EXPECT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].id, id);
+  return errors[0];
+}
+
+TEST(Parts, AHalfWrittenChainAtAnOptionalPortIsRefused) {
+  GraphBuilder b;
+  b.import("light");
+  b.image("chain").mips = 0; // 7
+  b.exported("result");
+  b.pass("base", "test.need", {{"a", "light"}}, {{"out", "chain#0"}});
+  b.pass("third", "test.need", {{"a", "light"}}, {{"out", "chain#2"}});
+  b.pass("gather", "test.shade", {{"a", "chain"}}, {{"out", "result"}});
+  const Diagnostic one = half_written(b);
+  EXPECT_THAT(one.text, HasSubstr("pass 'gather', port 'a' reads 'chain', but no pass that is on writes "
+                                  "'chain#1' or 'chain#3..6'"));
+  EXPECT_EQ(one.related.size(), 1u); // where it is declared: no pass writes what is missing
+}
+
+TEST(Parts, TheWriterThatIsOffIsNamedWhereAPartIsMissing) {
+  auto b = pyramid();
+  b.boolean("on", false);
+  b.graph.passes[2].when = b.when("on");
+  const Diagnostic one = half_written(b);
+  EXPECT_THAT(one.text, HasSubstr("'chain#2'"));
+  ASSERT_EQ(one.related.size(), 2u);
+  EXPECT_THAT(one.related[1].second, HasSubstr("'down2' writes it and is off"));
+}
+
+TEST(Parts, HalfWrittenLayersAndHistoriesAreRefused) {
+  GraphBuilder layers;
+  layers.import("light");
+  layers.image("cube").layers = 6;
+  layers.exported("result");
+  layers.pass("some", "test.need", {{"a", "light"}}, {{"out", "cube[0..3]"}});
+  layers.pass("gather", "test.shade", {{"a", "cube"}}, {{"out", "result"}});
+  EXPECT_THAT(half_written(layers).text, HasSubstr("'cube[4..5]'"));
+  auto history = kept_mips();
+  history.graph.resources[1].mips = 3;
+  history.read(2, 0).part = {};
+  EXPECT_THAT(half_written(history, DiagnosticId::history_unwritten).text,
+              HasSubstr("reads 'kept@-1', but no pass that is on writes 'kept#2'"));
+}
+
+TEST(Parts, AnOptionalPortOfWhichNoPartIsWrittenStaysUnbound) {
+  auto b = pyramid();
+  b.boolean("on", false);
+  b.exported("second");
+  for (uint32_t pass = 0; pass < 3; ++pass)
+    b.graph.passes[pass].when = b.when("on");
+  b.graph.passes.pop_back();
+  b.pass("maybe", "test.shade", {{"a", "chain"}, {"b", "light"}, {"c", "chain#1"}}, {{"out", "second"}});
+  b.pass("show", "test.need", {{"a", "second"}}, {{"out", "result"}});
+  const auto plan = compiled(b);
+  const std::string text = reasons(b, plan, Reason::About::pass, 3);
+  const std::string unbound = "optional port 'a' stays unbound";
+  ASSERT_NE(text.find(unbound), std::string::npos) << text;
+  EXPECT_EQ(text.find(unbound), text.rfind(unbound)) << text;
 }
 
 TEST(Parts, WhatNobodyReadsOfAnImageIsNotMade) {
@@ -230,11 +293,11 @@ TEST(Parts, APortSeesAllOfThemInOneLayout) {
   b.image("image").mips = 2;
   b.exported("result");
   b.pass("fill", "test.fill", {}, {{"target", "image"}});
-  b.pass("mix", "test.update", {{"a", "image"}}, {{"image", "image#1"}});
+  b.pass("mix", "test.update", {{"own", "image"}}, {{"image", "image#1"}});
   b.pass("show", "test.need", {{"a", "image"}}, {{"out", "result"}});
   const Plan plan = compiled(b).plan;
-  EXPECT_EQ(access_of(b, plan, "mix", 0).layout, Layout::general);
-  EXPECT_EQ(access_of(b, plan, "mix", 0).range.mips, 2u);
+  EXPECT_EQ(access_of(b, plan, "mix", 2).layout, Layout::general);
+  EXPECT_EQ(access_of(b, plan, "mix", 2).range.mips, 2u);
   EXPECT_EQ(access_of(b, plan, "mix", 1).layout, Layout::general);
 }
 

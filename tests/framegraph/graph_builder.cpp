@@ -25,7 +25,8 @@ constexpr Port blend_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "
                                 {"own", Usage::sampled_image, true, "texture2D", "", {}, true},
                                 {"out", Usage::storage_image_write, false, "image2D", ""}};
 constexpr Port update_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
-                                 {"image", Usage::storage_image_update, false, "image2D", ""}};
+                                 {"image", Usage::storage_image_update, false, "image2D", ""},
+                                 {"own", Usage::sampled_image, true, "texture2D", "", {}, true}};
 constexpr Port fill_ports[] = {{"target", Usage::clear, false, "", ""}};
 constexpr Port lister_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
                                  {"tiles", Usage::storage_buffer_write, false, "uint", ""}};
@@ -37,6 +38,8 @@ constexpr Port tiles_ports[] = {{"tiles", Usage::storage_buffer_read, true, "uin
 constexpr Port probe_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""}};
 constexpr Port narrow_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "", half4},
                                  {"out", Usage::storage_image_write, false, "image2D", "", half4}};
+constexpr Port ids_ports[] = {{"ids", Usage::sampled_image, false, "utexture2D", ""},
+                              {"out", Usage::storage_image_write, false, "image2D", ""}};
 
 PassKind kind(std::string_view name, std::span<const Port> ports) {
   PassKind result;
@@ -58,6 +61,7 @@ KindRegistry test_kinds() {
   kinds.add(kind("test.tiles", tiles_ports));
   kinds.add(kind("test.narrow", narrow_ports));
   kinds.add(kind("test.blend", blend_ports));
+  kinds.add(kind("test.ids", ids_ports));
   PassKind probe = kind("test.probe", probe_ports);
   probe.side_effects = true;
   kinds.add(probe);

@@ -15,10 +15,10 @@ namespace dermis::testing {
 // "resource@-1?otherwise".
 using Bindings = std::vector<std::pair<std::string, std::string>>;
 
-// Kinds: test.shade (a b c -> out, out2), test.update (image in place), test.fill (clears target),
-// test.list (writes buffer tiles), test.count (updates buffer tiles), test.tiles (tiles as list and indirect
-// arguments, a -> out), test.probe (reads a, has side effects), test.narrow (a -> out, rgba16f only),
-// test.blend (a, own texel by texel -> out).
+// Kinds: test.shade (a b c -> out, out2), test.update (a, own texel by texel, image in place), test.fill
+// (clears target), test.list (writes buffer tiles), test.count (updates buffer tiles), test.tiles (tiles as
+// list and indirect arguments, a -> out), test.probe (reads a, has side effects), test.narrow (a -> out,
+// rgba16f only), test.blend (a, own texel by texel -> out), test.ids (ids, whole numbers -> out).
 KindRegistry test_kinds();
 
 struct GraphBuilder {
