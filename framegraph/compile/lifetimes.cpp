@@ -63,6 +63,14 @@ bool check_limits(CompileContext& c, PassId pass) {
   return fits;
 }
 
+// Whether the port, which names no formats, works with all that the resource may get. The reader of graphs
+// has judged single formats, except those of a resource that stands in for another.
+bool takes_all_formats(const CompileContext& c, const Use& use, const Port& port) {
+  const FormatList& formats = c.graph->resources[use.resource.value].formats;
+  if (formats.size() <= 1 && use.resource == use.asked) return true;
+  return std::all_of(formats.begin(), formats.end(), [&](Format format) { return works_with(port, format); });
+}
+
 // What one use asks of the resource.
 void note(CompileContext& c, uint32_t u, const PassKind& kind) {
   const Use& use = c.uses[u];
@@ -71,7 +79,8 @@ void note(CompileContext& c, uint32_t u, const PassKind& kind) {
   life.used = true;
   life.vk_usage |= usage_info(use.usage).vk_usage;
   life.deepest_read = std::max(life.deepest_read, use.frames_back);
-  if (kind.ports[use.port].formats.empty()) return;
+  const Port& port = kind.ports[use.port];
+  if (port.formats.empty() && takes_all_formats(c, use, port)) return;
   c.narrow.push_back({u, life.first_narrow});
   life.first_narrow = static_cast<uint32_t>(c.narrow.size() - 1);
 }

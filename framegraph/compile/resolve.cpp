@@ -151,9 +151,7 @@ struct Objection { // why a format cannot be used for a resource
 Objection objection(const CompileContext& c, ResourceId id, Format format) {
   for (uint32_t n = c.lifetimes[id.value].first_narrow; n != no_value; n = c.narrow[n].next) {
     const Use& use = c.uses[c.narrow[n].use];
-    const Port& port = c.kind(use.pass).ports[use.port];
-    if (std::find(port.formats.begin(), port.formats.end(), format) == port.formats.end())
-      return {true, c.narrow[n].use};
+    if (!works_with(c.kind(use.pass).ports[use.port], format)) return {true, c.narrow[n].use};
   }
   const uint32_t usage = c.lifetimes[id.value].vk_usage;
   return {usage != 0 && !c.device->supports(format, usage), no_value};

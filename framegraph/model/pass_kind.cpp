@@ -11,7 +11,19 @@ template <class Named> int index_of(std::span<const Named> list, std::string_vie
   return -1;
 }
 
+bool is_unsigned(Format format) {
+  return format_info(format).name.find("_uint") != std::string_view::npos;
+}
+
 } // namespace
+
+bool works_with(const Port& port, Format format) {
+  if (!port.formats.empty())
+    return std::find(port.formats.begin(), port.formats.end(), format) != port.formats.end();
+  if (usage_info(port.usage).writes && format_info(format).depth) return false;
+  if (port.glsl_type.empty()) return true;
+  return is_unsigned(format) == (port.glsl_type.front() == 'u');
+}
 
 KindId KindRegistry::add(const PassKind& kind) {
   if (find(kind.name).valid()) return {};

@@ -20,9 +20,14 @@ struct Port {
                               // the kernel never loads "writeonly image2D"; buffers: the element type
   std::string_view doc;
   std::span<const Format> formats = {}; // formats the shader can work with; empty = any the resource declares
-  bool own_texels = false; // reads of an image: each invocation reads only the texels that it alone writes,
-                           // before it writes them; the image may then be the one that it writes
+  // Each invocation reads only the texels or elements that it alone writes, and reads each before it writes
+  // it. The pass may then write what this port reads. A port that updates needs it for no access of its own.
+  bool own_texels = false;
 };
+
+// Whether a kernel can use images of this format at the port: one of Port::formats, or without these any
+// whose components have the type of `glsl_type`. Depth formats cannot be written.
+bool works_with(const Port& port, Format format);
 
 enum class SettingType : uint8_t { boolean, integer, real, enumeration, choice };
 

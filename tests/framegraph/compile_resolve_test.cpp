@@ -146,6 +146,29 @@ TEST(Formats, TheFirstOneThatEveryPortAndTheDeviceCanUseIsTaken) {
   EXPECT_EQ(errors[0].id, DiagnosticId::no_usable_format);
 }
 
+TEST(Formats, TheComponentTypeCountsAsWell) {
+  GraphBuilder b;
+  b.image("ids").formats = {Format::r8_unorm, Format::r8_uint};
+  b.exported("result");
+  b.pass("fill", "test.fill", {}, {{"target", "ids"}});
+  b.pass("use", "test.ids", {{"ids", "ids"}}, {{"out", "result"}});
+  const auto whole = compiled(b);
+  EXPECT_EQ(resource_of(b, whole.plan, "ids").format, Format::r8_uint);
+  EXPECT_THAT(reasons(b, whole, Reason::About::resource, 0),
+              HasSubstr("port 'ids' of pass 'use' cannot work with it"));
+}
+
+TEST(Formats, TheHostsOneFitsTheComponentType) {
+  GraphBuilder b;
+  b.import("ids").formats = {Format::r8_uint, Format::r8_unorm};
+  b.exported("result");
+  b.pass("use", "test.ids", {{"ids", "ids"}}, {{"out", "result"}});
+  auto input = b.input();
+  const std::vector<Format> formats{Format::r8_unorm, Format::undefined};
+  input.host_formats = formats;
+  EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::no_usable_format);
+}
+
 TEST(Formats, EveryResourceWithoutAUsableOneIsReported) { // also those that are declared alike
   Chain b;
   for (const char* name : {"other", "third"}) {

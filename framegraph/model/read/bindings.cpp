@@ -13,26 +13,6 @@ namespace dermis {
 
 namespace {
 
-bool is_unsigned(Format format) {
-  return format_info(format).name.find("_uint") != std::string_view::npos;
-}
-
-bool works_with(const Port& port, Format format) {
-  if (!port.formats.empty())
-    return std::find(port.formats.begin(), port.formats.end(), format) != port.formats.end();
-  const UsageInfo& usage = usage_info(port.usage);
-  if (usage.writes && format_info(format).depth) return false;
-  if (port.glsl_type.empty()) return true;
-  return is_unsigned(format) == (port.glsl_type.front() == 'u');
-}
-
-std::string format_list(std::span<const Format> formats) {
-  std::vector<std::string_view> names;
-  for (Format format : formats)
-    names.push_back(format_info(format).name);
-  return list_words(names);
-}
-
 struct Found { // what a port is bound to, and where it says so
   PortBinding binding;
   SourceLocation where;
@@ -312,33 +292,9 @@ private:
                                               resource.name, type_phrase(resource.type))));
       return;
     }
-    if (!image || std::any_of(resource.formats.begin(), resource.formats.end(),
-                              [&](Format format) { return works_with(port, format); })) {
-      return;
-    }
-    std::vector<Format> accepted;
-    for (size_t i = 1; i < static_cast<size_t>(Format::count); ++i) {
-      if (works_with(port, static_cast<Format>(i))) accepted.push_back(static_cast<Format>(i));
-    }
-    report_formats(found, fmt::format("{} works with {}", what, format_list(accepted)));
-  }
-
-  // One message a resource, however many ports its formats do not fit.
-  void report_formats(const Found& found, const std::string& port) {
-    const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
-    const auto known = reader_.format_mismatches.find(found.binding.resource);
-    if (known != reader_.format_mismatches.end()) {
-      constexpr size_t most_related = 8;
-      auto& related = reader_.diagnostics.list[known->second].related;
-      if (related.size() <= most_related) related.emplace_back(found.where, port);
-      return;
-    }
-    if (!reader_.diagnostics.full())
-      reader_.format_mismatches.emplace(found.binding.resource, reader_.diagnostics.list.size());
-    reader_
-        .error(DiagnosticId::format_mismatch, found.where,
-               fmt::format("{}; '{}' declares {}", port, resource.name, format_list(resource.formats)))
-        .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+    if (!image || formats_fit(port, resource)) return;
+    report_formats(reader_, found.binding.resource, found.where,
+                   fmt::format("{} works with {}", what, formats_taken(port)));
   }
 
   GraphReader& reader_;

@@ -61,6 +61,7 @@ void read_exports(GraphReader& reader, NodeId exports);
 void declare_passes(GraphReader& reader, NodeId passes);
 void read_passes(GraphReader& reader);
 void check_producers(GraphReader& reader);
+void check_reads(GraphReader& reader);       // what is read may be, in each state of the settings
 void check_needs(const GraphReader& reader); // of a graph without errors
 
 // Parts of passes. `pass` is the object at /passes/N; `what` names it in messages.
@@ -80,6 +81,19 @@ std::vector<std::string_view> names_of(const std::map<std::string, Id, std::less
     out.push_back(name);
   return out;
 }
+
+// Whether two parts of one image have a mip of a layer in common.
+bool meet(const ImagePart& a, const ImagePart& b);
+// Imports and exports: the host may bind an image of any declared format.
+inline bool may_be_host_owned(const ResourceDeclaration& resource) {
+  return resource.origin == Origin::imported || resource.exported;
+}
+// Whether the port works with what `resource` can become: with all formats of which the host may bind one, or
+// with one of those from which the compiler chooses.
+bool formats_fit(const Port& port, const ResourceDeclaration& resource);
+std::string formats_taken(const Port& port); // all that it works with: "'r16f' or 'r32f'"
+// One message a resource, however many ports its formats do not fit. `port` says what is bound at `where`.
+void report_formats(GraphReader& reader, ResourceId id, const SourceLocation& where, const std::string& port);
 
 // "note" of an object, "" where there is none or it is no string (which the object's reader reports).
 std::string note_of(const Document& document, NodeId object);

@@ -21,14 +21,6 @@ struct Producers {
   Producer first;
 };
 
-bool meet(const ImagePart& a, const ImagePart& b) {
-  const auto apart = [](uint32_t first, uint32_t count, uint32_t other) { // count 0: without end
-    return count != 0 && first + count <= other;
-  };
-  return !apart(a.first_mip, a.mips, b.first_mip) && !apart(b.first_mip, b.mips, a.first_mip) &&
-         !apart(a.first_layer, a.layers, b.first_layer) && !apart(b.first_layer, b.layers, a.first_layer);
-}
-
 bool updates(const GraphReader& reader, const PassDeclaration& pass, const PortBinding& binding) {
   return binding.port != unknown_port && usage_info(reader.kinds[pass.kind].ports[binding.port].usage).reads;
 }
@@ -98,6 +90,14 @@ void require_producer(GraphReader& reader, std::vector<Producers>& all, Resource
 }
 
 } // namespace
+
+bool meet(const ImagePart& a, const ImagePart& b) {
+  const auto apart = [](uint32_t first, uint32_t count, uint32_t other) { // count 0: without end
+    return count != 0 && first + count <= other;
+  };
+  return !apart(a.first_mip, a.mips, b.first_mip) && !apart(b.first_mip, b.mips, a.first_mip) &&
+         !apart(a.first_layer, a.layers, b.first_layer) && !apart(b.first_layer, b.layers, a.first_layer);
+}
 
 void check_producers(GraphReader& reader) {
   std::vector<Producers> all(reader.graph.resources.size());
