@@ -76,6 +76,7 @@ bool Compiler::compile(const CompileInput& input, Diagnostics& diagnostics, Comp
            choose,           // what are the settings, and which passes are on?
            find_parts,       // into which parts do ports divide images?
            resolve_versions, // which version of which resource does each port see?
+           refuse_races,     // does a pass read what it writes?
            cull,             // which passes does something bound need?
            choose_queues,    // which of them run beside the others?
            gather_usage,     // how do they use each resource?

@@ -77,7 +77,9 @@ struct PlanAccess { // one bound port of one pass
   Stage stages = 0;
   Access access = 0;
   Layout layout = Layout::undefined;
-  bool own_texels = false; // reads only what the same invocation writes: see Port::own_texels
+  // A read of a resource that the pass writes, in this frame or over an earlier one: each invocation reads
+  // only what it writes itself. See Port::own_texels.
+  bool own_texels = false;
   // Reads only: in frames in which the earlier frame that this access names is valid, or, behind such an
   // access of the same port, in those in which that one's is not. Barriers are the same in every frame.
   ReadWhen when = ReadWhen::always;

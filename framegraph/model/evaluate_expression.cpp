@@ -1,5 +1,7 @@
 #include "framegraph/model/expression.hpp"
 
+#include <algorithm>
+
 namespace dermis {
 
 namespace {
@@ -18,6 +20,28 @@ int compare(const SettingValue& a, const SettingValue& b) {
   return a.integer < b.integer ? -1 : a.integer > b.integer ? 1 : 0;
 }
 
+bool holds(Expression::Op op, int order) { // of two values that compare as `order`
+  switch (op) {
+  case Expression::Op::equal:
+    return order == 0;
+  case Expression::Op::not_equal:
+    return order != 0;
+  case Expression::Op::less:
+    return order < 0;
+  case Expression::Op::less_equal:
+    return order <= 0;
+  case Expression::Op::greater:
+    return order > 0;
+  default:
+    return order >= 0;
+  }
+}
+
+bool is_listed(const Expression& node, const SettingValue& value) {
+  return std::any_of(node.list.begin(), node.list.end(),
+                     [&](const SettingValue& one) { return compare(value, one) == 0; });
+}
+
 SettingValue value_of(const Graph& graph, ExpressionId id, const std::vector<SettingValue>& values) {
   const Expression& node = graph.expressions[id.value];
   switch (node.op) {
@@ -31,37 +55,44 @@ SettingValue value_of(const Graph& graph, ExpressionId id, const std::vector<Set
     return truth(evaluate(graph, node.left, values) && evaluate(graph, node.right, values));
   case Expression::Op::logical_or:
     return truth(evaluate(graph, node.left, values) || evaluate(graph, node.right, values));
-  case Expression::Op::in: {
-    const SettingValue left = value_of(graph, node.left, values);
-    for (const SettingValue& one : node.list) {
-      if (compare(left, one) == 0) return truth(true);
-    }
-    return truth(false);
-  }
+  case Expression::Op::in:
+    return truth(is_listed(node, value_of(graph, node.left, values)));
   default:
-    break;
+    return truth(
+        holds(node.op, compare(value_of(graph, node.left, values), value_of(graph, node.right, values))));
   }
-  const int order = compare(value_of(graph, node.left, values), value_of(graph, node.right, values));
-  switch (node.op) {
-  case Expression::Op::equal:
-    return truth(order == 0);
-  case Expression::Op::not_equal:
-    return truth(order != 0);
-  case Expression::Op::less:
-    return truth(order < 0);
-  case Expression::Op::less_equal:
-    return truth(order <= 0);
-  case Expression::Op::greater:
-    return truth(order > 0);
-  default:
-    return truth(order >= 0);
-  }
+}
+
+using MaybeValue = std::optional<SettingValue>;
+
+MaybeValue value_of(const Graph& graph, ExpressionId id, const PartialValues& values) {
+  const Expression& node = graph.expressions[id.value];
+  const auto is = [](const MaybeValue& value, bool wanted) {
+    return value && (value->integer != 0) == wanted;
+  };
+  if (node.op == Expression::Op::literal) return node.literal;
+  if (node.op == Expression::Op::setting) return values[node.setting.value];
+  const MaybeValue left = value_of(graph, node.left, values);
+  if (node.op == Expression::Op::logical_not) return left ? MaybeValue(truth(left->integer == 0)) : left;
+  if (node.op == Expression::Op::in) return left ? MaybeValue(truth(is_listed(node, *left))) : left;
+  const MaybeValue right = value_of(graph, node.right, values);
+  if (node.op == Expression::Op::logical_and && (is(left, false) || is(right, false))) return truth(false);
+  if (node.op == Expression::Op::logical_or && (is(left, true) || is(right, true))) return truth(true);
+  if (!left || !right) return std::nullopt;
+  if (node.op == Expression::Op::logical_and) return truth(true);
+  if (node.op == Expression::Op::logical_or) return truth(false);
+  return truth(holds(node.op, compare(*left, *right)));
 }
 
 } // namespace
 
 bool evaluate(const Graph& graph, ExpressionId id, const std::vector<SettingValue>& values) {
   return value_of(graph, id, values).integer != 0;
+}
+
+std::optional<bool> evaluate_partly(const Graph& graph, ExpressionId id, const PartialValues& values) {
+  const MaybeValue value = value_of(graph, id, values);
+  return value ? std::optional(value->integer != 0) : std::nullopt;
 }
 
 } // namespace dermis

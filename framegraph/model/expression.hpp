@@ -14,6 +14,8 @@
 #include "framegraph/model/graph.hpp"
 #include "framegraph/text/document.hpp"
 
+#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -25,7 +27,19 @@ namespace dermis {
 ExpressionId parse_expression(const Document& document, NodeId node, std::string_view what, Graph& graph,
                               const std::vector<bool>& broken, Diagnostics& diagnostics);
 
+// A `when` and the value that it is to have. An invalid id always holds.
+struct Condition {
+  ExpressionId when;
+  bool holds = true;
+};
+// Whether the graph's settings can have values for which all conditions are as they are to be. True as well
+// where finding out would take too long.
+bool can_hold(const Graph& graph, std::span<const Condition> conditions);
+
 // Value of a boolean expression; values[i] belongs to graph.settings[i] and has its type.
 bool evaluate(const Graph& graph, ExpressionId id, const std::vector<SettingValue>& values);
+// The same where only some settings have a value; nullopt: it depends on others.
+using PartialValues = std::vector<std::optional<SettingValue>>;
+std::optional<bool> evaluate_partly(const Graph& graph, ExpressionId id, const PartialValues& values);
 
 } // namespace dermis

@@ -89,6 +89,7 @@ HostKindPort read_port(const Document& document, NodeId node, Diagnostics& diagn
   port.name = object.name("name").value_or("");
   port.usage = host_usages[object.word("usage", words).value_or(0)];
   port.optional = object.boolean("optional", Need::optional).value_or(false);
+  port.own_texels = object.boolean("own_texels", Need::optional).value_or(false);
   port.doc = object.string("doc", Need::optional).value_or("");
   object.finish();
   return port;
@@ -170,6 +171,7 @@ KindId HostKinds::add(HostKindDeclaration kind, KindRegistry& registry) {
     added.name = port.name;
     added.usage = port.usage;
     added.optional = port.optional;
+    added.own_texels = port.own_texels;
     added.doc = port.doc;
   }
   for (const HostKindSetting& setting : kept.declared.settings) {
@@ -205,6 +207,7 @@ std::string write_host_kinds(const HostKinds& kinds) {
     for (const HostKindPort& port : kind.ports) {
       json.open_object(true).member("name", port.name).member("usage", usage_info(port.usage).name);
       if (port.optional) json.member("optional", true);
+      if (port.own_texels) json.member("own_texels", true);
       if (!port.doc.empty()) json.member("doc", port.doc);
       json.close();
     }

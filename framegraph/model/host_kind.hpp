@@ -16,6 +16,7 @@ struct HostKindPort {
   std::string name, doc;
   Usage usage = Usage::sampled_image;
   bool optional = false;
+  bool own_texels = false; // see Port::own_texels
 };
 
 struct HostKindSetting {

@@ -50,6 +50,7 @@ std::optional<Graph> read_graph(const Document& document, const KindRegistry& ki
   declare_passes(reader, passes);
   read_passes(reader);
   check_producers(reader);
+  check_reads(reader);
   if (errors() == errors_before) check_needs(reader);
   if (errors() != errors_before) return std::nullopt;
   return std::move(reader.graph);

@@ -15,7 +15,8 @@
 //          the last one visible to it unless it was read since: then the wait for the reader is enough.
 //  maybe   A read that depends on the validity of a history counts as if it happened, but nobody may
 //          rely on it.
-//  both    A pass reads and writes the same thing, as two frames of a history, only texel by texel.
+//  both    What a pass writes it touches in no other way, except to read the same thing texel by texel
+//          (PlanAccess::own_texels). An access that reads and writes counts as one.
 //  layout  Equals what the access was planned with; transitions are writes; `undefined` discards.
 //  queues  A barrier orders what is on its own queue. A wait for a point orders and shows to its queue
 //          all that the other one had done, or had been ordered behind, when it reached the point. What

@@ -39,7 +39,8 @@ dermis_result read_ports(const Log& log, const dermis_pass_kind& given, HostKind
     if (usage >= usages.size())
       return bad_argument(log, "{}: kind.ports[{}].usage is {}, expected 0..{}", registering, i,
                           static_cast<int>(port.usage), usages.size() - 1);
-    kind.ports.push_back({text_of(port.name), text_of(port.doc), usages[usage], port.optional != 0});
+    kind.ports.push_back(
+        {text_of(port.name), text_of(port.doc), usages[usage], port.optional != 0, port.own_texels != 0});
   }
   return DERMIS_OK;
 }

@@ -55,7 +55,8 @@ template <>
 inline constexpr size_t first_version_size<dermis_choice> = offsetof(dermis_choice, reserved) +
                                                             sizeof(uint32_t);
 template <>
-inline constexpr size_t first_version_size<dermis_port> = offsetof(dermis_port, optional) + sizeof(uint32_t);
+inline constexpr size_t first_version_size<dermis_port> = offsetof(dermis_port, own_texels) +
+                                                          sizeof(uint32_t);
 template <>
 inline constexpr size_t first_version_size<dermis_kind_setting> = offsetof(dermis_kind_setting, maximum) +
                                                                   sizeof(double);

@@ -133,7 +133,7 @@ TEST(Synchronize, APureWriteAfterReadIsAnExecutionDependency) {
 TEST(Synchronize, ReadingAndWritingOneImageInOnePassUsesOneLayout) {
   GraphBuilder b;
   b.import("light").exported = true;
-  b.pass("combine", "test.shade", {{"a", "light"}}, {{"out", "light"}});
+  b.pass("combine", "test.blend", {{"own", "light"}}, {{"out", "light"}});
   const auto whole = compiled(b);
   for (const PlanAccess& access : whole.plan.accesses)
     EXPECT_EQ(access.layout, Layout::general);
@@ -224,6 +224,43 @@ TEST(History, InstancesTakeTurnsAndKeepTheirContentsOverThreeFrames) {
               ::testing::ElementsAre(Layout::undefined, Layout::shader_read_only, Layout::shader_read_only));
   for (uint32_t i = 0; i < 3; ++i)
     EXPECT_TRUE(whole.plan.placements[sum.first_instance + i].persistent);
+}
+
+TEST(InPlace, WithoutOwnTexelsAPassCannotReadWhatItWrites) {
+  GraphBuilder b;
+  b.import("light").exported = true;
+  b.pass("blur", "test.need", {{"a", "light"}}, {{"out", "light"}});
+  const auto errors = refused(b);
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors[0].id, DiagnosticId::in_place_race);
+  EXPECT_THAT(errors[0].text, HasSubstr("'blur' reads 'light' through its port 'a'"));
+}
+
+TEST(InPlace, WithTheseSettingsAStandInIsJudged) {
+  GraphBuilder b;
+  b.boolean("on", true);
+  b.import("light").exported = true;
+  b.image("x");
+  auto& make = b.pass("make", "test.need", {{"a", "light"}}, {{"out", "x"}});
+  make.when = b.when("on");
+  b.otherwise(make, "x", "light");
+  b.pass("blur", "test.need", {{"a", "x"}}, {{"out", "light"}});
+  compiled(b);
+  auto input = b.input();
+  input.settings = {{SettingType::boolean, 0, 0.0}};
+  EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::in_place_race);
+}
+
+TEST(InPlace, TheVerifierRefusesARaceInsideAPass) {
+  GraphBuilder b;
+  b.import("light").exported = true;
+  b.pass("blend", "test.blend", {{"own", "light"}}, {{"out", "light"}});
+  Plan plan = compiled(b).plan;
+  ASSERT_THAT(plan.accesses, SizeIs(2));
+  EXPECT_TRUE(plan.accesses[0].own_texels);
+  plan.accesses[0].own_texels = false;
+  EXPECT_THAT(verify(plan).objections, ::testing::Contains(HasSubstr("not texel by texel")));
+  EXPECT_NE(first_hazard(plan), "");
 }
 
 const PlanResource& history_of(const Plan& plan) {
@@ -343,7 +380,8 @@ GraphBuilder with_conditional_reader() {
   b.pass("keep", "test.list", {{"a", "light"}}, {{"tiles", "old"}});
   b.pass("use", "test.tiles", {{"tiles", "old@-1?list"}}, {{"out", "result"}});
   b.pass("count", "test.count", {}, {{"tiles", "list"}});
-  b.pass("again", "test.tiles", {{"tiles", "list"}, {"a", "result"}}, {{"out", "result"}});
+  b.exported("late");
+  b.pass("again", "test.tiles", {{"tiles", "list"}, {"a", "result"}}, {{"out", "late"}});
   return b;
 }
 

@@ -20,4 +20,23 @@ struct Operation {
   uint64_t heap = 0, begin = 0, end = 1;
 };
 
+inline bool same_instance(const Operation& a, const Operation& b) {
+  return a.resource == b.resource && a.instance == b.instance;
+}
+inline bool same_thing(const Operation& a, const Operation& b) {
+  return same_instance(a, b) && a.mip == b.mip && a.layer == b.layer;
+}
+inline bool is_barrier(const Operation& o) {
+  return o.what == Operation::What::barrier;
+}
+inline bool accesses(const Operation& o) {
+  return o.what == Operation::What::access;
+}
+inline Access written(const Operation& o) {
+  return accesses(o) ? o.access->access & all_write_access : 0;
+}
+inline Access read(const Operation& o) {
+  return accesses(o) ? o.access->access & ~all_write_access : 0;
+}
+
 } // namespace dermis::testing

@@ -129,12 +129,6 @@ struct Oracle {
 
   bool host(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
   bool image(const Operation& o) const { return plan.resources[o.resource].type == ResourceType::image; }
-  static bool same_thing(const Operation& a, const Operation& b) {
-    return same_instance(a, b) && a.mip == b.mip && a.layer == b.layer;
-  }
-  static bool same_instance(const Operation& a, const Operation& b) {
-    return a.resource == b.resource && a.instance == b.instance;
-  }
   bool overlap(const Operation& a, const Operation& b) const {
     if (a.heap != b.heap || std::max(a.begin, b.begin) >= std::min(a.end, b.end)) return false;
     return !same_instance(a, b) || same_thing(a, b);
@@ -155,16 +149,12 @@ struct Oracle {
     bytes.erase(std::unique(bytes.begin(), bytes.end()), bytes.end());
     return bytes;
   }
-  static bool is_barrier(const Operation& o) { return o.what == Operation::What::barrier; }
   // Barriers that are operations on the contents themselves: changes of layout and of owner.
   bool transition(const Operation& o) const {
     return is_barrier(o) && (o.barrier->from_host || o.barrier->to_host ||
                              o.barrier->transfer != PlanBarrier::Transfer::none ||
                              (image(o) && o.barrier->old_layout != o.barrier->new_layout));
   }
-  static bool accesses(const Operation& o) { return o.what == Operation::What::access; }
-  static Access written(const Operation& o) { return accesses(o) ? o.access->access & all_write_access : 0; }
-  static Access read(const Operation& o) { return accesses(o) ? o.access->access & ~all_write_access : 0; }
   bool acts(const Operation& o) const { return accesses(o) || transition(o); }
   bool writes(const Operation& o) const { return written(o) != 0 || transition(o); }
 
@@ -286,14 +276,24 @@ struct Oracle {
     return history && plan.resources[resource].instance_count == history->frames;
   }
 
-  // Does operation `second` read the frame it means, and does its pass leave that alone meanwhile?
+  // Does the pass of operation `at` write the bytes that it touches, through another access?
+  bool raced(size_t at) const {
+    const Operation& o = all[at];
+    const bool own = written(o) == 0 && o.access->own_texels;
+    size_t k = at;
+    for (; k > 0 && all[k - 1].step == o.step; --k) {
+    }
+    for (; k < all.size() && all[k].step == o.step; ++k)
+      if (all[k].access != o.access && written(all[k]) != 0 && overlap(all[k], o) &&
+          !(own && same_thing(all[k], o)))
+        return true;
+    return false;
+  }
+
+  // Does operation `second` read the frame it means?
   bool right_frame(size_t second) const {
     const Operation& o = all[second];
     if (!history_of(o.resource)) return true;
-    for (const Operation& other : all)
-      if (other.step == o.step && same_thing(other, o) && written(other) != 0 && !o.access->own_texels &&
-          other.access->frames_back != o.access->frames_back)
-        return false;
     for (size_t k = second; k-- > 0;)
       if (all[k].step != o.step && same_thing(all[k], o) && written(all[k]) != 0)
         return all[k].frame + o.access->frames_back == o.frame + all[k].access->frames_back;
@@ -418,6 +418,7 @@ struct Oracle {
       if (image(o) && layout(o, at) != o.access->layout) return "is in another layout";
       if (read(o) != 0 && !defined(at)) return "is read undefined";
       if (read(o) != 0 && !right_frame(at)) return "reads another frame";
+      if (raced(at)) return "touches what its pass writes";
       if (o.access->when == ReadWhen::history_valid && o.access->frames_back == 0)
         return "depends on the validity of this frame";
       if (host(o.resource)) return "";

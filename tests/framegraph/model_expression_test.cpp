@@ -1,4 +1,5 @@
 #include "framegraph/model/expression.hpp"
+#include "framegraph/model/splitmix.hpp"
 #include "framegraph/text/limits.hpp"
 #include "tests/framegraph/text_support.hpp"
 
@@ -189,6 +190,64 @@ TEST(Expression, EveryStringIsParsedOrExplained) {
                                                                      << all_messages(fixture.diagnostics);
     if (id.valid()) evaluate(fixture.graph, id, fixture.values);
   }
+}
+
+// Conditions of which all combinations of a few values show whether they can hold together.
+TEST(Expression, ConditionsHoldTogetherAsAllValuesSay) {
+  Fixture fixture;
+  fixture.graph.settings[1].maximum = 4;
+  fixture.graph.settings[2].maximum = 2;
+  std::vector<ExpressionId> all;
+  for (const char* text : {"flag",
+                           "not flag",
+                           "count > 1",
+                           "count <= 1",
+                           "count == 2",
+                           "count in [1, 3]",
+                           "count > 1.5",
+                           "scale < 0.5",
+                           "scale >= 0.5",
+                           "scale == 1",
+                           "scale > 1.5",
+                           "count < scale",
+                           "scale == count",
+                           "mode == 'a'",
+                           "mode in ['b', 'c']",
+                           "other != 'x'",
+                           "flag and count > 3",
+                           "flag or scale > 1",
+                           "not (mode == 'a' or count < 2)",
+                           "count > 3 and scale > 1",
+                           "scale > 1 and scale < 1.5"}) {
+    all.push_back(fixture.parse(text));
+    ASSERT_TRUE(all.back().valid()) << text << all_messages(fixture.diagnostics);
+  }
+  const auto brute_force = [&](std::span<const Condition> conditions) {
+    for (int64_t i = 0; i < 2 * 5 * 9 * 3 * 2; ++i) {
+      const std::vector<SettingValue> values{{SettingType::boolean, i % 2, 0.0},
+                                             {SettingType::integer, i / 2 % 5, 0.0},
+                                             {SettingType::real, 0, static_cast<double>(i / 10 % 9) / 4},
+                                             {SettingType::choice, i / 90 % 3, 0.0},
+                                             {SettingType::enumeration, i / 270, 0.0}};
+      if (std::all_of(conditions.begin(), conditions.end(), [&](const Condition& one) {
+            return evaluate(fixture.graph, one.when, values) == one.holds;
+          }))
+        return true;
+    }
+    return false;
+  };
+  SplitMix64 random{33};
+  uint32_t possible = 0;
+  constexpr uint32_t tries = 1500;
+  for (uint32_t i = 0; i < tries; ++i) {
+    std::vector<Condition> conditions(2 + random.below(5));
+    for (Condition& one : conditions)
+      one = {all[random.below(all.size())], random.below(2) == 0};
+    ASSERT_EQ(can_hold(fixture.graph, conditions), brute_force(conditions)) << "try " << i;
+    possible += can_hold(fixture.graph, conditions);
+  }
+  EXPECT_GT(possible, tries / 4);
+  EXPECT_LT(possible, tries * 9 / 10);
 }
 
 } // namespace

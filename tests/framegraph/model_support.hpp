@@ -28,8 +28,14 @@ inline constexpr Port list_ports[] = {
     {"tiles", Usage::storage_buffer_write, false, "uint", "list"},
 };
 inline constexpr Port mix_ports[] = {
-    {"source", Usage::sampled_image, false, "texture2D", "what to add"},
+    {"source", Usage::sampled_image, false, "texture2D", "what to add", {}, true},
     {"target", Usage::storage_image_update, false, "image2D", "what to add it to"},
+};
+
+inline constexpr Port add_ports[] = {
+    {"source", Usage::sampled_image, false, "texture2D", "what to add"},
+    {"light", Usage::sampled_image, false, "texture2D", "what to add it to"},
+    {"target", Usage::storage_image_write, false, "image2D", "the sum"},
 };
 
 inline const KindRegistry& kinds() {
@@ -40,7 +46,8 @@ inline const KindRegistry& kinds() {
     PassKind list{"test.list", "list", "lists tiles", list_ports, {}};
     list.needs = list_needs;
     out.add(list);
-    out.add({"test.mix", "mix", "adds", mix_ports, {}});
+    out.add({"test.mix", "mix", "adds in place", mix_ports, {}});
+    out.add({"test.add", "add", "adds", add_ports, {}});
     return out;
   }();
   return registry;

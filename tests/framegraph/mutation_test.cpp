@@ -104,6 +104,18 @@ TEST(Mutation, AFlippedHistorySlotIsRefusedOrChangesThePixels) {
   EXPECT_GT(tally.tried, tally.refused);
 }
 
+// Of a history whose frames lie apart the declaration does not matter.
+TEST(Mutation, LostOwnTexelsAreRefusedWhereTheyMatter) {
+  const Tally tally = compare_verdicts(300, 3000, for_each_lost_own_texels);
+  EXPECT_GT(tally.refused, 30u);
+  EXPECT_GT(tally.tried, tally.refused);
+}
+
+TEST(Mutation, ARedirectedAccessIsRefusedWhereItMatters) {
+  const Tally tally = compare_verdicts(60, 600, for_each_redirected_access);
+  EXPECT_GT(tally.refused, 500u);
+}
+
 TEST(Mutation, SwappedPassesAreRefusedExactlyWhereItMatters) {
   const Tally tally = compare_verdicts(150, 1500, for_each_swap);
   EXPECT_GT(tally.refused, 100u);

@@ -79,6 +79,30 @@ void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit) {
     }
 }
 
+void for_each_lost_own_texels(const Plan& plan, const VisitMutant& visit) {
+  for (size_t a = 0; a < plan.accesses.size(); ++a) {
+    if (!plan.accesses[a].own_texels) continue;
+    Plan mutant = plan;
+    mutant.accesses[a].own_texels = false;
+    visit(mutant, fmt::format("access {} to texels of other invocations", a));
+  }
+}
+
+void for_each_redirected_access(const Plan& plan, const VisitMutant& visit) {
+  for (const PlanPass& pass : plan.passes)
+    for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a)
+      for (uint32_t k = pass.first_access; k < pass.first_access + pass.access_count; ++k) {
+        const PlanAccess& onto = plan.accesses[k];
+        if (a == k || (onto.access & all_write_access) == 0) continue;
+        Plan mutant = plan;
+        mutant.accesses[a].resource = onto.resource;
+        mutant.accesses[a].frames_back = onto.frames_back;
+        mutant.accesses[a].range = onto.range;
+        mutant.accesses[a].layout = onto.layout;
+        visit(mutant, fmt::format("access {} to what access {} writes", a, k));
+      }
+}
+
 void for_each_swap(const Plan& plan, const VisitMutant& visit) {
   for (size_t p = 0; p + 1 < plan.passes.size(); ++p) {
     Plan mutant = plan;

@@ -19,6 +19,8 @@ using VisitMutant = std::function<void(const Plan& mutant, const std::string& wh
 void for_each_weaker_mask(const Plan& plan, const VisitMutant& visit);       // one bit of one barrier missing
 void for_each_shifted_placement(const Plan& plan, const VisitMutant& visit); // to where another one begins
 void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit);      // an access to another old frame
+void for_each_lost_own_texels(const Plan& plan, const VisitMutant& visit);
+void for_each_redirected_access(const Plan& plan, const VisitMutant& visit); // to what its pass writes
 void for_each_swap(const Plan& plan, const VisitMutant& visit); // of two passes that follow each other
 void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit); // to the pass before or after
 

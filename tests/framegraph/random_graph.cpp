@@ -67,6 +67,13 @@ struct Draft {
     return result;
   }
 
+  // Whether what stands at a reading port may be (part of) `image` in this frame.
+  static bool may_meet(const std::string& source, const std::string& image) {
+    const std::string now = source.substr(source.find('?') + 1); // the stand-in, or all: npos + 1 is 0
+    const auto name = [](const std::string& text) { return text.substr(0, text.find_first_of("#[@")); };
+    return now.find('@') == std::string::npos && name(now) == name(image);
+  }
+
   std::string new_image() {
     const auto name = fresh("image");
     auto& declared = random.chance(15) ? b.exported(name) : b.image(name);
@@ -143,7 +150,10 @@ struct Draft {
       readable.push_back(out);
     } else if (kind == 3) {
       const std::string image = any(readable); // drawn first: compilers differ in the order of arguments
-      b.pass(name, "test.update", reads(1), {{"image", image}});
+      Bindings inputs = reads(1);
+      for (auto& [port, source] : inputs)
+        if (may_meet(source, image)) port = "own";
+      b.pass(name, "test.update", inputs, {{"image", image}});
     } else if (kind == 4) {
       buffers.push_back(fresh("buffer"));
       b.buffer(buffers.back());

@@ -94,6 +94,23 @@ TEST_F(PortRules, AFormatWithTooFewChannelsIsPassedOver) {
   EXPECT_TRUE(compiles()) << all_messages(diagnostics);
 }
 
+// The host may bind any of them, the second as well as the first.
+TEST_F(PortRules, EachFormatOfAnImportFitsEveryPort) {
+  for (const char* formats : {R"(["r8_unorm", "r8_uint"])", R"(["r8_uint", "r8_unorm"])"}) {
+    SetUp();
+    diagnostics = {};
+    const size_t from = text.find(R"("format": ["r8_uint")");
+    const size_t to = from == std::string::npos ? from : text.find(']', from);
+    ASSERT_NE(to, std::string::npos);
+    text.replace(from, to + 1 - from, std::string("\"format\": ") + formats);
+    read();
+    EXPECT_FALSE(graph);
+    ASSERT_EQ(diagnostics.list.size(), 1u) << all_messages(diagnostics);
+    EXPECT_EQ(diagnostics.list[0].id, Id::format_mismatch);
+    EXPECT_NE(diagnostics.list[0].text.find("'r8_unorm'"), std::string::npos);
+  }
+}
+
 // A port of one channel, or of an integer, takes any such format; every other one names what it takes.
 TEST_F(PortRules, EveryPortOfSeveralChannelsNamesItsFormats) {
   const std::set<std::string_view> of_one_channel{"depth", "scatter_scale", "thickness"};
@@ -104,6 +121,45 @@ TEST_F(PortRules, EveryPortOfSeveralChannelsNamesItsFormats) {
       EXPECT_EQ(port.formats.empty(), of_one_channel.contains(port.name))
           << kinds[KindId{i}].name << "." << port.name;
     }
+}
+
+std::string shader_text(const std::string& name) {
+  std::ifstream in(DERMIS_SOURCE_DIR "/shaders/" + name);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Number of places where a shader names the image; `own`: and reads there the invocation's texel.
+size_t count_reads(const std::string& shader, const std::string& image, bool own) {
+  const std::string wanted = own ? "texelFetch(" + image + ", texel, 0)" : "(" + image + ",";
+  size_t count = 0;
+  for (size_t at = shader.find(wanted); at != std::string::npos; at = shader.find(wanted, at + 1))
+    ++count;
+  return count;
+}
+
+TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
+  size_t ports = 0;
+  for (uint32_t i = 0; i < kinds.size(); ++i) {
+    const PassKind& kind = kinds[KindId{i}];
+    const std::string shader =
+        shader_text(std::string(kind.shader) + ".comp") + shader_text("include/pixel_light.glsl");
+    for (const Port& port : kind.ports) {
+      if (!port.own_texels) continue;
+      const std::string image = std::string(port.name) + "_image";
+      EXPECT_GT(count_reads(shader, image, true), 0u) << kind.name << "." << port.name;
+      EXPECT_EQ(count_reads(shader, image, true), count_reads(shader, image, false))
+          << kind.name << "." << port.name;
+      EXPECT_NE(shader.find("ivec2 texel = texel_of(pixel);"), std::string::npos) << kind.name;
+      for (const Port& written : kind.ports) {
+        if (written.usage != Usage::storage_image_write) continue;
+        EXPECT_NE(shader.find("imageStore(" + std::string(written.name) + "_image, texel, "),
+                  std::string::npos)
+            << kind.name << "." << written.name;
+      }
+      ++ports;
+    }
+  }
+  EXPECT_EQ(ports, 8u);
 }
 
 TEST_F(PortRules, LightGoesBackToTheHostFromSomewhere) {

@@ -127,8 +127,9 @@ TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
   for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
     // The oracle is slow: the widest plan of each graph, and the narrowest in the full tier.
     if (bound != Bound::all && (bound == Bound::some || seeds_of_tier(0, 1) == 0)) return;
-    for (const auto for_each_mutant : {for_each_weaker_mask, for_each_shifted_placement,
-                                       for_each_flipped_slot, for_each_swap, for_each_moved_barrier})
+    for (const auto for_each_mutant :
+         {for_each_weaker_mask, for_each_shifted_placement, for_each_flipped_slot, for_each_swap,
+          for_each_moved_barrier, for_each_lost_own_texels})
       for_each_mutant(compiled.plan, [&](const Plan& mutant, const std::string& what) {
         if (!HasFatalFailure()) expect_same_verdict(mutant, what, tally);
       });

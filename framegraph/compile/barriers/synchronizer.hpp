@@ -77,6 +77,7 @@ struct Synchronizer {
   // A port sees all its parts in one layout: `general` where they would have several.
   void unify_layouts(uint32_t first_use, uint32_t end);
 
+  bool writes_too(const Use& read, uint32_t first_use, uint32_t end) const;
   void add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end);
 
   // Adds a barrier for the pass at `position` that waits for nothing of this frame behind the pass at

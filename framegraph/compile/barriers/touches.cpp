@@ -54,6 +54,13 @@ void Synchronizer::unify_layouts(uint32_t first_use, uint32_t end) {
   }
 }
 
+// Whether the pass writes the resource, in this frame or over an earlier one.
+bool Synchronizer::writes_too(const Use& read, uint32_t first_use, uint32_t end) const {
+  return std::any_of(c.uses.begin() + first_use, c.uses.begin() + end, [&](const Use& other) {
+    return other.writes && other.resource == read.resource && other.trouble == Use::Trouble::none;
+  });
+}
+
 void Synchronizer::add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end) {
   const std::span<const Port> ports = c.kind(pass.declared).ports;
   pass.first_access = static_cast<uint32_t>(plan.accesses.size());
@@ -75,7 +82,8 @@ void Synchronizer::add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end
     const Use* history = c.history_of(use);
     const bool alone = history && history->trouble != Use::Trouble::none; // nothing to stand in for
     plan.accesses.push_back({use.port, touch.resource, use.frames_back, range, usage.stages, usage.access,
-                             touch.layout, use.frames_back > 0 && ports[use.port].own_texels,
+                             touch.layout,
+                             ports[use.port].own_texels && !use.writes && writes_too(use, first_use, end),
                              alone ? ReadWhen::always : use.when});
   }
   pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;

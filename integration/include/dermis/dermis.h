@@ -616,8 +616,11 @@ typedef struct dermis_port {
   const char* doc;         /* for schemas and messages; may be NULL */
   dermis_port_usage usage;
   uint32_t optional;       /* 1: a graph may leave it out */
+  uint32_t own_texels;     /* 1: each invocation reads only the texel or element that it alone writes, before it writes
+                            * it. Required of a port that reads what another port of the pass writes; without it such
+                            * graphs are refused (D0232). An update port needs it for no access of its own. */
 } dermis_port;
-#define DERMIS_PORT_INIT {sizeof(dermis_port), NULL, NULL, DERMIS_PORT_SAMPLED_IMAGE, 0}
+#define DERMIS_PORT_INIT {sizeof(dermis_port), NULL, NULL, DERMIS_PORT_SAMPLED_IMAGE, 0, 0}
 
 typedef enum dermis_kind_setting_type {
   DERMIS_KIND_SETTING_BOOL = 0,

@@ -27,7 +27,7 @@ constexpr KindSetting setup_settings[] = {setting::texturing};
 constexpr std::string_view copied_options[] = {"unscattered", "scattered"};
 constexpr Port combine_ports[] = {
     {"scattered", Usage::sampled_image, true, "texture2D",
-     "scattered light; unbound: none scatters, all is as unscattered", port::color_formats},
+     "scattered light; unbound: none scatters, all is as unscattered", port::color_formats, true},
     {"unscattered", Usage::sampled_image, true, "texture2D",
      "diffuse irradiance before albedo: what tiles show that are only copied. May be the image that is "
      "written; one of both is bound",
@@ -53,7 +53,7 @@ constexpr KindSetting combine_settings[] = {
 constexpr Format scattered_formats[] = {Format::rgba16f}; // that a shader may load
 constexpr Port copy_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats},
+     port::color_formats, true},
     port::albedo,
     port::tiles,
     port::arguments,
@@ -64,9 +64,9 @@ constexpr KindSetting copy_settings[] = {setting::texturing};
 
 constexpr Port light_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats},
+     port::color_formats, true},
     {"scattered", Usage::sampled_image, true, "texture2D", "scattered light; unbound: nothing scatters",
-     port::color_formats},
+     port::color_formats, true},
     port::material,
     port::depth,
     port::scatter_scale,
@@ -99,7 +99,7 @@ constexpr Port thin_parts_ports[] = {
 };
 constexpr Port transmission_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats},
+     port::color_formats, true},
     back_lighting_port,
     thickness_port,
     port::material,

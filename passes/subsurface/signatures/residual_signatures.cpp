@@ -15,6 +15,13 @@ constexpr Port sure_light{"scattered",
                           "texture2D",
                           "of the pyramid; rgb scattered light, a = confidence",
                           light_formats};
+constexpr Port own_sure_light{sure_light.name,
+                              sure_light.usage,
+                              sure_light.optional,
+                              sure_light.glsl_type,
+                              sure_light.doc,
+                              sure_light.formats,
+                              true};
 constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
                        "uint",    "as subsurface.classify writes them", {}};
 
@@ -31,7 +38,7 @@ constexpr Port blend_ports[] = {
     port::level_surface("surface_3"),
     port::level_surface("surface_4"),
     port::level_surface("surface_5"),
-    sure_light,
+    own_sure_light,
     classes,
     port::tiles,
     port::arguments,
@@ -75,7 +82,7 @@ constexpr Port residual_ports[] = {
     port::level_surface("surface_3"),
     port::level_surface("surface_4"),
     port::level_surface("surface_5"),
-    sure_light,
+    own_sure_light,
     {"brightness", Usage::sampled_image, false, "texture2D", brightness_doc, brightness_formats},
     port::velocity,
     classes,

@@ -255,5 +255,35 @@ TEST_F(HostKinds, AreExportedForTools) {
   EXPECT_EQ(dermis_export_pass_kinds(nullptr, &size, nullptr), DERMIS_ERROR_ARGUMENT);
 }
 
+TEST_F(HostKinds, MayWriteWhatTheyReadOnlyWithOwnTexels) {
+  std::vector<dermis_port> ports = {port("light", DERMIS_PORT_SAMPLED_IMAGE),
+                                    port("result", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
+  const dermis_pass_kind blur = kind("studio.blur", ports);
+  ASSERT_EQ(dermis_register_pass_kind(context, &blur), DERMIS_OK) << dermis_last_error();
+  ports[0].own_texels = 1;
+  const dermis_pass_kind fade = kind("studio.fade", ports);
+  ASSERT_EQ(dermis_register_pass_kind(context, &fade), DERMIS_OK) << dermis_last_error();
+  const auto options_of = [](const std::string& name) {
+    GraphOptions options;
+    options.unbound = {};
+    options.formats = {};
+    options.text = R"({ "dermis": 1, "name": "g",
+      "imports": { "lighting": { "format": "rgba16f", "size": "view" } }, "passes": [
+        { "pass": "change", "kind": ")" +
+                   name + R"(", "read": { "light": "lighting" }, "write": { "result": "lighting" } } ],
+      "exports": ["lighting"] })";
+    return options;
+  };
+  dermis_graph refused = nullptr;
+  EXPECT_NE(create_graph(options_of("studio.blur"), &refused), DERMIS_OK);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("D0232"));
+  EXPECT_NE(make_graph(options_of("studio.fade")), nullptr);
+  size_t size = 0;
+  ASSERT_EQ(dermis_export_pass_kinds(context, &size, nullptr), DERMIS_OK);
+  std::string text(size, '?');
+  ASSERT_EQ(dermis_export_pass_kinds(context, &size, text.data()), DERMIS_OK);
+  EXPECT_THAT(text, HasSubstr("\"own_texels\": true"));
+}
+
 } // namespace
 } // namespace dermis::abi_test

@@ -72,7 +72,8 @@ std::string kinds_page(const KindRegistry& kinds) {
   std::string out =
       "# Pass kinds\n\nMade by `dermis docs` from the signatures in `passes/`. `read` and `write` name the "
       "side of a pass on which a port stands; what it does with the\nresource decides stages, accesses and "
-      "layouts. How large the resource has to be at least stands behind it (D0229). "
+      "layouts. How large the resource has to be at least stands behind it (D0229). Each invocation reads "
+      "of *own texels* only what it writes itself: the pass may write the same resource. "
       "A setting that is marked \"per frame\" may differ between the views of a graph. "
       "[techniques.md](techniques.md) tells what the kinds are for.\n";
   for (uint32_t k = 0; k < kinds.size(); ++k) {
@@ -87,10 +88,10 @@ std::string kinds_page(const KindRegistry& kinds) {
       std::string formats;
       for (const Format format : port.formats)
         formats += fmt::format("{}{}", formats.empty() ? "; " : ", ", format_info(format).name);
-      out +=
-          fmt::format("| `{}` | {}{} | {}{}{} | {} |\n", port.name,
-                      side_of(port) == PortSide::read ? "read" : "write", port.optional ? ", optional" : "",
-                      usage_info(port.usage).name, formats, need_text(kind, port), cell(port.doc));
+      out += fmt::format("| `{}` | {}{}{} | {}{}{} | {} |\n", port.name,
+                         side_of(port) == PortSide::read ? "read" : "write",
+                         port.optional ? ", optional" : "", port.own_texels ? ", own texels" : "",
+                         usage_info(port.usage).name, formats, need_text(kind, port), cell(port.doc));
     }
     if (kind.settings.empty()) continue;
     out += "\n| setting | default | | |\n|---|---|---|---|\n";

@@ -1,0 +1,15 @@
+#include "framegraph/model/in_place.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis {
+
+std::string text_of(const InPlaceRace& race) {
+  const std::string stands =
+      race.stand_in.empty() ? "" : fmt::format(", for which '{}' stands,", race.stand_in);
+  return fmt::format("pass '{}' reads '{}'{} through its port '{}' and writes '{}' through '{}': an "
+                     "invocation may read what another one has written already",
+                     race.pass, race.read, stands, race.reading_port, race.written, race.writing_port);
+}
+
+} // namespace dermis

@@ -1,0 +1,188 @@
+// What passes may read once `when` and `otherwise` have decided, whatever the settings are: never what the
+// pass writes itself, unless the port declares `own_texels`; and only what the port can work with.
+
+#include "framegraph/model/in_place.hpp"
+#include "framegraph/model/expression.hpp"
+#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/read/graph_reader.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace dermis {
+
+namespace {
+
+struct Write {
+  PassId pass;
+  ImagePart part;
+  ResourceId instead; // valid: what readers get when the pass is off
+  SourceLocation where;
+};
+
+class Reads {
+public:
+  explicit Reads(GraphReader& reader) : reader_(reader), writes_(reader.graph.resources.size()) {
+    for (uint32_t p = 0; p < graph().passes.size(); ++p)
+      for (const PortBinding& binding : graph().writes(graph().passes[p])) {
+        Write write{{p}, binding.part, {}, {}};
+        for (const PassThrough& through : graph().passes[p].otherwise)
+          if (through.output == binding.resource) {
+            write.instead = through.instead;
+            write.where = through.where;
+          }
+        writes_[binding.resource.value].push_back(write);
+      }
+  }
+
+  void check(PassId id) {
+    const PassDeclaration& pass = graph().passes[id.value];
+    if (!pass.kind.valid() || !condition_known(id)) return;
+    for (const PortBinding& binding : graph().reads(pass)) {
+      if (binding.port == unknown_port || binding.frames_back > 0) continue;
+      pass_ = id;
+      read_ = &binding;
+      port_ = &reader_.kinds[pass.kind].ports[binding.port];
+      follow();
+    }
+  }
+
+private:
+  const Graph& graph() const { return reader_.graph; }
+
+  // Whether the pass has no `when`, or one that could be read.
+  bool condition_known(PassId id) const {
+    return graph().passes[id.value].when.valid() ||
+           !reader_.document.find(reader_.pass_nodes[id.value], "when").valid();
+  }
+
+  // From the pass backwards: the last write before it is what it reads, or that pass is off.
+  void follow() {
+    conditions_.assign(1, {graph().passes[pass_.value].when, true});
+    steps_.clear();
+    seen_ = read_->part;
+    ResourceId resource = read_->resource;
+    uint32_t before = pass_.value; // passes that count
+    for (size_t later = 0; later <= writes_.size();) {
+      const std::vector<Write>& writes = writes_[resource.value];
+      const auto end = std::partition_point(writes.begin(), writes.end(),
+                                            [&](const Write& write) { return write.pass.value < before; });
+      const Write* replaced = nullptr;
+      for (auto at = end; at != writes.begin() && !replaced;) {
+        --at;
+        if (!meet(at->part, seen_)) continue;
+        if (!condition_known(at->pass)) return;
+        if (done(resource, &*at) || !turn_off(at->pass)) return;
+        if (at->instead.valid()) replaced = &*at;
+      }
+      if (!replaced) {
+        if (graph().resources[resource.value].origin == Origin::imported) {
+          done(resource, nullptr);
+          return;
+        }
+        // Nothing writes it before: then its only producer counts, or where all are off the first that
+        // names a replacement.
+        for (auto at = end; at != writes.end(); ++at) {
+          if (!condition_known(at->pass) || !turn_off(at->pass)) return;
+          if (!replaced && at->instead.valid()) replaced = &*at;
+        }
+        if (!replaced) return;
+        ++later;
+      }
+      steps_.push_back({resource, replaced});
+      resource = replaced->instead;
+      before = replaced->pass.value;
+      seen_ = {};
+    }
+  }
+
+  // False: the pass is always on.
+  bool turn_off(PassId pass) {
+    const ExpressionId when = graph().passes[pass.value].when;
+    if (when.valid()) conditions_.push_back({when, false});
+    return when.valid();
+  }
+
+  // What is read is what `write` left, or the host's. True: reported.
+  bool done(ResourceId resource, const Write* write) {
+    const PortBinding* written = port_->own_texels ? nullptr : written_too(resource);
+    const ResourceDeclaration& declared = graph().resources[resource.value];
+    const bool misfit = !steps_.empty() && declared.type == ResourceType::image &&
+                        !reader_.broken_resources[resource.value] && !formats_fit(*port_, declared);
+    if (!written && !misfit) return false;
+    conditions_.push_back({write ? graph().passes[write->pass.value].when : ExpressionId(), true});
+    const bool possible = can_hold(graph(), conditions_);
+    conditions_.pop_back();
+    if (!possible) return false;
+    if (written) report_race(*written);
+    if (misfit) report_misfit(resource);
+    return true;
+  }
+
+  const PortBinding* written_too(ResourceId resource) const {
+    for (const PortBinding& binding : graph().writes(graph().passes[pass_.value]))
+      if (binding.resource == resource && binding.port != unknown_port && meet(binding.part, seen_))
+        return &binding;
+    return nullptr;
+  }
+
+  std::string name_of(const PortBinding& binding) const {
+    return graph().resources[binding.resource.value].name + part_text(binding.part);
+  }
+
+  void report_race(const PortBinding& written) {
+    const PassDeclaration& pass = graph().passes[pass_.value];
+    InPlaceRace race;
+    race.pass = pass.name;
+    race.reading_port = port_->name;
+    race.writing_port = reader_.kinds[pass.kind].ports[written.port].name;
+    race.read = name_of(*read_);
+    race.written = name_of(written);
+    if (!steps_.empty()) race.stand_in = graph().resources[written.resource.value].name;
+    Diagnostic& diagnostic =
+        reader_.error(DiagnosticId::in_place_race, graph().place_of(*read_), text_of(race));
+    diagnostic.related.emplace_back(graph().place_of(written),
+                                    fmt::format("'{}' is written here", name_of(written)));
+    relate_steps(diagnostic);
+  }
+
+  void report_misfit(ResourceId resource) {
+    report_formats(reader_, resource, graph().place_of(*read_),
+                   fmt::format("port '{}' of pass '{}', for which it stands for '{}', works with {}",
+                               port_->name, graph().passes[pass_.value].name, name_of(*read_),
+                               formats_taken(*port_)));
+  }
+
+  void relate_steps(Diagnostic& diagnostic) const {
+    for (const Step& step : steps_)
+      diagnostic.related.emplace_back(step.replaced->where,
+                                      fmt::format("'{}' stands for '{}' where '{}' is off",
+                                                  graph().resources[step.replaced->instead.value].name,
+                                                  graph().resources[step.of.value].name,
+                                                  graph().passes[step.replaced->pass.value].name));
+  }
+
+  struct Step {
+    ResourceId of;
+    const Write* replaced = nullptr;
+  };
+
+  GraphReader& reader_;
+  std::vector<std::vector<Write>> writes_; // by resource, in the order of the file
+  PassId pass_;
+  const PortBinding* read_ = nullptr;
+  const Port* port_ = nullptr;
+  ImagePart seen_;
+  std::vector<Condition> conditions_; // under which it comes to this
+  std::vector<Step> steps_;           // what stands for what
+};
+
+} // namespace
+
+void check_reads(GraphReader& reader) {
+  Reads reads(reader);
+  for (uint32_t i = 0; i < reader.graph.passes.size(); ++i)
+    reads.check({i});
+}
+
+} // namespace dermis

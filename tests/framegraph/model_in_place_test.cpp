@@ -1,0 +1,222 @@
+// What passes may read of what they write, in every state of the settings.
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/model/read_graph.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "tests/framegraph/text_support.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fmt/format.h>
+
+namespace dermis::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr Port blur_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
+                               {"own", Usage::sampled_image, true, "texture2D", "", {}, true},
+                               {"o", Usage::storage_image_write, false, "image2D", ""}};
+constexpr Port update_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
+                                 {"o", Usage::storage_image_update, false, "image2D", ""}};
+constexpr Port list_ports[] = {{"in", Usage::storage_buffer_read, true, "uint", ""},
+                               {"own", Usage::storage_buffer_read, true, "uint", "", {}, true},
+                               {"out", Usage::storage_buffer_write, false, "uint", ""}};
+constexpr Port ids_ports[] = {{"ids", Usage::sampled_image, false, "utexture2D", ""},
+                              {"o", Usage::storage_image_write, false, "image2D", ""}};
+constexpr Port clear_ports[] = {{"target", Usage::clear, false, "", ""}};
+
+const KindRegistry& pass_kinds() {
+  static const KindRegistry registry = [] {
+    KindRegistry out;
+    out.add({"t.blur", "", "", blur_ports, {}});
+    out.add({"t.update", "", "", update_ports, {}});
+    out.add({"t.list", "", "", list_ports, {}});
+    out.add({"t.ids", "", "", ids_ports, {}});
+    out.add({"t.clear", "", "", clear_ports, {}});
+    return out;
+  }();
+  return registry;
+}
+
+struct Case {
+  const char* name;
+  const char* passes;
+  DiagnosticId id = DiagnosticId::in_place_race;
+  std::vector<std::string> words = {}; // of the message; none: the graph is accepted
+};
+
+struct Outcome {
+  Diagnostics diagnostics;
+  std::optional<Graph> graph;
+};
+
+Outcome read_passes(const char* passes) {
+  Outcome out;
+  const std::string text = fmt::format(R"({{ "dermis": 1, "name": "g",
+  "settings": {{ "sharp": {{ "bool": true }}, "soft": {{ "bool": false }},
+    "mode": {{ "enum": ["off", "low", "high"], "default": "high" }},
+    "n": {{ "int": 16, "min": 0, "max": 64 }}, "r": {{ "real": 1.5, "min": 0, "max": 8 }} }},
+  "imports": {{ "light": {{ "format": "rgba16f", "size": "view" }},
+    "ids": {{ "format": "r8_uint", "size": "view" }}, "mask": {{ "format": "r8_unorm", "size": "view" }} }},
+  "resources": {{ "x": {{ "format": "rgba16f", "size": "view" }}, "y": {{ "format": "rgba16f", "size": "view" }},
+    "id": {{ "format": "r8_uint", "size": "view" }},
+    "h": {{ "format": "rgba16f", "size": "view", "history": {{ "frames": 1 }} }},
+    "m": {{ "format": "rgba16f", "size": "view", "mips": 3, "layers": 2 }},
+    "list": {{ "buffer": {{ "stride": 4, "count": "view/8" }} }},
+    "out": {{ "format": "rgba16f", "size": "view" }} }},
+  "passes": [ {} ],
+  "exports": ["light", "out"] }})",
+                                       passes);
+  const auto document = parse_document("graph.json", text, out.diagnostics);
+  if (document) out.graph = read_graph(*document, pass_kinds(), out.diagnostics);
+  return out;
+}
+
+// The last pass: only the export needs it.
+#define SHOW(resource)                                                                                       \
+  R"({ "pass": "show", "kind": "t.blur", "read": { "a": ")" resource R"(" }, "write": { "o": "out" } })"
+#define X_FROM_LIGHT(when)                                                                                   \
+  R"({ "pass": "make", "kind": "t.blur", "when": ")" when                                                    \
+  R"(", "read": { "a": "light" }, "write": { "o": "x" }, "otherwise": { "x": "light" } }, )"
+#define BLUR_X(rest)                                                                                         \
+  R"({ "pass": "blur", "kind": "t.blur", "read": { "a": "x" }, "write": { "o": "light" })" rest R"( }, )"
+
+const Case refused[] = {
+    {"Directly",
+     R"({ "pass": "blur", "kind": "t.blur", "read": { "a": "light" }, "write": { "o": "light" } }, )" SHOW(
+         "light"),
+     DiagnosticId::in_place_race,
+     {"pass 'blur' reads 'light' through its port 'a'", "writes 'light' through 'o'"}},
+    {"ThroughAnUpdate",
+     R"({ "pass": "add", "kind": "t.update", "read": { "a": "light" }, "write": { "o": "light" } }, )" SHOW(
+         "light"),
+     DiagnosticId::in_place_race,
+     {"pass 'add'"}},
+    {"OfABuffer",
+     R"({ "pass": "fill", "kind": "t.list", "write": { "out": "list" } },
+        { "pass": "sort", "kind": "t.list", "read": { "in": "list" }, "write": { "out": "list" } }, )" SHOW(
+         "light"),
+     DiagnosticId::in_place_race,
+     {"pass 'sort' reads 'list' through its port 'in'"}},
+    {"OfAMip",
+     R"({ "pass": "clear", "kind": "t.clear", "write": { "target": "m" } },
+        { "pass": "down", "kind": "t.blur", "read": { "a": "m#0..1" }, "write": { "o": "m#1" } }, )" SHOW(
+         "m#1[0]"),
+     DiagnosticId::in_place_race,
+     {"reads 'm#0..1' through its port 'a' and writes 'm#1'"}},
+    {"OfALayer",
+     R"({ "pass": "clear", "kind": "t.clear", "write": { "target": "m" } },
+        { "pass": "down", "kind": "t.blur", "read": { "a": "m[1]" }, "write": { "o": "m#2[0..1]" } }, )" SHOW(
+         "m#1[0]"),
+     DiagnosticId::in_place_race,
+     {"'m[1]'"}},
+    {"WhereAPassIsOff",
+     X_FROM_LIGHT("sharp") BLUR_X("") SHOW("light"),
+     DiagnosticId::in_place_race,
+     {"pass 'blur' reads 'x', for which 'light' stands, through its port 'a' and writes 'light'"}},
+    {"WhereTwoPassesAreOff",
+     X_FROM_LIGHT("sharp") R"({ "pass": "more", "kind": "t.blur", "when": "soft", "read": { "a": "x" },
+        "write": { "o": "y" }, "otherwise": { "y": "x" } },
+        { "pass": "blur", "kind": "t.blur", "read": { "a": "y" }, "write": { "o": "light" } }, )" SHOW(
+         "light"),
+     DiagnosticId::in_place_race,
+     {"reads 'y', for which 'light' stands,"}},
+    {"WhereALaterPassIsOff",
+     BLUR_X("") X_FROM_LIGHT("sharp") SHOW("light"),
+     DiagnosticId::in_place_race,
+     {"reads 'x', for which 'light' stands,"}},
+    {"WhereAHistoryIsNotValid",
+     R"({ "pass": "keep", "kind": "t.blur", "read": { "a": { "from": "h@-1", "requires": "valid", "otherwise": "light" } },
+          "write": { "o": "light" } },
+        { "pass": "more", "kind": "t.blur", "read": { "a": "light" }, "write": { "o": "h" } }, )" SHOW(
+         "light"),
+     DiagnosticId::in_place_race,
+     {"reads 'light' through its port 'a'"}},
+    {"UnderConditionsThatMeet",
+     X_FROM_LIGHT("n > 8 or r < 2") BLUR_X(R"(, "when": "n <= 8 and r > 1.9")") SHOW("light"),
+     DiagnosticId::in_place_race,
+     {"pass 'blur'"}},
+    {"UnderOptionsThatMeet",
+     X_FROM_LIGHT("mode in ['low']") BLUR_X(R"(, "when": "mode != 'low' and mode != 'off'")") SHOW("light"),
+     DiagnosticId::in_place_race,
+     {"pass 'blur'"}},
+    {"AStandInOfAnotherComponentType",
+     R"({ "pass": "clear", "kind": "t.clear", "when": "sharp", "write": { "target": "id" }, "otherwise": { "id": "mask" } },
+        { "pass": "use", "kind": "t.ids", "read": { "ids": "id" }, "write": { "o": "out" } })",
+     DiagnosticId::format_mismatch,
+     {"port 'ids' of pass 'use', for which it stands for 'id', works with 'r8_uint'",
+      "'mask' declares 'r8_unorm'"}},
+};
+
+const Case accepted[] = {
+    {"ItsOwnTexels",
+     R"({ "pass": "blur", "kind": "t.blur", "read": { "own": "light" }, "write": { "o": "light" } }, )" SHOW(
+         "light")},
+    {"ItsOwnElements",
+     R"({ "pass": "fill", "kind": "t.list", "write": { "out": "list" } },
+        { "pass": "sort", "kind": "t.list", "read": { "own": "list" }, "write": { "out": "list" } }, )" SHOW(
+         "light")},
+    {"ItsOwnTexelsWhereAPassIsOff",
+     X_FROM_LIGHT("sharp") R"({ "pass": "blur", "kind": "t.blur", "read": { "own": "x" }, "write": { "o": "light" } }, )" SHOW(
+         "light")},
+    {"AnUpdateOfItsOwn",
+     R"({ "pass": "add", "kind": "t.update", "read": { "a": "mask" }, "write": { "o": "light" } }, )" SHOW(
+         "light")},
+    {"AnotherMip",
+     R"({ "pass": "base", "kind": "t.blur", "read": { "a": "light" }, "write": { "o": "m#0" } },
+        { "pass": "down", "kind": "t.blur", "read": { "a": "m#0" }, "write": { "o": "m#1" } }, )" SHOW(
+         "m#1[0]")},
+    {"AnotherLayer",
+     R"({ "pass": "base", "kind": "t.blur", "read": { "a": "light" }, "write": { "o": "m#0[0]" } },
+        { "pass": "copy", "kind": "t.blur", "read": { "a": "m#0[0]" }, "write": { "o": "m#0[1]" } }, )" SHOW(
+         "m#0[1]")},
+    {"AnotherFrame",
+     R"({ "pass": "keep", "kind": "t.blur", "read": { "a": "h@-1" }, "write": { "o": "h" } }, )" SHOW("h")},
+    {"UnderEqualConditions", X_FROM_LIGHT("sharp") BLUR_X(R"(, "when": "sharp")") SHOW("light")},
+    {"UnderNumbersThatExcludeEachOther",
+     X_FROM_LIGHT("n > 4 or r <= 2.5") BLUR_X(R"(, "when": "n >= 5 and r > 2.5 or n == 5")") SHOW("light")},
+    {"UnderOptionsThatExcludeEachOther",
+     X_FROM_LIGHT("mode != 'off'") BLUR_X(R"(, "when": "mode in ['low', 'high'] and not sharp")")
+         SHOW("light")},
+    {"WhereAnotherPassWritesIt",
+     X_FROM_LIGHT(
+         "sharp") R"({ "pass": "plain", "kind": "t.blur", "when": "not sharp", "read": { "a": "light" },
+        "write": { "o": "x" } }, )" BLUR_X("") SHOW("light")},
+};
+
+struct InPlace : ::testing::TestWithParam<Case> {};
+
+TEST_P(InPlace, IsJudgedInEveryStateOfTheSettings) {
+  const Case& one = GetParam();
+  const Outcome result = read_passes(one.passes);
+  if (one.words.empty()) {
+    ASSERT_TRUE(result.graph) << all_messages(result.diagnostics);
+    const DeviceProfile device = generic_profile();
+    CompileInput input;
+    input.graph = &*result.graph;
+    input.kinds = &pass_kinds();
+    input.device = &device;
+    input.view_width = input.view_height = 64;
+    Diagnostics diagnostics;
+    const auto plan = compile(input, diagnostics);
+    ASSERT_TRUE(plan) << all_messages(diagnostics);
+    EXPECT_TRUE(verify(plan->plan).proven());
+    return;
+  }
+  EXPECT_FALSE(result.graph);
+  ASSERT_EQ(result.diagnostics.list.size(), 1u) << all_messages(result.diagnostics);
+  EXPECT_EQ(result.diagnostics.list[0].id, one.id);
+  for (const std::string& word : one.words)
+    EXPECT_THAT(result.diagnostics.list[0].text, HasSubstr(word));
+}
+
+std::string name_of(const ::testing::TestParamInfo<Case>& one) {
+  return one.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Refused, InPlace, ::testing::ValuesIn(refused), name_of);
+INSTANTIATE_TEST_SUITE_P(Accepted, InPlace, ::testing::ValuesIn(accepted), name_of);
+
+} // namespace
+} // namespace dermis::testing
