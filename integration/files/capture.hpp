@@ -28,10 +28,15 @@ struct CaptureProfile {
   subsurface::Profile profile;
 };
 
+// The largest half float: graphs take brighter light for this much.
+inline constexpr float most_light = 65504;
+
 // What was mended while reading, in pixels with a profile (others do not matter).
 struct SanitisedCounts {
   uint64_t not_finite = 0; // NaN or infinite, now 0
   uint64_t negative = 0;   // negative light, depth, albedo or scatter_scale, now 0
+  uint64_t too_bright = 0; // pixels with light above most_light, which is kept; graphs clamp it
+  float brightest = 0;     // the largest such value
 };
 
 // frame.json.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace dermis::tools {
@@ -84,6 +85,18 @@ void mend(Image& image, bool signed_values, const std::vector<uint8_t>& profile,
   }
 }
 
+// Counts pixels with a profile whose light graphs cannot hold.
+void count_too_bright(const CapturedFrame& frame, SanitisedCounts& counts) {
+  for (size_t i = 0; i < frame.profile.size(); ++i) {
+    float brightest = 0;
+    for (const Image* light : {&frame.lighting, &frame.back_lighting})
+      for (size_t c = 0; c < 3 && frame.profile[i] != 0 && !light->values.empty(); ++c)
+        brightest = std::max(brightest, light->values[3 * i + c]);
+    if (brightest > most_light) ++counts.too_bright;
+    counts.brightest = std::max(counts.brightest, brightest > most_light ? brightest : 0);
+  }
+}
+
 } // namespace
 
 const std::vector<PictureKind>& picture_kinds() {
@@ -135,12 +148,19 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
         fmt::format("'thickness.exr' and 'back_lighting.exr' describe one light and come together; "
                     "'{}' is missing",
                     (folder / (thickness ? "back_lighting.exr" : "thickness.exr")).string()));
+  count_too_bright(frame, frame.sanitised);
   const SanitisedCounts& counts = frame.sanitised;
   if (counts.not_finite + counts.negative > 0)
     diagnostics.add(
         DiagnosticId::capture_sanitised, document.where(document.root()),
         fmt::format("{} values of subsurface pixels were not finite and {} negative; they count as 0",
                     counts.not_finite, counts.negative));
+  if (counts.too_bright > 0)
+    diagnostics.add(
+        DiagnosticId::capture_sanitised, document.where(document.root()),
+        fmt::format("light of {} subsurface pixels is above {}, at most {}; graphs clamp it to {}: scale the "
+                    "light down before it is captured (pre-exposure)",
+                    counts.too_bright, most_light, counts.brightest, most_light));
 }
 
 } // namespace dermis::tools

@@ -34,7 +34,7 @@ double ExposureMeter::result() const {
   if (luminance.empty()) return 1;
   std::vector<float> values = luminance;
   const double bright = percentile(values, 0.999);
-  return bright > 0 ? 1 / bright : 1;
+  return bright >= least_light ? 1 / bright : 1;
 }
 
 double psnr_from_mse(double mse) {

@@ -19,6 +19,9 @@ template <class Value> double luminance_of(const Value* rgb) {
 // PSNR is capped here: beyond, the figures are those of rounding.
 inline constexpr double max_psnr_db = 100;
 
+// Light below the smallest half float is black: graphs cannot hold it, and rounding leaves as much of nothing.
+inline constexpr double least_light = 1.0 / (1 << 24);
+
 struct ErrorFigures {
   double rmse = 0, psnr_db = max_psnr_db;
   double max_error = 0, p99_error = 0; // of absolute errors; p99 by nearest rank
@@ -28,7 +31,7 @@ struct ErrorFigures {
 };
 
 // The factor that puts the 99.9th percentile (nearest rank) of B's luminance over pixels with profile != 0
-// at 1. Several frames: call add for each, then result. 1 if there is no light.
+// at 1. Several frames: call add for each, then result. 1 if that luminance is below least_light.
 struct ExposureMeter {
   std::vector<float> luminance;
 

@@ -70,15 +70,22 @@ std::optional<Image> read_png(const std::filesystem::path& path, std::string& er
                         max_image_side);
     return std::nullopt;
   }
-  uint8_t* pixels = stbi_load_from_memory(bytes->data(), size, &width, &height, &channels, 3);
-  if (!pixels) {
+  Image image = Image::sized(static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3);
+  const auto take = [&](auto* pixels, float white) {
+    if (pixels != nullptr)
+      std::transform(pixels, pixels + image.values.size(), image.values.begin(),
+                     [white](auto x) { return srgb_decode(static_cast<float>(x) / white); });
+    stbi_image_free(pixels);
+    return pixels != nullptr;
+  };
+  const bool read =
+      stbi_is_16_bit_from_memory(bytes->data(), size)
+          ? take(stbi_load_16_from_memory(bytes->data(), size, &width, &height, &channels, 3), 65535)
+          : take(stbi_load_from_memory(bytes->data(), size, &width, &height, &channels, 3), 255);
+  if (!read) {
     error = fmt::format("'{}' is damaged: {}", path.string(), stbi_failure_reason());
     return std::nullopt;
   }
-  Image image = Image::sized(static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3);
-  std::transform(pixels, pixels + image.values.size(), image.values.begin(),
-                 [](uint8_t x) { return srgb_decode(static_cast<float>(x) / 255); });
-  stbi_image_free(pixels);
   return image;
 }
 

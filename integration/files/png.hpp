@@ -1,5 +1,5 @@
 #pragma once
-// PNG pictures of 8 bits a channel in sRGB, and the curve between them and linear light.
+// PNG pictures in sRGB, and the curve between them and linear light. Read: 8 or 16 bits a channel; written: 8.
 
 #include "integration/files/image.hpp"
 
@@ -26,7 +26,7 @@ std::vector<uint8_t> encode_png(uint32_t width, uint32_t height, std::span<const
 bool write_png(const std::filesystem::path& path, uint32_t width, uint32_t height,
                std::span<const uint8_t> rgb, std::string& error);
 
-// Reads a PNG as 3 linear channels (sRGB decoded, transparency dropped). Empty on failure, with the reason.
+// Reads a PNG with all its bits as 3 linear channels (sRGB decoded, transparency dropped). Empty on failure, with the reason.
 std::optional<Image> read_png(const std::filesystem::path& path, std::string& error);
 
 } // namespace dermis::tools

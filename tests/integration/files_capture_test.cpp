@@ -276,6 +276,24 @@ TEST_F(Captures, DamagedValuesAreMendedCountedAndReported) {
   EXPECT_FALSE(diagnostics.has_errors());
 }
 
+TEST_F(Captures, LightThatGraphsClampIsReported) {
+  CapturedFrame frame = sample();
+  frame.lighting.values[0] = 70000;
+  frame.lighting.values[1] = 2e5f;          // the same pixel
+  frame.back_lighting.values[3 * 2] = 1e5f; // another one
+  frame.lighting.values[3 * 1] = 65504;     // fits
+  frame.lighting.values[3 * 4] = 1e6f;      // no profile there
+  const auto back = read_frame(write(frame), shipped, diagnostics);
+  ASSERT_TRUE(back) << messages();
+  EXPECT_EQ(back->lighting.values, frame.lighting.values);
+  EXPECT_EQ(back->sanitised.too_bright, 2u);
+  EXPECT_EQ(back->sanitised.brightest, 2e5f);
+  ASSERT_EQ(diagnostics.list.size(), 1u);
+  EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::capture_sanitised);
+  EXPECT_FALSE(diagnostics.has_errors());
+  EXPECT_THAT(messages(), HasSubstr("light of 2 subsurface pixels is above 65504, at most 200000"));
+}
+
 TEST_F(Captures, PicturesOfAnotherSizeAreRefused) {
   const fs::path folder = write(sample());
   ASSERT_TRUE(write_exr(folder / "albedo.exr", Image::sized(5, 4, 3), {"R", "G", "B"}, error));

@@ -97,6 +97,14 @@ TEST(Metrics, ExposurePutsTheBrightEndAtOne) {
   EXPECT_EQ(ExposureMeter{}.result(), 1);
 }
 
+TEST(Metrics, RoundingOfBlackIsNotExposed) {
+  ExposureMeter black, faint;
+  black.luminance = {5e-16f, -5e-16f, 1e-9f};
+  EXPECT_EQ(black.result(), 1);
+  faint.luminance = {1e-6f};
+  EXPECT_NEAR(faint.result(), 1e6, 1);
+}
+
 TEST(Metrics, ASequenceAveragesSquaresNotDecibels) {
   std::vector<ErrorFigures> frames(2);
   frames[0].rmse = 0.1;

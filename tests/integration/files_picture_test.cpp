@@ -207,6 +207,46 @@ TEST_F(Pictures, PngReturnsItsBytes) {
   EXPECT_EQ(encode_srgb8(*back), pixels);
 }
 
+// A PNG of one row and 16 bits a channel, with stored blocks.
+std::vector<uint8_t> png_of_16_bits(const std::vector<uint16_t>& pixels) {
+  std::vector<uint8_t> file = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  const auto word = [](std::vector<uint8_t>& out, size_t value) {
+    for (int shift = 24; shift >= 0; shift -= 8)
+      out.push_back(static_cast<uint8_t>(value >> shift));
+  };
+  const auto chunk = [&](const std::string& name, const std::vector<uint8_t>& data) {
+    word(file, data.size());
+    file.insert(file.end(), name.begin(), name.end());
+    file.insert(file.end(), data.begin(), data.end());
+    word(file, 0); // no checksum: the reader does not look at it
+  };
+  std::vector<uint8_t> header;
+  word(header, pixels.size() / 3);
+  word(header, 1);
+  header.insert(header.end(), {16, 2, 0, 0, 0});
+  chunk("IHDR", header);
+  const size_t size = 1 + 2 * pixels.size();
+  std::vector<uint8_t> packed = {0x78, 0x01, 1}; // zlib, one last block, stored
+  for (const size_t length : {size, ~size})
+    packed.insert(packed.end(), {static_cast<uint8_t>(length), static_cast<uint8_t>(length >> 8)});
+  packed.push_back(0); // no filter
+  for (const uint16_t value : pixels)
+    packed.insert(packed.end(), {static_cast<uint8_t>(value >> 8), static_cast<uint8_t>(value)});
+  word(packed, 0);
+  chunk("IDAT", packed);
+  chunk("IEND", {});
+  return file;
+}
+
+TEST_F(Pictures, PngsOf16BitsKeepThem) {
+  const std::vector<uint16_t> values = {0, 1, 100, 255, 257, 65535};
+  ASSERT_TRUE(write_bytes(folder / "a.png", png_of_16_bits(values), error));
+  const auto image = read_png(folder / "a.png", error);
+  ASSERT_TRUE(image) << error;
+  for (size_t i = 0; i < values.size(); ++i) // half a step of 16 bits
+    EXPECT_NEAR(srgb_encode(image->values[i]), float(values[i]) / 65535.0f, 0.5f / 65535) << i;
+}
+
 TEST_F(Pictures, BadPngsAreRefused) {
   ASSERT_TRUE(write_text(folder / "a.png", "not a picture", error));
   EXPECT_FALSE(read_png(folder / "a.png", error));

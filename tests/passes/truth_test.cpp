@@ -50,6 +50,18 @@ TEST(Truth, ConstantLightStaysConstant) {
       EXPECT_NEAR(value, 1, 1e-12);
 }
 
+TEST(Truth, BlackStaysBlackAndNothingIsNegative) {
+  Seen view(48, 40, {2e-3, 1e-3, 0.2e-3});
+  for (const bool planar : {true, false}) {
+    view.paint([](uint32_t, uint32_t) { return 0.0f; });
+    for (const double value : truth_everywhere(view.input(), {.planar_shortcut = planar}))
+      EXPECT_EQ(value, 0);
+    view.paint([](uint32_t x, uint32_t) { return x < 2 ? 1e5f : 0.0f; });
+    for (const double value : truth_everywhere(view.input(), {.planar_shortcut = planar}))
+      EXPECT_GE(value, 0);
+  }
+}
+
 TEST(Truth, ZeroDistanceReturnsTheLightBitForBit) {
   Seen view(16, 16, {0, 1e-3, 0});
   view.paint(noise);

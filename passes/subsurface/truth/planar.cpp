@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace dermis::subsurface {
 
@@ -51,7 +52,12 @@ void convolve_channel(const TruthInput& input, const Region& region, uint8_t id,
         if (is_surface(input, i) && input.profile[i] == id) act(i, image.values[y * image.width + x]);
       }
   };
-  each_pixel([&](size_t i, std::complex<double>& value) { value = {input.light[3 * i + channel], 1.0}; });
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  each_pixel([&](size_t i, std::complex<double>& value) {
+    value = {input.light[3 * i + channel], 1.0};
+    least = std::min(least, value.real());
+    most = std::max(most, value.real());
+  });
   for (size_t y = 0; y <= reach_y; ++y)
     for (size_t x = 0; x <= reach_x; ++x) {
       const double weight = quadrant[y * (reach_x + 1) + x][channel];
@@ -66,7 +72,8 @@ void convolve_channel(const TruthInput& input, const Region& region, uint8_t id,
   fft_inverse(image, threads);
   each_pixel([&](size_t i, const std::complex<double>& value) {
     double& light = result[3 * i + channel]; // the pixel itself counts: the mask's share is positive
-    light += (1 - direct) * (value.real() / value.imag() - light);
+    // A weighted mean of light is no brighter and no darker than all of it; the FFT's rounding is.
+    light += (1 - direct) * (std::clamp(value.real() / value.imag(), least, most) - light);
   });
 }
 
