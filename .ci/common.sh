@@ -4,7 +4,7 @@
 packages=(
   cmake ninja-build g++ ccache glslang-tools
   libvulkan-dev libvulkan-volk-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev
-  libtinygltf-dev libstb-dev libglm-dev libgtest-dev libgmock-dev libvalijson-dev
+  libtinygltf-dev libstb-dev libopenexr-dev libglm-dev libgtest-dev libgmock-dev libvalijson-dev
   mesa-vulkan-drivers vulkan-validationlayers libxml2-utils
 )
 

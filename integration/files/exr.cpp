@@ -1,25 +1,80 @@
 #include "integration/files/exr.hpp"
 
 #include "integration/files/bytes.hpp"
-#include "integration/files/exr_layout.hpp"
-#include "integration/files/zlib.hpp"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfTestFile.h>
+#include <OpenEXR/ImfTileDescription.h>
+#include <OpenEXR/ImfTiledInputFile.h>
+#include <OpenEXR/ImfVersion.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
+#include <array>
+#include <cstring>
+#include <functional>
 #include <new>
+#include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace dermis::tools {
 
 namespace {
 
-using namespace exr_layout;
+// A picture of at most `always_read` decoded bytes is read whatever its file measures. A larger one must have
+// a file of at least 1/1032 of that size: deflate packs at most 258 bytes into 2 bits.
+constexpr uint64_t always_read = uint64_t{1} << 30;
+constexpr uint64_t max_packing = 258 * 8 / 2;
+constexpr uint64_t max_chunk_bytes = uint64_t{512} << 20; // decoded; OpenEXR allocates a few of them
 
-// Reads on until the first step beyond the end; from then on everything is 0 and `good` is false.
+struct Method {
+  const char* name;
+  uint32_t lines; // scanlines in one chunk
+};
+// In the order of Imf::Compression; the last two exist since OpenEXR 3.4.
+constexpr std::array<Method, 12> methods = {{{"none", 1},
+                                             {"RLE", 1},
+                                             {"ZIPS", 1},
+                                             {"ZIP", 16},
+                                             {"PIZ", 32},
+                                             {"PXR24", 16},
+                                             {"B44", 32},
+                                             {"B44A", 32},
+                                             {"DWAA", 32},
+                                             {"DWAB", 256},
+                                             {"HTJ2K256", 256},
+                                             {"HTJ2K32", 32}}};
+
+class MemoryInput : public Imf::IStream {
+public:
+  MemoryInput(const std::string& name, std::span<const uint8_t> bytes)
+      : Imf::IStream(name.c_str()), bytes_(bytes) {}
+  bool read(char out[], int count) override {
+    if (count < 0 || static_cast<uint64_t>(count) > bytes_.size() - at_)
+      throw std::runtime_error("the file ends early");
+    std::memcpy(out, bytes_.data() + at_, static_cast<size_t>(count));
+    at_ += static_cast<size_t>(count);
+    return at_ < bytes_.size();
+  }
+  uint64_t tellg() override { return at_; }
+  void seekg(uint64_t position) override {
+    if (position > bytes_.size()) throw std::runtime_error("a part of the file lies beyond its end");
+    at_ = static_cast<size_t>(position);
+  }
+
+private:
+  std::span<const uint8_t> bytes_;
+  size_t at_ = 0;
+};
+
+// The header's attributes before OpenEXR allocates memory for them. Reads until the first step beyond the
+// end; from then on everything is 0 and `good` is false.
 struct ByteReader {
   std::span<const uint8_t> bytes;
   size_t at = 0;
@@ -38,11 +93,7 @@ struct ByteReader {
     const auto b = take(4);
     return b.empty() ? 0 : uint32_t{b[0]} | uint32_t{b[1]} << 8 | uint32_t{b[2]} << 16 | uint32_t{b[3]} << 24;
   }
-  uint64_t u64() {
-    const uint64_t low = u32();
-    return low | uint64_t{u32()} << 32;
-  }
-  std::string text() {
+  std::string_view text() {
     const auto end = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), uint8_t{0});
     if (end == bytes.end()) {
       good = false;
@@ -50,164 +101,97 @@ struct ByteReader {
     }
     const auto found = take(static_cast<size_t>(end - bytes.begin()) - at);
     take(1);
-    return {found.begin(), found.end()};
+    return {reinterpret_cast<const char*>(found.data()), found.size()};
   }
 };
 
-// Deflate, the densest of the compressions, packs at most 258 bytes into 2 bits: no file holds more than this
-// many times its own size, whatever size its header claims.
-constexpr uint64_t most_packed = 258 * 8 / 2;
-
-struct Channel {
-  std::string name;
-  PixelType type = PixelType::real;
-  size_t offset = 0; // bytes from the start of a line to this channel's values
-};
-
-struct Header {
-  std::vector<Channel> channels;
-  Compression compression = Compression::none;
-  int64_t left = 0, top = 0, width = 0, height = 0;
-  size_t line_bytes = 0;
-  bool has_channels = false, has_compression = false, has_window = false;
-};
-
-// Each returns why the file is not read, or "".
-std::string read_channels(ByteReader in, Header& header) {
+// Returns why the file is not read, or "". Afterwards every attribute lies inside of the file, the
+// compression is one that OpenEXR reads, and nothing is left to OpenEXR's default values that says where
+// pixels are.
+std::string check_attributes(std::span<const uint8_t> file, bool& tiled) {
+  ByteReader in{file};
+  if (in.u32() != static_cast<uint32_t>(Imf::MAGIC)) return "it is not an OpenEXR file";
+  const auto flags = static_cast<int>(in.u32());
+  if (Imf::getVersion(flags) != Imf::EXR_VERSION || !Imf::supportsFlags(Imf::getFlags(flags)))
+    return fmt::format("its format version is {}, with flags {:#x}; version 2 is read",
+                       Imf::getVersion(flags), static_cast<uint32_t>(Imf::getFlags(flags)));
+  if (Imf::isMultiPart(flags)) return "it has several parts; save it as one part";
+  if (Imf::isNonImage(flags)) return "it is deep; save it as flat scanlines or tiles";
+  tiled = Imf::isTiled(flags);
+  std::vector<std::string_view> missing = {"channels", "compression", "dataWindow", "displayWindow"};
   while (in.good) {
-    Channel channel{.name = in.text()};
-    if (channel.name.empty()) break;
-    const uint32_t type = in.u32();
-    in.take(4); // a hint about perception
-    const uint32_t step_x = in.u32(), step_y = in.u32();
-    if (type > 2) return fmt::format("channel '{}' has an unknown type of value", channel.name);
-    if (step_x != 1 || step_y != 1) return fmt::format("channel '{}' is subsampled", channel.name);
-    channel.type = static_cast<PixelType>(type);
-    header.channels.push_back(std::move(channel));
+    const std::string_view name = in.text();
+    if (!in.good || name.empty()) break;
+    in.text(); // the type, which OpenEXR checks
+    const auto value = in.take(in.u32());
+    std::erase(missing, name);
+    if (name != "compression" || value.empty() || value[0] < Imf::NUM_COMPRESSION_METHODS) continue;
+    return fmt::format("its compression {} is not read; save it with ZIP, PIZ or none",
+                       value[0] < methods.size() ? methods[value[0]].name
+                                                 : fmt::format("(number {})", value[0]));
   }
-  header.has_channels = true;
-  return in.good && !header.channels.empty() ? "" : "the list of channels is damaged";
+  if (!in.good) return "its header is damaged or cut off";
+  return missing.empty() ? "" : fmt::format("its header has no '{}'", missing.front());
 }
 
-std::string read_attribute(const std::string& name, std::span<const uint8_t> value, Header& header) {
-  ByteReader in{value};
-  if (name == "channels") return read_channels(in, header);
-  if (name == "compression") {
-    const auto byte = in.take(1);
-    if (byte.empty() || byte[0] > static_cast<uint8_t>(Compression::zip))
-      return "its compression is not read; save it with ZIP compression or none";
-    header.compression = static_cast<Compression>(byte[0]);
-    header.has_compression = true;
+struct Window {
+  int64_t left, top, width, height;
+
+  explicit Window(const Imath::Box2i& box)
+      : left(box.min.x), top(box.min.y), width(int64_t{box.max.x} - box.min.x + 1),
+        height(int64_t{box.max.y} - box.min.y + 1) {}
+  uint64_t pixels() const { return static_cast<uint64_t>(width) * static_cast<uint64_t>(height); }
+};
+
+// Returns why a picture of these sizes is not read, or "". Nothing of its pixels is allocated before.
+std::string check_sizes(const Imf::Header& header, bool tiled, size_t wanted, size_t file_bytes) {
+  const Window data(header.dataWindow()), display(header.displayWindow());
+  for (const auto& [name, window] : {std::pair("data", data), std::pair("display", display)})
+    if (window.width < 1 || window.height < 1 || window.width > max_image_side ||
+        window.height > max_image_side)
+      return fmt::format("its {} window measures {} x {} pixels; sides of 1 to {} are read", name,
+                         window.width, window.height, max_image_side);
+  uint64_t pixel_bytes = 0, channels = 0;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c, ++channels)
+    pixel_bytes += c.channel().type == Imf::HALF ? 2 : 4;
+  const uint64_t most = std::min(max_image_bytes, std::max(always_read, max_packing * uint64_t{file_bytes}));
+  if (pixel_bytes > most || data.pixels() > most / pixel_bytes)
+    return fmt::format("its {} channels hold more than {} bytes", channels, most);
+  if (display.pixels() > most / (wanted * sizeof(float)))
+    return fmt::format("its display window holds more than {} bytes", most);
+  uint64_t chunk = static_cast<uint64_t>(data.width) *
+                   std::min(static_cast<uint64_t>(data.height),
+                            uint64_t{methods[static_cast<size_t>(header.compression())].lines});
+  if (tiled) {
+    const Imf::TileDescription& tile = header.tileDescription();
+    if (tile.xSize > max_image_side || tile.ySize > max_image_side)
+      return fmt::format("its tiles measure {} x {} pixels; at most {} a side are read", tile.xSize,
+                         tile.ySize, max_image_side);
+    chunk = uint64_t{tile.xSize} * tile.ySize;
   }
-  if (name == "dataWindow") {
-    const auto left = std::bit_cast<int32_t>(in.u32()), top = std::bit_cast<int32_t>(in.u32());
-    const auto right = std::bit_cast<int32_t>(in.u32()), bottom = std::bit_cast<int32_t>(in.u32());
-    header.left = left;
-    header.top = top;
-    header.width = int64_t{right} - left + 1;
-    header.height = int64_t{bottom} - top + 1;
-    header.has_window = in.good;
-  }
+  if (chunk > max_chunk_bytes / pixel_bytes)
+    return fmt::format("one of its chunks holds more than {} bytes", max_chunk_bytes);
   return {};
 }
 
-std::string read_header(ByteReader& in, Header& header) {
-  if (in.u32() != magic) return "it is not an OpenEXR file";
-  const uint32_t flags = in.u32();
-  if ((flags & version_mask) != version) return fmt::format("its format version is {}", flags & version_mask);
-  if ((flags & ~(version_mask | long_names)) != 0)
-    return "it is tiled, deep or of several parts; save it as one part of scanlines";
-  while (in.good) {
-    const std::string name = in.text();
-    if (name.empty()) break;
-    in.text(); // the type follows from the name for all that are read here
-    const uint32_t size = in.u32();
-    const auto value = in.take(size);
-    if (!in.good) break;
-    if (std::string why = read_attribute(name, value, header); !why.empty()) return why;
-  }
-  if (!in.good || !header.has_channels || !header.has_compression || !header.has_window)
-    return "its header is damaged or cut off";
-  if (header.width < 1 || header.height < 1 || header.width > max_image_side ||
-      header.height > max_image_side)
-    return fmt::format("it measures {} x {} pixels; sides of 1 to {} are read", header.width, header.height,
-                       max_image_side);
-  for (Channel& channel : header.channels) {
-    channel.offset = header.line_bytes;
-    header.line_bytes += static_cast<size_t>(header.width) * bytes_of(channel.type);
-  }
-  if (header.line_bytes * static_cast<uint64_t>(header.height) > max_image_bytes)
-    return fmt::format("its {} channels hold more than {} bytes", header.channels.size(), max_image_bytes);
-  return {};
-}
-
-bool unpack_rle(std::span<const uint8_t> packed, std::span<uint8_t> out) {
-  size_t from = 0, to = 0;
-  while (from < packed.size()) {
-    const auto count = std::bit_cast<int8_t>(packed[from++]);
-    const size_t size = count < 0 ? static_cast<size_t>(-int{count}) : static_cast<size_t>(count) + 1;
-    const size_t needed = count < 0 ? size : 1;
-    if (size > out.size() - to || needed > packed.size() - from) return false;
-    for (size_t i = 0; i < size; ++i)
-      out[to + i] = packed[from + (count < 0 ? i : 0)];
-    from += needed;
-    to += size;
-  }
-  return to == out.size();
-}
-
-bool unpack(Compression compression, std::span<const uint8_t> stored, std::vector<uint8_t>& plain) {
-  if (stored.size() == plain.size()) { // what does not shrink is stored as it is
-    std::copy(stored.begin(), stored.end(), plain.begin());
-    return true;
-  }
-  if (compression == Compression::none || stored.size() > plain.size()) return false;
-  const bool good = compression == Compression::rle ? unpack_rle(stored, plain) : zlib_inflate(stored, plain);
-  if (good) plain = restore(std::move(plain));
-  return good;
-}
-
-float half_value(uint32_t bits) {
-  const uint32_t exponent = bits >> 10 & 31, fraction = bits & 1023;
-  const float sign = bits & 0x8000 ? -1.0f : 1.0f;
-  if (exponent == 31) return fraction ? NAN : sign * INFINITY;
-  if (exponent == 0) return sign * std::ldexp(static_cast<float>(fraction), -24);
-  return sign * std::ldexp(static_cast<float>(1024 + fraction), static_cast<int>(exponent) - 25);
-}
-
-float value_at(std::span<const uint8_t> line, const Channel& channel, size_t x) {
-  ByteReader in{line.subspan(channel.offset + x * bytes_of(channel.type), bytes_of(channel.type))};
-  switch (channel.type) {
-  case PixelType::half:
-    return half_value(uint32_t{in.bytes[0]} | uint32_t{in.bytes[1]} << 8);
-  case PixelType::uint:
-    return static_cast<float>(in.u32());
-  case PixelType::real:
-    break;
-  }
-  return std::bit_cast<float>(in.u32());
-}
-
-// Positions in the file of the first accepted set that is there; empty: none.
-std::vector<size_t> select_channels(const Header& header, std::span<const ChannelNames> accepted) {
+// The names of the first accepted set that is there; empty: none.
+ChannelNames select_channels(const Imf::ChannelList& channels, std::span<const ChannelNames> accepted) {
   for (const ChannelNames& names : accepted) {
-    if (names.size() == 1 && names[0] == "*") {
-      if (header.channels.size() == 1) return {0};
-      continue;
+    if (names == ChannelNames{"*"}) {
+      auto next = channels.begin();
+      if (next != channels.end() && ++next == channels.end()) return {channels.begin().name()};
+    } else if (std::all_of(names.begin(), names.end(),
+                           [&](const std::string& name) { return channels.findChannel(name) != nullptr; })) {
+      return names;
     }
-    std::vector<size_t> positions;
-    for (const std::string& name : names)
-      for (size_t c = 0; c < header.channels.size(); ++c)
-        if (header.channels[c].name == name && positions.size() < names.size()) positions.push_back(c);
-    if (positions.size() == names.size()) return positions;
   }
   return {};
 }
 
-std::string describe_mismatch(const Header& header, std::span<const ChannelNames> accepted) {
+std::string describe_mismatch(const Imf::ChannelList& channels, std::span<const ChannelNames> accepted) {
   std::vector<std::string> present, wanted;
-  for (const Channel& channel : header.channels)
-    present.push_back(channel.name);
+  for (auto c = channels.begin(); c != channels.end(); ++c)
+    present.emplace_back(c.name());
   for (const ChannelNames& names : accepted)
     wanted.push_back(names == ChannelNames{"*"} ? "a single channel"
                                                 : fmt::format("{}", fmt::join(names, ",")));
@@ -215,38 +199,95 @@ std::string describe_mismatch(const Header& header, std::span<const ChannelNames
                      fmt::join(wanted, " or "));
 }
 
-std::string read_pixels(ByteReader in, const Header& header, const std::vector<size_t>& positions,
-                        Image& image) {
-  const std::span<const uint8_t> file = in.bytes;
-  const auto height = static_cast<uint64_t>(header.height), lines = uint64_t{lines_of(header.compression)};
-  const uint64_t chunks = (height + lines - 1) / lines;
-  if (chunks * 8 > file.size() - in.at) return "its table of lines is cut off";
-  if (header.line_bytes * height / most_packed > file.size()) return "its lines are cut off";
-  image = Image::sized(static_cast<uint32_t>(header.width), static_cast<uint32_t>(header.height),
-                       static_cast<uint32_t>(positions.size()));
-  std::vector<bool> seen(chunks);
-  std::vector<uint8_t> plain;
-  for (uint64_t chunk = 0; chunk < chunks; ++chunk) {
-    const uint64_t offset = in.u64();
-    if (offset > file.size()) return "its lines are cut off";
-    ByteReader body{file, static_cast<size_t>(offset)};
-    const int64_t first = int64_t{std::bit_cast<int32_t>(body.u32())} - header.top;
-    const auto stored = body.take(body.u32());
-    if (!body.good) return "its lines are cut off";
-    if (first < 0 || first >= header.height || static_cast<uint64_t>(first) % lines != 0 ||
-        seen[static_cast<uint64_t>(first) / lines])
-      return "its lines are out of place";
-    seen[static_cast<uint64_t>(first) / lines] = true;
-    const uint64_t count = std::min(lines, height - static_cast<uint64_t>(first));
-    plain.resize(count * header.line_bytes);
-    if (!unpack(header.compression, stored, plain)) return "its lines are damaged";
-    for (uint64_t y = 0; y < count; ++y) {
-      const std::span<const uint8_t> line(plain.data() + y * header.line_bytes, header.line_bytes);
-      for (size_t c = 0; c < positions.size(); ++c)
-        for (uint32_t x = 0; x < image.width; ++x)
-          image.at(x, static_cast<uint32_t>(static_cast<uint64_t>(first) + y), static_cast<uint32_t>(c)) =
-              value_at(line, header.channels[positions[c]], x);
+// Rows of the data window, decoded some at a time.
+struct Rows {
+  Window data;
+  const ChannelNames& names;
+  int64_t step; // rows in one call of `decode`
+  std::function<void(const Imf::FrameBuffer&, int first, int last)> decode;
+  std::vector<float> values = {};
+  int64_t first = data.top, last = data.top - 1; // rows that `values` holds, both included
+
+  const float* at(int64_t y) {
+    if (y > last) {
+      first = y - (y - data.top) % step;
+      last = std::min(first + step, data.top + data.height) - 1;
+      values.resize(static_cast<size_t>((last - first + 1) * data.width) * names.size());
+      Imf::FrameBuffer target;
+      for (size_t c = 0; c < names.size(); ++c)
+        target.insert(names[c],
+                      Imf::Slice::Make(Imf::FLOAT, &values[c],
+                                       Imath::V2i(static_cast<int>(data.left), static_cast<int>(first)),
+                                       data.width, last - first + 1, names.size() * sizeof(float)));
+      decode(target, static_cast<int>(first), static_cast<int>(last));
     }
+    return values.data() + static_cast<size_t>((y - first) * data.width) * names.size();
+  }
+};
+
+// The display window is the picture: pixels outside of the data window are 0, and what the data window has
+// outside of it is dropped. The picture grows row by row, so that a damaged file costs little.
+Image place(Rows& rows, const Window& display) {
+  const Window& data = rows.data;
+  const size_t channels = rows.names.size(), row = static_cast<size_t>(display.width) * channels;
+  const int64_t left = std::max(data.left, display.left),
+                right = std::min(data.left + data.width, display.left + display.width);
+  Image image{static_cast<uint32_t>(display.width),
+              static_cast<uint32_t>(display.height),
+              static_cast<uint32_t>(channels),
+              {}};
+  image.values.reserve(row * static_cast<size_t>(display.height));
+  for (int64_t y = display.top; y < display.top + display.height; ++y) {
+    const size_t begin = image.values.size();
+    if (y >= data.top && y < data.top + data.height) {
+      const float* from = rows.at(y) + static_cast<size_t>(left - data.left) * channels;
+      image.values.resize(begin + static_cast<size_t>(left - display.left) * channels);
+      image.values.insert(image.values.end(), from, from + static_cast<size_t>(right - left) * channels);
+    }
+    image.values.resize(begin + row);
+  }
+  return image;
+}
+
+std::string decode(const std::string& name, std::span<const uint8_t> file,
+                   std::span<const ChannelNames> accepted, Image& image) {
+  bool tiled = false;
+  if (std::string why = check_attributes(file, tiled); !why.empty()) return why;
+  Imf::Header header;
+  MemoryInput stream(name, file);
+  stream.seekg(8); // after magic number and version
+  int version = Imf::EXR_VERSION;
+  header.readFrom(stream, version);
+  header.sanityCheck(tiled);
+  const ChannelNames names = select_channels(header.channels(), accepted);
+  if (names.empty()) return describe_mismatch(header.channels(), accepted);
+  for (const std::string& channel : names)
+    if (const Imf::Channel& one = header.channels()[channel]; one.xSampling != 1 || one.ySampling != 1)
+      return fmt::format("channel '{}' is subsampled", channel);
+  if (std::string why = check_sizes(header, tiled, names.size(), file.size()); !why.empty()) return why;
+  const Window data(header.dataWindow()), display(header.displayWindow());
+  if (!header.dataWindow().intersects(header.displayWindow()))
+    return "its data window lies outside of its display window";
+
+  stream.seekg(0);
+  constexpr int threads = 0;
+  if (tiled) {
+    Imf::TiledInputFile input(stream, threads);
+    const auto side = static_cast<int64_t>(header.tileDescription().ySize);
+    Rows rows{data, names, side, [&](const Imf::FrameBuffer& target, int first, int) {
+                const int row = static_cast<int>((first - data.top) / side);
+                input.setFrameBuffer(target);
+                input.readTiles(0, input.numXTiles(0) - 1, row, row);
+              }};
+    image = place(rows, display);
+  } else {
+    Imf::InputFile input(stream, threads);
+    constexpr int64_t lines = 256; // a multiple of every compression's
+    Rows rows{data, names, lines, [&](const Imf::FrameBuffer& target, int first, int last) {
+                input.setFrameBuffer(target);
+                input.readPixels(first, last);
+              }};
+    image = place(rows, display);
   }
   return {};
 }
@@ -258,14 +299,14 @@ std::optional<Image> read_exr(const std::filesystem::path& path, std::span<const
   try {
     const auto bytes = read_bytes(path, max_image_file_bytes, error);
     if (!bytes) return std::nullopt;
-    ByteReader in{*bytes};
-    Header header;
     Image image;
-    std::string why = read_header(in, header);
-    if (why.empty()) {
-      const std::vector<size_t> positions = select_channels(header, accepted);
-      why =
-          positions.empty() ? describe_mismatch(header, accepted) : read_pixels(in, header, positions, image);
+    std::string why;
+    try {
+      why = decode(path.filename().string(), *bytes, accepted, image);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& problem) { // OpenEXR's
+      why = fmt::format("it is damaged or cut off: {}", problem.what());
     }
     if (why.empty()) return image;
     error = fmt::format("'{}' cannot be read as an OpenEXR picture: {}", path.string(), why);

@@ -1,6 +1,7 @@
 #pragma once
-// OpenEXR pictures: one part of scanlines; no, RLE or ZIP compression in, ZIP and 32-bit floats out.
-// Files are hostile until checked: every size and offset is tested before it is used.
+// OpenEXR pictures through OpenEXR's own library. Read: one part of scanlines or tiles (of several levels the
+// largest), every compression of OpenEXR 3.1. Written: scanlines, ZIP compression, 32-bit floats.
+// Files are hostile until checked: sizes are checked before memory is allocated for them.
 
 #include "integration/files/image.hpp"
 
@@ -18,10 +19,11 @@ using ChannelNames = std::vector<std::string>;
 inline const ChannelNames rgb_names = {"R", "G", "B"};
 
 // Reads the channels of the first entry of `accepted` whose names are all present; other channels are
-// ignored. Half, float and uint channels become float. Empty on failure (missing, too large, malformed,
-// incomplete, tiled, deep, multi-part, subsampled, another compression, no accepted set of channels present)
-// with one sentence in `error` that names the file and the reason. Values are as stored: NaN and infinities
-// pass.
+// ignored. Half, float and uint channels become float. The picture is the file's display window: pixels
+// outside of the data window are 0, and what the data window has outside of it is dropped. Empty on failure
+// (missing, too large, malformed, incomplete, deep, multi-part, subsampled, another compression, no accepted
+// set of channels present) with one sentence in `error` that names the file and the reason. Values are as
+// stored: NaN and infinities pass.
 std::optional<Image> read_exr(const std::filesystem::path& path, std::span<const ChannelNames> accepted,
                               std::string& error);
 

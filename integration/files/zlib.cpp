@@ -11,14 +11,6 @@ namespace {
 constexpr int effort = 5; // length of the search for matches; the least that the encoder takes
 }
 
-bool zlib_inflate(std::span<const uint8_t> packed, std::span<uint8_t> out) {
-  if (packed.size() > INT_MAX || out.size() > INT_MAX) return false;
-  const int size =
-      stbi_zlib_decode_buffer(reinterpret_cast<char*>(out.data()), static_cast<int>(out.size()),
-                              reinterpret_cast<const char*>(packed.data()), static_cast<int>(packed.size()));
-  return size >= 0 && static_cast<size_t>(size) == out.size();
-}
-
 std::vector<uint8_t> zlib_deflate(std::span<const uint8_t> bytes) {
   if (bytes.size() > INT_MAX) return {};
   // The encoder only reads, though its signature does not say so.
