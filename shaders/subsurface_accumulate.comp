@@ -1,6 +1,7 @@
 #version 460
-// Scattered light over frames, for hosts without anti-aliasing of their own: what a surface showed before is found again,
-// made as much brighter as its tile became, drawn towards what is around it now, and mixed with this frame's.
+// Scattered light over frames, for hosts without anti-aliasing of their own. History keeps only what is left of scattered
+// light after the part that the nearest pixels explain, relative to the brightness around: what is noise is averaged,
+// and each frame's own sharp light is shown as it is.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "subsurface_accumulate.bindings.glsl"
@@ -8,6 +9,7 @@
 #include "tiles.glsl"
 #include "half.glsl"
 #include "radius.glsl"
+#include "near_light.glsl"
 #include "accumulate.glsl"
 vec2 surface_before(ivec2 pixel);
 #include "reproject.glsl"
@@ -47,7 +49,7 @@ bool sharp_history(previous_place place, uint id, float tolerance, out accumulat
       found.light += weight * one.light;
       found.count += weight * one.count;
     }
-  found = accumulated_light(max(found.light, vec3(0.0)), max(found.count, 0.0));
+  found.count = max(found.count, 0.0);
   return true;
 }
 
@@ -73,101 +75,100 @@ accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   return found;
 }
 
-struct neighbourhood {
-  vec3 mean, deviation; // of light, over those of 3x3 pixels that have the profile
-  float rise;           // change of depth over a pixel, mm: the smaller of both sides, so that edges do not count
-};
+// By pixel of the group and the ring of its neighbours: what history keeps of this frame's light.
+shared vec3 shared_remainders[near_columns * near_columns];
+int remainder_index(ivec2 local) { return (local.y + 1) * near_columns + local.x + 1; }
 
-neighbourhood look_around(ivec2 pixel, uint id, float depth) {
-  vec3 sum = vec3(0.0), squares = vec3(0.0);
+near_field share_remainder(ivec2 first, ivec2 local) {
+  int index = near_index(local);
+  if (near_profile[index] == 0u || !(near_depth[index] > 0.0))
+    return near_field(vec3(0.0), vec3(0.0));
+  ivec2 texel = texel_of(first + local);
+  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  uint id = near_profile[index];
+  near_field near = find_near_field(local, find_profile(id, scale), profile_direct(id));
+  shared_remainders[remainder_index(local)] =
+      remainder_of(texelFetch(scattered_image, texel, 0).rgb, near.light, near.brightness);
+  return near;
+}
+
+// The i-th of the 36 pixels around the group.
+ivec2 ring_pixel(int i) {
+  return i < 10 ? ivec2(i - 1, -1) : i < 20 ? ivec2(i - 11, 8) : i < 28 ? ivec2(-1, i - 20) : ivec2(8, i - 28);
+}
+
+// Over the 3x3 pixels that have the profile.
+struct neighbourhood {
+  vec3 mean, deviation; // of remainders
+  vec3 least, largest;  // of scattered light
+};
+neighbourhood look_around(ivec2 first, ivec2 local, vec3 own_light) {
+  vec3 own = shared_remainders[remainder_index(local)], sum = vec3(0.0), squares = vec3(0.0);
   float count = 0.0;
-  const float none = 1e30;
-  vec2 least_step = vec2(none);
-  vec3 own = texelFetch(scattered_image, texel_of(pixel), 0).rgb;
+  neighbourhood around = neighbourhood(own, vec3(0.0), own_light, own_light);
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
-      ivec2 q = pixel + ivec2(x, y), texel = texel_of(q);
-      if (!inside_rect(q) || texelFetch(material_image, texel, 0).r != id)
+      ivec2 other = local + ivec2(x, y);
+      int index = near_index(other);
+      if (near_profile[index] != near_profile[near_index(local)] || !(near_depth[index] > 0.0))
         continue;
-      float there = view_depth(texelFetch(depth_image, texel, 0).r);
-      if (!(there > 0.0))
-        continue;
-      vec3 way = texelFetch(scattered_image, texel, 0).rgb - own; // about the own light, so that nothing cancels
+      vec3 way = shared_remainders[remainder_index(other)] - own; // about its own, so that nothing cancels
+      vec3 light = texelFetch(scattered_image, texel_of(first + other), 0).rgb;
       sum += way;
       squares += way * way;
       count += 1.0;
-      if (y == 0 && x != 0)
-        least_step.x = min(least_step.x, abs(there - depth));
-      if (x == 0 && y != 0)
-        least_step.y = min(least_step.y, abs(there - depth));
+      around.least = min(around.least, light);
+      around.largest = max(around.largest, light);
     }
   vec3 mean = sum / max(count, 1.0);
-  vec2 rise = mix(least_step, vec2(0.0), equal(least_step, vec2(none)));
-  return neighbourhood(own + mean, sqrt(max(squares / max(count, 1.0) - mean * mean, vec3(0.0))), length(rise));
+  around.mean = own + mean;
+  around.deviation = sqrt(max(squares / max(count, 1.0) - mean * mean, vec3(0.0)));
+  return around;
 }
 
-// By pixel of the tile: its light now and before; 0 pixels where there was none before.
-shared vec3 lights_now[64], lights_before[64];
-shared float seen[64];
-
-vec3 change_over_the_tile() {
-  if (!(settings.follow > 0.0))
-    return vec3(1.0);
-  light_pairs pairs = no_pairs();
-  for (uint i = 0u; i < 64u; ++i)
-    if (seen[i] > 0.0)
-      add_pixel(pairs, lights_now[i], lights_before[i]);
-  return brightness_change(pairs, settings.follow);
-}
-
-// What is kept where the light of a whole tile went out: what was there, for when it comes back.
-struct two_lights {
-  accumulated_light shown, kept;
+struct shown_and_kept {
+  vec3 shown;
+  accumulated_light kept;
 };
-two_lights with_history(accumulated_light history, vec3 light, neighbourhood around, vec3 change) {
-  accumulated_light now = accumulated_light(light, 0.0);
-  if (history.count > 0.0 && all(lessThan(change * change_most, vec3(1.0))))
-    return two_lights(now, history);
-  if (any(greaterThan(change, vec3(change_most))))
-    history.count = 0.0;
-  history.light *= change;
-  if (history.count > 0.0 && settings.clip > 0.0)
-    history = clip_to_neighbours(history, around.mean, around.deviation, settings.clip);
-  now = add_frame(history, light, settings.weight);
-  return two_lights(now, now);
+shown_and_kept with_history(accumulated_light history, vec3 light, near_field near, vec3 now, neighbourhood around) {
+  bvec3 lit = greaterThan(near.brightness, vec3(accumulate_least_brightness));
+  if (!any(lit)) // history waits until light comes back
+    return shown_and_kept(light, history);
+  now = mix(history.light, now, lit);
+  if (!can_be_kept(now))
+    return shown_and_kept(light, accumulated_light(vec3(0.0), 0.0));
+  if (!(history.count > 0.0))
+    return shown_and_kept(light, accumulated_light(now, 1.0));
+  history.light = clamp(history.light, vec3(-accumulate_largest_remainder), vec3(accumulate_largest_remainder));
+  if (settings.clip > 0.0)
+    history = clip_to_neighbours(history, mix(history.light, around.mean, lit), around.deviation, settings.clip);
+  accumulated_light sum = add_frame(history, now, settings.weight);
+  vec3 shown = mix(light, light_of_remainder(sum.light, near.light, near.brightness), lit);
+  return shown_and_kept(settings.clip > 0.0 ? clamp(shown, around.least, around.largest) : shown, sum);
 }
 
 void main() {
   ivec2 pixel;
   bool copy_only;
   bool listed = listed_pixel(pixel, copy_only);
-  ivec2 texel = texel_of(pixel);
-  uint id = 0u;
-  float depth = 0.0;
-  vec3 light = vec3(0.0);
-  neighbourhood around;
-  accumulated_light history = accumulated_light(vec3(0.0), 0.0);
-  bool scatters = false;
-  if (listed) {
-    id = texelFetch(material_image, texel, 0).r;
-    depth = view_depth(texelFetch(depth_image, texel, 0).r);
-    light = texelFetch(scattered_image, texel, 0).rgb;
-    scatters = id != 0u && !copy_only && depth > 0.0;
-  }
-  if (scatters) {
-    around = look_around(pixel, id, depth);
-    history = history_of(pixel, depth, id, around.rise);
-  }
-  lights_now[gl_LocalInvocationIndex] = light;
-  lights_before[gl_LocalInvocationIndex] = history.light;
-  seen[gl_LocalInvocationIndex] = history.count;
+  ivec2 local = ivec2(gl_LocalInvocationID.xy), first = pixel - local, texel = texel_of(pixel);
+  share_near_light(first);
+  near_field near = share_remainder(first, local);
+  if (gl_LocalInvocationIndex < 36u)
+    share_remainder(first, ring_pixel(int(gl_LocalInvocationIndex)));
   barrier();
   if (!listed)
     return;
-  two_lights now = two_lights(accumulated_light(light, 0.0), accumulated_light(light, 0.0));
+  uint id = texelFetch(material_image, texel, 0).r;
+  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  vec3 light = texelFetch(scattered_image, texel, 0).rgb;
+  shown_and_kept now = shown_and_kept(light, accumulated_light(vec3(0.0), 0.0));
+  int own = near_index(local);
+  bool scatters = near_profile[own] != 0u && !copy_only && near_depth[own] > 0.0;
   if (scatters)
-    now = with_history(history, light, around, change_over_the_tile());
-  imageStore(accumulated_image, texel, vec4(round_to_half(now.shown.light), 1.0));
+    now = with_history(history_of(pixel, depth, id, length(near_rise(own))), light, near,
+                       shared_remainders[remainder_index(local)], look_around(first, local, light));
+  imageStore(accumulated_image, texel, vec4(round_to_half(now.shown), 1.0));
   imageStore(past_out_image, texel, round_to_half(vec4(now.kept.light, now.kept.count)));
   imageStore(place_out_image, texel, round_to_half(vec4(depth / mm_per_metre, scatters ? float(id) : 0.0, 0.0, 0.0)));
 }

@@ -114,8 +114,8 @@ std::string shared_constants() {
       "const float reproject_depth_share = {};\n"
       "const float reproject_slope_pixels = {:.1f};\n"
       "const float reproject_least_weight = {};\n"
-      "const float change_least_pixels = {:.1f}; // temporal/accumulate.hpp\n"
-      "const float change_most = {:.1f};\n"
+      "const float accumulate_least_brightness = {}; // temporal/accumulate.hpp\n"
+      "const float accumulate_largest_remainder = {:.1f};\n"
       "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
       "const float counter_log2_steps = {:.1f};\n"
       "const float through_square_steps = {:.1f};\n\n#endif\n",
@@ -131,9 +131,9 @@ std::string shared_constants() {
       subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
       subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
       subsurface::reproject_largest_velocity, subsurface::reproject_depth_share,
-      subsurface::reproject_slope_pixels, subsurface::reproject_least_weight, subsurface::change_least_pixels,
-      subsurface::change_most, subsurface::counter_log2_shift, subsurface::counter_log2_steps,
-      subsurface::through_square_steps);
+      subsurface::reproject_slope_pixels, subsurface::reproject_least_weight,
+      subsurface::accumulate_least_brightness, subsurface::accumulate_largest_remainder,
+      subsurface::counter_log2_shift, subsurface::counter_log2_steps, subsurface::through_square_steps);
 }
 
 } // namespace

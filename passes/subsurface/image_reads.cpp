@@ -183,10 +183,13 @@ ImageReads residual(const PassKind& kind, const ReadsQuestion& question) {
   return reads;
 }
 
-// Light, material and depth of 3x3 pixels, its own once more; of the frame before one texel where the camera
-// rests, surface and light.
+// near_light.glsl: material, light, scattered light and depth of the group's pixels and a ring of four;
+// scattered light of the group and a ring of one and of 3x3 pixels once more, and what a pixel has of its
+// own; of the frame before one texel where the camera rests, its surface twice.
 ImageReads accumulate(const PassKind& kind, const ReadsQuestion& question) {
-  return {3 * 9 + 4 + one_if(kind, question, "velocity", PortSide::read) + 3};
+  return {shared_reads(16 * 16) * (3 + light_reads(kind, question) - scale_read(kind, question)) +
+          shared_reads(10 * 10) * (1 + scale_read(kind, question)) + 9 + 3 +
+          one_if(kind, question, "velocity", PortSide::read) + 3};
 }
 
 // subsurface_pyramid_setup.comp: material, light, and the materials around if profiles are kept apart.

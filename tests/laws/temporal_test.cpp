@@ -37,7 +37,7 @@ protected:
     for (const uint32_t t : judged) {
       const double gain = residual.psnr_db.at(t) - sap.psnr_db.at(t);
       RecordProperty("gain_" + std::to_string(first + t), std::to_string(gain));
-      EXPECT_GT(gain, t < 25 ? 3.8 : -0.2) << first + t; // measured 4.3 and more, .0
+      EXPECT_GT(gain, t < 25 ? 3.8 : -0.2) << first + t; // regression bound: measured 4.3 and more, .0
     }
   }
 };
@@ -120,7 +120,7 @@ TEST_F(Temporal, ShadowsThatMoveAcrossSkinAreGainedUponInEachFrame) {
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("blind", std::to_string(blind.mean_psnr_db));
-  // Measured: 3.2 dB better in the mean, 1.7 in the worst frame.
+  // Regression bounds: measured 3.2 dB better in the mean, 1.7 in the worst frame.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.7);
   EXPECT_GT(residual.mean_psnr_db, blind.mean_psnr_db + 1);
   for (const uint32_t t : judged)
@@ -142,7 +142,7 @@ TEST_F(Temporal, AFlashFromAnotherSideCostsNothingAndLeavesTheRatioAsItWas) {
   for (const uint32_t t : judged)
     RecordProperty("gain_" + std::to_string(t), std::to_string(residual.psnr_db.at(t) - sap.psnr_db.at(t)));
   for (const uint32_t t : lit) {
-    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 0.2) << t; // measured .0
+    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 0.2) << t; // regression bound: measured .0
     EXPECT_LT(blind.psnr_db.at(t), sap.psnr_db.at(t) - 3) << t;
   }
   for (const uint32_t t : judged)
@@ -171,7 +171,8 @@ TEST_F(Temporal, LightThatStaysIsLearnedInTheEnd) {
     RecordProperty("gain_" + std::to_string(t - 25), std::to_string(gain));
     EXPECT_GT(gain, -0.2) << t;
   }
-  EXPECT_GT(residual.psnr_db.at(105), sap.psnr_db.at(105) + 1.3); // measured 1.8, 80 frames after
+  EXPECT_GT(residual.psnr_db.at(105),
+            sap.psnr_db.at(105) + 1.3); // regression bound: measured 1.8, 80 frames after
 }
 
 TEST_F(Temporal, AfterACutTheErrorIsBackWithinThreeFrames) {

@@ -119,7 +119,7 @@ TEST_F(TruthSuite, ThePyramidFollowsTheTruthAtEveryD) {
 
 TEST_F(TruthSuite, AtHalfResolutionThePyramidStillFollowsTheTruthBetterThanAFewTaps) {
   DERMIS_IN_FULL_TIER();
-  // Measured at 640x360: 3.5, 2.7, 2.2 and 1.8e-3; separable with 11 taps 7 to 17e-3.
+  // Regression bounds: measured at 640x360: 3.5, 2.7, 2.2 and 1.8e-3; separable with 11 taps 7 to 17e-3.
   for (const double d_px : {2.0, 4.0, 8.0, 16.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
     const Reference truth = truth_of(frame);

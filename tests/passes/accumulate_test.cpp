@@ -48,58 +48,41 @@ TEST(Accumulate, HistoryBeyondReachIsDrawnToItsEdgeAlongTheLineAndCountsForAsMuc
   EXPECT_EQ(flat.count, 0);
 }
 
-// A tile of light that has a pattern, `factor` times as bright as before, with noise on both sides.
-LightPairs lit_tile(double factor, double noise, uint32_t seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  LightPairs pairs;
-  for (int i = 0; i < 64; ++i) {
-    const double pattern = 0.1 + i / 64.0; // much more than the noise
-    std::array<double, 3> now{}, before{};
-    for (size_t c = 0; c < 3; ++c) {
-      before[c] = pattern;
-      now[c] = factor * pattern + noise * normal(random);
-    }
-    add_pixel(pairs, now, before);
+constexpr std::array<double, 3> near_light = {0.2, 0.5, 0.0}, brightness = {0.4, 0.6, 0.3};
+
+TEST(Accumulate, RemaindersLeadBackToTheLight) {
+  const std::array<double, 3> light = {0.25, 0.4, 0.1};
+  const std::array<double, 3> remainder = remainder_of(light, near_light, brightness);
+  EXPECT_NEAR(remainder[1], (0.4 - 0.5) / 0.6, 1e-15); // signed
+  const std::array<double, 3> found = light_of_remainder(remainder, near_light, brightness);
+  for (size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(found[c], light[c], 1e-15);
+}
+
+TEST(Accumulate, ARemainderIsTheSameHoweverBrightTheLight) {
+  const std::array<double, 3> light = {0.25, 0.4, 0.1};
+  const std::array<double, 3> dim = remainder_of(light, near_light, brightness);
+  for (const double factor : {1e-4, 0.5, 60.0}) {
+    const auto scaled = [&](std::array<double, 3> values) {
+      for (double& value : values)
+        value *= factor;
+      return values;
+    };
+    const std::array<double, 3> bright = remainder_of(scaled(light), scaled(near_light), scaled(brightness));
+    for (size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(bright[c], dim[c], 1e-12) << factor;
   }
-  return pairs;
 }
 
-TEST(Accumulate, LightThatFlashesIsFollowedWhateverItsPattern) {
-  for (const double factor : {0.0, 0.01, 0.9, 0.999, 1.001, 1.5, 60.0})
-    for (const double change : brightness_change(lit_tile(factor, 0, 1), 3))
-      EXPECT_NEAR(change, factor, 1e-6) << factor;
-  // With noise of a twentieth the mean of 64 pixels is known within a hundredth.
-  for (const double change : brightness_change(lit_tile(1.5, 0.03, 2), 3))
-    EXPECT_NEAR(change, 1.5, 0.05);
+TEST(Accumulate, LightOfARemainderIsNeverBelowZero) {
+  EXPECT_EQ(light_of_remainder({-4, -4, -4}, near_light, brightness), (std::array<double, 3>{0, 0, 0}));
 }
 
-TEST(Accumulate, NoiseOfSamplesIsNoChangeOfLight) {
-  int changes = 0;
-  double squares = 0;
-  constexpr int tiles = 2000;
-  for (int i = 0; i < tiles; ++i)
-    for (const double change : brightness_change(lit_tile(1, 0.05, uint32_t(i)), 3)) {
-      changes += change != 1;
-      squares += (change - 1) * (change - 1);
-    }
-  // Beyond three standard errors lie .27 % of independent values.
-  EXPECT_LT(changes, 0.006 * 3 * tiles);
-  EXPECT_GT(changes, 0);
-  EXPECT_LT(std::sqrt(squares / (3 * tiles)), 0.1 * 0.05 / 8 / 0.6); // a tenth of the mean's own error
-}
-
-TEST(Accumulate, AShadowThatMovesAndTilesOfFewPixelsAreNoChangeOfLight) {
-  LightPairs moved, few;
-  for (int i = 0; i < 64; ++i) {
-    const double now = i < 40 ? 1 : 0, before = i < 36 ? 1 : 0;
-    add_pixel(moved, {now, now, now}, {before, before, before});
-  }
-  for (int i = 0; i + 1 < change_least_pixels; ++i)
-    add_pixel(few, {2, 2, 2}, {1, 1, 1});
-  EXPECT_EQ(brightness_change(moved, 3), (std::array<double, 3>{1, 1, 1}));
-  EXPECT_EQ(brightness_change(few, 3), (std::array<double, 3>{1, 1, 1}));
-  EXPECT_EQ(brightness_change({}, 3), (std::array<double, 3>{1, 1, 1}));
+TEST(Accumulate, RemaindersThatWouldOutshineAllAreNotKept) {
+  EXPECT_TRUE(can_be_kept({0, 4.5, -4.5}));
+  EXPECT_FALSE(can_be_kept({0, 0, 4.51}));
+  EXPECT_FALSE(can_be_kept({-4.51, 0, 0}));
+  EXPECT_FALSE(can_be_kept(remainder_of({1, 1, 1}, {0, 0, 0}, {0, 0, 0}))); // in the dark
 }
 
 TEST(Accumulate, TheFirstFramesAreMeantEvenlyAndLaterOnesMove) {

@@ -102,7 +102,9 @@ TEST(Sap, ASecondLayerKeepsLightApartThatOneLayerMixesAcrossAFence) {
   RecordProperty("few", std::to_string(few));
   RecordProperty("two", std::to_string(two));
   EXPECT_LE(few, 0.8 * one);
-  EXPECT_LE(two, 0.3 * one); // measured .25; .74 where a child with half of its weight left is a seed
+  EXPECT_LE(
+      two,
+      0.3 * one); // regression bound: measured .25; .74 where a child with half of its weight left is a seed
   for (const float value : {0.0123f, 0.7f}) {
     scene.paint([&](uint32_t, uint32_t) { return value; });
     for (const uint32_t first : {1u, 2u})
@@ -205,7 +207,9 @@ TEST(Sap, LightCrossesAFoldAsInTheTruth) {
     scene.depth[i] = 0.5f - 1.7e-3f * std::abs(float(i % 128) - 63.5f);
   const auto truth = truth_everywhere(scene.input());
   const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, truth);
-  EXPECT_LT(error.rmse, 0.035); // measured .031; .050 where distance from the tangent plane alone counts
+  EXPECT_LT(
+      error.rmse,
+      0.035); // regression bound: measured .031; .050 where distance from the tangent plane alone counts
 }
 
 TEST(Sap, ScatterScaleActsAsAnotherD) {

@@ -30,9 +30,9 @@ TEST_P(SapWeightsOf, AreNonNegativeAndSumToOne) {
 }
 
 TEST_P(SapWeightsOf, FollowTheTruthUpToTheWidestLevel) {
-  // Measured: base at most 1.8e-3 up to d = 32 px, smooth 1.9e-3 (at d = .3 px, where their tents are widest)
-  // up to 45 px; the last level, 256 px wide, is too narrow for more. half has nothing between a pixel and
-  // level 1: 14.5e-3 at d = .3 px, below the others' worst from 4 px on.
+  // Regression bounds: measured base at most 1.8e-3 up to d = 32 px, smooth 1.9e-3 (at d = .3 px, where their
+  // tents are widest) up to 45 px; the last level, 256 px wide, is too narrow for more. half has nothing
+  // between a pixel and level 1: 14.5e-3 at d = .3 px, below the others' worst from 4 px on.
   const bool half = GetParam() == SapVariant::half;
   const double last = GetParam() == SapVariant::smooth ? 45.3 : 32.1;
   const auto floor = [&](double d_px) { return !half || d_px > 4.1 ? 1.9e-3 : d_px > 0.9 ? 9e-3 : 15e-3; };

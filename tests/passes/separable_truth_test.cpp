@@ -110,9 +110,9 @@ std::array<PerChannel, 3> floors(const PerChannel& d, int side, int margin) {
 }
 
 TEST(SeparableFloor, StaysWithinTheDocumentedErrors) {
-  // Measured on this picture, 1e-3, for 11, 17 and 25 taps; each may be exceeded by 5 %. Many taps at every
-  // texel (nothing between the offsets) reach 95 % of the 25-tap figures at 1 px and 88 % at 2 to 8 px: the
-  // rest is the rank.
+  // Regression bounds: measured on this picture, 1e-3, for 11, 17 and 25 taps; each may be exceeded by 5 %.
+  // Many taps at every texel (nothing between the offsets) reach 95 % of the 25-tap figures at 1 px and 88 %
+  // at 2 to 8 px: the rest is the rank.
   struct Case {
     double d;
     PerChannel floor;

@@ -233,6 +233,30 @@ TEST(Truth, GrazingPatchesCountForAtMostTheCap) {
     EXPECT_NEAR(patch.area, 1e-6 / min_patch_cosine, 1e-12);
 }
 
+// The cap's slope is 6.591 sides of a pixel: a patch below it keeps its normal, and one just above is tilted
+// back to the cap, so that its plane rises by no more. (cos = 0.15, so the slope is sqrt(1 / 0.15^2 - 1).)
+TEST(Truth, GrazingPatchesTiltByAtMostTheCap) {
+  const double largest_slope = std::sqrt(1 / (min_patch_cosine * min_patch_cosine) - 1);
+  for (const double slope : {6.0, 6.58, 6.6, 7.0, 100.0})
+    for (const bool down : {false, true}) {
+      Seen view(8, 8, {2e-3, 2e-3, 2e-3});
+      for (uint32_t y = 0; y < 8; ++y)
+        for (uint32_t x = 0; x < 8; ++x)
+          view.depth[view.at(x, y)] = static_cast<float>(0.5 + slope * 1e-3 * (down ? y : x));
+      const Surface surface = build_surface(8, 8, view.rays, view.depth, view.profile, 1);
+      const double expected = std::min(slope, largest_slope);
+      // Depths are floats: a step of 6e-3 m at 1.2 m is off by up to 6e-8 / 6e-3, 1e-5 of the slope.
+      for (const Patch& patch : surface.patches) {
+        const double tilt = std::hypot(patch.normal[0], patch.normal[1]) / patch.normal[2];
+        EXPECT_NEAR(tilt, expected, 1e-4 * expected) << slope;
+        const double x = -view.rays.offset_x / view.rays.scale_x, y = -view.rays.offset_y / view.rays.scale_y;
+        const Vector3 here = patch_point(view.rays, patch, x, y),
+                      next = patch_point(view.rays, patch, x + (down ? 0 : 1), y + (down ? 1 : 0));
+        EXPECT_NEAR(std::abs(next[2] - here[2]), expected * 1e-3, 1e-4 * expected * 1e-3) << slope;
+      }
+    }
+}
+
 TEST(Truth, ResultDoesNotDependOnTheNumberOfThreads) {
   Seen view(40, 30, {2e-3, 1e-3, 0.5e-3});
   view.paint(noise);

@@ -8,14 +8,20 @@ namespace {
 
 constexpr Format past_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::rg16f};
-constexpr std::string_view past_doc = "light, number of frames behind it";
+constexpr std::string_view past_doc =
+    "scattered light less what the nearest pixels explain, over the brightness around; "
+    "number of frames behind it";
 constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
 
 constexpr Port ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
+    port::albedo,
     {"scattered", Usage::sampled_image, false, "texture2D", "scattered light of this frame",
      port::color_formats},
     port::material,
     port::depth,
+    port::scatter_scale,
     port::velocity,
     {"past", Usage::sampled_image, false, "texture2D", past_doc, past_formats},
     {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
@@ -32,9 +38,7 @@ constexpr KindSetting settings[] = {
     setting::per_frame(setting::real(
         "clip", 1.5, 0, 64, "standard deviations",
         "of the 3x3 pixels around, that history may lie from their mean; 0: as far as it likes")),
-    setting::per_frame(setting::real(
-        "follow", 3, 0, 64, "standard errors",
-        "beyond which the light of a tile has changed, and history's with it; 0: it never does")),
+    setting::texturing,
 };
 
 constexpr HistoryWeight accumulate_mixes[] = {{"past_out", "weight"}};

@@ -24,42 +24,39 @@ AccumulatedLight clip_to_neighbours(const AccumulatedLight& history, const std::
   return clipped;
 }
 
-void add_pixel(LightPairs& pairs, const std::array<double, 3>& now, const std::array<double, 3>& before) {
-  for (size_t c = 0; c < 3; ++c) {
-    pairs.now[c] += now[c];
-    pairs.before[c] += before[c];
-    pairs.now_squared[c] += now[c] * now[c];
-    pairs.product[c] += now[c] * before[c];
-    pairs.before_squared[c] += before[c] * before[c];
-  }
-  pairs.pixels += 1;
-}
-
-std::array<double, 3> brightness_change(const LightPairs& pairs, double sigmas) {
-  std::array<double, 3> change = {1, 1, 1};
-  if (pairs.pixels < change_least_pixels) return change;
-  for (size_t c = 0; c < 3; ++c) {
-    if (!(pairs.before[c] > 0)) continue;
-    const double factor = pairs.now[c] / pairs.before[c];
-    // Of what the factor leaves between the pixels; that of their mean, as a factor.
-    const double variance = std::max(pairs.now_squared[c] - 2 * factor * pairs.product[c] +
-                                         factor * factor * pairs.before_squared[c],
-                                     0.0) /
-                            (pairs.pixels - 1);
-    const double error = variance * pairs.pixels / (pairs.before[c] * pairs.before[c]);
-    const double way = (factor - 1) * (factor - 1), doubtful = sigmas * sigmas * error;
-    if (way > doubtful) change[c] = 1 + (1 - doubtful / way) * (factor - 1);
-  }
-  return change;
+double frame_weight(double count, double least) {
+  return std::max(1 / (count + 1), least);
 }
 
 AccumulatedLight add_frame(const AccumulatedLight& history, const std::array<double, 3>& light,
                            double least) {
-  const double weight = std::max(1 / (history.count + 1), least);
+  const double weight = frame_weight(history.count, least);
   AccumulatedLight sum{{}, std::min(history.count + 1, 1 / least)};
   for (size_t c = 0; c < 3; ++c)
     sum.light[c] = history.light[c] + weight * (light[c] - history.light[c]);
   return sum;
+}
+
+std::array<double, 3> remainder_of(const std::array<double, 3>& light, const std::array<double, 3>& near,
+                                   const std::array<double, 3>& brightness) {
+  std::array<double, 3> remainder{};
+  for (size_t c = 0; c < 3; ++c)
+    remainder[c] = (light[c] - near[c]) / std::max(brightness[c], accumulate_least_brightness);
+  return remainder;
+}
+
+bool can_be_kept(const std::array<double, 3>& remainder) {
+  return std::all_of(remainder.begin(), remainder.end(),
+                     [](double one) { return std::abs(one) <= accumulate_largest_remainder; });
+}
+
+std::array<double, 3> light_of_remainder(const std::array<double, 3>& remainder,
+                                         const std::array<double, 3>& near,
+                                         const std::array<double, 3>& brightness) {
+  std::array<double, 3> light{};
+  for (size_t c = 0; c < 3; ++c)
+    light[c] = std::max(near[c] + brightness[c] * remainder[c], 0.0);
+  return light;
 }
 
 } // namespace dermis::subsurface

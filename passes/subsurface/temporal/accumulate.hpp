@@ -1,5 +1,5 @@
 #pragma once
-// Mixing a frame's light into that of earlier frames. shaders/include/accumulate.glsl mirrors these functions
+// Mixes a frame's light with that of earlier frames. shaders/include/accumulate.glsl mirrors these functions
 // under the same names.
 
 #include <array>
@@ -20,24 +20,25 @@ struct AccumulatedLight {
 AccumulatedLight clip_to_neighbours(const AccumulatedLight& history, const std::array<double, 3>& mean,
                                     const std::array<double, 3>& deviation, double reach);
 
-// Light of pixels whose surfaces were seen in the frame before as well: sums over them, by channel.
-struct LightPairs {
-  std::array<double, 3> now{}, before{}, now_squared{}, product{}, before_squared{};
-  double pixels = 0;
-};
-void add_pixel(LightPairs& pairs, const std::array<double, 3>& now, const std::array<double, 3>& before);
-
-// By how much all light of those pixels became brighter, from 0 on; 1 where what they differ by among each
-// other explains it within `sigmas` standard errors, as noise of samples and shadows that move do, and where
-// nothing was lit.
-std::array<double, 3> brightness_change(const LightPairs& pairs, double sigmas);
-
-inline constexpr double change_least_pixels = 8; // that tell a change from noise
-// Light that became so many times darker is shown without history, which waits for it to come back; and so
-// many times brighter begins anew, because nothing but rounding was left of it.
-inline constexpr double change_most = 64;
-
-// A mean of all frames until they weigh less than `least` (0..1] each, then a moving one.
+// Weight of a new frame against `count` frames of history: all frames weigh the same until a frame weighs
+// `least` (0..1].
+double frame_weight(double count, double least);
 AccumulatedLight add_frame(const AccumulatedLight& history, const std::array<double, 3>& light, double least);
+
+// Less brightness than this counts as dark: half floats of light say too little there.
+inline constexpr double accumulate_least_brightness = 1e-6;
+// A remainder beyond this is not kept. Light over frames is then at most 1 + 1.5 * 4.5 = 7.75 times the
+// brightest light around.
+inline constexpr double accumulate_largest_remainder = 4.5;
+
+// What history keeps of a pixel's scattered light: the part that the nearest pixels (`near`) do not explain,
+// over the brightness around.
+std::array<double, 3> remainder_of(const std::array<double, 3>& light, const std::array<double, 3>& near,
+                                   const std::array<double, 3>& brightness);
+bool can_be_kept(const std::array<double, 3>& remainder);
+// The light that a remainder stands for under this frame's light; never below 0.
+std::array<double, 3> light_of_remainder(const std::array<double, 3>& remainder,
+                                         const std::array<double, 3>& near,
+                                         const std::array<double, 3>& brightness);
 
 } // namespace dermis::subsurface
