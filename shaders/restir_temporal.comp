@@ -53,7 +53,7 @@ vec2 surface_before(ivec2 pixel) {
 
 // Change of the surface's depth over a pixel, mm.
 float rise_over_pixel(ivec2 pixel, float depth) {
-  vec3 normal = normalize(texelFetch(normal_image, texel_of(pixel), 0).xyz);
+  vec3 normal = normalize(view_normal(texelFetch(normal_image, texel_of(pixel), 0).xyz));
   vec3 way = is_perspective() ? normalize(view_position(vec2(pixel), depth)) : vec3(0.0, 0.0, -1.0);
   float cosine = clamp(abs(dot(normal, way)), min_patch_cosine, 1.0);
   vec2 footprint = pixel_footprint(depth);

@@ -10,7 +10,8 @@
 namespace dermis::abi {
 namespace {
 
-constexpr uint32_t known_frame_flags = DERMIS_FRAME_RESET_HISTORY | DERMIS_FRAME_BOUNDS;
+constexpr uint32_t known_frame_flags =
+    DERMIS_FRAME_RESET_HISTORY | DERMIS_FRAME_BOUNDS | DERMIS_FRAME_LEFT_HANDED;
 
 dermis_result check_numbers(const dermis_view_t& view, const dermis_frame& frame) {
   const Log& log = view.context->log;
@@ -251,18 +252,30 @@ void remove_jitter(subsurface::Matrix4& clip_from_view, int row, double pixels, 
     clip_from_view[row * 4 + c] -= 2.0 * pixels / extent * clip_from_view[12 + c];
 }
 
-bool fill_constants(const dermis_frame& frame, const Program& program, const vulkan::Rectangle& previous,
-                    const vulkan::Rectangle& rectangle, const std::array<int32_t, 4>& bounds,
-                    bool history_invalid, subsurface::FrameConstants& constants) {
+subsurface::Matrix4 matrix_of(const float (&elements)[16]) {
+  subsurface::Matrix4 matrix;
+  std::copy(std::begin(elements), std::end(elements), matrix.begin());
+  return matrix;
+}
+
+subsurface::CameraFault fill_constants(const dermis_frame& frame, const Program& program,
+                                       const vulkan::Rectangle& previous, const vulkan::Rectangle& rectangle,
+                                       const std::array<int32_t, 4>& bounds, bool history_invalid,
+                                       subsurface::FrameConstants& constants) {
   subsurface::FrameInput input;
   input.bounds = bounds;
   input.rect_x = rectangle.x;
   input.rect_y = rectangle.y;
   input.rect_width = rectangle.width;
   input.rect_height = rectangle.height;
-  std::copy(std::begin(frame.clip_from_view), std::end(frame.clip_from_view), input.clip_from_view.begin());
-  remove_jitter(input.clip_from_view, 0, frame.jitter_x, rectangle.width);
-  remove_jitter(input.clip_from_view, 1, frame.jitter_y, rectangle.height);
+  input.camera = {matrix_of(frame.clip_from_view), matrix_of(frame.view_from_world),
+                  matrix_of(frame.previous_clip_from_view), matrix_of(frame.previous_view_from_world)};
+  remove_jitter(input.camera.clip_from_view, 0, frame.jitter_x, rectangle.width);
+  remove_jitter(input.camera.clip_from_view, 1, frame.jitter_y, rectangle.height);
+  std::optional<subsurface::Handedness> declared;
+  if ((frame.flags & DERMIS_FRAME_LEFT_HANDED) != 0) declared = subsurface::Handedness::left;
+  const subsurface::CameraFault fault = subsurface::to_right_handed(input.camera, declared, input.handedness);
+  if (fault != subsurface::CameraFault::none) return fault;
   input.jitter_px = {frame.jitter_x, frame.jitter_y};
   input.metres_per_unit = frame.metres_per_unit == 0 ? 1.0 : frame.metres_per_unit;
   input.exposure = frame.exposure == 0 ? 1.0f : frame.exposure;
@@ -274,14 +287,18 @@ bool fill_constants(const dermis_frame& frame, const Program& program, const vul
   input.previous_y = previous.y;
   input.previous_width = previous.width;
   input.previous_height = previous.height;
-  std::copy(std::begin(frame.previous_clip_from_view), std::end(frame.previous_clip_from_view),
-            input.previous_clip_from_view.begin());
-  std::copy(std::begin(frame.view_from_world), std::end(frame.view_from_world),
-            input.view_from_world.begin());
-  std::copy(std::begin(frame.previous_view_from_world), std::end(frame.previous_view_from_world),
-            input.previous_view_from_world.begin());
   input.previous_jitter_px = program.last_jitter_px;
-  return subsurface::fill_frame_constants(input, constants);
+  return subsurface::fill_frame_constants(input, constants) ? subsurface::CameraFault::none
+                                                            : subsurface::CameraFault::no_projection;
+}
+
+// What a message about a camera adds: how view space is declared, where that may be the cause.
+std::string_view hint_of(subsurface::CameraFault fault) {
+  const bool of_handedness =
+      fault != subsurface::CameraFault::no_projection && fault != subsurface::CameraFault::stored_by_columns;
+  return of_handedness ? "; the camera looks down -z, or along +z in an orthographic frame with "
+                         "DERMIS_FRAME_LEFT_HANDED and in a perspective with w = z"
+                       : "";
 }
 
 } // namespace
@@ -312,16 +329,11 @@ dermis_result fill_frame(const dermis_view_t& view, const Program& program, uint
   bool history_invalid = false;
   for (uint32_t i = 0; i < executor.history_count(); ++i)
     history_invalid = history_invalid || !executor.history_state(i, reset, before).valid;
-  if (!fill_constants(frame, program, executor.previous_rectangle(before), checked.input.rectangle,
-                      checked.bounds, history_invalid, checked.constants))
-    return bad_argument(
-        log,
-        "{}: clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic "
-        "projection with finite elements{}",
-        function,
-        frame.clip_from_view[11] == -1.0f && frame.clip_from_view[14] != -1.0f
-            ? ": it is stored column by column; element [r * 4 + c] is row r, column c"
-            : "");
+  if (const subsurface::CameraFault fault =
+          fill_constants(frame, program, executor.previous_rectangle(before), checked.input.rectangle,
+                         checked.bounds, history_invalid, checked.constants);
+      fault != subsurface::CameraFault::none)
+    return bad_argument(log, "{}: {}{}", function, subsurface::text_of(fault), hint_of(fault));
   checked.constants.sample_units = sample_units;
   checked.input.command_buffer = frame.command_buffer;
   checked.input.images = program.images;

@@ -44,7 +44,8 @@ struct FrameDescription {
   uint32_t width = 0, height = 0; // of the pictures
   Rectangle render;               // the part that was rendered, inside the pictures
   bool perspective = true;
-  // Row-major, for column vectors; clip_from_view without jitter.
+  // Row-major, for column vectors; clip_from_view without jitter. Right-handed: files of a left-handed view
+  // space are mirrored when they are read, and so is `normal`.
   subsurface::Matrix4 clip_from_view{}, view_from_world{}, previous_clip_from_view{},
       previous_view_from_world{};
   std::optional<double> pixel_pitch_m; // orthographic captures made by hand: clip_from_view follows from it

@@ -45,25 +45,36 @@ void read_rectangle(const Document& document, ObjectReader& reader, FrameDescrip
   frame.render = {uint32_t(r[0]), uint32_t(r[1]), uint32_t(r[2]), uint32_t(r[3])};
 }
 
-void read_matrices(ObjectReader& reader, FrameDescription& frame) {
-  reader.numbers("clip_from_view", frame.clip_from_view, -largest_number, largest_number,
-                 frame.pixel_pitch_m ? Need::optional : Need::required);
-  frame.view_from_world = identity;
-  reader.numbers("view_from_world", frame.view_from_world, -largest_number, largest_number, Need::optional);
-  frame.previous_view_from_world = frame.view_from_world;
-  reader.numbers("previous_view_from_world", frame.previous_view_from_world, -largest_number, largest_number,
+// Of the file's view space, whichever it is.
+subsurface::CameraMatrices read_matrices(ObjectReader& reader, bool has_pitch) {
+  subsurface::CameraMatrices camera;
+  reader.numbers("clip_from_view", camera.clip_from_view, -largest_number, largest_number,
+                 has_pitch ? Need::optional : Need::required);
+  camera.view_from_world = identity;
+  reader.numbers("view_from_world", camera.view_from_world, -largest_number, largest_number, Need::optional);
+  camera.previous_clip_from_view = camera.clip_from_view;
+  reader.numbers("previous_clip_from_view", camera.previous_clip_from_view, -largest_number, largest_number,
                  Need::optional);
+  camera.previous_view_from_world = camera.view_from_world;
+  reader.numbers("previous_view_from_world", camera.previous_view_from_world, -largest_number, largest_number,
+                 Need::optional);
+  return camera;
 }
 
-void read_projection(const Document& document, ObjectReader& reader, FrameDescription& frame,
-                     subsurface::PixelRays& rays, Diagnostics& diagnostics) {
+void read_projection(const Document& document, ObjectReader& reader, CapturedFrame& captured,
+                     subsurface::Handedness& handedness, Diagnostics& diagnostics) {
+  FrameDescription& frame = captured.description;
   constexpr std::string_view kinds[] = {"perspective", "orthographic"};
+  constexpr std::string_view spaces[] = {"right_handed", "left_handed"};
   frame.perspective = reader.word("projection", kinds).value_or(0) == 0;
+  std::optional<subsurface::Handedness> declared;
+  if (const auto space = reader.word("view_space", spaces, Need::optional))
+    declared = *space == 1 ? subsurface::Handedness::left : subsurface::Handedness::right;
   constexpr double least = 1e-12, greatest = 1e12; // lengths, metres
   frame.pixel_pitch_m = reader.number("pixel_pitch_m", least, greatest, Need::optional);
   frame.metres_per_unit = reader.number("metres_per_unit", least, greatest, Need::optional).value_or(1);
   reader.numbers("jitter_px", frame.jitter_px, -1, 1, Need::optional);
-  read_matrices(reader, frame);
+  subsurface::CameraMatrices camera = read_matrices(reader, frame.pixel_pitch_m.has_value());
   const auto refuse = [&](std::string_view key, std::string text) {
     diagnostics.add(DiagnosticId::capture_projection, document.where(document.find(reader.node(), key)),
                     std::move(text));
@@ -74,17 +85,40 @@ void read_projection(const Document& document, ObjectReader& reader, FrameDescri
     return refuse("pixel_pitch_m",
                   "'pixel_pitch_m' and 'clip_from_view' both describe the projection; give one");
   if (!reader.ok()) return;
-  if (!complete_projection(frame, rays) || rays.perspective != frame.perspective)
+  if (frame.pixel_pitch_m) {
+    complete_projection(frame, captured.rays);
+    camera.clip_from_view = declared == subsurface::Handedness::left
+                                ? subsurface::with_mirrored_view(frame.clip_from_view)
+                                : frame.clip_from_view;
+    if (!document.find(reader.node(), "previous_clip_from_view").valid())
+      camera.previous_clip_from_view = camera.clip_from_view;
+  }
+  const subsurface::CameraFault fault = subsurface::to_right_handed(camera, declared, handedness);
+  frame.clip_from_view = camera.clip_from_view;
+  frame.view_from_world = camera.view_from_world;
+  frame.previous_clip_from_view = camera.previous_clip_from_view;
+  frame.previous_view_from_world = camera.previous_view_from_world;
+  if (fault == subsurface::CameraFault::none && complete_projection(frame, captured.rays) &&
+      captured.rays.perspective == frame.perspective)
+    return;
+  if (fault == subsurface::CameraFault::none || fault == subsurface::CameraFault::no_projection)
     return refuse(
         "clip_from_view",
-        fmt::format("'clip_from_view' is no axis-aligned {} projection (row-major, clip = M * view, looking "
-                    "down -z, Vulkan clip space){}",
-                    frame.perspective ? "perspective" : "orthographic",
-                    subsurface::stored_by_columns(frame.clip_from_view) ? ": it is stored column by column"
-                                                                        : ""));
-  frame.previous_clip_from_view = frame.clip_from_view;
-  reader.numbers("previous_clip_from_view", frame.previous_clip_from_view, -largest_number, largest_number,
-                 Need::optional);
+        fmt::format("'clip_from_view' is no axis-aligned {} projection (row-major, clip = M * view, "
+                    "Vulkan clip space)",
+                    frame.perspective ? "perspective" : "orthographic"));
+  const bool previous = fault == subsurface::CameraFault::previous_left ||
+                        fault == subsurface::CameraFault::previous_right ||
+                        fault == subsurface::CameraFault::previous_behind_camera;
+  refuse(previous ? "previous_clip_from_view" : "clip_from_view",
+         fmt::format("{}; the camera looks down -z, or along +z with \"view_space\": \"left_handed\"",
+                     subsurface::text_of(fault)));
+}
+
+// Normals of a left-handed view space point the other way along z.
+void mirror_normals(Image& normal) {
+  for (size_t i = 2; i < normal.values.size(); i += normal.channels)
+    normal.values[i] = -normal.values[i];
 }
 
 std::optional<subsurface::Profile> read_profile_file(const Document& document, NodeId key,
@@ -147,6 +181,29 @@ void read_profiles(const Document& document, ObjectReader& reader, const fs::pat
   }
 }
 
+// As read_description; `handedness` of the view space that the files have.
+std::optional<CapturedFrame> read_view(const Document& document, const fs::path& folder,
+                                       const fs::path& profile_folder, Diagnostics& diagnostics,
+                                       FileRoots roots, subsurface::Handedness& handedness) {
+  const uint32_t errors = diagnostics.count(Severity::error);
+  if (!check_version(document, "dermis_capture", capture_format_version, diagnostics)) return std::nullopt;
+  CapturedFrame frame;
+  FrameDescription& description = frame.description;
+  ObjectReader reader(document, document.root(), "frame", diagnostics);
+  reader.has("dermis_capture");
+  description.width = static_cast<uint32_t>(reader.integer("width", 1, limits::image_side).value_or(0));
+  description.height = static_cast<uint32_t>(reader.integer("height", 1, limits::image_side).value_or(0));
+  if (reader.ok()) read_rectangle(document, reader, description, diagnostics);
+  read_projection(document, reader, frame, handedness, diagnostics);
+  const int64_t index = reader.integer("frame_index", 0, INT64_MAX, Need::optional).value_or(0);
+  description.frame_index = static_cast<uint64_t>(index);
+  description.exposure = reader.number("exposure", 1e-12, 1e12, Need::optional).value_or(1);
+  read_profiles(document, reader, folder, profile_folder, roots, description, diagnostics);
+  reader.finish();
+  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  return frame;
+}
+
 } // namespace
 
 std::vector<fs::path> find_frames(const fs::path& folder, Diagnostics& diagnostics, FileRoots roots) {
@@ -207,34 +264,20 @@ std::optional<CapturedFrame> read_frame(const fs::path& folder, const fs::path& 
   const auto document = read_document((folder / "frame.json").string(), diagnostics);
   if (!document) return std::nullopt;
   const uint32_t errors = diagnostics.count(Severity::error);
+  subsurface::Handedness handedness = subsurface::Handedness::right;
   std::optional<CapturedFrame> frame =
-      read_description(*document, folder, profile_folder, diagnostics, roots);
+      read_view(*document, folder, profile_folder, diagnostics, roots, handedness);
   if (frame) read_pictures(folder, *document, *frame, diagnostics, roots);
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  if (handedness == subsurface::Handedness::left) mirror_normals(frame->normal);
   return frame;
 }
 
 std::optional<CapturedFrame> read_description(const Document& document, const fs::path& folder,
                                               const fs::path& profile_folder, Diagnostics& diagnostics,
                                               FileRoots roots) {
-  const uint32_t errors = diagnostics.count(Severity::error);
-  if (!check_version(document, "dermis_capture", capture_format_version, diagnostics)) return std::nullopt;
-  CapturedFrame frame;
-  FrameDescription& description = frame.description;
-  ObjectReader reader(document, document.root(), "frame", diagnostics);
-  reader.has("dermis_capture");
-  description.width = static_cast<uint32_t>(reader.integer("width", 1, limits::image_side).value_or(0));
-  description.height = static_cast<uint32_t>(reader.integer("height", 1, limits::image_side).value_or(0));
-  if (reader.ok()) read_rectangle(document, reader, description, diagnostics);
-  read_projection(document, reader, description, frame.rays, diagnostics);
-  const int64_t index = reader.integer("frame_index", 0, INT64_MAX, Need::optional).value_or(0);
-  description.frame_index = static_cast<uint64_t>(index);
-  description.exposure = reader.number("exposure", 1e-12, 1e12, Need::optional).value_or(1);
-  read_profiles(document, reader, folder, profile_folder, roots, description, diagnostics);
-  reader.has("previous_clip_from_view"); // not read where the projection itself is wrong
-  reader.finish();
-  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
-  return frame;
+  subsurface::Handedness handedness = subsurface::Handedness::right;
+  return read_view(document, folder, profile_folder, diagnostics, roots, handedness);
 }
 
 } // namespace dermis::tools

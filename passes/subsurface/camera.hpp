@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 namespace dermis::subsurface {
 
@@ -31,15 +32,46 @@ struct DepthDecode {
   double a = 0, b = 0, c = 0, e = 1;
 };
 
-// Is this a perspective that was stored column by column, as GLM and shaders store matrices? pixel_rays() has
-// no answer for it.
-bool stored_by_columns(const Matrix4& clip_from_view);
+// View space of a host has x to the right and y up. The camera looks down -z in a right-handed view space and
+// along +z in a left-handed one.
+enum class Handedness : uint8_t { right, left };
+
+// The matrices of a frame and of the frame before, as a host has them. Both clip_from_view exclude the jitter
+// or include it.
+struct CameraMatrices {
+  Matrix4 clip_from_view{}, view_from_world{}, previous_clip_from_view{}, previous_view_from_world{};
+};
+
+// Why matrices of a host cannot be used; text_of() says it in words.
+enum class CameraFault : uint8_t {
+  none,
+  no_projection,
+  stored_by_columns,      // as GLM and shaders store matrices
+  declared_left,          // and clip_from_view has w = -z
+  declared_right,         // and clip_from_view has w = z
+  previous_right,         // the frame is left-handed, and previous_clip_from_view has w = -z
+  previous_left,          // the frame is right-handed, and previous_clip_from_view has w = z
+  behind_camera,          // depth 0..1 is behind the camera
+  previous_behind_camera, // the same of previous_clip_from_view
+};
+
+// Mirrors the matrices of a left-handed view space along z: everything else here works with right-handed
+// ones. A perspective projection states its handedness by the sign of its w row (w = -z: right, w = z: left).
+// An orthographic one cannot: it has the handedness that is `declared`, right where nothing is. A previous
+// projection that is none is not judged. On a fault nothing changes. Allocates nothing. Thread: any.
+CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> declared, Handedness& found);
+
+// One sentence without a full stop; static. "" for none.
+std::string_view text_of(CameraFault fault);
+
+// The same projection for view positions whose z has the other sign.
+Matrix4 with_mirrored_view(const Matrix4& clip_from_view);
 
 // Rays of a w x h rectangle onto which clip space [-1, 1]^2 maps (Vulkan: y down, so m[1][1] < 0 for a camera
 // that is not flipped). `clip_from_view` excludes the jitter; `jitter_px` is how far the picture was shifted
 // by it (+x right, +y down). The matrix works in host units, `metres_per_unit` turns them into metres. Empty
-// if the matrix is not an axis-aligned perspective or orthographic projection with finite entries, or a size,
-// or the unit is not positive.
+// if the matrix is not an axis-aligned perspective or orthographic projection of a right-handed view space
+// with finite entries, or a size or the unit is not positive.
 std::optional<PixelRays> pixel_rays(const Matrix4& clip_from_view, uint32_t width, uint32_t height,
                                     double metres_per_unit, std::array<double, 2> jitter_px);
 

@@ -22,11 +22,12 @@ bool has_own_tables(const NumberedProfile& numbered) {
 
 // The part of `out` about the frame before. False where there was none that can be looked back at.
 bool fill_previous(const FrameInput& input, FrameConstants& out) {
-  const auto rays = pixel_rays(input.previous_clip_from_view, input.previous_width, input.previous_height,
-                               input.metres_per_unit, {0, 0}); // the matrix contains its jitter
-  const auto world_from_view = invert_affine(input.view_from_world);
+  const auto rays =
+      pixel_rays(input.camera.previous_clip_from_view, input.previous_width, input.previous_height,
+                 input.metres_per_unit, {0, 0}); // the matrix contains its jitter
+  const auto world_from_view = invert_affine(input.camera.view_from_world);
   if (!rays || !world_from_view) return false;
-  const Matrix4 moved = multiply(input.previous_view_from_world, *world_from_view);
+  const Matrix4 moved = multiply(input.camera.previous_view_from_world, *world_from_view);
   if (!std::all_of(moved.begin(), moved.end(), [](double x) { return std::isfinite(x); })) return false;
   const double mm_per_unit = input.metres_per_unit * mm_per_metre;
   for (size_t r = 0; r < 3; ++r)
@@ -82,12 +83,12 @@ const SapTables& burley_sap_tables(PyramidUse use) {
 } // namespace
 
 bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
-  const auto rays = pixel_rays(input.clip_from_view, input.rect_width, input.rect_height,
+  const auto rays = pixel_rays(input.camera.clip_from_view, input.rect_width, input.rect_height,
                                input.metres_per_unit, input.jitter_px);
   if (!rays || !std::isfinite(input.exposure)) return false;
   // Rays are metres (per metre of depth when perspective, where the unit cancels).
   const double ray_unit = rays->perspective ? 1.0 : mm_per_metre;
-  const DepthDecode decode = depth_decode(input.clip_from_view, input.metres_per_unit);
+  const DepthDecode decode = depth_decode(input.camera.clip_from_view, input.metres_per_unit);
   out.rect[0] = static_cast<int32_t>(input.rect_x);
   out.rect[1] = static_cast<int32_t>(input.rect_y);
   out.rect[2] = static_cast<int32_t>(input.rect_width);
@@ -97,7 +98,7 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.tiles[1] = tiles_of(input.rect_height);
   out.frame_index = static_cast<uint32_t>(input.frame_index);
   out.flags = (rays->perspective ? 1u : 0u) | (input.depth_kind == DepthKind::view_units ? 2u : 0u) |
-              (input.history_invalid ? 4u : 0u);
+              (input.history_invalid ? 4u : 0u) | (input.handedness == Handedness::left ? 16u : 0u);
   out.ray_scale[0] = static_cast<float>(rays->scale_x * ray_unit);
   out.ray_scale[1] = static_cast<float>(rays->scale_y * ray_unit);
   out.ray_offset[0] = static_cast<float>(rays->offset_x * ray_unit);
@@ -110,7 +111,7 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   for (size_t r = 0; r < 3; ++r)
     for (size_t c = 0; c < 4; ++c)
       out.view_from_world[r][c] =
-          static_cast<float>(input.view_from_world[4 * r + c] * input.metres_per_unit * mm_per_metre);
+          static_cast<float>(input.camera.view_from_world[4 * r + c] * input.metres_per_unit * mm_per_metre);
   out.exposure = input.exposure;
   out.sample_units = input.sample_units;
   out.jitter[0] = static_cast<float>(input.jitter_px[0]);

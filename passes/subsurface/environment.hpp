@@ -66,7 +66,7 @@ struct FrameConstants {
   int32_t tiles[2];     // 8x8 tiles of the rectangle, x and y
   uint32_t frame_index; // low 32 bits
   uint32_t flags;       // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid,
-                        // bit 3: the frame before was perspective
+                        // bit 3: the frame before was perspective, bit 4: normal images are left-handed
   float ray_scale[2];   // view x, y = (scale * pixel + offset) * (perspective ? depth : 1); pixel counts from
   float
       ray_offset[2]; // the rectangle's corner, integers at pixel centres; mm (per mm of depth if perspective)
@@ -105,7 +105,10 @@ inline constexpr uint32_t no_radial_row = 0xffffffffu;
 struct FrameInput {
   uint32_t rect_x = 0, rect_y = 0, rect_width = 0, rect_height = 0;
   std::array<int32_t, 4> bounds{}; // as FrameConstants::bounds
-  Matrix4 clip_from_view{};        // without jitter
+  // Right-handed, clip_from_view without jitter. The previous one has its jitter, as the frame before was
+  // rendered; where the previous matrices are no projection, history counts as invalid.
+  CameraMatrices camera;
+  Handedness handedness = Handedness::right; // of the view space of normal images
   std::array<double, 2> jitter_px{};
   double metres_per_unit = 1.0;
   DepthKind depth_kind = DepthKind::device;
@@ -113,15 +116,13 @@ struct FrameInput {
   uint64_t frame_index = 0;
   bool history_invalid = false;
   uint32_t sample_units = UINT32_MAX; // as FrameConstants::sample_units
-  // Of the frame before: its rectangle (width 0: there is none), its matrix as pictures were rendered with
-  // it, jitter included, and that jitter. Where they are no projection, history counts as invalid.
+  // Of the frame before: its rectangle (width 0: there is none) and its jitter.
   uint32_t previous_x = 0, previous_y = 0, previous_width = 0, previous_height = 0;
-  Matrix4 previous_clip_from_view{}, view_from_world{}, previous_view_from_world{};
   std::array<double, 2> previous_jitter_px{};
 };
 
-// False if the matrix is not an axis-aligned perspective or orthographic projection or a number is not
-// finite; then `out` is unchanged. Allocates nothing. Thread: any.
+// False if the matrix is not an axis-aligned perspective or orthographic projection of a right-handed view
+// space, or a number is not finite; then `out` is unchanged. Allocates nothing. Thread: any.
 bool fill_frame_constants(const FrameInput& input, FrameConstants& out);
 
 struct NumberedProfile {

@@ -7,7 +7,7 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   ivec2 tiles;       // 8x8 tiles of the rectangle
   uint frame_index;
   uint flags;        // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid,
-                     // bit 3: the frame before was perspective
+                     // bit 3: the frame before was perspective, bit 4: normal images are left-handed
   vec2 ray_scale;    // view x, y = (scale * pixel + offset) * (perspective ? depth : 1), mm
   vec2 ray_offset;
   vec4 depth_decode; // depth mm = (a * value + b) / (c * value + e)
@@ -64,6 +64,9 @@ vec2 pixel_footprint(float depth) { return abs(frame.ray_scale) * (is_perspectiv
 vec3 view_position(vec2 pixel, float depth) {
   return vec3((frame.ray_scale * pixel + frame.ray_offset) * (is_perspective() ? depth : 1.0), -depth);
 }
+
+// A normal in view space, as view_position has it, from a texel of the host's normal image.
+vec3 view_normal(vec3 stored) { return (frame.flags & 16u) != 0u ? vec3(stored.xy, -stored.z) : stored; }
 
 bool inside_rect(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, frame.rect.zw));

@@ -394,6 +394,83 @@ TEST_F(Captures, TheKindOfProjectionMustAgreeWithTheMatrix) {
   expect_refused(folder, DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned orthographic");
 }
 
+// The same frame in a left-handed view space: z of every view position and normal has the other sign.
+CapturedFrame left_handed(CapturedFrame frame) {
+  FrameDescription& d = frame.description;
+  for (subsurface::Matrix4* clip : {&d.clip_from_view, &d.previous_clip_from_view})
+    *clip = subsurface::with_mirrored_view(*clip);
+  for (subsurface::Matrix4* view : {&d.view_from_world, &d.previous_view_from_world})
+    for (size_t c = 0; c < 4; ++c)
+      (*view)[8 + c] = -(*view)[8 + c];
+  for (size_t i = 2; i < frame.normal.values.size(); i += 3)
+    frame.normal.values[i] = -frame.normal.values[i];
+  return frame;
+}
+
+// Reads `folder` and expects the matrices, rays and normals of `right`.
+void expect_read_as(const std::optional<CapturedFrame>& read, const CapturedFrame& right) {
+  ASSERT_TRUE(read);
+  const FrameDescription &d = read->description, &wanted = right.description;
+  EXPECT_EQ(d.clip_from_view, wanted.clip_from_view);
+  EXPECT_EQ(d.view_from_world, wanted.view_from_world);
+  EXPECT_EQ(d.previous_clip_from_view, wanted.previous_clip_from_view);
+  EXPECT_EQ(d.previous_view_from_world, wanted.previous_view_from_world);
+  EXPECT_EQ(read->rays.scale_y, right.rays.scale_y);
+  EXPECT_EQ(read->rays.offset_x, right.rays.offset_x);
+  EXPECT_EQ(read->normal.values, right.normal.values);
+}
+
+TEST_F(Captures, LeftHandedFramesReadAsTheirMirrors) {
+  CapturedFrame right = sample();
+  const fs::path seen = write(left_handed(right), "perspective");
+  expect_read_as(read_frame(seen, shipped, diagnostics), right);
+  change(seen, "\"perspective\"", "\"perspective\", \"view_space\": \"left_handed\"");
+  expect_read_as(read_frame(seen, shipped, diagnostics), right);
+
+  right.description.perspective = false;
+  right.description.clip_from_view = {1.1, 0, 0, 0.1, 0, -1.7, 0, 0, 0, 0, -0.1, -0.05, 0, 0, 0, 1};
+  right.description.previous_clip_from_view = right.description.clip_from_view;
+  complete_projection(right.description, right.rays);
+  const fs::path flat = write(left_handed(right), "orthographic");
+  change(flat, "\"orthographic\"", "\"orthographic\", \"view_space\": \"left_handed\"");
+  expect_read_as(read_frame(flat, shipped, diagnostics), right);
+
+  // A pixel pitch has no handedness; the other matrices have that of the file.
+  right.description.pixel_pitch_m = 1e-3;
+  complete_projection(right.description, right.rays);
+  right.description.previous_clip_from_view = right.description.clip_from_view;
+  const fs::path pitch = write(left_handed(right), "pitch");
+  change(pitch, "\"orthographic\"", "\"orthographic\", \"view_space\": \"left_handed\"");
+  expect_read_as(read_frame(pitch, shipped, diagnostics), right);
+  EXPECT_TRUE(diagnostics.list.empty()) << messages();
+}
+
+TEST_F(Captures, ContradictingViewSpacesAreRefused) {
+  const auto declare = [&](const fs::path& frame, const char* projection, const char* space) {
+    change(frame, std::string("\"") + projection + "\"",
+           std::string("\"") + projection + "\", \"view_space\": \"" + space + "\"");
+  };
+  CapturedFrame frame = sample();
+  const auto refused = [&](const fs::path& folder, const char* pointer, const char* text) {
+    diagnostics = {};
+    expect_refused(folder, DiagnosticId::capture_projection, pointer, text);
+    EXPECT_THAT(messages(), HasSubstr("\"view_space\": \"left_handed\""));
+  };
+  const fs::path right = write(frame, "right");
+  declare(right, "perspective", "left_handed");
+  refused(right, "/clip_from_view", "declared left-handed, but clip_from_view has w = -z");
+  const fs::path left = write(left_handed(frame), "left");
+  declare(left, "perspective", "right_handed");
+  refused(left, "/clip_from_view", "declared right-handed, but clip_from_view has w = z");
+  frame.description.previous_clip_from_view =
+      subsurface::with_mirrored_view(frame.description.previous_clip_from_view);
+  refused(write(frame, "mixed"), "/previous_clip_from_view", "previous_clip_from_view has w = z");
+  frame.description.perspective = false;
+  frame.description.clip_from_view = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0.1, -0.05, 0, 0, 0, 1};
+  frame.description.previous_clip_from_view = frame.description.clip_from_view;
+  refused(write(frame, "behind"), "/clip_from_view", "only what is behind the camera");
+}
+
 TEST_F(Captures, PixelPitchAndMatrixExcludeEachOther) {
   const fs::path folder = write(sample());
   change(folder, "\"perspective\"", "\"orthographic\", \"pixel_pitch_m\": 0.001");

@@ -69,18 +69,79 @@ TEST(Camera, RowsGoDownWhileYGoesUp) {
   EXPECT_EQ(ortho.scale_y, -0.5);
 }
 
-// Half of all engines store matrices so, and a perspective on its side looks like one of another field of
-// view.
-TEST(Camera, APerspectiveThatIsStoredColumnByColumnIsRefused) {
-  const Matrix4 m{2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1, 0, 0, -1, 0};
-  Matrix4 transposed{};
+Matrix4 transposed(const Matrix4& m) {
+  Matrix4 t{};
   for (size_t r = 0; r < 4; ++r)
     for (size_t c = 0; c < 4; ++c)
-      transposed[4 * c + r] = m[4 * r + c];
-  EXPECT_TRUE(pixel_rays(m, 64, 64, 1, {0, 0}));
-  EXPECT_FALSE(stored_by_columns(m));
-  EXPECT_FALSE(pixel_rays(transposed, 64, 64, 1, {0, 0}));
-  EXPECT_TRUE(stored_by_columns(transposed));
+      t[4 * c + r] = m[4 * r + c];
+  return t;
+}
+
+// Half of all engines store matrices so, and a perspective on its side looks like one of another field of
+// view.
+TEST(Camera, MatricesThatAreStoredByColumnsAreRefused) {
+  const Matrix4 forward{2, 0, 0.1, 0, 0, -2, 0, 0, 0, 0, -1, -0.1, 0, 0, -1, 0};
+  const Matrix4 reversed{2, 0, 0, 0, 0, -2, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0}; // near plane at 1 unit
+  const Matrix4 flat{2, 0, 0, 0.5, 0, -2, 0, 0, 0, 0, -0.1, -0.1, 0, 0, 0, 1};
+  for (const Matrix4& right : {forward, reversed, flat})
+    for (const bool left : {false, true}) {
+      const Matrix4 m = left ? with_mirrored_view(right) : right;
+      std::optional<Handedness> declared;
+      if (left) declared = Handedness::left;
+      Handedness found = Handedness::right;
+      CameraMatrices stored{m, m, m, m}, on_its_side{transposed(m), m, m, m};
+      EXPECT_EQ(to_right_handed(stored, declared, found), CameraFault::none);
+      EXPECT_EQ(found, left ? Handedness::left : Handedness::right);
+      EXPECT_TRUE(pixel_rays(stored.clip_from_view, 64, 64, 1, {0, 0}));
+      if (transposed(m) != m) {
+        EXPECT_EQ(to_right_handed(on_its_side, std::nullopt, found), CameraFault::stored_by_columns);
+      }
+    }
+}
+
+// The matrices of one camera in both view spaces become the same ones, and faults name what contradicts.
+TEST(Camera, TakesEitherHandednessOfViewSpace) {
+  const Matrix4 perspective_now = perspective(1.7, 2.3, 0.11, 0.1),
+                flat{2, 0, 0, 0.5, 0, -2, 0, 0, 0, 0, 0.1, 1, 0, 0, 0, 1};
+  const Matrix4 view{0.8, 0, -0.6, 1, 0, 1, 0, 2, 0.6, 0, 0.8, -3, 0, 0, 0, 1};
+  const Matrix4 mirrored_view{0.8, 0, -0.6, 1, 0, 1, 0, 2, -0.6, 0, -0.8, 3, 0, 0, 0, 1};
+  for (const Matrix4& clip : {perspective_now, flat}) {
+    const CameraMatrices right{clip, view, clip, view};
+    CameraMatrices same = right,
+                   left{with_mirrored_view(clip), mirrored_view, with_mirrored_view(clip), mirrored_view};
+    Handedness found = Handedness::left;
+    EXPECT_EQ(to_right_handed(same, std::nullopt, found), CameraFault::none);
+    EXPECT_EQ(found, Handedness::right);
+    EXPECT_EQ(to_right_handed(left, Handedness::left, found), CameraFault::none);
+    EXPECT_EQ(found, Handedness::left);
+    for (const CameraMatrices* one : {&same, &left}) {
+      EXPECT_EQ(one->clip_from_view, right.clip_from_view);
+      EXPECT_EQ(one->view_from_world, right.view_from_world);
+      EXPECT_EQ(one->previous_clip_from_view, right.previous_clip_from_view);
+      EXPECT_EQ(one->previous_view_from_world, right.previous_view_from_world);
+    }
+  }
+  const auto fault = [&](const Matrix4& now, const Matrix4& before, std::optional<Handedness> declared) {
+    CameraMatrices camera{now, view, before, view};
+    const CameraMatrices kept = camera;
+    Handedness found = Handedness::right;
+    const CameraFault result = to_right_handed(camera, declared, found);
+    EXPECT_EQ(camera.clip_from_view, kept.clip_from_view) << "a fault changes nothing";
+    return result;
+  };
+  const Matrix4 left_now = with_mirrored_view(perspective_now), left_flat = with_mirrored_view(flat);
+  EXPECT_EQ(fault(perspective_now, {}, Handedness::left), CameraFault::declared_left);
+  EXPECT_EQ(fault(left_now, {}, Handedness::right), CameraFault::declared_right);
+  EXPECT_EQ(fault(left_now, perspective_now, std::nullopt), CameraFault::previous_right);
+  EXPECT_EQ(fault(perspective_now, left_now, std::nullopt), CameraFault::previous_left);
+  EXPECT_EQ(fault(flat, left_now, std::nullopt), CameraFault::previous_left);
+  EXPECT_EQ(fault(left_flat, perspective_now, Handedness::left), CameraFault::previous_right);
+  EXPECT_EQ(fault(left_flat, {}, std::nullopt), CameraFault::behind_camera);
+  EXPECT_EQ(fault(flat, {}, Handedness::left), CameraFault::behind_camera);
+  EXPECT_EQ(fault(perspective_now, left_flat, std::nullopt), CameraFault::previous_behind_camera);
+  EXPECT_EQ(fault({}, {}, std::nullopt), CameraFault::no_projection);
+  for (int i = 1; i <= static_cast<int>(CameraFault::previous_behind_camera); ++i)
+    EXPECT_FALSE(text_of(static_cast<CameraFault>(i)).empty()) << i;
 }
 
 TEST(Camera, WhatIsNoAxisAlignedProjectionIsRefused) {
@@ -92,7 +153,7 @@ TEST(Camera, WhatIsNoAxisAlignedProjectionIsRefused) {
   m[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(pixel_rays(m, 8, 8, 1, {0, 0}));
   m = good;
-  m[14] = 1; // looks down +z
+  m[14] = 1; // left-handed
   EXPECT_FALSE(pixel_rays(m, 8, 8, 1, {0, 0}));
   m = good;
   m[0] = 0;

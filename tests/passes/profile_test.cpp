@@ -103,7 +103,7 @@ TEST(Environment, FrameConstantsRebuildTheViewPositionOfAProjectedPoint) {
   input.rect_width = 4;
   input.rect_height = 2;
   input.metres_per_unit = 10;
-  input.clip_from_view = {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0};
+  input.camera.clip_from_view = {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0};
   FrameConstants constants{};
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_EQ(constants.tiles[0], 1);

@@ -57,15 +57,15 @@ FrameConstants constants_of(const View& now, const View& before) {
   input.rect_y = now.y;
   input.rect_width = now.width;
   input.rect_height = now.height;
-  input.clip_from_view = now.clip();
+  input.camera.clip_from_view = now.clip();
   input.jitter_px = now.jitter;
-  input.view_from_world = now.view_from_world;
+  input.camera.view_from_world = now.view_from_world;
   input.previous_x = before.x;
   input.previous_y = before.y;
   input.previous_width = before.width;
   input.previous_height = before.height;
-  input.previous_clip_from_view = before.clip_with_jitter();
-  input.previous_view_from_world = before.view_from_world;
+  input.camera.previous_clip_from_view = before.clip_with_jitter();
+  input.camera.previous_view_from_world = before.view_from_world;
   input.previous_jitter_px = before.jitter;
   FrameConstants constants{};
   EXPECT_TRUE(fill_frame_constants(input, constants));
@@ -246,8 +246,8 @@ TEST(Reproject, AFrameWithoutOneBeforeOrAfterACutHasNoHistory) {
   FrameInput input;
   input.rect_width = 320;
   input.rect_height = 180;
-  input.clip_from_view = input.previous_clip_from_view = lens(3, 16.0 / 9);
-  input.view_from_world = input.previous_view_from_world = camera({0, 0, 1}, 0);
+  input.camera.clip_from_view = input.camera.previous_clip_from_view = lens(3, 16.0 / 9);
+  input.camera.view_from_world = input.camera.previous_view_from_world = camera({0, 0, 1}, 0);
   FrameConstants constants{};
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_FALSE(history_usable(constants)); // no rectangle before
@@ -259,11 +259,11 @@ TEST(Reproject, AFrameWithoutOneBeforeOrAfterACutHasNoHistory) {
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_FALSE(history_usable(constants));
   input.history_invalid = false;
-  input.previous_clip_from_view = {}; // a host that does not say
+  input.camera.previous_clip_from_view = {}; // a host that does not say
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_FALSE(history_usable(constants));
-  input.previous_clip_from_view = input.clip_from_view;
-  input.view_from_world = {}; // flat
+  input.camera.previous_clip_from_view = input.camera.clip_from_view;
+  input.camera.view_from_world = {}; // flat
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_FALSE(history_usable(constants));
 }

@@ -775,9 +775,15 @@ typedef enum dermis_depth_kind {
 
 #define DERMIS_FRAME_RESET_HISTORY 0x1u /* camera cut, teleport, new level */
 #define DERMIS_FRAME_BOUNDS 0x2u        /* nothing with subsurface lies outside of dermis_frame.bounds_... */
+#define DERMIS_FRAME_LEFT_HANDED 0x4u   /* the camera looks along +z of view space; see dermis_frame */
 
 /* One frame. Matrices act on column vectors (clip = clip_from_view * view) and are stored row by row: element
- * [r * 4 + c]. View space: x right, y up, the camera looks down -z. Clip space is Vulkan's: y down, depth 0..1.
+ * [r * 4 + c]. Clip space is Vulkan's: y down, depth 0..1.
+ * View space is x right, y up. In a right-handed view space the camera looks down -z, in a left-handed one (Unreal,
+ * DirectXMath ...LH) along +z. A perspective projection states this by its last row: w = -z or w = z; the flag is not
+ * needed. An orthographic projection cannot: set DERMIS_FRAME_LEFT_HANDED where its view space is left-handed. All
+ * matrices of a frame and images of normals are of the same view space. Matrices that contradict the flag, each other or
+ * the depth range (all of it behind the camera) are DERMIS_ERROR_ARGUMENT.
  * clip_from_view is what the picture was rendered with; jitter_x and jitter_y tell how many pixels of shift are in it.
  * The previous matrices are what the frame before had here; where they are no projection (all 0), histories that follow
  * surfaces begin anew in each frame. */

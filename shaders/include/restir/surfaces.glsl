@@ -48,7 +48,7 @@ scatter_domain domain_of(ivec2 pixel) {
   ivec2 texel = texel_of(pixel);
   uint id = texelFetch(material_image, texel, 0).r;
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-  vec3 normal = texelFetch(normal_image, texel, 0).xyz;
+  vec3 normal = view_normal(texelFetch(normal_image, texel, 0).xyz);
   float square = dot(normal, normal);
   if (id == 0u || !(depth > 0.0) || !(square > 0.0))
     return scatter_domain(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0), 0u);

@@ -26,7 +26,7 @@ using Change = std::function<void(dermis_frame&, Bindings&)>;
 TEST_F(Frames, WithAWrongFieldAreRefusedByItsName) {
   const std::pair<const char*, Change> changes[] = {
       {"command_buffer is NULL", [](auto& f, auto&) { f.command_buffer = nullptr; }},
-      {"flags is 0x4", [](auto& f, auto&) { f.flags = 4; }},
+      {"flags is 0x8", [](auto& f, auto&) { f.flags = 8; }},
       {"frame_index is 1", [](auto& f, auto&) { f.frame_index = 1; }},
       {"less than frame_index", [](auto& f, auto&) { f.completed_frame_index = 2; }},
       {"with 2 frames in flight", [](auto& f, auto&) { f.frame_index = 4; }},
@@ -92,11 +92,50 @@ TEST_F(Frames, WithAMatrixThatIsStoredByColumnsAreToldSo) {
   EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("it is stored column by column"));
   std::copy(by_rows, by_rows + 16, frame.clip_from_view);
-  frame.clip_from_view[1] = 1; // wrong, too, but not in this way
+  frame.clip_from_view[1] = 1; // also wrong, in another way
   EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), Not(HasSubstr("column by column;")));
+  EXPECT_THAT(dermis_last_error(), Not(HasSubstr("column by column")));
   std::copy(by_rows, by_rows + 16, frame.clip_from_view);
   EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_OK) << dermis_last_error();
+}
+
+TEST_F(Frames, WithContradictingHandednessAreRefused) {
+  const float perspective[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1f, 0, 0, -1, 0};
+  const float orthographic[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+  using Matrix = const float(&)[16];
+  const auto frame_of = [&](Matrix now, bool now_left, Matrix before, bool before_left, uint32_t flags) {
+    dermis_frame frame = host.frame_at(2);
+    for (size_t i = 0; i < 16; ++i) {
+      frame.clip_from_view[i] = i % 4 == 2 && now_left ? -now[i] : now[i];
+      frame.previous_clip_from_view[i] = i % 4 == 2 && before_left ? -before[i] : before[i];
+    }
+    frame.flags |= flags;
+    return frame;
+  };
+  const auto refused = [&](const dermis_frame& frame, const char* said) {
+    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+    EXPECT_THAT(dermis_last_error(), HasSubstr("DERMIS_FRAME_LEFT_HANDED"));
+  };
+  refused(frame_of(perspective, false, perspective, false, DERMIS_FRAME_LEFT_HANDED),
+          "declared left-handed, but clip_from_view has w = -z");
+  refused(frame_of(perspective, true, perspective, false, 0), "previous_clip_from_view has w = -z");
+  refused(frame_of(perspective, false, perspective, true, 0), "previous_clip_from_view has w = z");
+  refused(frame_of(orthographic, false, perspective, true, 0), "the frame is right-handed");
+  refused(frame_of(orthographic, true, perspective, false, DERMIS_FRAME_LEFT_HANDED),
+          "the frame is left-handed");
+  refused(frame_of(orthographic, true, orthographic, true, 0), "only what is behind the camera");
+  refused(frame_of(orthographic, false, orthographic, false, DERMIS_FRAME_LEFT_HANDED),
+          "only what is behind the camera");
+  const dermis_frame accepted[] = {
+      frame_of(perspective, true, perspective, true, 0),
+      frame_of(perspective, true, perspective, true, DERMIS_FRAME_LEFT_HANDED),
+      frame_of(orthographic, true, perspective, true, DERMIS_FRAME_LEFT_HANDED),
+  };
+  for (const dermis_frame& frame : accepted) {
+    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_frame_discard(host.graph, 2), DERMIS_OK);
+  }
 }
 
 TEST_F(Frames, AreTakenBackOnceAndNotAcrossAReload) {

@@ -29,10 +29,10 @@ subsurface::FrameInput frame_input(const ShownFrame& shown, const vulkan::Rectan
   input.rect_width = shown.width;
   input.rect_height = shown.height;
   input.bounds = {0, 0, static_cast<int32_t>(shown.width), static_cast<int32_t>(shown.height)};
-  input.clip_from_view[0] = 2.0 / (shown.width * pitch_m);
-  input.clip_from_view[5] = -2.0 / (shown.height * pitch_m);
-  input.clip_from_view[10] = -1.0;
-  input.clip_from_view[15] = 1.0;
+  input.camera.clip_from_view[0] = 2.0 / (shown.width * pitch_m);
+  input.camera.clip_from_view[5] = -2.0 / (shown.height * pitch_m);
+  input.camera.clip_from_view[10] = -1.0;
+  input.camera.clip_from_view[15] = 1.0;
   input.depth_kind = subsurface::DepthKind::view_units;
   input.frame_index = frame_index;
   input.history_invalid = history_invalid;
@@ -40,9 +40,9 @@ subsurface::FrameInput frame_input(const ShownFrame& shown, const vulkan::Rectan
   input.previous_y = previous.y;
   input.previous_width = previous.width;
   input.previous_height = previous.height;
-  input.previous_clip_from_view = input.clip_from_view;
+  input.camera.previous_clip_from_view = input.camera.clip_from_view;
   for (size_t i = 0; i < 4; ++i)
-    input.view_from_world[5 * i] = input.previous_view_from_world[5 * i] = 1.0;
+    input.camera.view_from_world[5 * i] = input.camera.previous_view_from_world[5 * i] = 1.0;
   return input;
 }
 

@@ -92,6 +92,7 @@ void KernelTest::run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t 
   subsurface::FrameConstants constants{};
   constants.rect[2] = static_cast<int32_t>(width);
   constants.rect[3] = static_cast<int32_t>(height);
+  constants.flags = tables.frame_flags;
   vulkan::FrameInput frame;
   frame.command_buffer = begin_commands();
   frame.images = bound;

@@ -13,6 +13,7 @@ namespace dermis::testing {
 // Contents of the environment's storage buffers; those that are empty hold zeros.
 struct KernelTables {
   std::span<const std::byte> profiles, radial;
+  uint32_t frame_flags = 0; // as FrameConstants::flags
 };
 
 class KernelTest : public VulkanTest {

@@ -18,12 +18,12 @@ FrameConstants constants_of(const FrameDescription& frame) {
   FrameInput input;
   input.rect_width = input.previous_width = frame.render.width;
   input.rect_height = input.previous_height = frame.render.height;
-  input.clip_from_view = frame.clip_from_view;
+  input.camera.clip_from_view = frame.clip_from_view;
   input.metres_per_unit = frame.metres_per_unit;
   input.depth_kind = DepthKind::view_units;
-  input.previous_clip_from_view = frame.previous_clip_from_view;
-  input.view_from_world = frame.view_from_world;
-  input.previous_view_from_world = frame.previous_view_from_world;
+  input.camera.previous_clip_from_view = frame.previous_clip_from_view;
+  input.camera.view_from_world = frame.view_from_world;
+  input.camera.previous_view_from_world = frame.previous_view_from_world;
   FrameConstants constants{};
   if (!fill_frame_constants(input, constants)) constants.flags |= 4; // no history
   return constants;
