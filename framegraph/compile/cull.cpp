@@ -173,6 +173,12 @@ struct Culler {
     }
   }
 
+  const char* state_of(PassId pass) const {
+    if (c.on[pass.value]) return "on";
+    const bool by_settings = c.graph->passes[pass.value].absence == PassDeclaration::Absence::none;
+    return by_settings ? "off with these settings" : "off: the graph has no profile";
+  }
+
   bool first_of_binding(const Use& use) const {
     const Use* before = &use - 1;
     return c.first_use[use.pass.value] == static_cast<uint32_t>(&use - c.uses.data()) ||
@@ -231,7 +237,7 @@ struct Culler {
         if (binding.resource == resource && counts(binding))
           diagnostic.related.emplace_back(c.graph->place_of(binding),
                                           fmt::format("'{}' writes it and is {}", c.name(PassId{i}),
-                                                      c.on[i] ? "on" : "off with these settings"));
+                                                      state_of(PassId{i})));
   }
 };
 

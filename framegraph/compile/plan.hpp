@@ -194,6 +194,7 @@ struct Reason {
     port_unbound,     // optional port a; nothing provides resource b
     always_otherwise, // port a has no history b to read: its `otherwise` stands in for it in every frame
     not_needed,       // culled
+    lacks_input_without_bounds, // in frames with empty bounds nobody writes its resource a
     // of a resource
     unbound,            // the host leaves this optional slot alone
     stands_for,         // a by another name, behind pass b, which is off

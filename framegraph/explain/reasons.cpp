@@ -49,6 +49,12 @@ struct Speaker {
 
   // With the values that its `when` asks for.
   std::string off() const {
+    const PassDeclaration& declared = graph.passes[reason.index];
+    if (declared.absence == PassDeclaration::Absence::no_profile)
+      return "off: its kind serves scattering, and the graph has no profile";
+    if (declared.absence == PassDeclaration::Absence::no_input)
+      return fmt::format("off: it reads '{}', which only passes that are off without a profile write",
+                         resource(declared.missing.value));
     std::vector<uint32_t> asked;
     std::vector<ExpressionId> left{graph.passes[reason.index].when};
     while (!left.empty()) {
@@ -138,6 +144,10 @@ struct Speaker {
     case Reason::Why::always_otherwise:
       return fmt::format("port '{}' reads its 'otherwise' in every frame: no pass that is on writes '{}'",
                          port(reason.index, reason.a), resource(reason.b));
+    case Reason::Why::lacks_input_without_bounds:
+      return fmt::format("left out in frames with empty bounds: it reads '{}', which only passes that serve "
+                         "scattering write",
+                         resource(reason.a));
     case Reason::Why::not_needed:
       return not_needed();
     case Reason::Why::unbound:

@@ -154,6 +154,14 @@ struct PassDeclaration { // what every compile reads comes first
   std::string name;
   std::string note;
   SourceLocation where;
+  // Why the pass is off whatever the settings are: the graph has no profile. `when` is never true then.
+  enum class Absence : uint8_t {
+    none,
+    no_profile, // its kind serves scattering
+    no_input    // only passes that are off for want of a profile write `missing`
+  };
+  Absence absence = Absence::none;
+  ResourceId missing;
 };
 
 struct Graph {

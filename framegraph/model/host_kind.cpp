@@ -119,6 +119,7 @@ HostKindDeclaration read_kind(const Document& document, NodeId node, Diagnostics
   kind.name = object.string("name").value_or("");
   kind.doc = object.string("doc", Need::optional).value_or("");
   kind.side_effects = object.boolean("side_effects", Need::optional).value_or(false);
+  kind.serves_scattering = object.boolean("serves_scattering", Need::optional).value_or(false);
   if (const NodeId ports = object.array("ports", 1, limits::host_kind_ports); ports.valid())
     for (const NodeId port : children(document, ports))
       kind.ports.push_back(read_port(document, port, diagnostics));
@@ -192,6 +193,7 @@ KindId HostKinds::add(HostKindDeclaration kind, KindRegistry& registry) {
   made.settings = kept.settings;
   made.dispatch = DispatchShape::host;
   made.side_effects = kept.declared.side_effects;
+  made.serves_scattering = kept.declared.serves_scattering;
   return registry.add(made);
 }
 
@@ -203,6 +205,7 @@ std::string write_host_kinds(const HostKinds& kinds) {
     json.open_object().member("name", kind.name);
     if (!kind.doc.empty()) json.member("doc", kind.doc);
     if (kind.side_effects) json.member("side_effects", true);
+    if (kind.serves_scattering) json.member("serves_scattering", true);
     json.key("ports").open_array();
     for (const HostKindPort& port : kind.ports) {
       json.open_object(true).member("name", port.name).member("usage", usage_info(port.usage).name);

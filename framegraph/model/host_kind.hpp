@@ -31,6 +31,7 @@ struct HostKindDeclaration {
   std::vector<HostKindPort> ports;
   std::vector<HostKindSetting> settings;
   bool side_effects = false;
+  bool serves_scattering = false;
 };
 
 namespace limits {

@@ -89,6 +89,7 @@ struct PassKind {
   std::span<const KindSetting> settings; // push constants: uint port_mask, then 4 bytes each in this order
   DispatchShape dispatch = DispatchShape::over_view;
   bool side_effects = false; // never culled
+  bool serves_scattering = false; // left out where nothing scatters
   // over_tiles: the integer setting that says which entry of the arguments counts, 16 bytes each; "": the
   // first.
   std::string_view arguments_entry = "";

@@ -60,6 +60,7 @@ Error make_device(const DeviceInput& input, Device& device) {
                         VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
   if (Error error = read_queue_family(input, device)) return error;
   device.features = input.features;
+  device.separate_depth_stencil = input.separate_depth_stencil;
   device.labels = input.labels;
   device.host_memory = input.host_memory;
   device.timings = input.timings && device.timestamp_valid_bits > 0;

@@ -51,6 +51,7 @@ struct DeviceInput { // all handles belong to the host and must outlive the Devi
   bool labels = false;                              // object names and debug labels; needs VK_EXT_debug_utils
   Features features = 0;                            // that the host enabled
   bool timings = false;                             // timestamps around each pass
+  bool separate_depth_stencil = false;              // separateDepthStencilLayouts is enabled
   HostMemory host_memory{};
 };
 
@@ -67,6 +68,7 @@ struct Device {
   Features features = 0;
   bool labels = false;
   bool timings = false; // asked for, and timestamp_valid_bits > 0
+  bool separate_depth_stencil = false;
   HostMemory host_memory{};
 };
 

@@ -72,6 +72,8 @@ enum class HistoryReason : uint8_t {
 };
 // Static string for people, for example "camera cut". Free-threaded.
 const char* history_reason_text(HistoryReason reason);
+// The same for a history that holds something again since then: "valid since a camera cut".
+const char* valid_since_text(HistoryReason lost);
 
 class HeapPool;
 class KernelStore;
@@ -182,10 +184,12 @@ struct FrameInput {
                                     // graph was before it was reloaded or resized. What both keep is copied
                                     // from it; it must live until the device has finished this frame
   bool reset_history = false;       // camera cut: histories with on_cut invalidate become invalid
-  // By plan pass, not 0: the pass does not run, only its barriers are recorded. Histories start anew in the
-  // frame after such a one. Shorter: the rest runs. What runs must not read what a pass that is left out
-  // would write.
+  // By plan pass, not 0: the pass does not run, only its barriers are recorded. Histories that it writes
+  // start anew in the frame after such a one. Shorter: the rest runs. What runs must not read what a pass
+  // that is left out would write.
   std::span<const uint8_t> left_out;
+  // By plan pass, bit i: port i of a pass of the host is not bound in this frame. Shorter: the rest is.
+  std::span<const uint32_t> unbound_ports;
   void* view_user = nullptr; // handed to passes of the host
   // For whoever wants the commands and no command buffer: its vkCmd... functions are called with
   // `command_buffer` instead of the device's, and passes of the host go to this function. Null: the device's,

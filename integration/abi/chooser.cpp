@@ -48,11 +48,11 @@ uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
       .level_groups[std::min<size_t>(static_cast<size_t>(pass.level), counters.level_groups.size() - 1)];
 }
 
-void count_groups(const choice::Outcome& outcome, std::span<const uint8_t> serve_scattering,
+void count_groups(const choice::Outcome& outcome, std::span<const uint8_t> without_bounds,
                   FrameChoice& frame) {
   const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles, frame.view_blocks);
   for (size_t p = 0; p < outcome.passes.size(); ++p) {
-    if (!outcome.passes[p].launches || (frame.left_out && serve_scattering[p] != 0)) continue;
+    if (!outcome.passes[p].launches || (frame.left_out && without_bounds[p] != 0)) continue;
     ++frame.dispatches;
     frame.groups += launched(outcome.passes[p], load, frame.counters);
   }
@@ -100,7 +100,7 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   const std::span times(chooser.times.data(), outcome.passes.size());
   frame.timed =
       executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
-  count_groups(outcome, program.variants[outcome.plan].serve_scattering, frame);
+  count_groups(outcome, program.variants[outcome.plan].left_out.passes, frame);
   if (!frame.left_out)
     frame.metered_ms =
         metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles, frame.view_blocks)).ms;

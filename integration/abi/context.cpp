@@ -60,8 +60,8 @@ dermis_result check_alive(const dermis_context_t& context, const char* function)
 
 namespace {
 
-constexpr uint32_t known_context_flags =
-    DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS | DERMIS_CONTEXT_RAY_QUERY;
+constexpr uint32_t known_context_flags = DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS |
+                                         DERMIS_CONTEXT_RAY_QUERY | DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL;
 
 dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   const auto null = [&](const char* field) {
@@ -158,6 +158,7 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   input.queue_family = desc.queue_family;
   input.labels = (desc.flags & DERMIS_CONTEXT_LABELS) != 0;
   if ((desc.flags & DERMIS_CONTEXT_RAY_QUERY) != 0) input.features |= bit_of(Feature::ray_query);
+  input.separate_depth_stencil = (desc.flags & DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL) != 0;
   input.timings = (desc.flags & DERMIS_CONTEXT_TIMINGS) != 0;
   input.host_memory = host_memory_of(context->device_allocator);
   if (const vulkan::Error error = vulkan::make_device(input, context->device))

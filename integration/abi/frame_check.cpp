@@ -1,6 +1,7 @@
 #include "integration/abi/frame_check.hpp"
 
 #include "integration/abi/memory_bindings.hpp"
+#include "integration/abi/shared_resources.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -242,7 +243,8 @@ dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis
   }
   if (const dermis_result result = check_memory_bindings(view, program, frame); result != DERMIS_OK)
     return result;
-  return check_complete(log, function, program);
+  if (const dermis_result result = check_complete(log, function, program); result != DERMIS_OK) return result;
+  return check_shared_resources(view, program);
 }
 
 // Clip space without the jitter: a picture shifted by `pixels` of `extent` is shifted by 2 pixels / extent
@@ -347,8 +349,11 @@ dermis_result fill_frame(const dermis_view_t& view, const Program& program, uint
   checked.input.before = before;
   checked.input.view_user = view.user;
   checked.history_invalid = history_invalid;
-  if (checked.bounds[2] == 0 || checked.bounds[3] == 0)
-    checked.input.left_out = program.variants[program.outcomes[outcome].plan].serve_scattering;
+  if (checked.bounds[2] == 0 || checked.bounds[3] == 0) {
+    const LeftOut& left_out = program.variants[program.outcomes[outcome].plan].left_out;
+    checked.input.left_out = left_out.passes;
+    checked.input.unbound_ports = left_out.unbound_ports;
+  }
   return DERMIS_OK;
 }
 

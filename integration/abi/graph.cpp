@@ -20,6 +20,24 @@ namespace {
 
 using Candidates = std::vector<std::shared_ptr<Program>>; // by view, the graph's own first
 
+// Reports each history of `program` that goes on from none of what the view recorded last. Under the view's
+// mutex.
+void tell_lost_histories(const dermis_view_t& view, const Program& program, vulkan::HistoryReason reason,
+                         Diagnostics& diagnostics) {
+  const Program& last = *view.running;
+  const vulkan::Executor& before = *last.current().executor;
+  const vulkan::Executor& executor = *program.current().executor;
+  const Plan& plan = program.current().compiled->plan;
+  for (uint32_t h = 0; h < plan.histories.size(); ++h) {
+    if (executor.history_state(h, false, &before).valid) continue;
+    const ResourceDeclaration& declared =
+        program.graph.resources[plan.resources[plan.histories[h].resource].declared.value];
+    diagnostics.add(
+        DiagnosticId::history_restarts, declared.where,
+        fmt::format("history '{}' starts anew: {}", declared.name, vulkan::history_reason_text(reason)));
+  }
+}
+
 // Builds for every view beside what runs. Nothing has changed for any of them yet.
 dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulkan::HistoryReason reason,
                                Diagnostics& diagnostics, Candidates& candidates) {
@@ -47,8 +65,13 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
   if (result != DERMIS_OK || diagnostics.has_errors())
     return result; // errors of profiles come from the caller
   size_t v = 0;
+  bool told = false; // views share the declarations: one of them speaks for all
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
+    if (!told && view.running && view.running->last_frame > 0) {
+      tell_lost_histories(view, *candidates[v], reason, diagnostics);
+      told = true;
+    }
     make_room(view.image_views, candidates[v]->slots.size());
     adopt(view.chooser, context.kinds, *candidates[v++]);
   });

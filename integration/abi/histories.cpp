@@ -77,7 +77,8 @@ dermis_result get_histories(const dermis_view_t& view, const char* function, uin
                       history.age = state.age;
                       history.reason = reason_of(state.lost);
                       history.settles_after = all[i].settles_after;
-                      history.text = vulkan::history_reason_text(state.lost);
+                      history.text = state.valid ? vulkan::valid_since_text(state.lost)
+                                                 : vulkan::history_reason_text(state.lost);
                       return history;
                     });
 }

@@ -80,6 +80,7 @@ dermis_result add(dermis_context_t& context, const dermis_pass_kind* given) {
   kind.name = text_of(desc.name);
   kind.doc = text_of(desc.doc);
   kind.side_effects = desc.side_effects != 0;
+  kind.serves_scattering = desc.serves_scattering != 0;
   if (const dermis_result result = read_ports(log, desc, kind); result != DERMIS_OK) return result;
   if (const dermis_result result = read_settings(log, desc, kind); result != DERMIS_OK) return result;
   return add_host_kind(context, std::move(kind), desc.record, desc.user);

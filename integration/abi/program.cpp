@@ -52,17 +52,6 @@ std::vector<bool> pinned_settings(const Graph& graph, const std::vector<HostSett
   return pinned;
 }
 
-void tell_lost_histories(const Program& program, vulkan::HistoryReason reason, Diagnostics& diagnostics) {
-  if (reason == vulkan::HistoryReason::first_frame) return;
-  const Plan& plan = program.current().compiled->plan;
-  for (const PlanHistory& history : plan.histories) {
-    const ResourceId declared = plan.resources[history.resource].declared;
-    diagnostics.add(DiagnosticId::history_restarts, program.graph.resources[declared.value].where,
-                    fmt::format("history '{}' starts anew: {}", program.graph.resources[declared.value].name,
-                                vulkan::history_reason_text(reason)));
-  }
-}
-
 // Asks the host once for each name.
 FileText open_file(ProgramInput& input, std::string_view name) {
   const auto known = input.included.find(name);
@@ -169,38 +158,6 @@ std::vector<Slot> slots_of(const Program& program) {
   return slots;
 }
 
-// Passes that serve scattering never run: without a profile there is nothing to scatter.
-void turn_scattering_off(Graph& graph, const KindRegistry& kinds) {
-  Expression never;
-  never.op = Expression::Op::literal;
-  never.literal = {SettingType::boolean, 0, 0.0};
-  const ExpressionId id{static_cast<uint32_t>(graph.expressions.size())};
-  graph.expressions.push_back(never);
-  for (PassDeclaration& pass : graph.passes)
-    if (subsurface::serves_scattering(kinds[pass.kind].name)) pass.when = id;
-}
-
-// A pass that serves scattering, or that none but such passes read.
-std::vector<uint8_t> serving_passes(const Plan& plan, const KindRegistry& kinds) {
-  std::vector<uint8_t> serving(plan.passes.size(), 1);
-  std::vector<uint8_t> wanted(plan.resources.size(), 0);
-  for (size_t r = 0; r < plan.resources.size(); ++r)
-    wanted[r] = plan.resources[r].slot >= 0;
-  for (size_t p = plan.passes.size(); p-- > 0;) {
-    const PlanPass& pass = plan.passes[p];
-    if (subsurface::serves_scattering(kinds[pass.kind].name)) continue;
-    const auto accesses = std::span(plan.accesses).subspan(pass.first_access, pass.access_count);
-    const bool needed = std::any_of(accesses.begin(), accesses.end(), [&](const PlanAccess& access) {
-      return (access.access & all_write_access) != 0 && wanted[access.resource] != 0;
-    });
-    if (!needed) continue;
-    serving[p] = 0;
-    for (const PlanAccess& access : accesses)
-      wanted[access.resource] = 1;
-  }
-  return serving;
-}
-
 } // namespace
 
 dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
@@ -267,9 +224,9 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
   candidate->outcomes = std::move(made->outcomes);
   for (CompiledPlan& compiled : made->plans) {
-    std::vector<uint8_t> serving = serving_passes(compiled.plan, context.kinds);
+    LeftOut left_out = left_out_without_bounds(context.kinds, compiled);
     candidate->variants.push_back(
-        {std::make_shared<const CompiledPlan>(std::move(compiled)), nullptr, false, std::move(serving)});
+        {std::make_shared<const CompiledPlan>(std::move(compiled)), nullptr, false, std::move(left_out)});
   }
   candidate->slots = slots_of(*candidate);
   make_room_for_bindings(*candidate);
@@ -280,7 +237,6 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
     return DERMIS_ERROR_SHADER;
   if (const vulkan::Error error = make_executors(context, input, history, *candidate->kernels, *candidate))
     return refused(context, error, diagnostics);
-  tell_lost_histories(*candidate, history, diagnostics);
   program = std::move(candidate);
   return DERMIS_OK;
 }
@@ -301,7 +257,7 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
   candidate->files = of.files;
   candidate->outcomes = of.outcomes;
   for (const Variant& variant : of.variants)
-    candidate->variants.push_back({variant.compiled, nullptr, false, variant.serve_scattering});
+    candidate->variants.push_back({variant.compiled, nullptr, false, variant.left_out});
   candidate->settings = of.settings;
   candidate->slots = of.slots;
   make_room_for_bindings(*candidate);

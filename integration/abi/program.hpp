@@ -9,6 +9,7 @@
 #include "framegraph/vulkan/heap_pool.hpp"
 #include "integration/abi/chooser.hpp"
 #include "integration/abi/context.hpp"
+#include "integration/abi/left_out.hpp"
 #include "integration/abi/shaders/runtime_shaders.hpp"
 #include "passes/subsurface/kernel_tables.hpp"
 
@@ -74,7 +75,7 @@ struct Variant {
   std::shared_ptr<const CompiledPlan> compiled; // of all views
   std::unique_ptr<vulkan::Executor> executor;
   bool recorded = false;                   // at least once
-  std::vector<uint8_t> serve_scattering{}; // by plan pass, 1: nothing to do where there is no subsurface
+  LeftOut left_out{};                      // in frames with empty bounds
 };
 
 // For one view: views of one graph share what was compiled and the pipelines, all the rest is their own.

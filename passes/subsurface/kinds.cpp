@@ -5,10 +5,6 @@
 
 namespace dermis::subsurface {
 
-bool serves_scattering(std::string_view kind) {
-  return kind != light_kind.name && kind != transmission_kind.name && kind != clear_kind.name;
-}
-
 KindRegistry make_kinds() {
   KindRegistry registry;
   for (const PassKind* kind : {&classify_kind,
@@ -56,6 +52,7 @@ KindRegistry make_kinds() {
                                &restir_spatial_kind}) {
     PassKind known = *kind;
     known.needs = needs_of(known.name);
+    known.serves_scattering = kind != &light_kind && kind != &transmission_kind && kind != &clear_kind;
     registry.add(known);
   }
   return registry;

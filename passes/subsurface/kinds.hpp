@@ -8,9 +8,6 @@ namespace dermis::subsurface {
 
 // Every kind a graph may use, in a fixed order. Thread: any.
 KindRegistry make_kinds();
-// Has a pass of this kind nothing to do where there is no subsurface? The others hand out pictures all the
-// same.
-bool serves_scattering(std::string_view kind);
 
 // Below this projected shape parameter d of the widest channel a pixel keeps its own light: 2.6 % of what
 // enters at the centre of a pixel leaves its square then (3.6 % the inscribed circle, 1 % the circumscribed

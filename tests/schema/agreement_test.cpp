@@ -352,7 +352,7 @@ TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
 
 TEST(Schema, OfPassKindsAgreesWithTheParserOnMutatedFiles) {
   const std::vector<json> files = {parse(R"({ "$schema": "x", "dermis_kinds": 1, "note": "n", "kinds": [
-        { "name": "studio.bloom", "doc": "d", "side_effects": true, "note": "n",
+        { "name": "studio.bloom", "doc": "d", "side_effects": true, "serves_scattering": true, "note": "n",
           "ports": [ { "name": "light", "usage": "sampled_image", "own_texels": true, "doc": "d", "note": "n" },
                      { "name": "glow", "usage": "storage_image_write", "optional": true } ],
           "settings": [ { "name": "level", "type": "real", "default": 1, "min": 0, "max": 4.5, "per": "frame", "unit": "px", "doc": "d" },

@@ -70,7 +70,8 @@ void read_when(GraphReader& reader, ObjectReader& object, PassDeclaration& pass)
 void read_otherwise(GraphReader& reader, ObjectReader& object, PassDeclaration& pass, bool writes_known) {
   const NodeId list = object.object("otherwise", Need::optional);
   if (!list.valid()) return;
-  if (!object.has("when")) {
+  const bool serves = pass.kind.valid() && reader.kinds[pass.kind].serves_scattering;
+  if (!object.has("when") && !serves) { // kinds that serve scattering are off without a profile, too
     reader.error(
         DiagnosticId::bad_otherwise, reader.document.where_key(list),
         fmt::format("{} has no 'when', so it is never off and 'otherwise' never applies", object.what()));

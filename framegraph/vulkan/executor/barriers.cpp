@@ -15,6 +15,21 @@ bool foreign(const Device& device, uint32_t queue_family) {
   return queue_family != VK_QUEUE_FAMILY_IGNORED && queue_family != device.queue_family;
 }
 
+bool is_depth_only(VkImageLayout layout) {
+  return layout == VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL ||
+         layout == VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
+}
+
+// Aspects of a host's image that change their layout. Passes see only depth: stencil stays as it is where
+// layouts of both may differ, and else moves with depth and comes back in after.layout.
+VkImageAspectFlags host_aspects(const Device& device, Format format, const HostImage& host) {
+  const VkImageAspectFlags all = barrier_aspects(format);
+  if ((all & VK_IMAGE_ASPECT_STENCIL_BIT) == 0) return all;
+  const bool separate =
+      device.separate_depth_stencil || is_depth_only(host.before.layout) || is_depth_only(host.after.layout);
+  return separate ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT} : all;
+}
+
 struct Scopes {
   VkPipelineStageFlags2 source_stages, destination_stages;
   VkAccessFlags2 source_access, destination_access;
@@ -192,7 +207,7 @@ void add_host_barrier(State& state, const FrameInput& frame, const PlanResource&
   switch (resource.type) {
   case ResourceType::image:
     state.image_barriers[batch.images++] =
-        host_barrier(frame.images[slot], barrier_aspects(resource.format), s);
+        host_barrier(frame.images[slot], host_aspects(*state.device, resource.format, frame.images[slot]), s);
     break;
   case ResourceType::buffer:
     state.buffer_barriers[batch.buffers++] = host_barrier(frame.buffers[slot], s);

@@ -32,6 +32,25 @@ const char* history_reason_text(HistoryReason reason) {
   return "unknown";
 }
 
+const char* valid_since_text(HistoryReason lost) {
+  switch (lost) {
+  case HistoryReason::cut:
+    return "valid since a camera cut";
+  case HistoryReason::resized:
+    return "valid since the view was resized";
+  case HistoryReason::reloaded:
+    return "valid since the graph was reloaded";
+  case HistoryReason::switched:
+    return "valid since frames ran with another plan";
+  case HistoryReason::left_out:
+    return "valid since a frame ran without the passes that write it";
+  case HistoryReason::valid:
+  case HistoryReason::first_frame:
+    break;
+  }
+  return "valid since its first frame";
+}
+
 uint32_t access_now(const State& state, const PortAccess& port) noexcept {
   if (port.history == no_index) return port.access;
   const bool valid = state.histories[port.history].age >= state.plan.accesses[port.access].frames_back;

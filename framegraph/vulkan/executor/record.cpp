@@ -216,6 +216,22 @@ bool is_left_out(const FrameInput& frame, size_t p) {
   return p < frame.left_out.size() && frame.left_out[p] != 0;
 }
 
+// Histories of which pass `p` writes this frame: it did not.
+void forget_written(State& state, size_t p) {
+  const PlanPass& pass = state.plan.passes[p];
+  for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+    const PlanAccess& access = state.plan.accesses[a];
+    if (access.frames_back != 0 || (access.access & all_write_access) == 0) continue;
+    for (size_t h = 0; h < state.histories.size(); ++h) {
+      if (state.plan.histories[h].resource != access.resource) continue;
+      forget(state.histories[h], HistoryReason::left_out);
+      const PlanResource& resource = state.plan.resources[access.resource];
+      for (uint32_t i = 0; resource.first_instance != no_instance && i < resource.instance_count; ++i)
+        state.instances[resource.first_instance + i].ready = false;
+    }
+  }
+}
+
 void run_pass(State& state, const FrameInput& frame, uint32_t frame_slot, size_t p,
               const Rectangle& rectangle) {
   if (state.passes[p].host.valid())
@@ -295,8 +311,8 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   record_counters_to_host(state, frame);
   record_releases(state, frame);
   finish_frame(state, frame, frame_slot, rectangle);
-  if (std::any_of(frame.left_out.begin(), frame.left_out.end(), [](uint8_t left) { return left != 0; }))
-    forget_histories(state, HistoryReason::left_out);
+  for (size_t p = 0; p < state.passes.size(); ++p)
+    if (is_left_out(frame, p)) forget_written(state, p);
   return {};
 }
 

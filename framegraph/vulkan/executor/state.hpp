@@ -151,6 +151,8 @@ struct Timestamps {
   uint32_t per_frame = 0;              // passes + 1
   std::vector<uint64_t> frame_of_slot; // 0: nothing recorded there
   std::vector<uint64_t> ticks;         // room for reading one frame
+  std::vector<uint64_t> kept;          // ticks of the newest frame whose queries were reused
+  uint64_t kept_frame = 0;             // its index; 0: none
 };
 
 struct BeforeFrame { // what recording the last frame changed: see Executor::discard_frame

@@ -2,7 +2,31 @@
 // passes, their barriers included, add up to the time of the plan.
 #include "framegraph/vulkan/executor/state.hpp"
 
+#include <algorithm>
+
 namespace dermis::vulkan {
+namespace {
+
+VkResult read_ticks(const State& state, uint32_t frame_slot, std::vector<uint64_t>& ticks) noexcept {
+  const Timestamps& t = state.timestamps;
+  return state.device->vk.vkGetQueryPoolResults(state.device->device, t.pool, frame_slot * t.per_frame,
+                                                t.per_frame, t.per_frame * sizeof(uint64_t), ticks.data(),
+                                                sizeof(uint64_t), VK_QUERY_RESULT_64_BIT);
+}
+
+// The device has finished the frame that had these queries before: its times stay readable after the reset.
+void keep_ticks(State& state, uint32_t frame_slot) noexcept {
+  Timestamps& t = state.timestamps;
+  const uint64_t frame = t.frame_of_slot[frame_slot];
+  if (frame == 0) return;
+  const VkResult result = read_ticks(state, frame_slot, t.ticks);
+  if (result == VK_ERROR_DEVICE_LOST) state.saw_lost_device = true;
+  if (result != VK_SUCCESS) return;
+  t.kept.swap(t.ticks);
+  t.kept_frame = frame;
+}
+
+} // namespace
 
 Error create_timestamps(State& state) {
   const Device& device = *state.device;
@@ -11,6 +35,7 @@ Error create_timestamps(State& state) {
   t.per_frame = static_cast<uint32_t>(state.passes.size()) + 1;
   t.frame_of_slot.assign(state.frames_in_flight, 0);
   t.ticks.assign(t.per_frame, 0);
+  t.kept.assign(t.per_frame, 0);
   VkQueryPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
   info.queryType = VK_QUERY_TYPE_TIMESTAMP;
@@ -23,6 +48,7 @@ Error create_timestamps(State& state) {
 void begin_timestamps(State& state, VkCommandBuffer commands, uint32_t frame_slot) noexcept {
   Timestamps& t = state.timestamps;
   if (t.pool == VK_NULL_HANDLE) return;
+  keep_ticks(state, frame_slot);
   state.commands->vkCmdResetQueryPool(commands, t.pool, frame_slot * t.per_frame, t.per_frame);
   write_timestamp(state, commands, frame_slot, 0);
 }
@@ -45,13 +71,17 @@ bool Executor::read_timings(uint64_t completed_frame_index, uint64_t& frame_inde
     if (recorded == 0 || recorded > completed_frame_index) continue;
     if (newest == no_index || recorded > t.frame_of_slot[newest]) newest = slot;
   }
-  if (newest == no_index) return false;
+  const bool kept = t.kept_frame != 0 && t.kept_frame <= completed_frame_index &&
+                    (newest == no_index || t.frame_of_slot[newest] < t.kept_frame);
+  if (kept) {
+    std::copy(t.kept.begin(), t.kept.end(), t.ticks.begin());
+  } else {
+    if (newest == no_index) return false;
+    const VkResult result = read_ticks(state, newest, t.ticks);
+    if (result == VK_ERROR_DEVICE_LOST) state.saw_lost_device = true;
+    if (result != VK_SUCCESS) return false;
+  }
   const Device& device = *state.device;
-  const VkResult result = device.vk.vkGetQueryPoolResults(
-      device.device, t.pool, newest * t.per_frame, t.per_frame, t.per_frame * sizeof(uint64_t),
-      t.ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT);
-  if (result == VK_ERROR_DEVICE_LOST) state.saw_lost_device = true;
-  if (result != VK_SUCCESS) return false;
   constexpr uint32_t all_bits = 64;
   const uint64_t mask = device.timestamp_valid_bits >= all_bits
                             ? ~uint64_t{0}
@@ -61,7 +91,7 @@ bool Executor::read_timings(uint64_t completed_frame_index, uint64_t& frame_inde
     const uint64_t ticks = (t.ticks[p + 1] - t.ticks[p]) & mask; // right across a wrap, too
     timings[p] = {state.passes[p].name, static_cast<uint64_t>(static_cast<double>(ticks) * period)};
   }
-  frame_index = t.frame_of_slot[newest];
+  frame_index = kept ? t.kept_frame : t.frame_of_slot[newest];
   return true;
 }
 

@@ -20,7 +20,9 @@
  *   Before dermis_graph_record each bound image is in `before.layout` and was last touched by `before.stages` and
  *   `before.access`. At the end of the recorded commands it is in `after.layout`, visible to `after.stages` and
  *   `after.access`. If `after` equals `before` you get the image back as you gave it. Images are not touched
- *   outside of their bindings. Depth images are judged by their format. The same holds for buffers and acceleration
+ *   outside of their bindings. Depth images are judged by their format. Of a combined depth-stencil image both aspects
+ *   are in `before.layout` and come back in `after.layout`, unless one of these is a depth-only layout or the context has
+ *   DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL: then only depth moves, and stencil is not touched. The same holds for buffers and acceleration
  *   structures, without layouts.
  *
  * STRUCTS
@@ -220,6 +222,9 @@ typedef struct dermis_device_allocator {
 #define DERMIS_CONTEXT_LABELS 0x2u  /* debug labels and object names; needs VK_EXT_debug_utils enabled */
 #define DERMIS_CONTEXT_RAY_QUERY 0x4u /* the device was created with VK_KHR_ray_query and VK_KHR_acceleration_structure and
                                          their features: options that require "ray_query" are offered */
+
+#define DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL 0x8u /* the device was created with separateDepthStencilLayouts: of combined
+                                                      depth-stencil images only the depth aspect changes its layout */
 
 typedef struct dermis_context_desc {
   size_t struct_size;
@@ -455,7 +460,7 @@ typedef struct dermis_history {
   dermis_history_reason reason; /* why it is not valid; where it is, why it was not when it last was not */
   uint32_t settles_after;       /* frames after a change of a profile or of light until at most 1 % of the history
                                    is from before the change, by the weights that are set. 1: the last frame only */
-  const char* text;             /* the reason for people; static string */
+  const char* text;             /* the reason for people; of a valid one "valid since ..."; static string */
 } dermis_history;
 #define DERMIS_HISTORY_INIT {sizeof(dermis_history), NULL, 0, 0, DERMIS_HISTORY_NEVER_WRITTEN, 0, NULL}
 
@@ -690,7 +695,8 @@ typedef struct dermis_pass_kind {
   uint32_t port_count;    /* 1..32 */
   uint32_t setting_count; /* 0..32 */
   uint32_t side_effects;  /* 1: passes of this kind run though nobody reads what they write */
-  uint32_t reserved;      /* 0 */
+  uint32_t serves_scattering; /* 1: left out where nothing scatters: without profiles, and in frames with empty bounds.
+                                 0: runs there, too, unless only passes that are left out write what it has to read */
   dermis_pass_fn record;
   void* user;             /* given to `record` */
 } dermis_pass_kind;
@@ -721,6 +727,9 @@ typedef struct dermis_image_state {
   uint32_t transfer;       /* 0: no queue family ownership transfer; 1: between queue_family and the context's family */
 } dermis_image_state;
 
+/* Two slots of a frame may be bound to the same aspect and layers of an image, bytes of a buffer or acceleration structure
+ * only if the graph writes neither slot (dermis_slot.written), their states are equal and transfer nothing, and, of images,
+ * `before.layout` and `after.layout` are dermis_slot.best_layout. Depth and stencil of an image are different aspects. */
 typedef struct dermis_image_binding {
   size_t struct_size;
   uint32_t slot;          /* dermis_slot.id */

@@ -75,7 +75,7 @@ TEST_F(Histories, GrowOlderFrameByFrameAndRememberACut) {
   make(keeping("burley"));
   expect(0, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
   run(3);
-  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   run(1, DERMIS_FRAME_RESET_HISTORY);
   expect(1, DERMIS_HISTORY_CUT, "camera cut"); // what the cut's own frame wrote
   run(2);
@@ -88,14 +88,14 @@ TEST_F(Histories, GoOnOverAReloadAndARescaledSizeButNotOverAnother) {
   const std::string text = read_text("configs/graphs/burley.json");
   const dermis_source source = source_of(text, "graph.json");
   ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
-  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   run(1);
-  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   ASSERT_EQ(dermis_graph_resize(graph, 48, 40, nullptr), DERMIS_OK) << dermis_last_error();
-  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   make_images(graph);
   run(1);
-  expect(4, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  expect(4, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 
   make(keeping("burley", "invalidate"));
   run(2);
@@ -104,6 +104,19 @@ TEST_F(Histories, GoOnOverAReloadAndARescaledSizeButNotOverAnother) {
   make_images(graph);
   run(1);
   expect(1, DERMIS_HISTORY_RESIZED, "resized");
+}
+
+TEST_F(Histories, ThatGoOnAreNotReportedAsNew) {
+  make(keeping("burley"));
+  run(2);
+  dermis_report report = nullptr;
+  ASSERT_EQ(dermis_graph_resize(graph, 48, 40, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(take(report).names, testing::Not(testing::Contains("history_restarts")));
+  make(keeping("burley", "invalidate"));
+  run(2);
+  ASSERT_EQ(dermis_graph_resize(graph, 48, 40, &report), DERMIS_OK) << dermis_last_error();
+  const Said said = take(report);
+  EXPECT_EQ(std::count(said.names.begin(), said.names.end(), "history_restarts"), 2);
 }
 
 TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
@@ -146,7 +159,7 @@ TEST_F(Histories, OfAPlanThatDidNotRunAreInvalid) {
   make(keeping("skin", "rescale", "technique == 'sap'"));
   expect(0, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
   run(2);
-  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.milliseconds = 1e-4f; // too little for anything: what is fastest, which keeps no light
   budget.flags = DERMIS_BUDGET_METER;
@@ -173,7 +186,7 @@ TEST_F(Histories, ADiscardedFrameNeverWas) {
   EXPECT_FALSE(ran);
   expect(1, DERMIS_HISTORY_CUT, "camera cut");
   ASSERT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_OK) << dermis_last_error();
-  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
 TEST_F(Histories, OfAViewAreItsOwn) {
@@ -187,7 +200,7 @@ TEST_F(Histories, OfAViewAreItsOwn) {
   EXPECT_EQ(count, 2u);
   EXPECT_STREQ(first.name, "past");
   EXPECT_EQ(first.age, 0u);
-  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
 TEST_F(Histories, AGraphWithoutAnyTellsNone) {

@@ -55,6 +55,23 @@ TEST_F(InFlight, AReplacedProgramLivesUntilTheDeviceHasFinishedItsFrames) {
   // TearDown asks the validation layer, which knows when an object in use was destroyed.
 }
 
+TEST_F(InFlight, TimesOutliveTheReuseOfTheirQueries) {
+  const dermis_graph graph = make_graph();
+  ASSERT_NE(graph, nullptr);
+  make_images(graph);
+  const auto bound = bindings(graph);
+  std::array<dermis_pass_timing, 16> times{};
+  times[0].struct_size = sizeof times[0];
+  for (uint64_t index = 1; index <= 5; ++index) {
+    run(graph, bound, index);
+    if (index < 3) continue;
+    uint32_t count = 16;
+    ASSERT_EQ(dermis_graph_timings(graph, index - 2, &count, times.data()), DERMIS_OK);
+    EXPECT_EQ(times[0].frame_index, index - 2);
+    EXPECT_GT(times[0].nanoseconds, 0u);
+  }
+}
+
 TEST_F(InFlight, FramesFollowEachOtherWithoutWaiting) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);

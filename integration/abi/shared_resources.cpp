@@ -1,0 +1,79 @@
+#include "integration/abi/shared_resources.hpp"
+
+#include <limits>
+
+namespace dermis::abi {
+namespace {
+
+bool same(const vulkan::HostState& a, const vulkan::HostState& b) {
+  return a.layout == b.layout && a.queue_family == b.queue_family && a.stages == b.stages &&
+         a.access == b.access;
+}
+
+bool moves(const vulkan::HostState& state) {
+  return state.queue_family != VK_QUEUE_FAMILY_IGNORED;
+}
+
+// Only reads, equal states and no ownership transfer: whatever has no layout may be shared then.
+template <class Host> bool only_read(const Slot& a, const Host& x, const Slot& b, const Host& y) {
+  return !a.written && !b.written && same(x.before, y.before) && same(x.after, y.after) && !moves(x.before) &&
+         !moves(x.after);
+}
+
+uint64_t end_of_layers(const vulkan::HostImage& image) {
+  return image.layers == 0 ? std::numeric_limits<uint64_t>::max()
+                           : uint64_t{image.first_layer} + image.layers;
+}
+
+// Slots of depth formats see the depth aspect, all others do not.
+bool overlap(const Slot& a, const vulkan::HostImage& x, const Slot& b, const vulkan::HostImage& y) {
+  return x.image == y.image && format_info(a.format).depth == format_info(b.format).depth &&
+         x.first_layer < end_of_layers(y) && y.first_layer < end_of_layers(x);
+}
+
+bool may_share(const Slot& a, const vulkan::HostImage& x, const Slot& b, const vulkan::HostImage& y) {
+  const auto rests = [&](const Slot& slot) {
+    const auto used = static_cast<VkImageLayout>(slot.first_layout);
+    return x.before.layout == used && x.after.layout == used;
+  };
+  return only_read(a, x, b, y) && rests(a) && rests(b);
+}
+
+bool overlap(const vulkan::HostBuffer& x, const vulkan::HostBuffer& y) {
+  return x.buffer == y.buffer && x.offset < y.offset + y.bytes && y.offset < x.offset + x.bytes;
+}
+
+dermis_result check_pair(const dermis_view_t& view, const Program& program, size_t i, size_t j) {
+  const Slot &a = program.slots[i], &b = program.slots[j];
+  const auto refuse = [&](const char* what, const char* rule) {
+    return bad_argument(view.context->log, "{}: slots '{}' and '{}' are bound to the same {}; {}",
+                        record_function(view), a.name, b.name, what, rule);
+  };
+  const vulkan::HostImage &image = program.images[i], &other_image = program.images[j];
+  if (image.image != VK_NULL_HANDLE && overlap(a, image, b, other_image) &&
+      !may_share(a, image, b, other_image))
+    return refuse("aspect and layers of an image",
+                  "two slots share them only if the graph writes neither, their states are equal without a "
+                  "queue family transfer, and both layouts are dermis_slot.best_layout");
+  const vulkan::HostBuffer &buffer = program.buffers[i], &other_buffer = program.buffers[j];
+  if (buffer.buffer != VK_NULL_HANDLE && overlap(buffer, other_buffer) &&
+      !only_read(a, buffer, b, other_buffer))
+    return refuse("bytes of a buffer", "two slots share them only if the graph writes neither and their "
+                                       "states are equal without a queue family transfer");
+  const vulkan::HostStructure &structure = program.structures[i], &other = program.structures[j];
+  if (structure.structure != VK_NULL_HANDLE && structure.structure == other.structure &&
+      !only_read(a, structure, b, other))
+    return refuse("acceleration structure", "two slots share it only if their states are equal");
+  return DERMIS_OK;
+}
+
+} // namespace
+
+dermis_result check_shared_resources(const dermis_view_t& view, const Program& program) {
+  for (size_t i = 0; i < program.slots.size(); ++i)
+    for (size_t j = i + 1; j < program.slots.size(); ++j)
+      if (const dermis_result result = check_pair(view, program, i, j); result != DERMIS_OK) return result;
+  return DERMIS_OK;
+}
+
+} // namespace dermis::abi

@@ -1,0 +1,73 @@
+// One image or buffer of the host in two slots of a frame.
+
+#include "tests/integration/embedding/recorded_frame.hpp"
+
+#include <gmock/gmock.h>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct SharedImages : RecordedFrame {
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  std::vector<dermis_image_binding> bindings;
+
+  void SetUp() override {
+    RecordedFrame::SetUp();
+    frame = host.frame_at(2);
+    bindings.assign(frame.bindings, frame.bindings + frame.binding_count);
+    frame.bindings = bindings.data();
+  }
+  dermis_image_binding& slot(std::string_view name) {
+    uint32_t count = 64;
+    std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
+    EXPECT_EQ(dermis_graph_slots(host.graph, &count, slots.data()), DERMIS_OK);
+    for (uint32_t i = 0; i < count; ++i)
+      if (slots[i].name == name)
+        for (dermis_image_binding& binding : bindings)
+          if (binding.slot == slots[i].id) return binding;
+    ADD_FAILURE() << name;
+    return bindings.front();
+  }
+  void refused(const char* a, const char* b) {
+    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(a), HasSubstr(b), HasSubstr("bound to the same")));
+  }
+  void recorded() {
+    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_OK) << dermis_last_error();
+    ++frame.frame_index;
+    ++frame.completed_frame_index;
+  }
+};
+
+TEST_F(SharedImages, AreRefusedWithBothSlotsWhereTheyAreMoved) {
+  slot("albedo").image = slot("scatter_scale").image;
+  refused("'albedo'", "'scatter_scale'"); // read in another layout than the states'
+  slot("albedo").image = slot("lighting").image;
+  refused("'albedo'", "'lighting'");
+}
+
+TEST_F(SharedImages, ThatRestWhereTheyAreReadAreAccepted) {
+  for (const char* name : {"albedo", "scatter_scale"})
+    slot(name).before.layout = slot(name).after.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  slot("albedo").image = slot("scatter_scale").image;
+  recorded();
+  slot("albedo").before.access = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  refused("'albedo'", "'scatter_scale'");
+}
+
+TEST_F(SharedImages, WithOtherLayersOrAnotherAspectAreOthers) {
+  slot("albedo").image = slot("lighting").image;
+  slot("albedo").layer = 1;
+  slot("albedo").layer_count = 1;
+  refused("'albedo'", "'lighting'"); // all layers of lighting
+  slot("lighting").layer_count = 1;
+  recorded();
+  slot("lighting").layer_count = 2;
+  refused("'albedo'", "'lighting'");
+}
+
+} // namespace
+} // namespace dermis::abi_test
