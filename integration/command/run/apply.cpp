@@ -10,6 +10,7 @@
 #include "integration/command/run/device_graph.hpp"
 #include "integration/command/run/host_passes.hpp"
 #include "integration/command/run/pass_times.hpp"
+#include "integration/command/run/surface_warnings.hpp"
 #include "integration/files/exr.hpp"
 
 #include <fmt/format.h>
@@ -127,7 +128,7 @@ demo::Result<> apply_frame(Run& run, const CapturedFrame& frame, const std::stri
   return write_frame(frame, name, *run.device, out);
 }
 
-ExitCode report(const Run& run, const CapturedSequence& sequence) {
+ExitCode report(const Run& run, const CapturedSequence& sequence, const Diagnostics& surfaces) {
   if (!run.times.empty())
     say(run.session, format_times(run.times, run.all_runs == 1 ? std::string("pass") + first_frame : "pass"));
   say(run.session,
@@ -139,7 +140,8 @@ ExitCode report(const Run& run, const CapturedSequence& sequence) {
     answer.member("frames", static_cast<uint64_t>(sequence.folders.size())).member("out", run.options.out);
     answer.member("sanitised_values", sequence.sanitised_values).key("passes");
     write_times(answer, run.times);
-    answer.member("device_ms", run.times.total()).close();
+    answer.member("device_ms", run.times.total());
+    answer.key("diagnostics").json(format_as_json(surfaces)).close();
     print(std::move(answer).finish());
   }
   return ExitCode::ok;
@@ -168,15 +170,18 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
   run.hooks = host_passes.hooks();
   run.all_runs = sequence->folders.size() * uint64_t{options.repeat};
   Progress progress(progress_style(session.quiet, session.json), "apply", "frame", sequence->folders.size());
+  Diagnostics surfaces; // of the sequence, each warning once
   for (size_t i = 0; i < sequence->folders.size(); ++i) {
     const std::optional<CapturedFrame> frame = load_frame(*sequence, i);
     if (!frame) return fail(session, ExitCode::problems, "the capture changed while it was read");
+    warn_of_surfaces(*frame, surfaces);
     const auto done = apply_frame(run, *frame, sequence->names[i], out);
     if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
     if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
     progress.update(i + 1);
   }
-  return report(run, *sequence);
+  print_diagnostics(session, surfaces);
+  return report(run, *sequence, surfaces);
 }
 
 } // namespace dermis::tools

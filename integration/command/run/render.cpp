@@ -9,6 +9,7 @@
 #include "integration/command/run/host_passes.hpp"
 #include "integration/command/run/pass_times.hpp"
 #include "integration/command/run/rendered_frame.hpp"
+#include "integration/command/run/surface_warnings.hpp"
 #include "integration/command/run/truth_run.hpp"
 #include "integration/command/trace/trace.hpp"
 #include "integration/demo_engine/files.hpp"
@@ -56,6 +57,7 @@ struct Run {
   Trace trace{};
   bool transmission = false; // the graph adds light from behind before it scatters
   bool by_rays = false;      // the last frame scattered by rays, which see more than the screen
+  Diagnostics surfaces{};    // warnings of frames, each once
 };
 
 demo::Result<> start(Run& run, const demo::RenderInfo& info) {
@@ -143,6 +145,7 @@ demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
   if (auto written = write_pictures(run, frame); !written) return written;
   auto captured = captured_frame(frame, run.profiles);
   if (!captured) return captured.error();
+  warn_of_surfaces(*captured, run.surfaces);
   std::string problem;
   if (!run.options.capture.empty() && !run.capture.add(*captured, problem)) return cannot_write(problem);
 
@@ -236,7 +239,7 @@ ExitCode report(Run& run) {
     write_times(answer.key("engine_passes"), run.host_times);
     answer.member("device_ms", run.graph_times.total()).key("error").json(error_json);
     run.choices.write(answer.key("choices"));
-    answer.key("credits").open_array();
+    answer.key("diagnostics").json(format_as_json(run.surfaces)).key("credits").open_array();
     for (const std::string& credit : run.info.credits)
       answer.value(credit);
     answer.close().close();
@@ -329,6 +332,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   if (!options.trace.empty())
     problem = deliver_text(options.trace, run.trace.json(session.command, run.info.device));
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+  print_diagnostics(session, run.surfaces);
   return report(run);
 }
 

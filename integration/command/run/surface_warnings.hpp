@@ -1,0 +1,25 @@
+#pragma once
+// Warns of frames whose surfaces the techniques do not filter correctly yet: pixels that are not square, and
+// dithered surfaces (docs/limits.md).
+
+#include "framegraph/text/diagnostic.hpp"
+#include "integration/files/capture.hpp"
+
+namespace dermis::tools {
+
+// Longer side of a pixel over the shorter one; 1: square.
+double pixel_aspect(const subsurface::PixelRays& rays);
+inline constexpr double largest_square_aspect = 1.05; // beyond, errors grow visibly
+
+// Fraction (0..1) of the 8x8 tiles with subsurface that show a dithered surface: an eighth of the tile's pixels
+// and more lie between two neighbours, along a row or a column, that are both nearer or both farther by more
+// than steepest_slope pixel sides.
+double dithered_tiles(const CapturedFrame& frame);
+inline constexpr double steepest_slope = 6.6;         // of one surface: the cap of its patches, cos 0.15
+inline constexpr double largest_folded_tiles = 0.02; // thin parts and folds of heads flag fewer
+
+// Adds D0508 and D0509 where they apply and `diagnostics` does not hold them yet, so that one list for a
+// sequence gets each of them once. True if it added one.
+bool warn_of_surfaces(const CapturedFrame& frame, Diagnostics& diagnostics);
+
+} // namespace dermis::tools
