@@ -46,6 +46,7 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   Program& program = *view.running;
   if (!program.variants[recorded.variant].executor->discard_frame(frame_index))
     return bad_argument(log, "{}: frame {} was not recorded", function, frame_index);
+  program.variants[recorded.variant].recorded = recorded.variant_recorded;
   program.last_frame = recorded.program_last_frame;
   program.last_jitter_px = recorded.last_jitter_px;
   program.outcome = recorded.outcome;
@@ -136,6 +137,7 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   view.recorded.last_jitter_px = jitter_before;
   view.recorded.outcome = program.outcome;
   view.recorded.variant = variant;
+  view.recorded.variant_recorded = program.variants[variant].recorded;
   view.recorded.decision = chooser.state;
   view.recorded.decided_for = chooser.decided_for;
   if (replaces) view.running->last_frame = frame.frame_index; // whose histories it copies

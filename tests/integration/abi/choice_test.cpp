@@ -4,6 +4,7 @@
 #include "passes/subsurface/environment.hpp"
 #include "passes/subsurface/profile.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
+#include "tests/integration/abi/invented_times.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,24 +15,6 @@ namespace dermis::abi_test {
 namespace {
 
 using testing::HasSubstr;
-
-// Times that no device has, so that what is chosen is known: 1 ms a dispatch of the pyramid, less for the
-// rest.
-constexpr const char* invented_times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
-  { "work": "subsurface.sap_up level=1 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_up level=1 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_up_layered level=2 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_up_layered level=2 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.separable axis=horizontal taps=25 kernel=fitted", "base_us": 1000, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.separable axis=horizontal taps=11 kernel=fitted", "base_us": 400, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.classify", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.tile_list", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.setup texturing=post", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_setup texturing=post storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_down level=1 storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_down_layered level=2 storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_gather variant=smooth storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.combine texturing=post result=color", "base_us": 100, "group_us": 0, "spread": 0 } ] })";
 
 struct Choice : DermisTest {
   dermis_graph graph = nullptr;

@@ -10,8 +10,8 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr uint32_t side = 64;
-constexpr size_t pixels = size_t{side} * side;
+constexpr uint32_t image_side = 64;
+constexpr size_t image_pixels = size_t{image_side} * image_side;
 
 struct InputFormats : DermisTest {
   static GraphOptions options_of(const std::string& graph) {
@@ -56,8 +56,8 @@ float albedo_at(uint32_t x, uint32_t y, uint32_t c) {
 
 std::vector<float> image_of(const std::function<float(uint32_t, uint32_t, uint32_t)>& value) {
   std::vector<float> texels;
-  for (uint32_t y = 0; y < side; ++y)
-    for (uint32_t x = 0; x < side; ++x)
+  for (uint32_t y = 0; y < image_side; ++y)
+    for (uint32_t x = 0; x < image_side; ++x)
       for (uint32_t c = 0; c < 4; ++c)
         texels.push_back(c == 3 ? 1.0f : value(x, y, c));
   return texels;
@@ -86,8 +86,8 @@ TEST_P(Demodulation, KeepsTextureUnderEvenLight) {
   const auto textured = [](uint32_t x, uint32_t y, uint32_t c) { return 0.5f * albedo_at(x, y, c); };
   upload("lighting", image_of(textured));
   const std::vector<float> shown = picture(graph);
-  for (uint32_t y = 0, i = 0; y < side; ++y)
-    for (uint32_t x = 0; x < side; ++x)
+  for (uint32_t y = 0, i = 0; y < image_side; ++y)
+    for (uint32_t x = 0; x < image_side; ++x)
       for (uint32_t c = 0; c < 3; ++c, ++i) {
         ASSERT_NEAR(shown[i], textured(x, y, c), 0.5f * 0x1p-10f) << x << " " << y << " " << c;
       }
@@ -95,7 +95,7 @@ TEST_P(Demodulation, KeepsTextureUnderEvenLight) {
 
 // Lighting times albedo with `demodulate` shows what irradiance shows with `post`.
 TEST_P(Demodulation, EqualsIrradianceTexturedAfterwards) {
-  const auto irradiance = [](uint32_t x, uint32_t, uint32_t) { return x < side / 2 ? 1.0f : 0.25f; };
+  const auto irradiance = [](uint32_t x, uint32_t, uint32_t) { return x < image_side / 2 ? 1.0f : 0.25f; };
   const auto albedo = [](uint32_t x, uint32_t y, uint32_t) { return albedo_at(x, y, 0); };
   dermis_graph graph = graph_with_albedo("post");
   upload("albedo", image_of(albedo));
@@ -134,8 +134,8 @@ TEST_F(InputFormats, LightingMayBeB10g11r11) {
 
 std::vector<float> striped_ids() { // profile 1, none, and one of which no profile was given
   std::vector<float> ids;
-  for (uint32_t i = 0; i < pixels; ++i)
-    ids.push_back(static_cast<float>(i % side / 24));
+  for (uint32_t i = 0; i < image_pixels; ++i)
+    ids.push_back(static_cast<float>(i % image_side / 24));
   return ids;
 }
 
@@ -204,7 +204,7 @@ struct IdExtraction : InputFormats {
       const std::array<int32_t, 2> field{first_bit, bits};
       host->vk.vkCmdPushConstants(commands, info.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof field,
                                   field.data());
-      host->vk.vkCmdDispatch(commands, side / 8, side / 8, 1);
+      host->vk.vkCmdDispatch(commands, image_side / 8, image_side / 8, 1);
       demo::transition(*host, commands, material, written, at_rest);
       return demo::success();
     });
@@ -218,7 +218,7 @@ struct IdExtraction : InputFormats {
     make_images(make_graph(options_of("burley")));
     demo::ImageDesc desc;
     desc.format = VK_FORMAT_R8_UINT;
-    desc.width = desc.height = side;
+    desc.width = desc.height = image_side;
     desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                  VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     auto material = demo::create_image(*host, desc);
@@ -232,7 +232,7 @@ TEST_F(IdExtraction, FromABitFieldOfAPackedImage) {
   make_graph_with_cleared_ids();
   demo::ImageDesc desc;
   desc.format = VK_FORMAT_R32_UINT;
-  desc.width = desc.height = side;
+  desc.width = desc.height = image_side;
   desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   auto packed = demo::create_image(*host, desc);
   ASSERT_TRUE(packed) << packed.error().text;
@@ -251,7 +251,7 @@ TEST_F(IdExtraction, FromStencil) {
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = VK_IMAGE_TYPE_2D;
-  info.extent = {side, side, 1};
+  info.extent = {image_side, image_side, 1};
   info.mipLevels = info.arrayLayers = 1;
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -303,7 +303,7 @@ TEST_F(IdExtraction, FromStencil) {
     host->vk.vkCmdPipelineBarrier2(commands, &dependency);
     VkBufferImageCopy copy{};
     copy.imageSubresource = {VK_IMAGE_ASPECT_STENCIL_BIT, 0, 0, 1};
-    copy.imageExtent = {side, side, 1};
+    copy.imageExtent = {image_side, image_side, 1};
     host->vk.vkCmdCopyBufferToImage(commands, staging->buffer, image, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
     barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;

@@ -2,7 +2,6 @@
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/vulkan/device_profile.hpp"
-#include "passes/subsurface/environment.hpp"
 
 namespace dermis::testing {
 namespace {
@@ -65,7 +64,7 @@ void KernelTest::run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t 
   const vulkan::EnvironmentBinding environment[] = {
       {EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
       buffer(tables.profiles),
-      buffer({}),
+      buffer(tables.questions),
       {EnvironmentType::linear_sampler, 0, {}},
       buffer({}),
       buffer(tables.radial),
@@ -92,7 +91,8 @@ void KernelTest::run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t 
   subsurface::FrameConstants constants{};
   constants.rect[2] = static_cast<int32_t>(width);
   constants.rect[3] = static_cast<int32_t>(height);
-  constants.flags = tables.frame_flags;
+  if (tables.frame != nullptr) constants = *tables.frame;
+  constants.flags |= tables.frame_flags;
   vulkan::FrameInput frame;
   frame.command_buffer = begin_commands();
   frame.images = bound;

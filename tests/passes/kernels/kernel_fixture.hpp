@@ -2,6 +2,7 @@
 // A kernel of a test's own, whose one image hands out what shared functions say, with a host's environment
 // around it.
 #include "framegraph/vulkan/executor.hpp"
+#include "passes/subsurface/environment.hpp"
 #include "tests/support/vulkan_fixture.hpp"
 
 #include <cstddef>
@@ -10,10 +11,13 @@
 
 namespace dermis::testing {
 
-// Contents of the environment's storage buffers; those that are empty hold zeros.
+// Contents of the environment's storage buffers; those that are empty hold zeros. `questions` becomes the
+// rows of the separable table, which no function under test reads. `frame`: the frame's constants; null:
+// zeros and a rectangle of the size of the answers.
 struct KernelTables {
-  std::span<const std::byte> profiles, radial;
-  uint32_t frame_flags = 0; // as FrameConstants::flags
+  std::span<const std::byte> profiles{}, radial{}, questions{};
+  const subsurface::FrameConstants* frame = nullptr;
+  uint32_t frame_flags = 0; // added to FrameConstants::flags
 };
 
 class KernelTest : public VulkanTest {

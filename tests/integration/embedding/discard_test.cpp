@@ -1,0 +1,250 @@
+// Frames that are recorded, never submitted and discarded: everything that follows is as if they had not been
+// recorded.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+#include "tests/integration/abi/invented_times.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <algorithm>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::HasSubstr;
+
+// One frame as a host describes it.
+struct Shot {
+  std::array<uint32_t, 4> rectangle{}; // x, y, width, height; zeros: all of the images
+  std::array<float, 2> jitter{};
+  float light = 1, budget_ms = 0, seconds = 1.0f / 60;
+  uint32_t flags = 0;
+};
+
+// What a host can see after a frame.
+struct Seen {
+  std::vector<float> lighting;
+  std::string choice, histories;
+  bool operator==(const Seen&) const = default;
+};
+
+std::string text_of(const dermis_choice& choice) {
+  std::ostringstream text;
+  text << choice.frame_index << ": " << choice.outcome << "; " << choice.why << "; " << choice.switches
+       << " switches, " << choice.budget_ms << " ms, predicted " << choice.predicted_ms << ", metered "
+       << choice.metered_ms << ", rmse " << choice.predicted_rmse << ", skips " << choice.skips << ", tiles "
+       << choice.scattering_tiles << " of " << choice.view_tiles << ", groups " << choice.groups << ", units "
+       << choice.sample_units;
+  return text.str();
+}
+
+std::string histories_of(dermis_graph graph) {
+  uint32_t count = 0;
+  EXPECT_EQ(dermis_graph_histories(graph, &count, nullptr), DERMIS_OK);
+  std::vector<dermis_history> histories(count, dermis_history DERMIS_HISTORY_INIT);
+  EXPECT_EQ(dermis_graph_histories(graph, &count, histories.data()), DERMIS_OK);
+  std::ostringstream text;
+  for (const dermis_history& one : histories)
+    text << one.name << " valid " << one.valid << ", age " << one.age << ", reason " << one.reason << "; ";
+  return text.str();
+}
+
+struct Discard : DermisTest {
+  dermis_graph graph = nullptr;
+
+  void make(const char* of = "configs/graphs/skin.json") {
+    GraphOptions options;
+    options.text = read_text(of);
+    options.overlays = {read_text("configs/overlays/accumulate.json")};
+    options.unbound.emplace_back("velocity");
+    graph = make_graph(options);
+    ASSERT_NE(graph, nullptr);
+    make_images(graph);
+    last_frame = 0;
+    const std::string text = invented_times;
+    const dermis_source calibration = source_of(text, "invented");
+    dermis_budget budget = DERMIS_BUDGET_INIT;
+    budget.flags = DERMIS_BUDGET_METER;
+    budget.calibration = &calibration;
+    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  }
+
+  void set_budget(float ms) {
+    dermis_budget budget = DERMIS_BUDGET_INIT;
+    budget.milliseconds = ms;
+    budget.flags = DERMIS_BUDGET_METER;
+    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  }
+
+  dermis_frame frame_of(const Shot& shot, const std::vector<dermis_image_binding>& bound) {
+    dermis_frame one = frame(bound);
+    one.rect_x = shot.rectangle[0];
+    one.rect_y = shot.rectangle[1];
+    one.rect_width = shot.rectangle[2];
+    one.rect_height = shot.rectangle[3];
+    one.jitter_x = shot.jitter[0];
+    one.jitter_y = shot.jitter[1];
+    one.delta_seconds = shot.seconds;
+    one.flags = shot.flags;
+    for (size_t i = 0; i < 16; ++i) // the camera rests
+      one.view_from_world[i] = one.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
+    std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view),
+              std::begin(one.previous_clip_from_view));
+    return one;
+  }
+
+  Seen submit(const Shot& shot) {
+    set_budget(shot.budget_ms);
+    fill("lighting",
+         [&](uint32_t x, uint32_t y) { return shot.light * float(16 + (x * 7 + y * 3) % 32) / 32; });
+    const auto bound = bindings(graph);
+    dermis_frame one = frame_of(shot, bound);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    dermis_choice choice = DERMIS_CHOICE_INIT;
+    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    return {texels("lighting"), text_of(choice), histories_of(graph)};
+  }
+
+  void discard(const Shot& shot) {
+    set_budget(shot.budget_ms);
+    const auto bound = bindings(graph);
+    dermis_frame one = frame_of(shot, bound);
+    const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+      one.command_buffer = commands;
+      EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+      return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
+    });
+    EXPECT_FALSE(ran);
+    EXPECT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_OK) << dermis_last_error();
+  }
+};
+
+constexpr std::array<uint32_t, 4> small_rectangle = {9, 5, 30, 41}, other_rectangle = {16, 0, 44, 29};
+
+// Rectangles, jitter, cuts, budgets and times between frames all change, in the frames that stay and in those
+// that do not; the first frame of the graph, of a plan and of a reloaded and a resized graph are among them.
+TEST_F(Discard, LeavesNoTraceInAnythingAHostSees) {
+  const std::string text = read_text("configs/graphs/skin.json");
+  constexpr uint32_t frames = 24;
+  const auto shot_of = [](uint32_t i) {
+    return Shot{.rectangle = i % 5 == 4 ? std::array<uint32_t, 4>{} : small_rectangle,
+                .jitter = {0.25f * float(i % 3) - 0.25f, 0.125f * float(i % 2)},
+                .light = 0.5f + 0.03f * float(i),
+                .budget_ms = i / 4 % 3 == 1 ? 0.5f : 30.0f,
+                .seconds = 0.2f,
+                .flags = i == 10 ? uint32_t{DERMIS_FRAME_RESET_HISTORY} : 0u};
+  };
+  const auto lost_shot_of = [](uint32_t i) {
+    return Shot{.rectangle = i % 3 == 0 ? std::array<uint32_t, 4>{} : other_rectangle,
+                .jitter = {-0.375f, 0.375f},
+                .budget_ms = i % 2 == 0 ? 0.5f : 30.0f,
+                .seconds = 1.5f,
+                .flags = i % 4 == 1 ? uint32_t{DERMIS_FRAME_RESET_HISTORY} : 0u};
+  };
+  const auto run = [&](bool lossy) {
+    make();
+    std::vector<Seen> seen;
+    for (uint32_t i = 0; i < frames; ++i) {
+      if (i == 8 || i == 20) {
+        const dermis_source source = source_of(text, "skin.json");
+        EXPECT_EQ(reload_text(graph, source, nullptr), DERMIS_OK) << dermis_last_error();
+      }
+      if (i == 14) {
+        EXPECT_EQ(dermis_graph_resize(graph, 72, 60, nullptr), DERMIS_OK) << dermis_last_error();
+        make_images(graph);
+      }
+      for (uint32_t lost = 0; lossy && lost < 1 + i % 2; ++lost)
+        discard(lost_shot_of(i + lost));
+      seen.push_back(submit(shot_of(i)));
+    }
+    return seen;
+  };
+  const std::vector<Seen> expected = run(false), found = run(true);
+  ASSERT_EQ(expected.size(), found.size());
+  for (uint32_t i = 0; i < frames; ++i) {
+    EXPECT_EQ(expected[i].choice, found[i].choice) << "frame " << i;
+    EXPECT_EQ(expected[i].histories, found[i].histories) << "frame " << i;
+    EXPECT_TRUE(expected[i].lighting == found[i].lighting) << "frame " << i << ", bit by bit";
+  }
+}
+
+TEST_F(Discard, GivesBackTheRectangleOfTheFrameBefore) {
+  const auto run = [&](bool lossy) {
+    make("configs/graphs/burley.json");
+    submit({.rectangle = small_rectangle, .light = 0.25f});
+    if (lossy) discard({.rectangle = other_rectangle});
+    return submit({.rectangle = small_rectangle, .light = 1});
+  };
+  const Seen expected = run(false);
+  EXPECT_TRUE(run(true).lighting == expected.lighting) << "history lies where the frame before left it";
+}
+
+// The first switch starts a second in which no other follows; a frame that was discarded is not in it.
+TEST_F(Discard, GivesBackTheLastDecision) {
+  const auto run = [&](const std::vector<Shot>& lost) {
+    make();
+    std::vector<std::string> choices;
+    for (const float budget : {30.0f, 0.5f, 30.0f, 30.0f})
+      choices.push_back(submit({.budget_ms = budget, .seconds = 0.1f}).choice);
+    for (const Shot& shot : lost)
+      discard(shot);
+    for (uint32_t i = 0; i < 12; ++i)
+      choices.push_back(submit({.budget_ms = 30, .seconds = 0.1f}).choice);
+    return choices;
+  };
+  const std::vector<std::string> expected = run({});
+  EXPECT_THAT(expected[4], HasSubstr("kept, to switch less often"));
+  EXPECT_THAT(expected.back(), Not(HasSubstr("kept, to switch less often")));
+  EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}}), expected) << "time that passed in it";
+  EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}, {.budget_ms = 30, .seconds = 5}}), expected)
+      << "two in a row";
+  EXPECT_EQ(run({{.budget_ms = 0.4f, .seconds = 0.1f}}), expected) << "what it chose";
+}
+
+TEST_F(Discard, LeavesNoTimes) {
+  make("configs/graphs/burley.json");
+  for (int i = 0; i < 4; ++i)
+    submit({});
+  discard({}); // frame 5, in the place that the times of frame 3 had
+  const auto bound = bindings(graph);
+  dermis_frame next = frame_of({}, bound);
+  next.frame_index = 6;
+  ASSERT_EQ(record(graph, next), DERMIS_OK) << dermis_last_error();
+  std::vector<dermis_pass_timing> times(64, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
+  auto count = static_cast<uint32_t>(times.size());
+  const dermis_result result = dermis_graph_timings(graph, 5, &count, times.data());
+  EXPECT_TRUE(result == DERMIS_NOT_READY || (result == DERMIS_OK && times[0].frame_index <= 4))
+      << result << ": times of frame " << times[0].frame_index << ", which never ran";
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  ASSERT_EQ(dermis_graph_choice(graph, 5, &choice), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(choice.frame_index, 4u);
+  ASSERT_EQ(dermis_graph_timings(graph, 6, &count, times.data()), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(times[0].frame_index, 6u);
+}
+
+// Times of the first frame of a plan, which a driver may spend on its pipelines, teach nothing. A device that
+// runs nothing reports 0 for each pass: what was learned is seen at once.
+TEST(DiscardOnANullDevice, LeavesTheFirstFrameOfAPlanTheFirst) {
+  const auto learned = [](bool lossy) {
+    NullHost host;
+    EXPECT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    host.make_bindings();
+    if (lossy) {
+      EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+      EXPECT_EQ(dermis_frame_discard(host.graph, host.last_frame), DERMIS_OK) << dermis_last_error();
+      --host.last_frame;
+    }
+    EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    dermis_choice choice = DERMIS_CHOICE_INIT;
+    EXPECT_EQ(dermis_graph_choice(host.graph, host.last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    std::string text(1 << 16, ' ');
+    size_t size = text.size();
+    EXPECT_EQ(dermis_graph_calibration(host.graph, &size, text.data()), DERMIS_OK) << dermis_last_error();
+    text.resize(size - 1);
+    return text;
+  };
+  EXPECT_TRUE(learned(true) == learned(false)) << "the calibrations differ";
+}
+
+} // namespace
+} // namespace dermis::abi_test
