@@ -10,7 +10,7 @@
 namespace dermis::abi_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 // One frame as a host describes it.
 struct Shot {

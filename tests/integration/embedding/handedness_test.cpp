@@ -7,9 +7,9 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr float near_m = 0.25f, far_m = 4.0f; // of the projections
-constexpr float slope = 0.032f;               // half the picture's height at 1 m
-constexpr float wall_m = 0.5f;                // to the wall, in its middle
+constexpr float near_plane_m = 0.25f, far_plane_m = 4.0f; // of the projections
+constexpr float half_height = 0.032f;                     // half the picture's height at 1 m
+constexpr float wall_m = 0.5f;                            // to the wall, in its middle
 
 enum class Lens : uint8_t { perspective, orthographic };
 enum class Range : uint8_t { forward, reversed, reversed_infinite };
@@ -26,24 +26,24 @@ struct View {
 // The row of depth and the row of w, for view positions with z = -distance.
 void project(float (&m)[16], const View& view, float jitter_x) {
   std::fill(std::begin(m), std::end(m), 0.0f);
-  const float range = far_m - near_m;
+  const float range = far_plane_m - near_plane_m;
   if (view.lens == Lens::perspective) {
-    m[0] = 1 / slope;
-    m[5] = -1 / slope;
+    m[0] = 1 / half_height;
+    m[5] = -1 / half_height;
     m[2] = -2 * jitter_x / 64;
-    m[10] = view.range == Range::forward    ? -far_m / range
-            : view.range == Range::reversed ? near_m / range
+    m[10] = view.range == Range::forward    ? -far_plane_m / range
+            : view.range == Range::reversed ? near_plane_m / range
                                             : 0;
-    m[11] = view.range == Range::forward    ? -far_m * near_m / range
-            : view.range == Range::reversed ? far_m * near_m / range
-                                            : near_m;
+    m[11] = view.range == Range::forward    ? -far_plane_m * near_plane_m / range
+            : view.range == Range::reversed ? far_plane_m * near_plane_m / range
+                                            : near_plane_m;
     m[14] = -1;
   } else {
-    m[0] = 1 / (slope * wall_m);
-    m[5] = -1 / (slope * wall_m);
+    m[0] = 1 / (half_height * wall_m);
+    m[5] = -1 / (half_height * wall_m);
     m[3] = 2 * jitter_x / 64;
     m[10] = view.range == Range::forward ? -1 / range : 1 / range;
-    m[11] = view.range == Range::forward ? -near_m / range : far_m / range;
+    m[11] = view.range == Range::forward ? -near_plane_m / range : far_plane_m / range;
     m[15] = 1;
   }
   for (size_t row = 0; row < 4 && view.left; ++row)

@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t frames_in_flight = 2;
 
-struct Profiles : testing::Test {
+struct Profiles : ::testing::Test {
   NullHost host;
   std::string skin = read_text("configs/profiles/skin.json"),
               marble = read_text("configs/profiles/marble.json");
