@@ -13,7 +13,7 @@
 #include <limits>
 #include <random>
 
-namespace dermis::subsurface {
+namespace dermis::subsurface::guidance_kernel {
 namespace {
 
 constexpr uint32_t cases = 512, rows = 3;
@@ -139,4 +139,4 @@ TEST_F(GuidanceKernel, MovingMomentsEqualTheReference) {
 }
 
 } // namespace
-} // namespace dermis::subsurface
+} // namespace dermis::subsurface::guidance_kernel

@@ -12,7 +12,7 @@
 #include <limits>
 #include <random>
 
-namespace dermis::subsurface {
+namespace dermis::subsurface::reproject_kernel {
 namespace {
 
 constexpr uint32_t cases = 768, rows = 4;
@@ -284,4 +284,4 @@ TEST_F(ReprojectKernel, TapsEqualTheReference) {
 }
 
 } // namespace
-} // namespace dermis::subsurface
+} // namespace dermis::subsurface::reproject_kernel

@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace dermis::subsurface {
+namespace dermis::subsurface::tile_edges_kernel {
 namespace {
 
 constexpr int across = 5, down = 4, side = 8, arrangements = 24; // tiles
@@ -119,4 +119,4 @@ TEST_F(TileEdgesKernel, NeighboursDifferByNoMoreThanTheRamp) {
 }
 
 } // namespace
-} // namespace dermis::subsurface
+} // namespace dermis::subsurface::tile_edges_kernel
