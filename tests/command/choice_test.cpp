@@ -82,7 +82,7 @@ TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
   constexpr const char* residual = "configs/graphs/sap_residual.json";
   const Outcome text = run({"explain", residual, "--frame", "--size", "64x36"});
   ASSERT_EQ(text.exit_code, 0) << text.err;
-  EXPECT_THAT(text.out, ::testing::ContainsRegex("\nratio +6 frames +nothing has been recorded yet\n"));
+  EXPECT_THAT(text.out, ::testing::ContainsRegex("\nratio +6 frames +valid since its first frame\n"));
   const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", residual, "--size", "64x36",
                                "--frames", "3", "--subset", "0", "--out", path("out"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -95,12 +95,12 @@ TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
       EXPECT_THAT(one["name"].get<std::string>(), ::testing::AnyOf("ratio", "place"));
       EXPECT_EQ(one["valid"], true);
       EXPECT_EQ(one["age"], age + 1);
-      EXPECT_EQ(one["why"], "nothing has been recorded yet");
+      EXPECT_EQ(one["why"], "valid since its first frame");
     }
     ++age;
   }
   const Outcome without = run({"explain", "configs/graphs/sap.json", "--frame", "--size", "64x36"});
-  EXPECT_THAT(without.out, ::testing::Not(HasSubstr("held nothing")));
+  EXPECT_THAT(without.out, ::testing::Not(HasSubstr("valid since")));
 }
 
 TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {

@@ -9,7 +9,7 @@ namespace dermis::tools {
 std::string describe_histories(std::span<const demo::FrameHistory> histories) {
   if (histories.empty()) return "";
   Table table;
-  table.columns = {{"history"}, {"holds"}, {"held nothing, last, because"}};
+  table.columns = {{"history"}, {"holds"}, {"state"}};
   for (const demo::FrameHistory& one : histories)
     table.rows.push_back(
         {one.name, one.valid ? format_count(one.age, "frame") : std::string("nothing"), one.why});
