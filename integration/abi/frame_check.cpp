@@ -185,19 +185,27 @@ dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, c
 
 // Every slot without a binding in one message.
 dermis_result check_complete(const Log& log, const char* function, const Program& program) {
-  std::array<char, failure_text_size> names;
+  constexpr size_t rest_of_message = 256; // so that a long list leaves room for the advice
+  std::array<char, failure_text_size - rest_of_message> names;
   size_t used = 0;
+  bool optional = false;
   for (size_t i = 0; i < program.slots.size(); ++i) {
     const bool given = program.images[i].image != VK_NULL_HANDLE ||
                        program.buffers[i].buffer != VK_NULL_HANDLE ||
                        program.structures[i].structure != VK_NULL_HANDLE;
-    if (!program.slots[i].bound || given) continue;
-    const auto written = fmt::format_to_n(names.data() + used, names.size() - used, "{}'{}' (slot {})",
-                                          used == 0 ? "" : ", ", program.slots[i].name, i);
+    const Slot& slot = program.slots[i];
+    if (!slot.bound || given) continue;
+    optional = optional || !slot.required;
+    const auto written =
+        fmt::format_to_n(names.data() + used, names.size() - used, "{}'{}' (slot {}, {})",
+                         used == 0 ? "" : ", ", slot.name, i, slot.required ? "required" : "optional");
     used = std::min(names.size(), used + written.size);
   }
   if (used == 0) return DERMIS_OK;
-  return bad_argument(log, "{}: nothing is bound to {}", function, std::string_view{names.data(), used});
+  return bad_argument(log, "{}: nothing is bound to {}{}", function, std::string_view{names.data(), used},
+                      optional ? "; bind an optional slot in every frame, or name it in "
+                                 "dermis_graph_desc.unbound when the graph is created or reloaded"
+                               : "");
 }
 
 dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {

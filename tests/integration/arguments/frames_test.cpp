@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -242,6 +243,34 @@ TEST(HostsKinds, BeyondWhatAContextHoldsAreRefused) {
   }
   EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("the context has " + std::to_string(taken) + " kinds already"));
+}
+
+TEST_F(Frames, MissingBindings_NameOptionalSlotsAndCure) {
+  const std::vector<dermis_slot> slots = slots_of(host.graph);
+  const auto number = [&](std::string_view name) {
+    for (const dermis_slot& slot : slots)
+      if (name == slot.name) return slot.id;
+    return UINT32_MAX;
+  };
+  const auto refused_without = [&](std::initializer_list<const char*> missing) -> std::string {
+    dermis_frame frame = host.frame_at(2);
+    Bindings bindings(frame.bindings, frame.bindings + frame.binding_count);
+    std::erase_if(bindings, [&](const dermis_image_binding& binding) {
+      return std::any_of(missing.begin(), missing.end(),
+                         [&](const char* name) { return binding.slot == number(name); });
+    });
+    frame.bindings = bindings.data();
+    frame.binding_count = static_cast<uint32_t>(bindings.size());
+    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+    return dermis_last_error();
+  };
+  const std::string required = refused_without({"depth"});
+  EXPECT_THAT(required, HasSubstr("'depth' (slot " + std::to_string(number("depth")) + ", required)"));
+  EXPECT_THAT(required, Not(HasSubstr("unbound")));
+  const std::string both = refused_without({"depth", "albedo"});
+  EXPECT_THAT(both, HasSubstr("'depth' (slot " + std::to_string(number("depth")) + ", required)"));
+  EXPECT_THAT(both, HasSubstr("'albedo' (slot " + std::to_string(number("albedo")) + ", optional)"));
+  EXPECT_THAT(both, HasSubstr("dermis_graph_desc.unbound"));
 }
 
 } // namespace
