@@ -210,8 +210,9 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   compile_input.view_width = input.width;
   compile_input.view_height = input.height;
   compile_input.settings = candidate->settings;
+  report_unknown_slots(candidate->graph, input.unbound, input.formats, diagnostics);
   compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);
-  compile_input.host_formats = host_formats(candidate->graph, input.formats, diagnostics);
+  compile_input.host_formats = host_formats(candidate->graph, input.formats);
   tell_withheld(candidate->graph, context.profile, compile_input.bound, diagnostics);
   for (size_t i = 0; i < candidate->settings.size(); ++i)
     candidate->settings[i] = offered_value(candidate->graph.settings[i], candidate->settings[i],

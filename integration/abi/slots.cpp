@@ -1,5 +1,8 @@
 #include "integration/abi/slots.hpp"
 
+#include "framegraph/text/suggest.hpp"
+
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace dermis::abi {
@@ -16,14 +19,30 @@ const ResourceDeclaration* find_slot(const Graph& graph, const std::string& name
   return nullptr;
 }
 
-void warn_of_no_slot(const Graph& graph, const char* list, const std::string& name,
-                     Diagnostics& diagnostics) {
-  std::string known;
-  for (const ResourceDeclaration& declared : graph.resources)
-    if (is_slot(declared)) known += fmt::format("{}'{}'", known.empty() ? "" : ", ", declared.name);
-  diagnostics.add(DiagnosticId::host_names_no_slot, {},
-                  fmt::format("{} names '{}', which is no import or export of graph '{}'; its slots are {}",
-                              list, name, graph.name, known));
+// More edits than this also lie between right names of different slots ("lights" and "lighting").
+constexpr size_t max_slips = 2;
+
+// Warns of a name that is probably a misspelt slot; other names are added to `others`. A slot that the
+// same list names as well is not what was meant.
+void check_name(const Graph& graph, const char* list, std::span<const std::string_view> names,
+                std::string_view name, std::vector<std::string_view>& others, Diagnostics& diagnostics) {
+  std::vector<std::string_view> slots;
+  for (const ResourceDeclaration& declared : graph.resources) {
+    if (!is_slot(declared)) continue;
+    if (declared.name == name) return;
+    if (edit_distance(name, declared.name, max_slips) <= max_slips &&
+        std::find(names.begin(), names.end(), declared.name) == names.end())
+      slots.emplace_back(declared.name);
+  }
+  std::string suggestion = did_you_mean(name, slots);
+  if (suggestion.empty()) {
+    if (std::find(others.begin(), others.end(), name) == others.end()) others.push_back(name);
+    return;
+  }
+  diagnostics
+      .add(DiagnosticId::host_names_no_slot, {},
+           fmt::format("{} names '{}', which is no import or export of graph '{}'", list, name, graph.name))
+      .suggestion = std::move(suggestion);
 }
 
 // The first access of each resource decides in which layout it comes best.
@@ -57,6 +76,26 @@ Touch touch(const Plan& plan, uint32_t resource) {
 }
 
 } // namespace
+
+void report_unknown_slots(const Graph& graph, std::span<const std::string> unbound,
+                          std::span<const HostFormat> formats, Diagnostics& diagnostics) {
+  const std::vector<std::string_view> left_out(unbound.begin(), unbound.end());
+  std::vector<std::string_view> formatted, others;
+  for (const HostFormat& given : formats)
+    formatted.emplace_back(given.slot);
+  for (const std::string_view name : left_out)
+    check_name(graph, "dermis_graph_desc.unbound", left_out, name, others, diagnostics);
+  for (const std::string_view name : formatted)
+    check_name(graph, "dermis_graph_desc.formats", formatted, name, others, diagnostics);
+  if (others.empty()) return;
+  std::string known;
+  for (const ResourceDeclaration& declared : graph.resources)
+    if (is_slot(declared)) known += fmt::format("{}'{}'", known.empty() ? "" : ", ", declared.name);
+  diagnostics.add(
+      DiagnosticId::host_names_other_slots, {},
+      fmt::format("graph '{}' has no slot for '{}', which dermis_graph_desc names; its slots are {}",
+                  graph.name, fmt::join(others, "', '"), known));
+}
 
 std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {
   std::vector<Slot> slots;
@@ -96,9 +135,8 @@ std::vector<bool> bound_resources(const Graph& graph, std::span<const std::strin
   for (const std::string& name : unbound) {
     size_t index = 0;
     const ResourceDeclaration* declared = find_slot(graph, name, index);
-    if (declared == nullptr)
-      warn_of_no_slot(graph, "the list of unbound slots", name, diagnostics);
-    else if (!declared->optional)
+    if (declared == nullptr) continue;
+    if (!declared->optional)
       diagnostics.add(DiagnosticId::host_required_slot, declared->where,
                       fmt::format("slot '{}' is required, but the host lists it as unbound", name));
     else
@@ -107,15 +145,11 @@ std::vector<bool> bound_resources(const Graph& graph, std::span<const std::strin
   return bound;
 }
 
-std::vector<Format> host_formats(const Graph& graph, std::span<const HostFormat> formats,
-                                 Diagnostics& diagnostics) {
+std::vector<Format> host_formats(const Graph& graph, std::span<const HostFormat> formats) {
   std::vector<Format> result(graph.resources.size(), Format::undefined);
   for (const HostFormat& given : formats) {
     size_t index = 0;
-    if (find_slot(graph, given.slot, index) == nullptr)
-      warn_of_no_slot(graph, "the list of formats", given.slot, diagnostics);
-    else
-      result[index] = given.format;
+    if (find_slot(graph, given.slot, index) != nullptr) result[index] = given.format;
   }
   return result;
 }

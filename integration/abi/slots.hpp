@@ -10,13 +10,17 @@ namespace dermis::abi {
 // Position i is PlanResource::slot i, which is the host's slot id.
 std::vector<Slot> make_slots(const Graph& graph, const Plan& plan);
 
-// By resource: false for the optional slots that the host names as unbound. Names that are no slot become
-// warnings, so that a host may state once what it has for graphs that differ; required ones become errors.
+// Reports names in the host's lists that are no slot of the graph: each one that is probably misspelt as a
+// warning, all others together in one note, so that one list may serve several graphs.
+void report_unknown_slots(const Graph& graph, std::span<const std::string> unbound,
+                          std::span<const HostFormat> formats, Diagnostics& diagnostics);
+
+// By resource: false for the optional slots that the host names as unbound. Names of required slots are
+// errors; names without a slot are ignored.
 std::vector<bool> bound_resources(const Graph& graph, std::span<const std::string> unbound,
                                   Diagnostics& diagnostics);
 
-// By resource: the formats the host will bind, undefined where it says nothing.
-std::vector<Format> host_formats(const Graph& graph, std::span<const HostFormat> formats,
-                                 Diagnostics& diagnostics);
+// By resource: the formats that the host will bind, undefined where the host names none.
+std::vector<Format> host_formats(const Graph& graph, std::span<const HostFormat> formats);
 
 } // namespace dermis::abi

@@ -1,0 +1,150 @@
+// Names in dermis_graph_desc.unbound and .formats that the graph has no slot for.
+
+#include "tests/integration/abi/sources.hpp"
+#include "tests/integration/embedding/null_host.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <set>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+struct Message {
+  dermis_severity severity;
+  std::string name, text;
+};
+
+// A device that also traces rays, so that every shipped graph compiles.
+VKAPI_ATTR void VKAPI_CALL all_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* out) {
+  reinterpret_cast<PFN_vkGetPhysicalDeviceFeatures2>(
+      NullDevice::loader()(nullptr, "vkGetPhysicalDeviceFeatures2"))(device, out);
+  for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR)
+      reinterpret_cast<VkPhysicalDeviceAccelerationStructureFeaturesKHR*>(next)->accelerationStructure =
+          VK_TRUE;
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR)
+      reinterpret_cast<VkPhysicalDeviceRayQueryFeaturesKHR*>(next)->rayQuery = VK_TRUE;
+  }
+}
+VKAPI_ATTR VkResult VKAPI_CALL ray_extensions(VkPhysicalDevice, const char*, uint32_t* count,
+                                              VkExtensionProperties* out) {
+  *count = 2;
+  if (out == nullptr) return VK_SUCCESS;
+  std::strcpy(out[0].extensionName, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
+  std::strcpy(out[1].extensionName, VK_KHR_RAY_QUERY_EXTENSION_NAME);
+  return VK_SUCCESS;
+}
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL load_with_rays(VkInstance instance, const char* name) {
+  if (std::strcmp(name, "vkGetPhysicalDeviceFeatures2") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&all_features);
+  if (std::strcmp(name, "vkEnumerateDeviceExtensionProperties") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&ray_extensions);
+  return NullDevice::loader()(instance, name);
+}
+
+struct UnboundNames : testing::Test {
+  NullHost host;
+  std::vector<Message> logged;
+
+  static void DERMIS_CALL log(void* user, const dermis_message* message) {
+    static_cast<UnboundNames*>(user)->logged.push_back(
+        {message->severity, message->code_name, message->text});
+  }
+  void SetUp() override {
+    dermis_context_desc desc = host.context_desc();
+    desc.flags |= DERMIS_CONTEXT_RAY_QUERY;
+    desc.get_instance_proc_addr = load_with_rays;
+    desc.log = log;
+    desc.log_user = this;
+    ASSERT_EQ(host.make_context(desc), DERMIS_OK) << dermis_last_error();
+  }
+  dermis_graph create(const std::string& path, const std::vector<const char*>& unbound,
+                      const std::vector<dermis_slot_format>& formats = {}) {
+    logged.clear();
+    const std::string text = read_text(path), skin = read_text("configs/profiles/skin.json");
+    dermis_profile profile = DERMIS_PROFILE_INIT;
+    profile.id = 1;
+    profile.source = source_of(skin, "skin.json");
+    dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+    desc.source = source_of(text, path.c_str());
+    desc.width = desc.height = 64;
+    desc.profiles = &profile;
+    desc.profile_count = 1;
+    desc.unbound = unbound.data();
+    desc.unbound_count = static_cast<uint32_t>(unbound.size());
+    desc.formats = formats.data();
+    desc.format_count = static_cast<uint32_t>(formats.size());
+    dermis_graph graph = nullptr;
+    EXPECT_EQ(dermis_graph_create(host.context, &desc, &graph, nullptr), DERMIS_OK)
+        << path << ": " << dermis_last_error();
+    return graph;
+  }
+  std::vector<Message> about_slots() const {
+    std::vector<Message> out;
+    for (const Message& message : logged)
+      if (message.name == "host_names_no_slot" || message.name == "host_names_other_slots")
+        out.push_back(message);
+    return out;
+  }
+};
+
+TEST_F(UnboundNames, OneListForShippedGraphs_GivesNoWarning) {
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/graphs"))
+    if (const std::string name = entry.path().filename().string(); !name.ends_with(".expect.json"))
+      paths.push_back("configs/graphs/" + name);
+  ASSERT_GE(paths.size(), 16u);
+  std::set<std::string> optional, required;
+  for (const std::string& path : paths) {
+    const dermis_graph graph = create(path, {});
+    for (const dermis_slot& slot : slots_of(graph))
+      (slot.required ? required : optional).insert(slot.name);
+    dermis_graph_destroy(graph);
+  }
+  std::vector<const char*> unbound;
+  for (const std::string& name : optional)
+    if (required.count(name) == 0) unbound.push_back(name.c_str());
+  ASSERT_GE(unbound.size(), 4u);
+  for (const std::string& path : paths) {
+    dermis_graph_destroy(create(path, unbound));
+    const std::vector<Message> said = about_slots();
+    EXPECT_LE(said.size(), 1u) << path;
+    for (const Message& message : said)
+      EXPECT_EQ(message.severity, DERMIS_SEVERITY_NOTE) << path << ": " << message.text;
+  }
+}
+
+TEST_F(UnboundNames, NamesWithoutSlot_AreOneNote) {
+  dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
+  format.name = "importance";
+  format.format = VK_FORMAT_R8_UNORM;
+  host.graph = create("configs/graphs/burley.json", {"albedo", "velocity", "sampling"}, {format});
+  const std::vector<Message> said = about_slots();
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].severity, DERMIS_SEVERITY_NOTE);
+  EXPECT_THAT(said[0].text, AllOf(HasSubstr("'velocity'"), HasSubstr("'sampling'"), HasSubstr("'importance'"),
+                                  HasSubstr("'burley'"), HasSubstr("'lighting'"), HasSubstr("'albedo'")));
+}
+
+TEST_F(UnboundNames, Misspelt_IsAWarningWithASuggestion) {
+  dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
+  format.name = "Depth";
+  format.format = VK_FORMAT_R32_SFLOAT;
+  host.graph = create("configs/graphs/burley.json", {"albdo", "velocity"}, {format});
+  std::string warnings;
+  for (const Message& message : about_slots())
+    if (message.severity == DERMIS_SEVERITY_WARNING) warnings += message.text + "\n";
+  EXPECT_THAT(warnings, AllOf(HasSubstr("'albdo'"), HasSubstr("did you mean 'albedo'?"), HasSubstr("'Depth'"),
+                              HasSubstr("did you mean 'depth'?"), Not(HasSubstr("velocity"))));
+}
+
+} // namespace
+} // namespace dermis::abi_test
