@@ -1,5 +1,7 @@
 #include "framegraph/vulkan/device.hpp"
 
+#include "framegraph/vulkan/missing_functions.hpp"
+
 #include <fmt/format.h>
 
 namespace dermis::vulkan {
@@ -43,15 +45,14 @@ Error make_device(const DeviceInput& input, Device& device) {
   device = {};
   const std::vector<std::string> missing =
       load_functions(input.get_instance_proc_addr, input.instance, input.device, input.labels, device.vk);
-  if (!missing.empty())
-    return {ErrorKind::unsupported, VK_SUCCESS,
-            fmt::format("the device does not give {} needed function{}: {}", missing.size(),
-                        missing.size() == 1 ? "" : "s", fmt::join(missing, ", "))};
   device.instance = input.instance;
   device.physical = input.physical;
   device.device = input.device;
   device.allocator = input.allocator;
-  device.vk.vkGetPhysicalDeviceProperties(device.physical, &device.properties);
+  if (device.vk.vkGetPhysicalDeviceProperties != nullptr)
+    device.vk.vkGetPhysicalDeviceProperties(device.physical, &device.properties);
+  if (!missing.empty())
+    return {ErrorKind::unsupported, VK_SUCCESS, explain_missing(missing, device.properties.apiVersion)};
   device.vk.vkGetPhysicalDeviceMemoryProperties(device.physical, &device.memory);
   const uint32_t version = device.properties.apiVersion;
   if (version < VK_API_VERSION_1_2)

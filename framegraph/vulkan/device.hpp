@@ -74,7 +74,8 @@ struct Device {
 
 // Fills `device`. Errors: argument (a null handle, a queue family that does not exist or cannot compute),
 // unsupported (a physical device below Vulkan 1.2; every function the device does not give, all named in one
-// text). `device` is unspecified on error. Free-threaded.
+// text, with the instance's version or the extension that is the reason). `device` is unspecified on error.
+// Free-threaded.
 Error make_device(const DeviceInput& input, Device& device);
 
 // Names an object for debuggers when `device.labels`; any text, copied. Free-threaded.

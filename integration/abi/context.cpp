@@ -1,6 +1,7 @@
 #include "integration/abi/context.hpp"
 
 #include "framegraph/vulkan/executor.hpp"
+#include "framegraph/vulkan/missing_functions.hpp"
 #include "integration/abi/requirements.hpp"
 #include "passes/subsurface/kinds.hpp"
 
@@ -94,6 +95,15 @@ dermis_result check_requirements(const dermis_context_desc& desc, const Log& log
         item.present == 0 && (item.required == 1 || (rays && i >= first_ray_requirement)))
       missing += fmt::format("{}{} ({})", missing.empty() ? "" : ", ", item.name, item.why);
   if (missing.empty()) return DERMIS_OK;
+  VkPhysicalDeviceProperties properties{};
+  if (const auto get = reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(
+          desc.get_instance_proc_addr(desc.instance, "vkGetPhysicalDeviceProperties")))
+    get(desc.physical_device, &properties);
+  if (const std::string reason = vulkan::explain_instance_1_0(desc.get_instance_proc_addr, desc.instance,
+                                                              desc.device, properties.apiVersion);
+      !reason.empty())
+    return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported, "dermis_context_create: {}",
+                reason);
   return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
               "dermis_context_create: the physical device lacks {}", missing);
 }

@@ -149,7 +149,9 @@ typedef struct dermis_requirement {
 #define DERMIS_REQUIREMENT_INIT {sizeof(dermis_requirement), DERMIS_REQUIREMENT_API_VERSION, 0, NULL, 0, 0, NULL}
 
 /* What the library needs of a device. Call with items NULL for the count, then with an array whose first
- * element has struct_size set. Thread: any. Errors: ARGUMENT, INCOMPLETE. */
+ * element has struct_size set. Create the instance with VkApplicationInfo.apiVersion VK_API_VERSION_1_3: an
+ * instance of Vulkan 1.0 answers that features are absent which the device has. Thread: any. Errors:
+ * ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
                                                                VkInstance instance, VkPhysicalDevice physical_device,
                                                                uint32_t* count, dermis_requirement* items);

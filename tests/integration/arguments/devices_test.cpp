@@ -23,6 +23,9 @@ struct Lack {
   const char* function = ""; // that the loader does not know
   const char* renamed = "";  // of the device, that it knows with "KHR" behind alone
   uint32_t api_version = VK_API_VERSION_1_3;
+  uint32_t instance_version = VK_API_VERSION_1_3; // the device gives only functions of this version
+  bool extensions_enabled = false;                // of the device: functions under their "KHR" names
+  bool features_unknown = false;                  // a 1.0 instance without properties2
   std::vector<const char*> extensions;
   VkQueueFlags queue_flags = VK_QUEUE_COMPUTE_BIT;
   VkResult enumeration = VK_SUCCESS;
@@ -52,8 +55,25 @@ VKAPI_ATTR VkResult VKAPI_CALL some_extensions(VkPhysicalDevice, const char*, ui
   *count = static_cast<uint32_t>(lack.extensions.size());
   return VK_SUCCESS;
 }
+VKAPI_ATTR void VKAPI_CALL no_features(VkPhysicalDevice, VkPhysicalDeviceFeatures2*) {}
+
+// The Vulkan version that added a function to the core.
+uint32_t core_version_of(std::string_view name) {
+  if (name.starts_with("vkBind") && name.ends_with("2")) return VK_API_VERSION_1_1;
+  for (const char* added : {"vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2",
+                            "vkGetDeviceImageMemoryRequirements", "vkGetDeviceBufferMemoryRequirements"})
+    if (name == added) return VK_API_VERSION_1_3;
+  return VK_API_VERSION_1_0;
+}
+
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less_of_device(VkDevice device, const char* name) {
   const std::string_view asked = name;
+  const bool khr = asked.ends_with("KHR");
+  const std::string core(asked.substr(0, asked.size() - (khr ? 3 : 0)));
+  if (core_version_of(core) > lack.instance_version) {
+    if (!khr || !lack.extensions_enabled) return nullptr;
+    return full<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr")(device, core.c_str());
+  }
   if (asked == lack.function) return nullptr;
   const bool extended = asked.ends_with("KHR") && asked.substr(0, asked.size() - 3) == lack.renamed;
   if (asked == lack.renamed) return nullptr;
@@ -67,6 +87,8 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less(VkInstance instance, const char* n
     return reinterpret_cast<PFN_vkVoidFunction>(&less_properties);
   if (std::strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties") == 0)
     return reinterpret_cast<PFN_vkVoidFunction>(&less_families);
+  if (lack.features_unknown && std::strcmp(name, "vkGetPhysicalDeviceFeatures2") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&no_features);
   if (std::strcmp(name, "vkEnumerateDeviceExtensionProperties") == 0)
     return reinterpret_cast<PFN_vkVoidFunction>(&some_extensions);
   return NullDevice::loader()(instance, name);
@@ -153,6 +175,36 @@ TEST_F(PoorDevice, WithoutOneOfTheFunctionsIsRefusedByItsName) {
     host.destroy();
     lack.renamed = "";
   }
+}
+
+TEST_F(PoorDevice, OlderInstance_IsNamedAsTheCause) {
+  for (const uint32_t version : {VK_API_VERSION_1_0, VK_API_VERSION_1_1, VK_API_VERSION_1_2})
+    for (const bool features_unknown : {false, true}) {
+      lack.instance_version = version;
+      lack.features_unknown = features_unknown && version == VK_API_VERSION_1_0;
+      EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
+      EXPECT_THAT(dermis_last_error(),
+                  AllOf(HasSubstr("VkApplicationInfo.apiVersion"), HasSubstr("VK_API_VERSION_1_3"),
+                        HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME),
+                        HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME)));
+      EXPECT_THAT(dermis_last_error(), Not(HasSubstr("physical device lacks")));
+      EXPECT_THAT(dermis_last_error(), Not(HasSubstr("device does not give")));
+    }
+}
+
+TEST_F(PoorDevice, OlderInstanceWithExtensions_IsAccepted) {
+  lack.instance_version = VK_API_VERSION_1_2;
+  lack.extensions_enabled = true;
+  EXPECT_EQ(create(), DERMIS_OK) << dermis_last_error();
+}
+
+TEST_F(PoorDevice, Vulkan12WithoutEnabledExtension_NamesIt) {
+  lack.api_version = lack.instance_version = VK_API_VERSION_1_2;
+  lack.extensions = {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME};
+  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
+  EXPECT_THAT(dermis_last_error(),
+              AllOf(HasSubstr("ppEnabledExtensionNames"), HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME),
+                    HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME), Not(HasSubstr("apiVersion"))));
 }
 
 TEST_F(PoorDevice, WithoutLabelsIsRefusedWhereTheyAreAskedForAlone) {

@@ -1,0 +1,92 @@
+#include "framegraph/vulkan/missing_functions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <string_view>
+
+namespace dermis::vulkan {
+namespace {
+
+// Device functions that became part of Vulkan together with one extension.
+struct Group {
+  const char* extension;
+  uint32_t core_version;
+  std::array<std::string_view, 2> functions;
+};
+
+constexpr Group bind_memory{
+    VK_KHR_BIND_MEMORY_2_EXTENSION_NAME, VK_API_VERSION_1_1, {"vkBindImageMemory2", "vkBindBufferMemory2"}};
+constexpr Group groups[] = {
+    bind_memory,
+    {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
+     VK_API_VERSION_1_3,
+     {"vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2"}},
+    {VK_KHR_MAINTENANCE_4_EXTENSION_NAME,
+     VK_API_VERSION_1_3,
+     {"vkGetDeviceImageMemoryRequirements", "vkGetDeviceBufferMemoryRequirements"}},
+};
+
+bool contains(std::span<const std::string> names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// A device that lacks only a part of a group is faulty: neither version nor extension explains this.
+bool is_absent(const Group& group, std::span<const std::string> missing) {
+  return std::all_of(group.functions.begin(), group.functions.end(),
+                     [&](std::string_view name) { return contains(missing, name); });
+}
+
+void append(std::string& list, std::string_view separator, std::string_view name) {
+  if (!list.empty()) list += separator;
+  list += name;
+}
+
+} // namespace
+
+std::string explain_missing(std::span<const std::string> missing, uint32_t device_version) {
+  std::string of_instance, of_extensions, extensions;
+  std::vector<std::string> unexplained(missing.begin(), missing.end());
+  const bool can_judge = device_version >= VK_API_VERSION_1_2 && !contains(missing, "vkGetDeviceProcAddr");
+  for (const Group& group : groups) {
+    if (!can_judge || !is_absent(group, missing)) continue;
+    if (group.core_version > VK_API_VERSION_1_2) append(extensions, " and ", group.extension);
+    for (const std::string_view name : group.functions) {
+      append(group.core_version <= device_version ? of_instance : of_extensions, ", ", name);
+      std::erase(unexplained, name);
+    }
+  }
+  std::string text;
+  if (!of_instance.empty())
+    text = fmt::format(
+        "the device supports Vulkan {}.{}, but the instance was created for an older version, which "
+        "hides {}; set VkApplicationInfo.apiVersion to VK_API_VERSION_1_3{}{}{}",
+        VK_API_VERSION_MAJOR(device_version), VK_API_VERSION_MINOR(device_version), of_instance,
+        extensions.empty() ? "" : ", or to VK_API_VERSION_1_2 and enable ", extensions,
+        extensions.empty() ? "" : " on the device");
+  if (!of_extensions.empty())
+    append(text, "; ",
+           fmt::format("the device was created without the functions {}; enable {} in "
+                       "VkDeviceCreateInfo.ppEnabledExtensionNames",
+                       of_extensions, extensions));
+  if (!unexplained.empty())
+    append(text, "; ",
+           fmt::format("the device does not give {} needed function{}: {}", unexplained.size(),
+                       unexplained.size() == 1 ? "" : "s", fmt::join(unexplained, ", ")));
+  return text;
+}
+
+std::string explain_instance_1_0(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                                 VkDevice device, uint32_t device_version) {
+  FunctionTable table;
+  std::vector<std::string> missing = load_functions(get_instance_proc_addr, instance, device, false, table);
+  if (device_version < VK_API_VERSION_1_2 || table.vkGetDeviceProcAddr == nullptr) return "";
+  // VK_KHR_bind_memory2 adds these functions to a 1.0 instance as well, but only under their KHR names.
+  for (const std::string_view name : bind_memory.functions) {
+    if (table.vkGetDeviceProcAddr(device, name.data()) != nullptr) return "";
+    if (!contains(missing, name)) missing.emplace_back(name);
+  }
+  return explain_missing(missing, device_version);
+}
+
+} // namespace dermis::vulkan
