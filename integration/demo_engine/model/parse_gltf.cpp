@@ -5,8 +5,10 @@
 #include "integration/demo_engine/files.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <climits>
 #include <cstring>
@@ -108,6 +110,46 @@ uint32_t nesting_of(std::string_view text) {
   return deepest;
 }
 
+using Json = nlohmann::json;
+
+constexpr std::array<std::string_view, 0> known_extensions = {};
+
+// "": a version of glTF that is read; else what is wrong with `asset`.
+std::string wrong_version(const Json& file) {
+  const auto asset = file.find("asset");
+  if (asset == file.end() || !asset->is_object() || !asset->contains("version"))
+    return "asset.version is missing; expected 2.0";
+  for (const char* key : {"version", "minVersion"}) {
+    const auto found = asset->find(key);
+    if (found == asset->end()) continue;
+    if (!found->is_string()) return fmt::format("asset.{} is no text; expected \"2.0\"", key);
+    const std::string& text = found->get_ref<const std::string&>();
+    const bool digits = text.size() > 2 && text.find_first_not_of("0123456789", 2) == std::string::npos;
+    const bool read = text.starts_with("2.") && digits;
+    const bool needs_more = key == std::string_view("minVersion") && text != "2.0";
+    if (!read || needs_more)
+      return fmt::format("asset.{} is '{}', which is not read; expected 2.0: export the model as glTF 2.0",
+                         key, text);
+  }
+  return "";
+}
+
+// "": all extensions that the file cannot be read without are known.
+std::string unknown_extensions(const Json& file) {
+  const auto required = file.find("extensionsRequired");
+  if (required == file.end()) return "";
+  if (!required->is_array()) return "extensionsRequired is no array";
+  std::string unknown;
+  for (const Json& name : *required) {
+    if (!name.is_string()) return "extensionsRequired holds something that is no name";
+    const std::string& text = name.get_ref<const std::string&>();
+    if (std::find(known_extensions.begin(), known_extensions.end(), text) != known_extensions.end()) continue;
+    unknown += fmt::format("{}'{}'", unknown.empty() ? "" : ", ", text);
+  }
+  if (unknown.empty()) return "";
+  return fmt::format("the file requires {}, which is not read; export the model without it", unknown);
+}
+
 } // namespace
 
 Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std::byte> bytes,
@@ -123,6 +165,9 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   if (!binary && (first == text.size() || text[first] != '{'))
     return refuse("this is not a glTF file: it starts neither with 'glTF' (binary) nor with '{' (JSON)");
   if (binary) {
+    uint32_t version = 2;
+    if (bytes.size() >= 8) std::memcpy(&version, bytes.data() + 4, sizeof version);
+    if (version != 2) return refuse(fmt::format("binary glTF of version {}; expected 2", version));
     if (const std::string wrong = wrong_chunks(bytes); !wrong.empty())
       return refuse("the glTF file is damaged: " + wrong);
     uint32_t json_size = 0;
@@ -131,6 +176,12 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   }
   if (nesting_of(text) > dermis::limits::nesting)
     return refuse(fmt::format("objects and arrays are nested deeper than {}", dermis::limits::nesting));
+
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_object()) { // else tinygltf says what is wrong
+    if (const std::string wrong = wrong_version(json); !wrong.empty()) return refuse(wrong);
+    if (const std::string unknown = unknown_extensions(json); !unknown.empty()) return refuse(unknown);
+  }
 
   tinygltf::Model model;
   Beside beside{model, fs::path(path).parent_path(), {fs::path(path).parent_path()}, ""};

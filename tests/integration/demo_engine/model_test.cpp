@@ -84,6 +84,46 @@ TEST_F(ModelFile, WhatIsNoGltfIsCalledSo) {
   EXPECT_THAT(refused(only(folder.path().string())).text, HasSubstr("not a regular file"));
 }
 
+std::string text_of(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string exchanged(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  if (at == std::string::npos) {
+    ADD_FAILURE() << "the file has no " << from;
+    return text;
+  }
+  return text.replace(at, from.size(), to);
+}
+
+TEST_F(ModelFile, OtherVersionsAreRefusedByName) {
+  const std::string whole = text_of(triangle());
+  const auto with_asset = [&](const std::string& asset) {
+    return only(write("version.gltf", exchanged(whole, R"("version": "2.0")", asset)));
+  };
+  EXPECT_THAT(refused(with_asset(R"("version": "1.0")")).text, HasSubstr("asset.version is '1.0'"));
+  EXPECT_THAT(refused(with_asset(R"("version": "3.0")")).text, HasSubstr("asset.version is '3.0'"));
+  EXPECT_THAT(refused(with_asset(R"("version": "20.0")")).text, HasSubstr("asset.version is '20.0'"));
+  EXPECT_THAT(refused(with_asset(R"("version": 2.0)")).text, HasSubstr("asset.version is no text"));
+  EXPECT_THAT(refused(with_asset(R"("generator": "a")")).text, HasSubstr("asset.version is missing"));
+  EXPECT_THAT(refused(with_asset(R"("version": "3.1", "minVersion": "3.0")")).text, HasSubstr("3.1"));
+  EXPECT_THAT(refused(with_asset(R"("version": "2.1", "minVersion": "3.0")")).text,
+              HasSubstr("asset.minVersion is '3.0'"));
+  EXPECT_TRUE(load_model(with_asset(R"("version": "2.1", "minVersion": "2.0")")));
+}
+
+TEST_F(ModelFile, RequiredExtensionsAreRefusedByName) {
+  const std::string whole = text_of(triangle());
+  const auto with = [&](const std::string& more) {
+    return only(write("required.gltf", exchanged(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
+  };
+  EXPECT_THAT(refused(with(R"("extensionsRequired": ["KHR_texture_basisu", "ACME_spheres"])")).text,
+              testing::AllOf(HasSubstr("'KHR_texture_basisu'"), HasSubstr("'ACME_spheres'")));
+  EXPECT_TRUE(load_model(with(R"("extensionsUsed": ["ACME_spheres"])")));
+}
+
 TEST_F(ModelFile, IndicesBeyondTheVerticesAreRefused) {
   EXPECT_THAT(refused(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
 }
