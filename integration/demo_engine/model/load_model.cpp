@@ -31,6 +31,24 @@ glm::dmat4 local_matrix(const tinygltf::Node& node) {
   return m;
 }
 
+// Three indices a triangle, of a list, a strip or a fan of vertices. A strip turns every second triangle
+// over.
+std::vector<uint32_t> as_triangles(std::vector<uint32_t> indices, int mode) {
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    indices.resize(indices.size() - indices.size() % 3);
+    return indices;
+  }
+  std::vector<uint32_t> triangles;
+  for (size_t i = 0; i + 2 < indices.size(); ++i) {
+    const size_t odd = i % 2;
+    if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+      triangles.insert(triangles.end(), {indices[i + 1], indices[i + 2], indices[0]});
+    else
+      triangles.insert(triangles.end(), {indices[i], indices[i + 1 + odd], indices[i + 2 - odd]});
+  }
+  return triangles;
+}
+
 struct Gathering {
   const tinygltf::Model& file;
   std::string path;
@@ -40,7 +58,11 @@ struct Gathering {
   uint32_t skipped = 0;
 
   Result<> add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& place) {
-    if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1) {
+    const int mode = primitive.mode == -1 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+    if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN)
+      return Error{ErrorKind::input,
+                   fmt::format("{}: a mesh has the primitive mode {}; expected 0 to 6", path, mode)};
+    if (mode < TINYGLTF_MODE_TRIANGLES) {
       ++skipped;
       return success();
     }
@@ -90,10 +112,10 @@ struct Gathering {
       model.mesh.vertices.push_back(vertex);
     }
     if (material < 0) material = primitive.material;
-    return add_indices(primitive, static_cast<uint32_t>(first), static_cast<uint32_t>(count));
+    return add_indices(primitive, mode, static_cast<uint32_t>(first), static_cast<uint32_t>(count));
   }
 
-  Result<> add_indices(const tinygltf::Primitive& primitive, uint32_t first, uint32_t count) {
+  Result<> add_indices(const tinygltf::Primitive& primitive, int mode, uint32_t first, uint32_t count) {
     std::vector<uint32_t> indices(count);
     for (uint32_t i = 0; i < count; ++i)
       indices[i] = i;
@@ -102,8 +124,7 @@ struct Gathering {
       if (!read) return read.error();
       indices = read.take();
     }
-    indices.resize(indices.size() - indices.size() % 3);
-    for (const uint32_t index : indices)
+    for (const uint32_t index : as_triangles(std::move(indices), mode))
       model.mesh.indices.push_back(first + index);
     return success();
   }

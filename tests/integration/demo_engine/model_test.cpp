@@ -124,6 +124,49 @@ TEST_F(ModelFile, RequiredExtensionsAreRefusedByName) {
   EXPECT_TRUE(load_model(with(R"("extensionsUsed": ["ACME_spheres"])")));
 }
 
+// A model out of floats and the text after its buffers, accessors of which take three floats an element one
+// after another; the first is of positions.
+struct Pieces {
+  std::vector<float> floats;
+  uint32_t vertices = 4;
+  std::string primitives = R"([{ "attributes": { "POSITION": 0 } }])";
+  std::string nodes = R"([{ "mesh": 0 }])";
+};
+
+Mesh mesh_of(const ModelFile& test, const Pieces& pieces) {
+  const std::string size = std::to_string(pieces.floats.size() * sizeof(float));
+  test.write("pieces.bin",
+             {reinterpret_cast<const char*>(pieces.floats.data()), pieces.floats.size() * sizeof(float)});
+  std::string accessors;
+  for (size_t at = 0; at + 3 * pieces.vertices <= pieces.floats.size(); at += 3 * pieces.vertices)
+    accessors +=
+        (at == 0 ? "" : ",") +
+        (R"({ "bufferView": 0, "componentType": 5126, "type": "VEC3", "byteOffset": )" +
+         std::to_string(at * sizeof(float)) + R"(, "count": )" + std::to_string(pieces.vertices) + "}");
+  const auto model = load_model(ModelFile::only(test.write(
+      "pieces.gltf", R"({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "pieces.bin", "byteLength": )" +
+                         size + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" + size +
+                         R"( }], "accessors": [)" + accessors + R"(], "meshes": [{ "primitives": )" +
+                         pieces.primitives + R"( }], "nodes": )" + pieces.nodes +
+                         R"(, "scenes": [{ "nodes": [0] }] })")));
+  if (model) return model->mesh;
+  ADD_FAILURE() << model.error().text;
+  return {};
+}
+
+TEST_F(ModelFile, StripsAndFansAreTriangles) {
+  Pieces pieces;
+  pieces.floats = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+  pieces.primitives = R"([{ "attributes": { "POSITION": 0 }, "mode": 5 }])";
+  EXPECT_THAT(mesh_of(*this, pieces).indices, testing::ElementsAre(0, 1, 2, 1, 3, 2));
+  pieces.floats = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  pieces.primitives = R"([{ "attributes": { "POSITION": 0 }, "mode": 6 }])";
+  const Mesh fan = mesh_of(*this, pieces);
+  EXPECT_THAT(fan.indices, testing::ElementsAre(1, 2, 0, 2, 3, 0));
+  for (const Vertex& vertex : fan.vertices)
+    EXPECT_NEAR(vertex.normal.z, 1.0f, 1e-6f);
+}
+
 TEST_F(ModelFile, IndicesBeyondTheVerticesAreRefused) {
   EXPECT_THAT(refused(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
 }
