@@ -10,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace demo {
@@ -49,12 +50,30 @@ std::vector<uint32_t> as_triangles(std::vector<uint32_t> indices, int mode) {
   return triangles;
 }
 
+// What one primitive made of a mesh.
+struct Part {
+  size_t first_vertex, vertices, first_index, indices;
+  bool has_normals, has_tangents;
+};
+
+void compute_in(Mesh& mesh, const Part& part, void (*compute)(Mesh&)) {
+  const auto vertices = mesh.vertices.begin() + static_cast<ptrdiff_t>(part.first_vertex);
+  const auto indices = mesh.indices.begin() + static_cast<ptrdiff_t>(part.first_index);
+  Mesh own{{vertices, vertices + static_cast<ptrdiff_t>(part.vertices)},
+           {indices, indices + static_cast<ptrdiff_t>(part.indices)}};
+  for (uint32_t& index : own.indices)
+    index -= static_cast<uint32_t>(part.first_vertex);
+  compute(own);
+  std::copy(own.vertices.begin(), own.vertices.end(), vertices);
+}
+
 struct Gathering {
   const tinygltf::Model& file;
   std::string path;
   Model model;
   int material = -1;
-  bool has_normals = true, has_tangents = true, is_head_scan = false;
+  bool is_head_scan = false;
+  std::vector<Part> parts;
   uint32_t skipped = 0;
 
   Result<> add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& place) {
@@ -92,9 +111,8 @@ struct Gathering {
     if (auto done = optional_floats("NORMAL", TINYGLTF_TYPE_VEC3, 3, normals); !done) return done;
     if (auto done = optional_floats("TEXCOORD_0", TINYGLTF_TYPE_VEC2, 2, uvs); !done) return done;
     if (auto done = optional_floats("TANGENT", TINYGLTF_TYPE_VEC4, 4, tangents); !done) return done;
-    has_normals = has_normals && !normals.empty();
-    has_tangents = has_tangents && !tangents.empty();
     const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(place)));
+    const bool mirrored = glm::determinant(glm::dmat3(place)) < 0.0;
     for (size_t i = 0; i < count; ++i) {
       Vertex vertex;
       vertex.position = glm::vec3(place * glm::dvec4(glm::make_vec3(&(*positions)[3 * i]), 1.0));
@@ -106,16 +124,23 @@ struct Gathering {
       if (!tangents.empty()) {
         const glm::dvec3 tangent = glm::dmat3(place) * glm::dvec3(glm::make_vec3(&tangents[4 * i]));
         if (glm::length(tangent) > 0.0)
-          vertex.tangent =
-              glm::vec4(glm::vec3(glm::normalize(tangent)), tangents[4 * i + 3] < 0.0f ? -1.0f : 1.0f);
+          vertex.tangent = glm::vec4(glm::vec3(glm::normalize(tangent)),
+                                     (tangents[4 * i + 3] < 0.0f) != mirrored ? -1.0f : 1.0f);
       }
       model.mesh.vertices.push_back(vertex);
     }
     if (material < 0) material = primitive.material;
-    return add_indices(primitive, mode, static_cast<uint32_t>(first), static_cast<uint32_t>(count));
+    // glTF has tangents without normals ignored.
+    Part part{
+        first, count, model.mesh.indices.size(), 0, !normals.empty(), !normals.empty() && !tangents.empty()};
+    if (auto done = add_indices(primitive, mode, part, mirrored); !done) return done;
+    parts.push_back(part);
+    return success();
   }
 
-  Result<> add_indices(const tinygltf::Primitive& primitive, int mode, uint32_t first, uint32_t count) {
+  // A mirrored triangle is seen from its other side: two corners change places.
+  Result<> add_indices(const tinygltf::Primitive& primitive, int mode, Part& part, bool mirrored) {
+    const auto first = static_cast<uint32_t>(part.first_vertex), count = static_cast<uint32_t>(part.vertices);
     std::vector<uint32_t> indices(count);
     for (uint32_t i = 0; i < count; ++i)
       indices[i] = i;
@@ -124,8 +149,13 @@ struct Gathering {
       if (!read) return read.error();
       indices = read.take();
     }
-    for (const uint32_t index : as_triangles(std::move(indices), mode))
+    indices = as_triangles(std::move(indices), mode);
+    if (mirrored)
+      for (size_t i = 0; i < indices.size(); i += 3)
+        std::swap(indices[i + 1], indices[i + 2]);
+    for (const uint32_t index : indices)
       model.mesh.indices.push_back(first + index);
+    part.indices = indices.size();
     return success();
   }
 
@@ -218,7 +248,7 @@ Result<Model> load_model(const ModelOptions& options, const std::vector<std::str
   if (!bytes) return bytes.error();
   auto file = parse_gltf(options.mesh, *bytes, roots);
   if (!file) return file.error();
-  Gathering gathering{*file, options.mesh, {}, -1, true, true, false, 0};
+  Gathering gathering{*file, options.mesh, {}, -1, false, {}, 0};
   const auto scene = static_cast<size_t>(std::max(file->defaultScene, 0));
   if (scene < file->scenes.size())
     for (const int node : file->scenes[scene].nodes)
@@ -227,8 +257,10 @@ Result<Model> load_model(const ModelOptions& options, const std::vector<std::str
     return Error{ErrorKind::input, fmt::format("{}: the default scene has no triangles", options.mesh)};
   if (auto done = read_maps(gathering, options); !done) return done.error();
   if (auto done = place_in_middle(gathering.model.mesh, options); !done) return done.error();
-  if (!gathering.has_normals) compute_normals(gathering.model.mesh);
-  if (!gathering.has_tangents) compute_tangents(gathering.model.mesh);
+  for (const Part& part : gathering.parts) {
+    if (!part.has_normals) compute_in(gathering.model.mesh, part, compute_normals);
+    if (!part.has_tangents) compute_in(gathering.model.mesh, part, compute_tangents);
+  }
   if (gathering.skipped > 0)
     gathering.model.warnings.push_back(
         fmt::format("{}: {} meshes of points or lines were left out", options.mesh, gathering.skipped));

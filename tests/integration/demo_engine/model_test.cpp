@@ -167,6 +167,72 @@ TEST_F(ModelFile, StripsAndFansAreTriangles) {
     EXPECT_NEAR(vertex.normal.z, 1.0f, 1e-6f);
 }
 
+// How far the faces look where the normals do, at worst: 1 for a flat mesh.
+float facing(const Mesh& mesh) {
+  float worst = 1.0f;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const Vertex &a = mesh.vertices[mesh.indices[i]], &b = mesh.vertices[mesh.indices[i + 1]],
+                 &c = mesh.vertices[mesh.indices[i + 2]];
+    const glm::vec3 face = glm::normalize(glm::cross(b.position - a.position, c.position - a.position));
+    for (const Vertex* vertex : {&a, &b, &c})
+      worst = std::min(worst, glm::dot(face, vertex->normal));
+  }
+  return worst;
+}
+
+TEST_F(ModelFile, MirroredNodesFaceWhereTheyDidBefore) {
+  Pieces pieces;
+  pieces.floats = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  for (const char* attributes : {R"("POSITION": 0)", R"("POSITION": 0, "NORMAL": 1)"})
+    for (const char* scale : {"[1, 1, 1]", "[-1, 1, 1]", "[1, -2, 1]", "[-1, -1, 1]"}) {
+      pieces.primitives = std::string(R"([{ "mode": 5, "attributes": { )") + attributes + "} }]";
+      pieces.nodes = std::string(R"([{ "mesh": 0, "scale": )") + scale + "}]";
+      const Mesh mesh = mesh_of(*this, pieces);
+      EXPECT_GT(facing(mesh), 0.99f) << attributes << scale;
+      EXPECT_NEAR(mesh.vertices[0].normal.z, 1.0f, 1e-6f) << attributes << scale;
+    }
+  // A mirror in the parent and one in the child are none.
+  pieces.nodes = R"([{ "children": [1], "scale": [-1, 1, 1] }, { "mesh": 0, "scale": [-1, 1, 1] }])";
+  EXPECT_GT(facing(mesh_of(*this, pieces)), 0.99f);
+}
+
+TEST_F(ModelFile, MirroredTangentsKeepTheirBitangent) {
+  const float rows[] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 1,
+                        0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
+  write("triangle.bin", {reinterpret_cast<const char*>(rows), sizeof(rows)});
+  for (const bool mirrored : {false, true}) {
+    const std::string scale = mirrored ? "-1" : "1";
+    const auto model = load_model(
+        only(write("tangents.gltf", R"({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "triangle.bin",
+        "byteLength": 120 }], "bufferViews": [{ "buffer": 0, "byteLength": 120 }], "accessors": [
+        { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
+        { "bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3" },
+        { "bufferView": 0, "byteOffset": 72, "componentType": 5126, "count": 3, "type": "VEC4" }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1, "TANGENT": 2 } }] }],
+        "nodes": [{ "mesh": 0, "scale": [)" +
+                                        scale + R"(, 1, 1] }], "scenes": [{ "nodes": [0] }] })")));
+    ASSERT_TRUE(model) << model.error().text;
+    const Vertex& vertex = model->mesh.vertices[0];
+    EXPECT_EQ(vertex.tangent.x, mirrored ? -1.0f : 1.0f);
+    const glm::vec3 bitangent = vertex.tangent.w * glm::cross(vertex.normal, glm::vec3(vertex.tangent));
+    EXPECT_NEAR(bitangent.y, 1.0f, 1e-6f) << mirrored;
+  }
+}
+
+TEST_F(ModelFile, OnePrimitiveWithoutNormalsChangesNoOther) {
+  Pieces pieces;
+  const float s = 0.6f, c = 0.8f; // normals that no face has
+  pieces.floats = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, s, 0, c, s, 0, c, s, 0, c, s, 0, c};
+  pieces.primitives = R"([{ "mode": 5, "attributes": { "POSITION": 0, "NORMAL": 1 } },
+                          { "mode": 5, "attributes": { "POSITION": 0 } }])";
+  const Mesh mesh = mesh_of(*this, pieces);
+  ASSERT_EQ(mesh.vertices.size(), 8u);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(mesh.vertices[i].normal.x, s, 1e-6f);
+    EXPECT_NEAR(mesh.vertices[i + 4].normal.z, 1.0f, 1e-6f);
+  }
+}
+
 TEST_F(ModelFile, IndicesBeyondTheVerticesAreRefused) {
   EXPECT_THAT(refused(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
 }
