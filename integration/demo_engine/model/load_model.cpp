@@ -184,11 +184,25 @@ struct Gathering {
 // The file's own map, if it can be read; a map that cannot is a warning, since the shape is there.
 Texture own_map(Gathering& gathering, int texture) {
   const tinygltf::Model& file = gathering.file;
-  if (texture < 0 || static_cast<size_t>(texture) >= file.textures.size()) return {};
-  const int source = file.textures[static_cast<size_t>(texture)].source;
-  if (source < 0 || static_cast<size_t>(source) >= file.images.size()) return {};
-  auto decoded = decode_texture(fmt::format("{}: image {}", gathering.path, source),
-                                std::as_bytes(std::span(file.images[static_cast<size_t>(source)].image)));
+  if (texture < 0) return {};
+  const auto without = [&](const std::string& why) {
+    gathering.model.warnings.push_back(fmt::format("{}: {}", gathering.path, why));
+    return Texture{};
+  };
+  if (static_cast<size_t>(texture) >= file.textures.size())
+    return without(fmt::format("texture {} does not exist; its map is left out", texture));
+  const tinygltf::Texture& from = file.textures[static_cast<size_t>(texture)];
+  if (from.source < 0 || static_cast<size_t>(from.source) >= file.images.size())
+    return without(fmt::format("texture {} has no picture that can be read{}{}; its map is left out", texture,
+                               from.extensions.empty() ? "" : " without ",
+                               from.extensions.empty() ? "" : from.extensions.begin()->first));
+  const tinygltf::Image& image = file.images[static_cast<size_t>(from.source)];
+  const std::string& name = image.uri.empty() ? image.name : image.uri;
+  const std::string called = fmt::format("image {}{}", from.source, name.empty() ? "" : " '" + name + "'");
+  if (image.image.empty() && !image.uri.empty())
+    return without(called + " is not there, is empty or cannot be read; its map is left out");
+  auto decoded =
+      decode_texture(fmt::format("{}: {}", gathering.path, called), std::as_bytes(std::span(image.image)));
   if (decoded) return decoded.take();
   gathering.model.warnings.push_back(decoded.error().text);
   return {};

@@ -150,6 +150,48 @@ std::string unknown_extensions(const Json& file) {
   return fmt::format("the file requires {}, which is not read; export the model without it", unknown);
 }
 
+// tinygltf 2.7 takes '+' in names for a space, which it is in forms of the web alone.
+bool keep_plus_signs(Json& file) {
+  bool changed = false;
+  for (const char* key : {"buffers", "images"}) {
+    const auto list = file.find(key);
+    if (list == file.end() || !list->is_array()) continue;
+    for (Json& one : *list) {
+      const auto uri = one.is_object() ? one.find("uri") : one.end();
+      if (!one.is_object() || uri == one.end() || !uri->is_string()) continue;
+      auto& name = uri->get_ref<std::string&>();
+      if (name.starts_with("data:") || name.find('+') == std::string::npos) continue;
+      for (size_t at = name.find('+'); at != std::string::npos; at = name.find('+', at))
+        name.replace(at, 1, "%2B");
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+// The file with `json` in the place of its own.
+std::vector<std::byte> with_json(std::span<const std::byte> bytes, const Json& json, size_t old_size,
+                                 bool binary) {
+  std::string text = json.dump();
+  std::vector<std::byte> out;
+  const auto append = [&](std::span<const std::byte> more) {
+    out.insert(out.end(), more.begin(), more.end());
+  };
+  if (!binary) {
+    append(std::as_bytes(std::span(text)));
+    return out;
+  }
+  constexpr size_t header = 12, chunk_header = 8;
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  append(bytes.first(header + chunk_header));
+  append(std::as_bytes(std::span(text)));
+  append(bytes.subspan(header + chunk_header + old_size));
+  const auto whole = static_cast<uint32_t>(out.size()), chunk = static_cast<uint32_t>(text.size());
+  std::memcpy(out.data() + 8, &whole, sizeof whole);
+  std::memcpy(out.data() + header, &chunk, sizeof chunk);
+  return out;
+}
+
 } // namespace
 
 Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std::byte> bytes,
@@ -177,10 +219,15 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   if (nesting_of(text) > dermis::limits::nesting)
     return refuse(fmt::format("objects and arrays are nested deeper than {}", dermis::limits::nesting));
 
-  const Json json = Json::parse(text, nullptr, false);
+  Json json = Json::parse(text, nullptr, false);
   if (json.is_object()) { // else tinygltf says what is wrong
     if (const std::string wrong = wrong_version(json); !wrong.empty()) return refuse(wrong);
     if (const std::string unknown = unknown_extensions(json); !unknown.empty()) return refuse(unknown);
+  }
+  std::vector<std::byte> changed;
+  if (keep_plus_signs(json)) {
+    changed = with_json(bytes, json, text.size(), binary);
+    bytes = changed;
   }
 
   tinygltf::Model model;

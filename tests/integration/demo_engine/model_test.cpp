@@ -302,6 +302,23 @@ TEST_F(ModelFile, WhatAFileNamesIsReadInItsFolderAlone) {
               HasSubstr("too long"));
 }
 
+TEST_F(ModelFile, NamesAreReadAsTheyAreWritten) {
+  const std::string whole = text_of(triangle());
+  const std::string buffer = text_of((folder / "triangle.bin").string());
+  for (const auto& [uri, name] : {std::pair<std::string, std::string>{"a%20b.bin", "a b.bin"},
+                                  {"a b.bin", "a b.bin"},
+                                  {"\xc3\xb6.bin", "\xc3\xb6.bin"},
+                                  {"\\u00f6.bin", "\xc3\xb6.bin"},
+                                  {"%C3%B6.bin", "\xc3\xb6.bin"},
+                                  {"a+b.bin", "a+b.bin"},
+                                  {"a%2Bb.bin", "a+b.bin"}}) {
+    std::filesystem::remove(folder / name);
+    write(name, buffer);
+    const auto model = load_model(only(write("names.gltf", with_buffer(whole, uri))));
+    EXPECT_TRUE(model) << uri << ": " << model.error().text;
+  }
+}
+
 // A binary glTF of this JSON and chunk; `more`: what the chunk says it has beyond.
 std::string binary(std::string json, const std::string& chunk, uint32_t more = 0) {
   json.resize((json.size() + 3) / 4 * 4, ' ');
@@ -331,6 +348,27 @@ TEST_F(ModelFile, PicturesBeyondTheEndOfTheirBufferAreNotRead) {
     ASSERT_EQ(model->warnings.size(), 1u) << view;
     EXPECT_THAT(model->warnings[0], HasSubstr("not an image"));
   }
+}
+
+TEST_F(ModelFile, PicturesThatAreMissingAreNamed) {
+  const std::string whole =
+      exchanged(text_of(triangle()), R"("indices": 1)", R"("indices": 1, "material": 0)");
+  const auto warnings = [&](const std::string& texture, const std::string& uri) {
+    const auto model = load_model(
+        only(write("picture.gltf",
+                   exchanged(whole, R"("scene": 0)", R"("scene": 0, "images": [{ "uri": ")" + uri + R"(" }],
+          "textures": [{ )" + texture + R"( }], "materials": [{ "pbrMetallicRoughness":
+          { "baseColorTexture": { "index": 0 } } }])"))));
+    EXPECT_TRUE(model) << model.error().text;
+    return model ? model->warnings : std::vector<std::string>{};
+  };
+  EXPECT_THAT(warnings(R"("source": 0)", "not%20there.png"),
+              testing::ElementsAre(testing::AllOf(HasSubstr("'not%20there.png'"), HasSubstr("not there,"))));
+  write("text+1.png", "no picture");
+  EXPECT_THAT(warnings(R"("source": 0)", "text+1.png"),
+              testing::ElementsAre(testing::AllOf(HasSubstr("'text"), HasSubstr("not an image"))));
+  EXPECT_THAT(warnings(R"("extensions": { "KHR_texture_basisu": { "source": 0 } })", "text+1.png"),
+              testing::ElementsAre(HasSubstr("KHR_texture_basisu")));
 }
 
 TEST_F(ModelFile, ChunksBeyondTheEndOfTheFileAreRefused) {
