@@ -170,6 +170,12 @@ struct Gathering {
     if (node.mesh >= 0) {
       if (static_cast<size_t>(node.mesh) >= file.meshes.size())
         return Error{ErrorKind::input, fmt::format("{}: mesh {} does not exist", path, node.mesh)};
+      if (node.skin >= 0)
+        return Error{
+            ErrorKind::input,
+            fmt::format("{}: node {}{} has a skin, and skinned meshes are not posed; export the model "
+                        "with its pose applied and without a skin",
+                        path, index, node.name.empty() ? "" : " '" + node.name + "'")};
       const tinygltf::Mesh& mesh = file.meshes[static_cast<size_t>(node.mesh)];
       is_head_scan = is_head_scan || mesh.name == head_scan;
       for (const tinygltf::Primitive& primitive : mesh.primitives)

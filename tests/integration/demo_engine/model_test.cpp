@@ -233,6 +233,15 @@ TEST_F(ModelFile, OnePrimitiveWithoutNormalsChangesNoOther) {
   }
 }
 
+TEST_F(ModelFile, SkinnedMeshesAreRefusedByName) {
+  const std::string path =
+      triangle("[0, 1, 2]", "", R"([{ "mesh": 0, "skin": 0, "name": "torso" }, { "name": "joint" }])");
+  const std::string whole =
+      exchanged(text_of(path), R"("scene": 0)", R"("scene": 0, "skins": [{ "joints": [1] }])");
+  EXPECT_THAT(refused(only(write("skin.gltf", whole))).text,
+              testing::AllOf(HasSubstr("node 0 'torso'"), HasSubstr("skin")));
+}
+
 TEST_F(ModelFile, IndicesBeyondTheVerticesAreRefused) {
   EXPECT_THAT(refused(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
 }
