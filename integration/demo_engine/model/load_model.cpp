@@ -67,14 +67,65 @@ void compute_in(Mesh& mesh, const Part& part, void (*compute)(Mesh&)) {
   std::copy(own.vertices.begin(), own.vertices.end(), vertices);
 }
 
+// Where a map lies on a mesh: the set of coordinates, and what KHR_texture_transform makes of them.
+struct MapPlace {
+  int set = 0;
+  glm::dvec2 offset{0.0}, scale{1.0};
+  double rotation = 0.0;
+  bool operator==(const MapPlace&) const = default;
+
+  glm::vec2 operator()(const glm::vec2& uv) const {
+    const glm::dvec2 scaled = scale * glm::dvec2(uv);
+    const double c = std::cos(rotation), s = std::sin(rotation);
+    return glm::vec2(c * scaled.x + s * scaled.y + offset.x, c * scaled.y - s * scaled.x + offset.y);
+  }
+};
+
+template <class TextureInfo> MapPlace place_of(const TextureInfo& info) {
+  MapPlace place;
+  place.set = info.texCoord;
+  const auto found = info.extensions.find("KHR_texture_transform");
+  if (found == info.extensions.end()) return place;
+  const auto number = [](const tinygltf::Value& value, double& out) {
+    if (value.IsNumber() && std::isfinite(value.GetNumberAsDouble())) out = value.GetNumberAsDouble();
+  };
+  const auto pair = [&](const char* key, glm::dvec2& out) {
+    const tinygltf::Value& value = found->second.Get(key);
+    if (!value.IsArray() || value.ArrayLen() != 2) return;
+    number(value.Get(0), out.x);
+    number(value.Get(1), out.y);
+  };
+  pair("offset", place.offset);
+  pair("scale", place.scale);
+  number(found->second.Get("rotation"), place.rotation);
+  if (found->second.Get("texCoord").IsInt()) place.set = found->second.Get("texCoord").GetNumberAsInt();
+  return place;
+}
+
 struct Gathering {
   const tinygltf::Model& file;
+  const ModelOptions& options;
   std::string path;
   Model model;
   int material = -1;
   bool is_head_scan = false;
   std::vector<Part> parts;
   uint32_t skipped = 0;
+
+  const tinygltf::Material* first_material() const {
+    const bool there = material >= 0 && static_cast<size_t>(material) < file.materials.size();
+    return there ? &file.materials[static_cast<size_t>(material)] : nullptr;
+  }
+
+  // Vertices have one pair of coordinates: that of maps beside the model, else of the base colour's map, else
+  // of the normal map.
+  MapPlace place_of_maps() const {
+    const tinygltf::Material* from = first_material();
+    if (from == nullptr || !options.albedo.empty() || !options.normal.empty() || !options.specular.empty())
+      return {};
+    const tinygltf::TextureInfo& base = from->pbrMetallicRoughness.baseColorTexture;
+    return base.index >= 0 ? place_of(base) : place_of(from->normalTexture);
+  }
 
   Result<> add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& place) {
     const int mode = primitive.mode == -1 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
@@ -109,7 +160,12 @@ struct Gathering {
     };
     std::vector<float> normals, uvs, tangents;
     if (auto done = optional_floats("NORMAL", TINYGLTF_TYPE_VEC3, 3, normals); !done) return done;
-    if (auto done = optional_floats("TEXCOORD_0", TINYGLTF_TYPE_VEC2, 2, uvs); !done) return done;
+    if (material < 0) material = primitive.material;
+    const MapPlace map_place = place_of_maps();
+    if (auto done =
+            optional_floats(fmt::format("TEXCOORD_{}", map_place.set).c_str(), TINYGLTF_TYPE_VEC2, 2, uvs);
+        !done)
+      return done;
     if (auto done = optional_floats("TANGENT", TINYGLTF_TYPE_VEC4, 4, tangents); !done) return done;
     const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(place)));
     const bool mirrored = glm::determinant(glm::dmat3(place)) < 0.0;
@@ -120,7 +176,7 @@ struct Gathering {
         const glm::dvec3 normal = turn * glm::dvec3(glm::make_vec3(&normals[3 * i]));
         if (glm::length(normal) > 0.0) vertex.normal = glm::vec3(glm::normalize(normal));
       }
-      if (!uvs.empty()) vertex.uv = glm::make_vec2(&uvs[2 * i]);
+      if (!uvs.empty()) vertex.uv = map_place(glm::make_vec2(&uvs[2 * i]));
       if (!tangents.empty()) {
         const glm::dvec3 tangent = glm::dmat3(place) * glm::dvec3(glm::make_vec3(&tangents[4 * i]));
         if (glm::length(tangent) > 0.0)
@@ -129,7 +185,6 @@ struct Gathering {
       }
       model.mesh.vertices.push_back(vertex);
     }
-    if (material < 0) material = primitive.material;
     // glTF has tangents without normals ignored.
     Part part{
         first, count, model.mesh.indices.size(), 0, !normals.empty(), !normals.empty() && !tangents.empty()};
@@ -216,13 +271,21 @@ Texture own_map(Gathering& gathering, int texture) {
 
 Result<> read_maps(Gathering& gathering, const ModelOptions& options) {
   Model& model = gathering.model;
-  if (gathering.material >= 0 && static_cast<size_t>(gathering.material) < gathering.file.materials.size()) {
-    const tinygltf::Material& material = gathering.file.materials[static_cast<size_t>(gathering.material)];
+  if (const tinygltf::Material* from = gathering.first_material(); from != nullptr) {
+    const tinygltf::Material& material = *from;
     const std::vector<double>& factor = material.pbrMetallicRoughness.baseColorFactor;
     if (factor.size() >= 3) model.albedo_factor = glm::clamp(glm::make_vec3(factor.data()), 0.0, 1.0);
+    const auto own = [&](const auto& info, const char* which) -> Texture {
+      if (info.index < 0 || place_of(info) == gathering.place_of_maps())
+        return own_map(gathering, info.index);
+      model.warnings.push_back(fmt::format("{}: the {} map has other coordinates or another "
+                                           "KHR_texture_transform than the maps beside it and is left out",
+                                           gathering.path, which));
+      return {};
+    };
     if (options.albedo.empty())
-      model.albedo = own_map(gathering, material.pbrMetallicRoughness.baseColorTexture.index);
-    if (options.normal.empty()) model.normal = own_map(gathering, material.normalTexture.index);
+      model.albedo = own(material.pbrMetallicRoughness.baseColorTexture, "base colour");
+    if (options.normal.empty()) model.normal = own(material.normalTexture, "normal");
   }
   struct Beside {
     const std::string& path;
@@ -268,7 +331,7 @@ Result<Model> load_model(const ModelOptions& options, const std::vector<std::str
   if (!bytes) return bytes.error();
   auto file = parse_gltf(options.mesh, *bytes, roots);
   if (!file) return file.error();
-  Gathering gathering{*file, options.mesh, {}, -1, false, {}, 0};
+  Gathering gathering{*file, options, options.mesh, {}, -1, false, {}, 0};
   const auto scene = static_cast<size_t>(std::max(file->defaultScene, 0));
   if (scene < file->scenes.size())
     for (const int node : file->scenes[scene].nodes)

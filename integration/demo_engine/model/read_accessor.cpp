@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -63,6 +64,11 @@ template <class T> T load(const unsigned char* from) {
   return value;
 }
 
+// The lowest normalised value has no opposite: glTF has it stand for -1 as the next one does.
+float signed_component(int value, bool normalized, float one) {
+  return normalized ? std::max(static_cast<float>(value) / one, -1.0f) : static_cast<float>(value);
+}
+
 float component_at(const Elements& elements, size_t element, uint32_t component) {
   if (elements.first == nullptr) return 0.0f;
   const unsigned char* at = elements.first + element * elements.stride;
@@ -73,8 +79,25 @@ float component_at(const Elements& elements, size_t element, uint32_t component)
     return static_cast<float>(at[component]) / (elements.normalized ? 255.0f : 1.0f);
   case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
     return static_cast<float>(load<uint16_t>(at + 2 * component)) / (elements.normalized ? 65535.0f : 1.0f);
+  case TINYGLTF_COMPONENT_TYPE_BYTE:
+    return signed_component(load<int8_t>(at + component), elements.normalized, 127.0f);
+  case TINYGLTF_COMPONENT_TYPE_SHORT:
+    return signed_component(load<int16_t>(at + 2 * component), elements.normalized, 32767.0f);
+  default: // refused by read_floats
+    return 0.0f;
+  }
+}
+
+bool holds_floats(int component_type) {
+  switch (component_type) {
+  case TINYGLTF_COMPONENT_TYPE_FLOAT:
+  case TINYGLTF_COMPONENT_TYPE_BYTE:
+  case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+  case TINYGLTF_COMPONENT_TYPE_SHORT:
+  case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    return true;
   default:
-    return std::nanf("");
+    return false;
   }
 }
 
@@ -84,6 +107,10 @@ Result<std::vector<float>> read_floats(const tinygltf::Model& model, const std::
                                        int type, uint32_t width) {
   auto elements = find_elements(model, file, index, type);
   if (!elements) return elements.error();
+  if (!holds_floats(elements->component))
+    return refuse(
+        file, index,
+        fmt::format("has the component type {}; expected floats, bytes or shorts", elements->component));
   std::vector<float> values(elements->count * width);
   for (size_t i = 0; i < elements->count; ++i) {
     for (uint32_t c = 0; c < width; ++c) {
