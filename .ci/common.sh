@@ -9,8 +9,8 @@ packages=(
 )
 
 # What the command compiles shaders with while it runs, and what the viewer's page is built with, where Node comes from
-# nowhere else; and what tells hosts how to be compiled. Without them these are left out.
-optional_packages=(glslang-dev pkg-config)
+# nowhere else; what tells hosts how to be compiled; and what decodes compressed models. Without them these are left out.
+optional_packages=(glslang-dev pkg-config libmeshoptimizer-dev libdraco-dev)
 command -v node >/dev/null || optional_packages+=(nodejs)
 command -v npm >/dev/null || optional_packages+=(npm)
 

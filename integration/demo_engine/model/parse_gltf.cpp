@@ -3,12 +3,12 @@
 #include "framegraph/text/file_roots.hpp"
 #include "framegraph/text/limits.hpp"
 #include "integration/demo_engine/files.hpp"
+#include "integration/demo_engine/model/decompress.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <climits>
 #include <cstring>
@@ -112,8 +112,10 @@ uint32_t nesting_of(std::string_view text) {
 
 using Json = nlohmann::json;
 
-constexpr std::array<std::string_view, 2> known_extensions = {"KHR_mesh_quantization",
-                                                              "KHR_texture_transform"};
+bool is_read(std::string_view extension) {
+  return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform" ||
+         (reads_meshopt && extension == meshopt_extension) || (reads_draco && extension == draco_extension);
+}
 
 // "": a version of glTF that is read; else what is wrong with `asset`.
 std::string wrong_version(const Json& file) {
@@ -144,11 +146,12 @@ std::string unknown_extensions(const Json& file) {
   for (const Json& name : *required) {
     if (!name.is_string()) return "extensionsRequired holds something that is no name";
     const std::string& text = name.get_ref<const std::string&>();
-    if (std::find(known_extensions.begin(), known_extensions.end(), text) != known_extensions.end()) continue;
+    if (is_read(text)) continue;
     unknown += fmt::format("{}'{}'", unknown.empty() ? "" : ", ", text);
   }
   if (unknown.empty()) return "";
-  return fmt::format("the file requires {}, which is not read; export the model without it", unknown);
+  return fmt::format("the file requires {}, which this build does not read; export the model without it",
+                     unknown);
 }
 
 // tinygltf 2.7 takes '+' in names for a space, which it is in forms of the web alone.
@@ -168,6 +171,51 @@ bool keep_plus_signs(Json& file) {
     }
   }
   return changed;
+}
+
+// Buffers that are there for readers without meshoptimizer may have no bytes, which tinygltf 2.7 refuses:
+// they get a byte, since nothing of them is read.
+bool fill_fallbacks(Json& file) {
+  const auto buffers = file.find("buffers");
+  if (!reads_meshopt || buffers == file.end() || !buffers->is_array()) return false;
+  bool changed = false;
+  for (Json& buffer : *buffers) {
+    if (!buffer.is_object() || buffer.contains("uri") || !buffer.contains("extensions")) continue;
+    const Json& extensions = buffer["extensions"];
+    if (!extensions.is_object() || !extensions.contains(meshopt_extension)) continue;
+    const Json& meshopt = extensions[meshopt_extension];
+    if (!meshopt.is_object() || meshopt.value("fallback", Json()) != Json(true)) continue;
+    buffer["uri"] = "data:application/octet-stream;base64,AA==";
+    buffer["byteLength"] = 1;
+    changed = true;
+  }
+  return changed;
+}
+
+// Indices of compressed primitives have no view, which tinygltf 2.7 refuses; decompress makes others anyway.
+bool drop_packed_indices(Json& file) {
+  const auto meshes = file.find("meshes");
+  if (!reads_draco || meshes == file.end() || !meshes->is_array()) return false;
+  bool changed = false;
+  for (Json& mesh : *meshes) {
+    const auto primitives = mesh.is_object() ? mesh.find("primitives") : mesh.end();
+    if (!mesh.is_object() || primitives == mesh.end() || !primitives->is_array()) continue;
+    for (Json& primitive : *primitives) {
+      if (!primitive.is_object() || !primitive.contains("extensions")) continue;
+      const Json& extensions = primitive["extensions"];
+      if (extensions.is_object() && extensions.contains(draco_extension))
+        changed = primitive.erase("indices") > 0 || changed;
+    }
+  }
+  return changed;
+}
+
+// What tinygltf would misread or refuse is written otherwise. Whether there was any.
+bool prepare(Json& file) {
+  if (!file.is_object()) return false;
+  const bool names = keep_plus_signs(file), fallbacks = fill_fallbacks(file),
+             packed = drop_packed_indices(file);
+  return names || fallbacks || packed;
 }
 
 // The file with `json` in the place of its own.
@@ -226,7 +274,7 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
     if (const std::string unknown = unknown_extensions(json); !unknown.empty()) return refuse(unknown);
   }
   std::vector<std::byte> changed;
-  if (keep_plus_signs(json)) {
+  if (prepare(json)) {
     changed = with_json(bytes, json, text.size(), binary);
     bytes = changed;
   }
@@ -255,6 +303,11 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   if (!beside.refused.empty()) return refuse(beside.refused);
   if (!loaded)
     return refuse(fmt::format("the glTF file is damaged: {}", error.empty() ? "no reason given" : error));
+  try {
+    if (auto done = decompress(model, path); !done) return done.error();
+  } catch (const std::exception& problem) {
+    return refuse(fmt::format("the compressed mesh is damaged: {}", problem.what()));
+  }
   return model;
 }
 

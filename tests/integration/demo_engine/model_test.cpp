@@ -328,64 +328,6 @@ TEST_F(ModelFile, NamesAreReadAsTheyAreWritten) {
   }
 }
 
-TEST_F(ModelFile, QuantisedPositionsAreRead) {
-  const int16_t shorts[] = {-32767, -32768, 0, 0, 32767, -32767, 0, 0, -32767, 32767, 0, 0};
-  const int8_t bytes[] = {-127, -128, 0, 0, 127, -127, 0, 0, -127, 127, 0, 0};
-  const auto quantised = [&](const void* data, size_t size, int type, const std::string& normalized) {
-    write("quantised.bin", {static_cast<const char*>(data), size});
-    const auto model = load_model(
-        only(write("quantised.gltf",
-                   R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["KHR_mesh_quantization"],
-          "buffers": [{ "uri": "quantised.bin", "byteLength": )" +
-                       std::to_string(size) + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" +
-                       std::to_string(size) + R"(, "byteStride": )" + std::to_string(size / 3) +
-                       R"( }], "accessors": [{ "bufferView": 0, "componentType": )" + std::to_string(type) +
-                       R"(, "count": 3, "type": "VEC3", "normalized": )" + normalized + R"( }],
-          "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
-          "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }] })")));
-    EXPECT_TRUE(model) << model.error().text;
-    return model ? bounds_of(model->mesh) : Bounds{};
-  };
-  EXPECT_EQ(quantised(shorts, sizeof(shorts), 5122, "true").high, glm::vec3(1, 1, 0));
-  EXPECT_EQ(quantised(shorts, sizeof(shorts), 5122, "false").high, glm::vec3(32767, 32767.5f, 0));
-  EXPECT_EQ(quantised(bytes, sizeof(bytes), 5120, "true").high, glm::vec3(1, 1, 0));
-  EXPECT_EQ(quantised(bytes, sizeof(bytes), 5120, "false").high, glm::vec3(127, 127.5f, 0));
-}
-
-TEST_F(ModelFile, TextureTransformsMoveCoordinates) {
-  const float rows[] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 1, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
-  write("uv.bin", {reinterpret_cast<const char*>(rows), sizeof(rows)});
-  const auto uv = [&](const std::string& transform, const std::string& normal = "") {
-    const auto model = load_model(only(
-        write("uv.gltf", R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["KHR_texture_transform"],
-          "buffers": [{ "uri": "uv.bin", "byteLength": 84 }],
-          "bufferViews": [{ "buffer": 0, "byteLength": 84 }], "accessors": [
-          { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
-          { "bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC2" },
-          { "bufferView": 0, "byteOffset": 60, "componentType": 5126, "count": 3, "type": "VEC2" }],
-          "images": [{ "uri": "none.png" }], "textures": [{ "source": 0 }],
-          "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "extensions":
-            { "KHR_texture_transform": )" +
-                             transform + "} } }" + normal + R"( }],
-          "meshes": [{ "primitives": [{ "material": 0, "attributes":
-            { "POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2 } }] }],
-          "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }] })")));
-    EXPECT_TRUE(model) << model.error().text;
-    return model ? std::pair{model->mesh.vertices[1].uv, model->warnings.size()}
-                 : std::pair{glm::vec2(), size_t{0}};
-  };
-  EXPECT_EQ(uv("{}").first, glm::vec2(1, 0));
-  EXPECT_EQ(uv(R"({ "offset": [0.5, 0.25] })").first, glm::vec2(1.5f, 0.25f));
-  EXPECT_EQ(uv(R"({ "scale": [2, 3], "offset": [1, 0] })").first, glm::vec2(3, 0));
-  const glm::vec2 turned = uv(R"({ "rotation": 1.5707963267948966, "scale": [2, 1] })").first;
-  EXPECT_NEAR(turned.x, 0.0f, 1e-6f);
-  EXPECT_NEAR(turned.y, -2.0f, 1e-6f);
-  EXPECT_EQ(uv(R"({ "texCoord": 1 })").first, glm::vec2(0.5f, 0.5f));
-  // The picture itself is not there; a normal map that lies elsewhere is one more warning.
-  EXPECT_EQ(uv("{}").second, 1u);
-  EXPECT_EQ(uv(R"({ "scale": [2, 2] })", R"(, "normalTexture": { "index": 0 })").second, 2u);
-}
-
 // A binary glTF of this JSON and chunk; `more`: what the chunk says it has beyond.
 std::string binary(std::string json, const std::string& chunk, uint32_t more = 0) {
   json.resize((json.size() + 3) / 4 * 4, ' ');
