@@ -128,6 +128,12 @@ TEST_F(ModelExtensions, MeshoptBuffersAreDecoded) {
   ASSERT_TRUE(model) << model.error().text;
   EXPECT_EQ(model->mesh.indices.size(), 6u);
   EXPECT_EQ(bounds_of(model->mesh).high, glm::vec3(0.5f, 0.5f, 0.0f));
+  for (size_t at = 0; at < bytes.size(); ++at) { // the indices that damaged bytes give are checked as well
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x5a);
+    const auto read = load(damaged, "4");
+    EXPECT_TRUE(read || read.error().kind == ErrorKind::input) << at;
+  }
   bytes[0] = 0;
   for (const auto& wrong : {load(bytes, "4"), load(bytes, "0"), load(bytes, "-1"), load(bytes, "1e9")}) {
     ASSERT_FALSE(wrong);
@@ -172,6 +178,13 @@ TEST_F(ModelExtensions, DracoMeshesAreDecoded) {
   EXPECT_EQ(bounds_of(model->mesh).high, glm::vec3(0.5f, 0.5f, 0.0f));
   EXPECT_NEAR(model->mesh.vertices[0].normal.z, 1.0f, 1e-6f);
   EXPECT_FALSE(load("77"));
+  const std::string whole = bytes;
+  for (size_t at = 0; at < whole.size(); ++at) {
+    bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x5a);
+    const auto read = load(id);
+    EXPECT_TRUE(read || read.error().kind == ErrorKind::input) << at;
+  }
   bytes.assign(bytes.size(), '\0');
   const auto wrong = load(id);
   ASSERT_FALSE(wrong);
