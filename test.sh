@@ -8,7 +8,8 @@ source .ci/common.sh
 source .ci/kept_steps.sh
 
 usage="usage: ./test.sh [--full]
-  Runs the tests, then each fuzz target for 10 seconds (where clang is installed or can be).
+  Runs the tests, those that need ray queries on a second driver (where it can be fetched), then each fuzz
+  target for 10 seconds (where clang is installed or can be).
   --full   hours, told step by step: 10,000 random graphs where the quick run tries 1,500, and mutations over them;
            the tests again with address and undefined-behaviour sanitizers; the threaded ones with the thread
            sanitizer; 100,000 frames of the soak; 400 random graphs of the real kinds on a device; the device tests on
@@ -114,6 +115,21 @@ random_graphs() { # part, from 1
   DERMIS_FUZZ_GRAPHS=$chunk_graphs side_by_side DERMIS_FUZZ_SEED $((($1 - 1) * chunks_a_part * chunk_graphs)) $chunk_graphs \
     $chunks_a_part build/release/tests/test_passes_device --gtest_filter='DeviceFuzz.*'
 }
+# The tests that need ray queries run on a driver that has them, all others on the system's. The tests find
+# the driver where fetch.sh leaves it.
+ray_queries() {
+  local log=build/ray_queries.log rc=0
+  tests/drivers/fetch.sh >/dev/null || return 77
+  built test_integration_demo_engine test_command
+  for program in integration_demo_engine:'WithRayQueries.*:Reuse.*:*RayQueries*' command:'BenchRestir.*'; do
+    LP_NUM_THREADS=$(nproc) quick "build/release/tests/test_${program%%:*}" --gtest_filter="${program#*:}" || rc=1
+  done >"$log" 2>&1
+  [[ $rc -eq 0 ]] || { grep -B20 'FAILED' "$log" | tail -60; fail 1 "tests on ray queries failed; the log: $log"; }
+  local ran
+  ran=$(grep -c '^\[       OK \]' "$log" || true)
+  say "$ran tests ran on the driver with ray queries"
+  [[ $ran -gt 0 ]] || fail 1 "a driver with ray queries is there, but no test ran on it; the log: $log"
+}
 other_drivers() { # suite, from 1
   build_preset release >/dev/null
   quick tests/drivers/run.sh build/release "${driver_suites[$1 - 1]}"
@@ -135,11 +151,11 @@ fuzzers() { # and the plans of another compiler
   tests/fuzz/run.sh "$seconds" || fail 1 "a fuzz target has a finding; it is kept in build/fuzz/findings"
 }
 
-steps=(release fuzzers)
+steps=(release "ray queries" fuzzers)
 if [[ $full == yes ]]; then
   open_kept_steps
   parts_of() { seq -f "$1 %g" "$2"; } # name, parts
-  mapfile -t steps < <(parts_of release "$test_parts"; echo fuzzers; echo coverage; echo tsan; parts_of soak "$soak_parts"
+  mapfile -t steps < <(parts_of release "$test_parts"; echo 'ray queries'; echo fuzzers; echo coverage; echo tsan; parts_of soak "$soak_parts"
     parts_of 'random graphs' "$graph_parts"; parts_of 'other drivers' "${#driver_suites[@]}"; echo benches
     parts_of asan "$test_parts")
 fi

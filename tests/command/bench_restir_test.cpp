@@ -5,6 +5,7 @@
 #include "integration/command/bench/restir/restir_file.hpp"
 #include "integration/command/bench/restir/variants.hpp"
 #include "tests/command/command_fixture.hpp"
+#include "tests/support/fetched_driver.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -129,9 +130,9 @@ TEST(RestirClaims, RowsThatErrMoreAreCounted) {
 
 struct BenchRestir : test::CommandTest {
   static test::RunOptions with_rays() {
-    return {{"VK_DRIVER_FILES=" + sources + "/build/drivers/mesa25.json"}, "", ""};
+    return {{"VK_DRIVER_FILES=" + dermis::testing::driver_with_ray_queries()}, "", ""};
   }
-  static bool has_rays() { return std::filesystem::exists(sources + "/build/drivers/mesa25.json"); }
+  static bool has_rays() { return !dermis::testing::driver_with_ray_queries().empty(); }
   nlohmann::json rows(const std::string& name) const { return nlohmann::json::parse(read(name)).at("rows"); }
 };
 

@@ -57,6 +57,14 @@ if command -v pkg-config >/dev/null; then
   (cd "$source" && unset LD_LIBRARY_PATH && set -x && . "$scratch/lines") | grep -E '^scatter +[0-9.]+ ms$'
 fi
 
+# Every document and example is installed, and so is what documents link to of them.
+documents=$(dirname "$(find "$prefix/share/doc" -name LICENSE)")
+for file in "$source"/docs/*.md "$source"/integration/examples/*.[ch] "$source"/integration/examples/*.comp; do
+  [[ -f $documents/${file#"$source/"} ]] || { echo "${file#"$source/"} is not installed"; exit 1; }
+done
+(cd "$documents/docs" && grep -oh '](\(\.\./integration/examples/\|[a-z_]*\.md\)[^)#]*' ./*.md | sed 's/^](//' | sort -u |
+  while read -r link; do [[ -e $link ]] || { echo "an installed document links to $link, which is not there"; exit 1; }; done)
+
 # What is installed works alone: the command finds its library, and graphs validate.
 unset LD_LIBRARY_PATH
 "$prefix/bin/dermis" validate "$prefix/share/dermis/graphs/sap.json"

@@ -3,10 +3,10 @@
 // these tests skip.
 
 #include "tests/integration/demo_engine/rendering.hpp"
+#include "tests/support/fetched_driver.hpp"
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -18,9 +18,8 @@ inline const std::string source = DERMIS_SOURCE_DIR;
 struct WithRayQueries : testing::Test {
   void SetUp() override {
     if (const char* own = std::getenv("VK_DRIVER_FILES")) before = own;
-    const std::string driver = source + "/build/drivers/mesa25.json";
-    if (!std::filesystem::exists(driver))
-      GTEST_SKIP() << driver << " is not there: run tests/drivers/fetch.sh";
+    const std::string driver = dermis::testing::driver_with_ray_queries();
+    if (driver.empty()) GTEST_SKIP() << "no driver in build/drivers: run tests/drivers/fetch.sh";
     setenv("VK_DRIVER_FILES", driver.c_str(), 1);
   }
   void TearDown() override {

@@ -1,0 +1,19 @@
+#pragma once
+// The driver with ray queries that tests/drivers/fetch.sh leaves in build/drivers.
+
+#include <filesystem>
+#include <string>
+
+namespace dermis::testing {
+
+// Path of the manifest; "" where none was fetched.
+inline std::string driver_with_ray_queries() {
+  std::error_code none;
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::string(DERMIS_SOURCE_DIR) + "/build/drivers", none))
+    if (file.path().extension() == ".json" && file.path().filename().string().starts_with("mesa"))
+      return file.path().string();
+  return "";
+}
+
+} // namespace dermis::testing
