@@ -302,9 +302,14 @@ TEST_F(DiscardedFrame, NeverHappened) {
   const TestImage result = bind(g, "result", {});
   const float expected[] = {1, 1, 2, 2, 3, 3};
   for (size_t i = 0; i < std::size(expected); ++i) {
+    const vulkan::HistoryState before = executor->history_state(0);
     record_in_vain(i % 2 == 1); // also one that forgets all
     ASSERT_TRUE(executor->discard_frame(frame_index + 1));
-    EXPECT_EQ(executor->history_state(0).age, i);
+    const vulkan::HistoryState after = executor->history_state(0);
+    EXPECT_EQ(after.age, i);
+    EXPECT_EQ(after.valid, before.valid) << "frame " << i;
+    EXPECT_EQ(after.reason, before.reason) << "frame " << i;
+    EXPECT_EQ(after.lost, before.lost) << "frame " << i;
     ASSERT_FALSE(frame());
     EXPECT_THAT(read(result), Each(FloatEq(expected[i]))) << "frame " << i;
   }

@@ -86,9 +86,11 @@ template <class Use> dermis_result described(const GraphOptions& options, Use us
   const std::string text = options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
   const std::string skin =
       options.profile.empty() ? read_text("configs/profiles/skin.json") : options.profile;
-  dermis_profile profile = DERMIS_PROFILE_INIT;
-  profile.id = 1;
-  profile.source = source_of(skin, "skin.json");
+  std::vector<dermis_profile> profiles(options.profile_count, dermis_profile DERMIS_PROFILE_INIT);
+  for (uint32_t i = 0; i < options.profile_count; ++i) {
+    profiles[i].id = i + 1;
+    profiles[i].source = source_of(skin, "skin.json");
+  }
   std::vector<const char*> unbound;
   for (const std::string& name : options.unbound)
     unbound.push_back(name.c_str());
@@ -103,8 +105,8 @@ template <class Use> dermis_result described(const GraphOptions& options, Use us
   desc.source = source_of(text, "graph.json");
   desc.width = options.width;
   desc.height = options.height;
-  desc.profiles = &profile;
-  desc.profile_count = options.profiles ? 1 : 0;
+  desc.profiles = profiles.data();
+  desc.profile_count = options.profiles ? options.profile_count : 0;
   desc.unbound = unbound.data();
   desc.unbound_count = static_cast<uint32_t>(unbound.size());
   desc.formats = formats.data();

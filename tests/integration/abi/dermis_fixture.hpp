@@ -35,6 +35,7 @@ struct GraphOptions {
   dermis_include_fn include = nullptr;
   void* include_user = nullptr;
   bool profiles = true; // false: none
+  uint32_t profile_count = 1; // ids from 1 on, all of them `profile`
   std::string profile;  // text; empty: configs/profiles/skin.json
 };
 

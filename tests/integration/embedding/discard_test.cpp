@@ -44,7 +44,8 @@ std::string histories_of(dermis_graph graph) {
   EXPECT_EQ(dermis_graph_histories(graph, &count, histories.data()), DERMIS_OK);
   std::ostringstream text;
   for (const dermis_history& one : histories)
-    text << one.name << " valid " << one.valid << ", age " << one.age << ", reason " << one.reason << "; ";
+    text << one.name << " valid " << one.valid << ", age " << one.age << ", reason " << one.reason << " ("
+         << one.text << "); ";
   return text.str();
 }
 
@@ -55,7 +56,6 @@ struct Discard : DermisTest {
     GraphOptions options;
     options.text = read_text(of);
     options.overlays = {read_text("configs/overlays/accumulate.json")};
-    options.unbound.emplace_back("velocity");
     graph = make_graph(options);
     ASSERT_NE(graph, nullptr);
     make_images(graph);

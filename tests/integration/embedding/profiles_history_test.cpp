@@ -1,0 +1,61 @@
+// Histories belong to a profile: a surface never takes over what one of another profile left at the same
+// place and depth.
+
+#include "tests/integration/embedding/two_views.hpp"
+
+namespace dermis::abi_test {
+namespace {
+
+// Two profiles in a chequered pattern, all at one depth, as in a frame in which they change places.
+float profile_at(uint32_t x, uint32_t y, bool swapped) {
+  return (x / 6 + y / 6) % 2 == (swapped ? 1 : 0) ? 1.0f : 2.0f;
+}
+
+struct HistoryCase {
+  const char *name, *graph;
+  bool accumulated;
+};
+
+struct ProfilesOfHistories : TwoViewsTest, ::testing::WithParamInterface<HistoryCase> {
+  static constexpr uint32_t side = 48;
+
+  std::vector<float> run_frame(dermis_view view, uint64_t index, bool swapped, uint32_t flags) {
+    fill("material", [&](uint32_t x, uint32_t y) { return profile_at(x, y, swapped); });
+    fill("lighting",
+         [&](uint32_t x, uint32_t y) { return float(index) * float(8 + (x * 7 + y * 3) % 32) / 64; });
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound, side, side);
+    one.flags = flags;
+    rest(one);
+    record_in(view, one, index);
+    return texels("lighting");
+  }
+};
+
+TEST_P(ProfilesOfHistories, ThatChangePlacesBeginAnew) {
+  std::vector<std::string> overlays;
+  if (GetParam().accumulated) overlays.push_back(read_text("configs/overlays/accumulate.json"));
+  make(read_text("configs/graphs/" + std::string(GetParam().graph) + ".json"), overlays, side, "", 2);
+  for (uint64_t index = 1; index <= 3; ++index)
+    for (const dermis_view view : {dermis_view{nullptr}, other})
+      run_frame(view, index, false, 0);
+  const std::vector<float> swapped = run_frame(nullptr, 4, true, 0);
+  const std::vector<float> cut = run_frame(other, 4, true, DERMIS_FRAME_RESET_HISTORY);
+  EXPECT_TRUE(swapped == cut) << "bit by bit";
+  // Where they stay, history counts, and the picture shows whether there is one.
+  std::vector<float> stayed, cut_again;
+  for (uint64_t index = 5; index <= 8; ++index) {
+    stayed = run_frame(nullptr, index, true, 0);
+    cut_again = run_frame(other, index, true, DERMIS_FRAME_RESET_HISTORY);
+  }
+  EXPECT_FALSE(stayed == cut_again);
+}
+
+INSTANTIATE_TEST_SUITE_P(, ProfilesOfHistories,
+                         ::testing::Values(HistoryCase{"accumulate", "burley", true},
+                                           HistoryCase{"residual", "sap_residual", false},
+                                           HistoryCase{"guided", "afis_guided", false}),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+} // namespace
+} // namespace dermis::abi_test

@@ -1,0 +1,61 @@
+#pragma once
+// Two views of one graph that are given frames of the same numbers, so that whatever their pictures differ by
+// comes from what they were given.
+
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+namespace dermis::abi_test {
+
+struct TwoViewsTest : DermisTest {
+  dermis_graph graph = nullptr;
+  dermis_view other = nullptr; // the second; the first is the graph's own
+
+  void TearDown() override {
+    dermis_view_destroy(other);
+    DermisTest::TearDown();
+  }
+
+  // Square, with nothing bound that is optional, except `bound`; `profiles` that are the same skin.
+  void make(const std::string& text, const std::vector<std::string>& overlays, uint32_t side,
+            const std::string& bound = "", uint32_t profiles = 1) {
+    GraphOptions options;
+    options.text = text;
+    options.overlays = overlays;
+    options.width = options.height = side;
+    options.profile_count = profiles;
+    options.unbound.clear();
+    for (const char* name : {"albedo", "scatter_scale", "scattered_light", "importance", "velocity",
+                             "thickness", "back_lighting", "sampling", "guidance"})
+      if (text.find('"' + std::string(name) + '"') != std::string::npos && name != bound)
+        options.unbound.emplace_back(name);
+    if (!overlays.empty() && bound != "velocity") options.unbound.emplace_back("velocity");
+    graph = make_graph(options);
+    ASSERT_NE(graph, nullptr);
+    ASSERT_EQ(dermis_view_create(graph, nullptr, &other, nullptr), DERMIS_OK) << dermis_last_error();
+    make_images(graph);
+  }
+
+  // The camera rests.
+  static void rest(dermis_frame& frame) {
+    for (size_t i = 0; i < 16; ++i)
+      frame.view_from_world[i] = frame.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
+    std::copy(std::begin(frame.clip_from_view), std::end(frame.clip_from_view),
+              std::begin(frame.previous_clip_from_view));
+  }
+
+  // Frame `index` of the second view, or of the graph's own if `view` is null; submits and waits.
+  void record_in(dermis_view view, dermis_frame& frame, uint64_t index) {
+    frame.frame_index = index;
+    frame.completed_frame_index = index - 1;
+    const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+      frame.command_buffer = commands;
+      EXPECT_EQ(view == nullptr ? dermis_graph_record(graph, &frame) : dermis_view_record(view, &frame),
+                DERMIS_OK)
+          << dermis_last_error();
+      return demo::success();
+    });
+    EXPECT_TRUE(ran) << ran.error().text;
+  }
+};
+
+} // namespace dermis::abi_test
