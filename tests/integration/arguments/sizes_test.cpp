@@ -231,11 +231,67 @@ TEST_F(StructSizes, OfSourcesProfilesAndFormatsAreThoseOfTheHeader) {
   desc.format_count = 0;
   expect_input_law<dermis_source>(desc.source,
                                   [](const dermis_source* given) { return dermis_validate(given, nullptr); });
-  for (const size_t size : {size_t{0}, sizeof(dermis_source) - 1, sizeof(dermis_source) + 1}) {
-    desc.source.struct_size = size; // a member of other structs never grows
-    EXPECT_EQ(create(), DERMIS_ERROR_ARGUMENT) << size;
-    EXPECT_THAT(dermis_last_error(), HasSubstr("DERMIS_SOURCE_INIT"));
-  }
+}
+
+// A source that is a member of another struct, or that a member points to, never grows: a larger one is
+// refused wherever it stands, also where all that lies beyond is zero.
+TEST_F(StructSizes, OfNestedSourcesAreExact) {
+  const std::string text = read_text("configs/graphs/burley.json"),
+                    skin = read_text("configs/profiles/skin.json");
+  dermis_profile profile = DERMIS_PROFILE_INIT;
+  profile.id = 1;
+  profile.source = source_of(skin, "skin.json");
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(text, "burley.json");
+  desc.width = desc.height = 16;
+  desc.profiles = &profile;
+  desc.profile_count = 1;
+  const auto create = [&] {
+    dermis_graph made = nullptr;
+    const dermis_result result = dermis_graph_create(host.context, &desc, &made, nullptr);
+    dermis_graph_destroy(made);
+    return result;
+  };
+  Sized<dermis_source> table(source_of(text, "table"));
+  dermis_budget errors = DERMIS_BUDGET_INIT, calibration = DERMIS_BUDGET_INIT;
+  errors.errors = calibration.calibration = table.get();
+  const auto set = [&](const dermis_budget& budget) {
+    return dermis_graph_set_budget(host.graph, &budget, nullptr);
+  };
+  const std::pair<const char*, std::function<dermis_result(size_t)>> nested[] = {
+      {"desc.source.struct_size",
+       [&](size_t size) {
+         desc.source.struct_size = size;
+         const dermis_result result = create();
+         desc.source.struct_size = sizeof(dermis_source);
+         return result;
+       }},
+      {"desc.profiles[0].source.struct_size",
+       [&](size_t size) {
+         profile.source.struct_size = size;
+         const dermis_result result = create();
+         profile.source.struct_size = sizeof(dermis_source);
+         return result;
+       }},
+      {"errors.struct_size",
+       [&](size_t size) {
+         table.state(size);
+         return set(errors);
+       }},
+      {"calibration.struct_size",
+       [&](size_t size) {
+         table.state(size);
+         return set(calibration);
+       }},
+  };
+  ASSERT_EQ(create(), DERMIS_OK) << dermis_last_error();
+  for (const auto& [field, call] : nested)
+    for (const size_t size : {size_t{0}, sizeof(size_t), sizeof(dermis_source) - 1, sizeof(dermis_source) + 1,
+                              sizeof(dermis_source) + newer_by, abi::largest_struct_size, ~size_t{0}}) {
+      EXPECT_EQ(call(size), DERMIS_ERROR_ARGUMENT) << field << " = " << size;
+      EXPECT_THAT(dermis_last_error(), HasSubstr(field)) << size;
+      EXPECT_THAT(dermis_last_error(), HasSubstr("DERMIS_SOURCE_INIT")) << size;
+    }
 }
 
 TEST_F(StructSizes, OfWhatIsToldFollowTheLaw) {
