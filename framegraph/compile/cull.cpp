@@ -185,7 +185,7 @@ struct Culler {
            before->binding != use.binding;
   }
 
-  // What the port sees, as the file names it, without the frame.
+  // Names the part that the port sees as the file does, without the frame.
   std::string seen_text(const Use& use) const {
     const PortBinding& binding = c.graph->bindings_of(c.graph->passes[use.pass.value])[use.binding];
     return c.name(use.asked) + part_text(binding.part);
@@ -216,7 +216,7 @@ struct Culler {
     return list_words(std::vector<std::string_view>(names.begin(), names.end()));
   }
 
-  // Where the passes stand that would write what is missing, on or off: the likely cause.
+  // Locates the passes that would write the missing parts, on or off: the likely cause.
   void relate_producers(Diagnostic& diagnostic, const Use& use) {
     relate_producers(diagnostic, use.asked, [&](const PortBinding& written) {
       if (!c.split(use.asked)) return true;

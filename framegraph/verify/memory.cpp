@@ -96,7 +96,7 @@ void Memory::add_read(uint32_t thing, const Event& event) {
   });
 }
 
-// What other instances left on these bytes. It counts until each used part of the new owner was written.
+// Holds events that other instances left on these bytes. They count until each used part of the new owner was written.
 void Memory::take_over(ByteRange& range, uint32_t owner, bool whole, const Event& write) {
   for (InstanceEvents& other : range.occupants) {
     if (other.instance == owner) continue;

@@ -302,7 +302,7 @@ subsurface::CameraFault fill_constants(const dermis_frame& frame, const Program&
                                                             : subsurface::CameraFault::no_projection;
 }
 
-// What a message about a camera adds: how view space is declared, where that may be the cause.
+// Adds to a message about a camera how view space is declared, if that may be the cause.
 std::string_view hint_of(subsurface::CameraFault fault) {
   const bool of_handedness =
       fault != subsurface::CameraFault::no_projection && fault != subsurface::CameraFault::stored_by_columns;

@@ -1,5 +1,5 @@
 #pragma once
-// What a program adds to a Dermis context of the engine, and asks after each recorded frame.
+// Hooks by which a program extends a Dermis context of the engine and inspects each recorded frame.
 
 #include "integration/demo_engine/result.hpp"
 

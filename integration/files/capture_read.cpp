@@ -45,7 +45,7 @@ void read_rectangle(const Document& document, ObjectReader& reader, FrameDescrip
   frame.render = {uint32_t(r[0]), uint32_t(r[1]), uint32_t(r[2]), uint32_t(r[3])};
 }
 
-// Of the file's view space, whichever it is.
+// Refers to the view space of the file, right- or left-handed.
 subsurface::CameraMatrices read_matrices(ObjectReader& reader, bool has_pitch) {
   subsurface::CameraMatrices camera;
   reader.numbers("clip_from_view", camera.clip_from_view, -largest_number, largest_number,

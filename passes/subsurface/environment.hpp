@@ -116,7 +116,7 @@ struct FrameInput {
   uint64_t frame_index = 0;
   bool history_invalid = false;
   uint32_t sample_units = UINT32_MAX; // as FrameConstants::sample_units
-  // Of the frame before: its rectangle (width 0: there is none) and its jitter.
+  // Rectangle (width 0: none) and jitter of the previous frame.
   uint32_t previous_x = 0, previous_y = 0, previous_width = 0, previous_height = 0;
   std::array<double, 2> previous_jitter_px{};
 };

@@ -110,7 +110,7 @@ TEST(Parts, AnEarlierFrameOfAMipThatNobodyWritesIsRefused) {
   EXPECT_THAT(errors[0].text, HasSubstr("'kept#2@-1', but no pass that is on writes 'kept#2'"));
 }
 
-// What is left out of a chain at an optional port.
+// Covers parts that nobody writes in a chain at an optional port.
 Diagnostic half_written(const GraphBuilder& b, DiagnosticId id = DiagnosticId::read_before_write) {
   const auto errors = refused(b);
   EXPECT_EQ(errors.size(), 1u);

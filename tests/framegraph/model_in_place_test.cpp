@@ -1,4 +1,4 @@
-// What passes may read of what they write, in every state of the settings.
+// Checks which resources a pass may both read and write, for every state of the settings.
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/model/read_graph.hpp"

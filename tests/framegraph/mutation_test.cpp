@@ -104,7 +104,7 @@ TEST(Mutation, AFlippedHistorySlotIsRefusedOrChangesThePixels) {
   EXPECT_GT(tally.tried, tally.refused);
 }
 
-// Of a history whose frames lie apart the declaration does not matter.
+// The declaration does not matter for a history whose frames have separate memory.
 TEST(Mutation, LostOwnTexelsAreRefusedWhereTheyMatter) {
   const Tally tally = compare_verdicts(300, 3000, for_each_lost_own_texels);
   EXPECT_GT(tally.refused, 30u);

@@ -67,7 +67,7 @@ class AccumulateInAPan : public Accumulate {
 protected:
   static constexpr uint32_t width = 320, height = 180; // natural framing: d of one pixel
 
-  // Of frames 25 and later.
+  // Averages frames 25 and later.
   std::pair<double, double> psnr_db(const Sequence& sequence, const std::string& graph,
                                     std::vector<NamedValue> set) {
     Judge judge{sequence};

@@ -50,7 +50,7 @@ std::vector<uint32_t> as_triangles(std::vector<uint32_t> indices, int mode) {
   return triangles;
 }
 
-// What one primitive made of a mesh.
+// The part of a mesh that one primitive contributed.
 struct Part {
   size_t first_vertex, vertices, first_index, indices;
   bool has_normals, has_tangents;
@@ -67,7 +67,7 @@ void compute_in(Mesh& mesh, const Part& part, void (*compute)(Mesh&)) {
   std::copy(own.vertices.begin(), own.vertices.end(), vertices);
 }
 
-// Where a map lies on a mesh: the set of coordinates, and what KHR_texture_transform makes of them.
+// Placement of a map on a mesh: the set of coordinates and their KHR_texture_transform.
 struct MapPlace {
   int set = 0;
   glm::dvec2 offset{0.0}, scale{1.0};

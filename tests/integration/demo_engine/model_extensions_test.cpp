@@ -1,4 +1,4 @@
-// What extensions of glTF make of a model.
+// Tests models that use glTF extensions.
 
 #include "integration/demo_engine/model/load_model.hpp"
 #include "tests/support/test_folder.hpp"

@@ -20,7 +20,7 @@ struct Shot {
   uint32_t flags = 0;
 };
 
-// What a host can see after a frame.
+// Everything that a host can observe after a frame.
 struct Seen {
   std::vector<float> lighting;
   std::string choice, histories;

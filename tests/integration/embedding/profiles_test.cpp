@@ -1,4 +1,4 @@
-// What a replaced profile leaves on the device: nothing, once its frames are complete.
+// A replaced profile leaves nothing on the device once its frames are complete.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"

@@ -113,7 +113,7 @@ struct Settings : testing::Test {
     ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
     host.make_bindings();
   }
-  // What passes of the next frame are given as weight.
+  // Returns the weight that passes of the next frame receive.
   double weight_of_graph(const char* pass) {
     EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
     return calls.at(pass).front();
