@@ -141,6 +141,10 @@ void gather_usage(CompileContext& c) {
     if (life.deepest_read > 0)
       // Instances start from zero, or from what another plan of the graph kept.
       life.vk_usage |= usage_info(Usage::clear).vk_usage | transfer_source_usage;
+    const uint32_t stored = usage_info(Usage::storage_image_write).vk_usage;
+    if (c.graph->resources[i].history.on_resize == HistoryDeclaration::OnResize::rescale &&
+        (life.vk_usage & stored) != 0)
+      life.vk_usage |= usage_info(Usage::sampled_image).vk_usage; // the rescaling kernel reads the old size
     explain_history(c, i, life);
   }
   if (!c.input->poison) return;

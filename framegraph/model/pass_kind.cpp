@@ -11,10 +11,6 @@ template <class Named> int index_of(std::span<const Named> list, std::string_vie
   return -1;
 }
 
-bool is_unsigned(Format format) {
-  return format_info(format).name.find("_uint") != std::string_view::npos;
-}
-
 } // namespace
 
 bool works_with(const Port& port, Format format) {
@@ -22,7 +18,7 @@ bool works_with(const Port& port, Format format) {
     return std::find(port.formats.begin(), port.formats.end(), format) != port.formats.end();
   if (usage_info(port.usage).writes && format_info(format).depth) return false;
   if (port.glsl_type.empty()) return true;
-  return is_unsigned(format) == (port.glsl_type.front() == 'u');
+  return has_unsigned_components(format) == (port.glsl_type.front() == 'u');
 }
 
 KindId KindRegistry::add(const PassKind& kind) {

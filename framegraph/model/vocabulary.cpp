@@ -60,6 +60,10 @@ const FormatInfo& format_info(Format format) {
   return formats[static_cast<size_t>(format < Format::count ? format : Format::undefined)];
 }
 
+bool has_unsigned_components(Format format) {
+  return format_info(format).name.find("_uint") != std::string_view::npos;
+}
+
 std::optional<Format> format_from_name(std::string_view name) {
   for (size_t i = 1; i < formats.size(); ++i)
     if (formats[i].name == name) return static_cast<Format>(i);

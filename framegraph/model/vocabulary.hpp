@@ -44,6 +44,7 @@ struct FormatInfo {
 };
 
 const FormatInfo& format_info(Format format);
+bool has_unsigned_components(Format format); // shaders read and write it as uint
 // nullopt for an unknown name. The class name "depth" is not a format: see Graph's readers.
 std::optional<Format> format_from_name(std::string_view name);
 std::optional<Format> format_from_vulkan(uint32_t vk_format);

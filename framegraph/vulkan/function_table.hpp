@@ -24,7 +24,7 @@
   X(vkCreateQueryPool) X(vkDestroyQueryPool) X(vkGetQueryPoolResults) \
   X(vkCmdPipelineBarrier2) X(vkCmdBindPipeline) X(vkCmdBindDescriptorSets) X(vkCmdPushConstants) \
   X(vkCmdDispatch) X(vkCmdDispatchIndirect) X(vkCmdFillBuffer) X(vkCmdClearColorImage) \
-  X(vkCmdCopyBuffer) X(vkCmdCopyImage) X(vkCmdBlitImage) \
+  X(vkCmdCopyBuffer) X(vkCmdCopyImage) \
   X(vkCmdResetQueryPool) X(vkCmdWriteTimestamp2)
 #define DERMIS_LABEL_FUNCTIONS(X) \
   X(vkSetDebugUtilsObjectNameEXT) X(vkCmdBeginDebugUtilsLabelEXT) X(vkCmdEndDebugUtilsLabelEXT)

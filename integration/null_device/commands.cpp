@@ -34,7 +34,6 @@ PFN_vkVoidFunction command_function(const char* name) {
       command<PFN_vkCmdFillBuffer>("vkCmdFillBuffer"),
       command<PFN_vkCmdCopyBuffer>("vkCmdCopyBuffer"),
       command<PFN_vkCmdCopyImage>("vkCmdCopyImage"),
-      command<PFN_vkCmdBlitImage>("vkCmdBlitImage"),
       command<PFN_vkCmdClearColorImage>("vkCmdClearColorImage"),
       command<PFN_vkCmdResetQueryPool>("vkCmdResetQueryPool"),
       command<PFN_vkCmdWriteTimestamp2>("vkCmdWriteTimestamp2"),

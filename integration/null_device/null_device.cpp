@@ -116,6 +116,10 @@ uint64_t NullDevice::creations() const {
   return state_->creations;
 }
 
+void NullDevice::set_queue_flags(VkQueueFlags flags) {
+  state_->queue_flags = flags;
+}
+
 void NullDevice::fail_queries(VkResult result) {
   state_->query_failure = result;
 }

@@ -37,6 +37,8 @@ public:
   uint64_t memory_bytes() const; // device memory allocated and not freed
   uint64_t creations() const;    // calls so far that make an object or allocate, failed ones included
 
+  // Capabilities of its queue family; graphics, compute and transfer until it is called.
+  void set_queue_flags(VkQueueFlags flags);
   // The call that is number `creation` from now, 1 being the next, fails with `result`; 0: none does.
   void fail_creation(uint64_t creation, VkResult result);
   // What asking for timestamps gives from now on.

@@ -41,10 +41,10 @@ VKAPI_ATTR void VKAPI_CALL memory_properties(VkPhysicalDevice, VkPhysicalDeviceM
   out->memoryHeaps[0] = {VkDeviceSize{1} << 40, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
 }
 
-VKAPI_ATTR void VKAPI_CALL queue_families(VkPhysicalDevice, uint32_t* count, VkQueueFamilyProperties* out) {
+VKAPI_ATTR void VKAPI_CALL queue_families(VkPhysicalDevice physical, uint32_t* count, VkQueueFamilyProperties* out) {
   if (out != nullptr && *count > 0) {
     *out = {};
-    out->queueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;
+    out->queueFlags = state_of(physical).queue_flags;
     out->queueCount = 1;
     out->timestampValidBits = 64;
   }

@@ -23,6 +23,8 @@ struct NullDeviceState {
   void* dispatch = nullptr;
   std::atomic<uint64_t> commands = 0, barriers = 0;
   std::atomic<VkResult> query_failure = VK_SUCCESS;
+  std::atomic<VkQueueFlags> queue_flags =
+      VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;
   std::mutex mutex; // guards all that follows
   uint64_t memory_bytes = 0, creations = 0;
   uint64_t failing_creation = 0;

@@ -124,7 +124,8 @@ void make_histories(State& state, const ExecutorInput& input) {
     HistoryRecord& record = state.histories.emplace_back();
     record.name = input.graph->resources[state.plan.resources[history.resource].declared.value].name;
     forget(record, input.history == HistoryReason::valid ? HistoryReason::first_frame : input.history);
-    record.scales = can_scale(*state.device, state.plan.resources[history.resource]);
+    record.scales =
+        can_rescale(*state.device, state.plan.resources[history.resource], history.declaration);
     for (const PlanPass& planned : state.plan.passes)
       for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
         const PlanAccess& access = state.plan.accesses[a];
@@ -159,6 +160,7 @@ Executor::State::~State() {
   destroy_descriptors(*this);
   destroy_environment(*this);
   destroy_stand_ins(*this);
+  destroy_rescaling(*this);
   destroy_memory(*this);
   device->vk.vkDestroyQueryPool(device->device, timestamps.pool, device->allocator);
 }
@@ -180,6 +182,7 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   if (Error error = check_passes(*state, *input.kinds)) return error;
   if (Error error = check_host_passes(*state, input)) return error;
   if (Error error = create_memory(*state, *input.graph)) return error;
+  if (Error error = create_rescaling(*state, input)) return error;
   if (Error error = create_descriptors(*state, *input.kinds)) return error;
   if (Error error = create_stand_ins(*state)) return error;
   if (Error error = create_timestamps(*state)) return error;

@@ -100,41 +100,6 @@ Error create_layout(State& state, const PassKind& kind, Kernel& kernel) {
   return call_error(result, "vkCreatePipelineLayout", fmt::format("kind '{}'", kind.name));
 }
 
-Error create_pipeline(State& state, const PassKind& kind, std::span<const uint32_t> spirv,
-                      VkPipelineCache cache, Kernel& kernel) {
-  const Device& device = *state.device;
-  VkShaderModuleCreateInfo module_info{};
-  module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  std::vector<uint32_t> mended;
-  if (unrolls_without_end(device.properties)) {
-    mended = without_unrolling(spirv);
-    spirv = mended;
-  }
-  module_info.codeSize = spirv.size_bytes();
-  module_info.pCode = spirv.data();
-  VkShaderModule module = VK_NULL_HANDLE;
-  const std::string thing = fmt::format("kernel '{}'", kind.shader);
-  VkResult result = device.vk.vkCreateShaderModule(device.device, &module_info, device.allocator, &module);
-  if (result != VK_SUCCESS) return call_error(result, "vkCreateShaderModule", thing);
-  VkComputePipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  info.stage.module = module;
-  info.stage.pName = "main";
-  info.layout = kernel.layout;
-  result =
-      device.vk.vkCreateComputePipelines(device.device, cache, 1, &info, device.allocator, &kernel.pipeline);
-  device.vk.vkDestroyShaderModule(device.device, module, device.allocator);
-  if (result != VK_SUCCESS) {
-    kernel.pipeline = VK_NULL_HANDLE;
-    return call_error(result, "vkCreateComputePipelines", thing);
-  }
-  name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(kernel.pipeline),
-              std::string(kind.name).c_str());
-  return {};
-}
-
 auto find_code(const ExecutorInput& input, const PassKind& kind) {
   return std::find_if(input.kernels.begin(), input.kernels.end(),
                       [&](const KernelCode& candidate) { return candidate.shader == kind.shader; });
@@ -179,7 +144,8 @@ Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel&
   kernel.push_bytes = static_cast<uint32_t>(sizeof(uint32_t) * (1 + kind.settings.size()));
   if (Error error = create_set_layout(state, kind, kernel)) return error;
   if (Error error = create_layout(state, kind, kernel)) return error;
-  return create_pipeline(state, kind, code->spirv, input.pipeline_cache, kernel);
+  return create_pipeline(*state.device, fmt::format("kernel '{}'", kind.shader), std::string(kind.name),
+                         code->spirv, input.pipeline_cache, kernel);
 }
 
 } // namespace
@@ -188,6 +154,38 @@ Kernel::~Kernel() {
   device->vk.vkDestroyPipeline(device->device, pipeline, device->allocator);
   device->vk.vkDestroyPipelineLayout(device->device, layout, device->allocator);
   device->vk.vkDestroyDescriptorSetLayout(device->device, set_layout, device->allocator);
+}
+
+Error create_pipeline(const Device& device, const std::string& thing, const std::string& label,
+                      std::span<const uint32_t> spirv, VkPipelineCache cache, Kernel& kernel) {
+  VkShaderModuleCreateInfo module_info{};
+  module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  std::vector<uint32_t> mended;
+  if (unrolls_without_end(device.properties)) {
+    mended = without_unrolling(spirv);
+    spirv = mended;
+  }
+  module_info.codeSize = spirv.size_bytes();
+  module_info.pCode = spirv.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  VkResult result = device.vk.vkCreateShaderModule(device.device, &module_info, device.allocator, &module);
+  if (result != VK_SUCCESS) return call_error(result, "vkCreateShaderModule", thing);
+  VkComputePipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = module;
+  info.stage.pName = "main";
+  info.layout = kernel.layout;
+  result =
+      device.vk.vkCreateComputePipelines(device.device, cache, 1, &info, device.allocator, &kernel.pipeline);
+  device.vk.vkDestroyShaderModule(device.device, module, device.allocator);
+  if (result != VK_SUCCESS) {
+    kernel.pipeline = VK_NULL_HANDLE;
+    return call_error(result, "vkCreateComputePipelines", thing);
+  }
+  name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(kernel.pipeline), label.c_str());
+  return {};
 }
 
 Error create_kernels(State& state, const ExecutorInput& input) {

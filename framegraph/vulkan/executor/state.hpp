@@ -6,6 +6,7 @@
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/heap_pool.hpp"
 
+#include <array>
 #include <optional>
 
 namespace dermis::vulkan {
@@ -140,10 +141,21 @@ struct Pass {
 struct HistoryRecord {
   std::string name;
   bool written = false; // the plan writes the current instance
-  bool scales = false;  // the device can resample it
+  bool scales = false;  // the graph asks to rescale it, and the device can
+  uint32_t first_rescale_view = no_index; // into Rescaling::views
+  uint32_t first_rescale_set = no_index;  // into Rescaling::sets, of each frame slot
   uint32_t age = 0;
   HistoryReason reason = HistoryReason::first_frame;
   HistoryReason lost = HistoryReason::first_frame; // HistoryState::lost
+};
+
+struct Rescaling { // copies histories that an executor of another size kept
+  std::array<std::shared_ptr<const Kernel>, 2> kernels; // float, unsigned; null: no history has the type
+  // By history that scales and instance: a view of all mips to read, then one per mip to write.
+  std::vector<VkImageView> views;
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  std::vector<VkDescriptorSet> sets; // by frame slot, history that scales, frame and mip
+  uint32_t sets_per_slot = 0;
 };
 
 struct Timestamps {
@@ -188,6 +200,7 @@ struct Executor::State {
   Descriptors descriptors;
   std::vector<Pass> passes;
   std::vector<HistoryRecord> histories;
+  Rescaling rescaling;
   std::vector<uint32_t>
       slot_resource; // by slot: into Plan::resources, no_index when the host does not bind it
   Timestamps timestamps;
@@ -242,6 +255,9 @@ void write_frame_constants(State& state, uint32_t frame_slot, std::span<const st
 
 // ---- kernels.cpp
 Error create_kernels(State& state, const ExecutorInput& input);
+// Creates `kernel.pipeline` from `kernel.layout`. `thing` names it in errors, `label` in debuggers.
+Error create_pipeline(const Device& device, const std::string& thing, const std::string& label,
+                      std::span<const uint32_t> spirv, VkPipelineCache cache, Kernel& kernel);
 
 // ---- history.cpp
 void remember_before_frame(State& state, uint32_t frame_slot) noexcept;
@@ -283,12 +299,27 @@ struct CarriedHistory {
 // format, written by the same kind of pass; of another size where it is to be rescaled. `reset`: the camera
 // cut.
 CarriedHistory carried_history(const State& to, uint32_t index, const State& from, bool reset) noexcept;
-bool can_scale(const Device& device, const PlanResource& resource) noexcept;
 // What the frame before covered, in pixels of `to`.
 Rectangle carried_rectangle(const State& to, const State& from) noexcept;
 void carry_ages(State& to, const State& from,
                 bool reset) noexcept; // before anything is written for the frame
-void record_carried(State& to, const State& from, VkCommandBuffer commands, bool reset) noexcept;
+void record_carried(State& to, const State& from, VkCommandBuffer commands, uint32_t frame_slot,
+                    bool reset) noexcept;
+
+// ---- rescale.cpp
+// Returns whether a history that `declaration` declares can be rescaled on the device.
+bool can_rescale(const Device& device, const PlanResource& resource,
+                 const HistoryDeclaration& declaration) noexcept;
+Error create_rescaling(State& state, const ExecutorInput& input); // after create_memory
+void destroy_rescaling(State& state);
+struct RescaledHistory {
+  uint32_t history = 0, source_history = 0; // into State::histories of both executors
+  uint32_t frames_back = 1;
+  uint32_t frame_slot = 0;
+};
+// Records the copy of one frame of a history. Both images are in the layout GENERAL.
+void record_rescaling(State& to, const State& from, VkCommandBuffer commands,
+                      const RescaledHistory& which) noexcept;
 
 // ---- host_pass.cpp
 Error check_host_passes(State& state, const ExecutorInput& input); // and makes room for their calls

@@ -130,16 +130,6 @@ void VKAPI_CALL copy_image(VkCommandBuffer commands, VkImage from, VkImageLayout
       keep(capture, regions, count);
 }
 
-void VKAPI_CALL blit_image(VkCommandBuffer commands, VkImage from, VkImageLayout from_layout, VkImage to,
-                           VkImageLayout to_layout, uint32_t count, const VkImageBlit* regions,
-                           VkFilter filter) {
-  Capture& capture = capture_of(commands);
-  dermis_command& command =
-      add_transfer(capture, DERMIS_COMMAND_BLIT_IMAGE, from, from_layout, to, to_layout, count);
-  command.image_blits = keep(capture, regions, count);
-  command.filter = filter;
-}
-
 void VKAPI_CALL reset_queries(VkCommandBuffer commands, VkQueryPool pool, uint32_t first, uint32_t count) {
   dermis_command& command = add(capture_of(commands), DERMIS_COMMAND_RESET_QUERIES);
   command.query_pool = pool;
@@ -175,7 +165,6 @@ constexpr vulkan::FunctionTable make_table() {
   table.vkCmdClearColorImage = clear_image;
   table.vkCmdCopyBuffer = copy_buffer;
   table.vkCmdCopyImage = copy_image;
-  table.vkCmdBlitImage = blit_image;
   table.vkCmdResetQueryPool = reset_queries;
   table.vkCmdWriteTimestamp2 = write_timestamp;
   table.vkCmdBeginDebugUtilsLabelEXT = begin_label;

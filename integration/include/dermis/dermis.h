@@ -233,7 +233,7 @@ typedef struct dermis_context_desc {
   uint32_t abi_version;      /* DERMIS_ABI_VERSION */
   uint32_t flags;            /* DERMIS_CONTEXT_... */
   uint32_t frames_in_flight; /* 1..8; 0 = 2 */
-  uint32_t queue_family;     /* of the command buffers that are recorded into; needs compute */
+  uint32_t queue_family;     /* of the command buffers that are recorded into; needs compute, not graphics */
   VkInstance instance;
   VkPhysicalDevice physical_device;
   VkDevice device;
@@ -848,10 +848,9 @@ typedef enum dermis_command_type {
   DERMIS_COMMAND_CLEAR_IMAGE = 4,       /* vkCmdClearColorImage: image, image_layout, color, ranges */
   DERMIS_COMMAND_COPY_BUFFER = 5,       /* buffer, to_buffer, buffer_copies */
   DERMIS_COMMAND_COPY_IMAGE = 6,        /* image, image_layout, to_image, to_layout, image_copies */
-  DERMIS_COMMAND_BLIT_IMAGE = 7,        /* the same with image_blits and filter */
-  DERMIS_COMMAND_RESET_QUERIES = 8,     /* query_pool, query, count */
-  DERMIS_COMMAND_WRITE_TIMESTAMP = 9,   /* vkCmdWriteTimestamp2: stages, query_pool, query */
-  DERMIS_COMMAND_HOST_PASS = 10,        /* your own pass: call, whose command_buffer is NULL; its function is not called */
+  DERMIS_COMMAND_RESET_QUERIES = 7,     /* query_pool, query, count */
+  DERMIS_COMMAND_WRITE_TIMESTAMP = 8,   /* vkCmdWriteTimestamp2: stages, query_pool, query */
+  DERMIS_COMMAND_HOST_PASS = 9,         /* your own pass: call, whose command_buffer is NULL; its function is not called */
   DERMIS_COMMAND_TYPE_FORCE_32BIT = 0x7fffffff
 } dermis_command_type;
 
@@ -877,8 +876,6 @@ typedef struct dermis_command {
   const VkImageSubresourceRange* ranges;
   const VkBufferCopy* buffer_copies;
   const VkImageCopy* image_copies;
-  const VkImageBlit* image_blits;
-  VkFilter filter;
   uint32_t query;
   VkQueryPool query_pool;
   VkPipelineStageFlags2 stages;
@@ -887,7 +884,7 @@ typedef struct dermis_command {
 #define DERMIS_COMMAND_INIT \
   {sizeof(dermis_command), DERMIS_COMMAND_BARRIER, 0, NULL, NULL, VK_NULL_HANDLE, VK_NULL_HANDLE, NULL, NULL, 0, 0, \
    {0, 0, 0}, 0, VK_NULL_HANDLE, VK_NULL_HANDLE, 0, 0, VK_NULL_HANDLE, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED, \
-   VK_IMAGE_LAYOUT_UNDEFINED, {{0, 0, 0, 0}}, NULL, NULL, NULL, NULL, VK_FILTER_NEAREST, 0, VK_NULL_HANDLE, 0, NULL}
+   VK_IMAGE_LAYOUT_UNDEFINED, {{0, 0, 0, 0}}, NULL, NULL, NULL, 0, VK_NULL_HANDLE, 0, NULL}
 
 /* As dermis_graph_record, but the commands are returned and frame.command_buffer is not looked at. They stand for a
  * recorded frame in every respect: record all of them once, in their order, outside of a render pass, on a queue of the

@@ -10,6 +10,8 @@
 #include "test_list.spv.h"
 #include "test_mark.spv.h"
 #include "test_sample.spv.h"
+#include "test_show.spv.h"
+#include "test_stamp.spv.h"
 
 namespace dermis::testing {
 namespace {
@@ -43,6 +45,18 @@ constexpr Port mark_ports[] = {
     {"arguments", Usage::indirect_arguments, false, "uint", "", {}},
     {"target", Usage::storage_image_update, false, "image2D", "", {}},
 };
+constexpr Port stamp_ports[] = {
+    {"target", Usage::storage_image_write, true, "image2D", "", {}},
+    {"ids", Usage::storage_image_write, true, "uimage2D", "", {}},
+};
+constexpr KindSetting stamp_settings[] = {
+    {"seed", SettingType::integer, {SettingType::integer, 0, 0.0}, 0, 1000, {}, "", ""},
+};
+constexpr Port show_ports[] = {
+    {"a", Usage::sampled_image, true, "texture2D", "", {}},
+    {"ids", Usage::sampled_image, true, "utexture2D", "", {}},
+    target,
+};
 constexpr Port clear_ports[] = {
     {"target", Usage::clear, true, "", "", {}},
     {"buffer", Usage::clear, true, "", "", {}},
@@ -56,6 +70,8 @@ KindRegistry make_kinds() {
   kinds.add({"test.classes", "test_classes", "", classes_ports, {}, DispatchShape::over_tile_grid, false});
   kinds.add({"test.list", "test_list", "", list_ports, {}, DispatchShape::single_group, false});
   kinds.add({"test.mark", "test_mark", "", mark_ports, {}, DispatchShape::over_tiles, false});
+  kinds.add({"test.stamp", "test_stamp", "", stamp_ports, stamp_settings, DispatchShape::over_view, false});
+  kinds.add({"test.show", "test_show", "", show_ports, {}, DispatchShape::over_view, false});
   kinds.add({"test.clear", "", "", clear_ports, {}, DispatchShape::none, false});
   return kinds;
 }
@@ -72,6 +88,7 @@ std::span<const vulkan::KernelCode> small_kernels() {
       {"test_fill", test_fill_spirv},     {"test_add", test_add_spirv},
       {"test_sample", test_sample_spirv}, {"test_classes", test_classes_spirv},
       {"test_list", test_list_spirv},     {"test_mark", test_mark_spirv},
+      {"test_show", test_show_spirv},     {"test_stamp", test_stamp_spirv},
   };
   return kernels;
 }

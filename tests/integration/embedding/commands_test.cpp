@@ -37,9 +37,6 @@ void play(const VolkDeviceTable& vk, VkCommandBuffer into, const dermis_command&
   case DERMIS_COMMAND_COPY_IMAGE:
     return vk.vkCmdCopyImage(into, command.image, command.image_layout, command.to_image, command.to_layout,
                              command.count, command.image_copies);
-  case DERMIS_COMMAND_BLIT_IMAGE:
-    return vk.vkCmdBlitImage(into, command.image, command.image_layout, command.to_image, command.to_layout,
-                             command.count, command.image_blits, command.filter);
   case DERMIS_COMMAND_RESET_QUERIES:
     return vk.vkCmdResetQueryPool(into, command.query_pool, command.query, command.count);
   case DERMIS_COMMAND_WRITE_TIMESTAMP:

@@ -8,8 +8,16 @@ namespace dermis::vulkan {
 namespace {
 
 constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-constexpr VkPipelineStageFlags2 transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
 constexpr VkAccessFlags2 all_memory = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+
+struct CopyScope { // of the commands that copy
+  VkPipelineStageFlags2 stages;
+  VkAccessFlags2 reads, writes;
+};
+constexpr CopyScope transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                             VK_ACCESS_2_TRANSFER_WRITE_BIT};
+constexpr CopyScope rescaling{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                              VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
 
 // Which frames are kept may differ, but not what a texel is.
 bool same_texels(const PlanResource& a, const PlanResource& b) {
@@ -34,14 +42,14 @@ VkImageMemoryBarrier2 layout_change(VkImage image, const VkImageSubresourceRange
 }
 
 // Before: all that earlier commands wrote is seen; after: all later commands see the copy.
-void submit(const FunctionTable& vk, VkCommandBuffer commands, VkImageMemoryBarrier2* images, uint32_t count,
-            bool before) {
+void submit(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy,
+            VkImageMemoryBarrier2* images, uint32_t count, bool before) {
   VkMemoryBarrier2 memory{};
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  memory.srcStageMask = before ? all_commands : transfer;
-  memory.srcAccessMask = before ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  memory.dstStageMask = before ? transfer : all_commands;
-  memory.dstAccessMask = before ? VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT : all_memory;
+  memory.srcStageMask = before ? all_commands : copy.stages;
+  memory.srcAccessMask = before ? VK_ACCESS_2_MEMORY_WRITE_BIT : copy.writes;
+  memory.dstStageMask = before ? copy.stages : all_commands;
+  memory.dstAccessMask = before ? copy.reads | copy.writes : all_memory;
   for (uint32_t i = 0; i < count; ++i) {
     images[i].srcStageMask = memory.srcStageMask;
     images[i].srcAccessMask = memory.srcAccessMask;
@@ -59,10 +67,10 @@ void submit(const FunctionTable& vk, VkCommandBuffer commands, VkImageMemoryBarr
 
 void copy_buffer(const FunctionTable& vk, VkCommandBuffer commands, const PlanResource& resource,
                  VkBuffer from, VkBuffer to) {
-  submit(vk, commands, nullptr, 0, true);
+  submit(vk, commands, transfer, nullptr, 0, true);
   const VkBufferCopy all{0, 0, resource.bytes};
   vk.vkCmdCopyBuffer(commands, from, to, 1, &all);
-  submit(vk, commands, nullptr, 0, false);
+  submit(vk, commands, transfer, nullptr, 0, false);
 }
 
 struct Kept { // one frame of a history
@@ -75,8 +83,8 @@ struct Kept { // one frame of a history
 };
 
 // Each part that ports tell apart is in a layout of its own.
-void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const Kept& frame, VkImageLayout other,
-                    bool before) {
+void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy,
+                    const Kept& frame, VkImageLayout other, bool before) {
   for (uint32_t part = 0; part < frame.history.parts; ++part) {
     const Plan& plan = frame.state.plan;
     const SubresourceRange& range = plan.history_parts[frame.history.first_part + part];
@@ -86,40 +94,33 @@ void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const Kep
                                                  {barrier_aspects(frame.resource().format), range.first_mip,
                                                   range.mips, range.first_layer, range.layers},
                                                  before ? own : other, before ? other : own);
-    submit(vk, commands, &change, 1, before);
+    submit(vk, commands, copy, &change, 1, before);
   }
 }
 
-VkOffset3D corner(const PlanResource& resource, uint32_t mip) {
-  return {static_cast<int32_t>(std::max(resource.width >> mip, 1u)),
-          static_cast<int32_t>(std::max(resource.height >> mip, 1u)), 1};
+// The whole target image: its contents are replaced.
+void discard(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy, const Kept& to,
+             VkImageLayout layout) {
+  VkImageMemoryBarrier2 change = layout_change(
+      to.instance().image,
+      {barrier_aspects(to.resource().format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
+      VK_IMAGE_LAYOUT_UNDEFINED, layout);
+  submit(vk, commands, copy, &change, 1, true);
 }
 
-// Texels of another size are the nearest ones: what histories hold (depths, profiles) need not mix.
 void copy_image(const FunctionTable& vk, VkCommandBuffer commands, const Kept& from, const Kept& to) {
   constexpr VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                           target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-  const PlanResource &old_size = from.resource(), &new_size = to.resource();
-  const VkImageAspectFlags aspects = barrier_aspects(new_size.format);
-  const VkImage image = to.instance().image;
-  change_layouts(vk, commands, from, source, true);
-  VkImageMemoryBarrier2 discard =
-      layout_change(image, {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
-                    VK_IMAGE_LAYOUT_UNDEFINED, target);
-  submit(vk, commands, &discard, 1, true);
-  for (uint32_t mip = 0; mip < new_size.mips; ++mip) {
-    const VkImageSubresourceLayers layers{aspects, mip, 0, new_size.layers};
-    const VkOffset3D old_end = corner(old_size, mip), new_end = corner(new_size, mip);
-    if (same_size(old_size, new_size)) {
-      const VkExtent3D extent{static_cast<uint32_t>(new_end.x), static_cast<uint32_t>(new_end.y), 1};
-      const VkImageCopy all{layers, {0, 0, 0}, layers, {0, 0, 0}, extent};
-      vk.vkCmdCopyImage(commands, from.instance().image, source, image, target, 1, &all);
-    } else {
-      const VkImageBlit all{layers, {{0, 0, 0}, old_end}, layers, {{0, 0, 0}, new_end}};
-      vk.vkCmdBlitImage(commands, from.instance().image, source, image, target, 1, &all, VK_FILTER_NEAREST);
-    }
+  const PlanResource& size = to.resource();
+  change_layouts(vk, commands, transfer, from, source, true);
+  discard(vk, commands, transfer, to, target);
+  for (uint32_t mip = 0; mip < size.mips; ++mip) {
+    const VkImageSubresourceLayers layers{barrier_aspects(size.format), mip, 0, size.layers};
+    const VkExtent3D extent{std::max(size.width >> mip, 1u), std::max(size.height >> mip, 1u), 1};
+    const VkImageCopy all{layers, {0, 0, 0}, layers, {0, 0, 0}, extent};
+    vk.vkCmdCopyImage(commands, from.instance().image, source, to.instance().image, target, 1, &all);
   }
-  change_layouts(vk, commands, to, target, false);
+  change_layouts(vk, commands, transfer, to, target, false);
 }
 
 // The kind of the pass that writes the newest frame last: another kind means something else by it.
@@ -138,22 +139,12 @@ KindId writer_of(const State& state, const PlanHistory& history) {
 bool usable(const State& to, uint32_t to_history, const State& from, uint32_t from_history) {
   const PlanHistory &wanted = to.plan.histories[to_history], &kept = from.plan.histories[from_history];
   const PlanResource &a = to.plan.resources[wanted.resource], &b = from.plan.resources[kept.resource];
-  const bool scales = to.histories[to_history].scales &&
-                      wanted.declaration.on_resize == HistoryDeclaration::OnResize::rescale;
+  const bool scales = to.histories[to_history].scales && from.histories[from_history].scales;
   return to.histories[to_history].name == from.histories[from_history].name && same_texels(a, b) &&
          (same_size(a, b) || scales) && writer_of(to, wanted) == writer_of(from, kept);
 }
 
 } // namespace
-
-bool can_scale(const Device& device, const PlanResource& resource) noexcept {
-  if (resource.type != ResourceType::image) return false;
-  VkFormatProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_2;
-  device.vk.vkGetPhysicalDeviceFormatProperties2(device.physical, vk_format(resource.format), &properties);
-  constexpr VkFormatFeatureFlags both = VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
-  return (properties.formatProperties.optimalTilingFeatures & both) == both;
-}
 
 Rectangle carried_rectangle(const State& to, const State& from) noexcept {
   const auto scaled = [](auto value, uint32_t now, uint32_t before) {
@@ -190,20 +181,28 @@ void carry_ages(State& to, const State& from, bool reset) noexcept {
   to.previous_rectangle = carried_rectangle(to, from);
 }
 
-void record_carried(State& to, const State& from, VkCommandBuffer commands, bool reset) noexcept {
+void record_carried(State& to, const State& from, VkCommandBuffer commands, uint32_t frame_slot,
+                    bool reset) noexcept {
+  const FunctionTable& vk = *to.commands;
   for (uint32_t h = 0; h < to.histories.size(); ++h) {
     const CarriedHistory carried = carried_history(to, h, from, reset);
     if (carried.age == 0) continue;
     const PlanHistory &wanted = to.plan.histories[h], &kept = from.plan.histories[carried.history];
     const PlanResource& resource = to.plan.resources[wanted.resource];
     for (uint32_t back = 1; back <= std::min({wanted.frames, kept.frames, carried.age}); ++back) {
-      Instance& target = to.instances[instance_of(to, resource, back)];
-      const Kept source{from, kept, back};
-      if (resource.type == ResourceType::buffer)
-        copy_buffer(*to.commands, commands, resource, source.instance().buffer, target.buffer);
-      else
-        copy_image(*to.commands, commands, source, {to, wanted, back});
-      target.ready = true;
+      Instance& instance = to.instances[instance_of(to, resource, back)];
+      const Kept source{from, kept, back}, target{to, wanted, back};
+      if (resource.type == ResourceType::buffer) {
+        copy_buffer(vk, commands, resource, source.instance().buffer, instance.buffer);
+      } else if (same_size(source.resource(), resource)) {
+        copy_image(vk, commands, source, target);
+      } else {
+        change_layouts(vk, commands, rescaling, source, VK_IMAGE_LAYOUT_GENERAL, true);
+        discard(vk, commands, rescaling, target, VK_IMAGE_LAYOUT_GENERAL);
+        record_rescaling(to, from, commands, {h, carried.history, back, frame_slot});
+        change_layouts(vk, commands, rescaling, target, VK_IMAGE_LAYOUT_GENERAL, false);
+      }
+      instance.ready = true;
     }
   }
 }
