@@ -127,6 +127,20 @@ TEST_F(Kinds, APassThatWouldRunIsRefusedByItsName) {
   EXPECT_THAT(applied.err, HasSubstr("pass 'look' (studio.look) has no kernel here"));
 }
 
+TEST_F(Kinds, ABugReportNamesThemInItsLine) {
+  const std::string kind_file = write("kinds.json", kinds), overlay = write("toned.json", toned);
+  const Outcome outcome = run({"report-bug", burley, "--overlay", overlay, "--kinds", kind_file, "--size",
+                               "32x18", "--count", "1", "--out", path("bug")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read("bug/README.txt"),
+              HasSubstr("dermis apply --graph burley.json --frames capture --out replay --overlay "
+                        "overlays/0_toned.json --kinds kinds/0_kinds.json\n"));
+  const Outcome again = run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
+                             "--out", path("replay"), "--overlay", path("bug/overlays/0_toned.json"),
+                             "--kinds", path("bug/kinds/0_kinds.json")});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+}
+
 TEST_F(Kinds, APageMakesItsFolder) {
   const std::string page = path("pages/new/tone.html");
   const Outcome outcome =

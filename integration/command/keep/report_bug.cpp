@@ -158,6 +158,8 @@ std::string replay_line(const ReportBugOptions& options, const GraphFiles& files
   std::string line = fmt::format("dermis apply --graph {} --frames capture --out replay", word(files.graph));
   for (const std::string& overlay : files.overlays)
     line += " --overlay " + word(overlay);
+  for (const std::string& kinds : files.kinds)
+    line += " --kinds " + word(kinds);
   for (const auto& [name, value] : options.settings)
     line += " --set " + word(name + "=" + value);
   return line;
