@@ -79,7 +79,9 @@ private:
 
   std::nullopt_t fail(DiagnosticId id, size_t at, std::string text, std::string suggestion = {}) {
     const ForeignOperator foreign = foreign_operator(document_.text(node_), at);
-    if (id == DiagnosticId::bad_expression && !foreign.text.empty()) {
+    const bool taken_for_setting = id == DiagnosticId::unknown_setting && !foreign.instead.empty();
+    if ((id == DiagnosticId::bad_expression && !foreign.text.empty()) || taken_for_setting) {
+      id = DiagnosticId::bad_expression;
       text = fmt::format("there is no operator '{}'; there are ==, !=, <, <=, >, >=, in, not, and, or",
                          foreign.text);
       if (!foreign.instead.empty()) suggestion = fmt::format("did you mean '{}'?", foreign.instead);

@@ -30,11 +30,11 @@ ForeignOperator foreign_operator(std::string_view expression, size_t at) {
   struct Known {
     std::string_view text, instead;
   };
-  constexpr Known translations[] = {{"=", "=="},    {"===", "=="},  {"!==", "!="}, {"<>", "!="},
-                                    {"~=", "!="},   {"=>", ">="},   {"=<", "<="},  {"&&", "and"},
-                                    {"&", "and"},   {"||", "or"},   {"|", "or"},   {"!", "not"},
-                                    {"AND", "and"}, {"And", "and"}, {"OR", "or"},  {"Or", "or"},
-                                    {"NOT", "not"}, {"Not", "not"}, {"IN", "in"},  {"In", "in"}};
+  constexpr Known translations[] = {
+      {"=", "=="},    {"===", "=="},  {"!==", "!="}, {"<>", "!="}, {"~=", "!="},   {"=>", ">="},
+      {"=<", "<="},   {"&&", "and"},  {"&", "and"},  {"||", "or"}, {"|", "or"},    {"!", "not"},
+      {"AND", "and"}, {"And", "and"}, {"OR", "or"},  {"Or", "or"}, {"NOT", "not"}, {"Not", "not"},
+      {"IN", "in"},   {"In", "in"},   {"xor", "!="}, {"is", "=="}};
   constexpr std::string_view own[] = {"==", "!=", "<", "<=", ">", ">="}, signs = "=<>!&|+-*/%^~?";
   const auto is_sign = [&](char c) { return signs.find(c) != std::string_view::npos; };
   if (at >= expression.size()) return {};
