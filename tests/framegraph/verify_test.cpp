@@ -156,6 +156,25 @@ TEST(Verify, SaysThatItGaveUpAndObjectsToNothing) {
   EXPECT_FALSE(verdict.proven());
 }
 
+// Each access of a pass is compared with each other one.
+TEST(Verify, GivesUpWhereAPassHasTooManyAccesses) {
+  const auto b = everything();
+  Plan plan = compiled(b).plan;
+  PlanPass& last = plan.passes.back();
+  ASSERT_EQ(last.first_access + last.access_count, plan.accesses.size());
+  const auto read =
+      std::find_if(plan.accesses.begin() + last.first_access, plan.accesses.end(),
+                   [](const PlanAccess& access) { return (access.access & all_write_access) == 0; });
+  ASSERT_NE(read, plan.accesses.end());
+  const PlanAccess again = *read;
+  constexpr uint32_t more = 12000;
+  plan.accesses.insert(plan.accesses.end(), more, again);
+  last.access_count += more;
+  const Verdict verdict = verify(plan);
+  EXPECT_THAT(verdict.objections, IsEmpty());
+  EXPECT_THAT(verdict.not_verified, HasSubstr("accesses meet in memory"));
+}
+
 TEST(Verify, RefusesAWriteToAnEarlierFrame) {
   const auto redirect = [](Plan& plan) {
     for (PlanAccess& access : plan.accesses)
