@@ -149,6 +149,15 @@ TEST_F(BenchRestir, WithoutRayQueriesSaysWhatBringsThemAndIsNoFailureOfAllSuites
   EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json"));
 }
 
+TEST_F(BenchRestir, ARenderingByRaysIsNotMeasuredInScreenSpace) {
+  if (!has_rays()) GTEST_SKIP() << "no driver with ray queries: run tests/drivers/fetch.sh";
+  const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/restir.json",
+                               "--out", path("out"), "--size", "32x24", "--frames", "1"},
+                              with_rays());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("not measured, the technique traces rays"));
+}
+
 TEST_F(BenchRestir, WritesARowForEachReuseAndTechniqueAndKeepsTheReference) {
   if (!has_rays()) GTEST_SKIP() << "no driver with ray queries: run tests/drivers/fetch.sh";
   const std::vector<std::string> arguments = {"bench",           "restir",   "--quick",         "--scenes",
