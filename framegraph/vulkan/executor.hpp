@@ -188,8 +188,6 @@ struct FrameInput {
   // start anew in the frame after such a one. Shorter: the rest runs. What runs must not read what a pass
   // that is left out would write.
   std::span<const uint8_t> left_out;
-  // By plan pass, bit i: port i of a pass of the host is not bound in this frame. Shorter: the rest is.
-  std::span<const uint32_t> unbound_ports;
   void* view_user = nullptr; // handed to passes of the host
   // For whoever wants the commands and no command buffer: its vkCmd... functions are called with
   // `command_buffer` instead of the device's, and passes of the host go to this function. Null: the device's,

@@ -48,13 +48,13 @@ uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
       .level_groups[std::min<size_t>(static_cast<size_t>(pass.level), counters.level_groups.size() - 1)];
 }
 
-void count_groups(const choice::Outcome& outcome, std::span<const uint8_t> without_bounds,
+void count_groups(std::span<const choice::PassLoad> passes, std::span<const uint8_t> without_bounds,
                   FrameChoice& frame) {
   const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles, frame.view_blocks);
-  for (size_t p = 0; p < outcome.passes.size(); ++p) {
-    if (!outcome.passes[p].launches || (frame.left_out && without_bounds[p] != 0)) continue;
+  for (size_t p = 0; p < passes.size(); ++p) {
+    if (!passes[p].launches || (frame.left_out && without_bounds[p] != 0)) continue;
     ++frame.dispatches;
-    frame.groups += launched(outcome.passes[p], load, frame.counters);
+    frame.groups += launched(passes[p], load, frame.counters);
   }
 }
 
@@ -62,14 +62,14 @@ FrameChoice& place_of(Chooser& chooser, uint64_t frame_index) {
   return chooser.frames[frame_index % chooser.frames.size()];
 }
 
-void learn(Chooser& chooser, const choice::Outcome& outcome, FrameChoice& frame) {
+void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, FrameChoice& frame) {
   const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles, frame.view_blocks);
   frame.measured_ms = 0;
-  for (size_t p = 0; p < outcome.passes.size(); ++p) {
+  for (size_t p = 0; p < passes.size(); ++p) {
     const double ms = static_cast<double>(chooser.times[p].nanoseconds) / ns_per_ms;
     frame.measured_ms += ms;
     if (!frame.first_of_plan && !frame.left_out)
-      chooser.costs.observe(outcome.passes[p].cost, groups_of(outcome.passes[p], load), ms);
+      chooser.costs.observe(passes[p].cost, groups_of(passes[p], load), ms);
   }
 }
 
@@ -92,19 +92,22 @@ uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
 
 void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   const choice::Outcome& outcome = program.outcomes[frame.outcome];
-  vulkan::Executor& executor = *program.variants[outcome.plan].executor;
+  const Variant& variant = program.variants[frame.variant];
+  const std::span<const choice::PassLoad> passes =
+      frame.variant == outcome.plan ? outcome.passes : variant.loads;
+  vulkan::Executor& executor = *variant.executor;
   std::array<uint32_t, sizeof(subsurface::FrameCounters) / sizeof(uint32_t)> words{};
   const bool counted = executor.read_counters(frame.frame_index, words);
   if (counted) frame.counters = std::bit_cast<subsurface::FrameCounters>(words);
   uint64_t timed_frame = 0;
-  const std::span times(chooser.times.data(), outcome.passes.size());
+  const std::span times(chooser.times.data(), passes.size());
   frame.timed =
       executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
-  count_groups(outcome, program.variants[outcome.plan].left_out.passes, frame);
+  count_groups(passes, variant.left_out, frame);
   if (!frame.left_out)
     frame.metered_ms =
         metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles, frame.view_blocks)).ms;
-  if (counted && frame.timed) learn(chooser, outcome, frame);
+  if (counted && frame.timed) learn(chooser, passes, frame);
   if (counted) learn_error(chooser, outcome, frame.counters);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
@@ -141,6 +144,12 @@ std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program&
 
 void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program) {
   program.outcomes = described(kinds, program, chooser.errors, chooser.costs, std::move(program.outcomes));
+  for (choice::Outcome empty : program.outcomes) {
+    empty.plan = program.variants[empty.plan].without_bounds;
+    if (empty.plan == no_variant) continue;
+    program.variants[empty.plan].loads =
+        described(kinds, program, chooser.errors, chooser.costs, {empty}).front().passes;
+  }
   size_t passes = chooser.times.size();
   for (const Variant& variant : program.variants)
     passes = std::max(passes, variant.compiled->plan.passes.size());

@@ -26,6 +26,8 @@ struct FrameChoice {
   uint64_t frame_index = 0; // 0: none
   uint64_t program = 0;     // Program::serial
   uint32_t outcome = 0;     // into Program::outcomes
+  uint32_t variant =
+      0; // into Program::variants: of the outcome, or in its place in a frame with empty bounds
   choice::Decision decision;
   uint32_t switches = 0; // since the graph began
   double budget_ms = 0;  // 0: none

@@ -329,12 +329,13 @@ dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_fr
   return check_bindings(view, program, frame);
 }
 
-dermis_result fill_frame(const dermis_view_t& view, const Program& program, uint32_t outcome,
-                         const vulkan::Executor* before, uint32_t sample_units, const dermis_frame& frame,
-                         CheckedFrame& checked) {
+dermis_result fill_frame(const dermis_view_t& view, const Program& program, const Chosen& chosen,
+                         const dermis_frame& frame, CheckedFrame& checked) {
   const Log& log = view.context->log;
   const char* const function = record_function(view);
-  const vulkan::Executor& executor = *program.variants[program.outcomes[outcome].plan].executor;
+  const Variant& variant = program.variants[chosen.variant];
+  const vulkan::Executor& executor = *variant.executor;
+  const vulkan::Executor* const before = chosen.before;
   const bool reset = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
   bool history_invalid = false;
   for (uint32_t i = 0; i < executor.history_count(); ++i)
@@ -344,24 +345,20 @@ dermis_result fill_frame(const dermis_view_t& view, const Program& program, uint
                          checked.bounds, history_invalid, checked.constants);
       fault != subsurface::CameraFault::none)
     return bad_argument(log, "{}: {}{}", function, subsurface::text_of(fault), hint_of(fault));
-  checked.constants.sample_units = sample_units;
+  checked.constants.sample_units = chosen.sample_units;
   checked.input.command_buffer = frame.command_buffer;
   checked.input.images = program.images;
   checked.input.buffers = program.buffers;
   checked.input.structures = program.structures;
   checked.input.frame_constants = std::as_bytes(std::span(&checked.constants, 1));
-  checked.input.settings = program.outcomes[outcome].settings;
+  checked.input.settings = program.outcomes[chosen.outcome].settings;
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
   checked.input.taken_over = before != nullptr && program.last_frame > 0; // of its pool of memory
   checked.input.before = before;
   checked.input.view_user = view.user;
   checked.history_invalid = history_invalid;
-  if (checked.bounds[2] == 0 || checked.bounds[3] == 0) {
-    const LeftOut& left_out = program.variants[program.outcomes[outcome].plan].left_out;
-    checked.input.left_out = left_out.passes;
-    checked.input.unbound_ports = left_out.unbound_ports;
-  }
+  if (checked.empty_bounds()) checked.input.left_out = variant.left_out;
   return DERMIS_OK;
 }
 

@@ -25,7 +25,7 @@ using Candidates = std::vector<std::shared_ptr<Program>>; // by view, the graph'
 void tell_lost_histories(const dermis_view_t& view, const Program& program, vulkan::HistoryReason reason,
                          Diagnostics& diagnostics) {
   const Program& last = *view.running;
-  const vulkan::Executor& before = *last.current().executor;
+  const vulkan::Executor& before = *last.recorded().executor;
   const vulkan::Executor& executor = *program.current().executor;
   const Plan& plan = program.current().compiled->plan;
   for (uint32_t h = 0; h < plan.histories.size(); ++h) {

@@ -36,7 +36,7 @@ struct dermis_view_t {
     uint64_t replaced_last_frame = 0;
     uint64_t program_last_frame = 0;
     std::array<double, 2> last_jitter_px{};
-    uint32_t outcome = 0, variant = 0;
+    uint32_t outcome = 0, variant = 0, program_variant = 0;
     bool variant_recorded = false;
     dermis::choice::DecisionState decision;
     uint64_t decided_for = 0; // as in Chooser

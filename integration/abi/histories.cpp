@@ -54,7 +54,7 @@ void add_histories(const KindRegistry& kinds, const Program& program, const Vari
 std::vector<KnownHistory> histories_of(const dermis_view_t& view, const Program& program) {
   const KindRegistry& kinds = view.context->kinds;
   std::vector<KnownHistory> all;
-  const uint32_t last = program.outcomes[program.outcome].plan;
+  const uint32_t last = program.variant;
   const vulkan::Executor* const before = recorded_before(view, program, last);
   add_histories(kinds, program, program.variants[last], before, all);
   for (uint32_t v = 0; v < program.variants.size(); ++v)

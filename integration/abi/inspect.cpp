@@ -99,7 +99,7 @@ dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t co
     return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
                         completed, view.last_frame);
   Program& program = view.running ? *view.running : newest(view);
-  const Variant& variant = program.current();
+  const Variant& variant = program.recorded();
   const auto passes = static_cast<uint32_t>(variant.compiled->plan.passes.size());
   if (out == nullptr) {
     *count = passes;

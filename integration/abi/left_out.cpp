@@ -1,5 +1,7 @@
 #include "integration/abi/left_out.hpp"
 
+#include "framegraph/text/limits.hpp"
+
 #include <algorithm>
 #include <span>
 
@@ -10,23 +12,74 @@ bool is_off(const PassDeclaration& pass) {
   return pass.absence != PassDeclaration::Absence::none;
 }
 
-// By resource: can it be read? Imported, written by a pass that is not turned off, or replaced by what can.
-// Ports that update need contents themselves.
-std::vector<uint8_t> provided_resources(const Graph& graph, const KindRegistry& kinds) {
-  std::vector<uint8_t> provided;
-  for (const ResourceDeclaration& resource : graph.resources)
-    provided.push_back(resource.origin == Origin::imported ? 1 : 0);
+// Subresources of a graph or plan; a buffer is one.
+class Subresources {
+public:
+  explicit Subresources(size_t resources) : ranges_(resources) {}
+
+  void add(uint32_t resource, const SubresourceRange& range) { ranges_[resource].push_back(range); }
+
+  bool has(uint32_t resource, const SubresourceRange& range) const {
+    for (uint32_t mip = range.first_mip; mip < uint32_t{range.first_mip} + range.mips; ++mip)
+      for (uint32_t layer = range.first_layer; layer < uint32_t{range.first_layer} + range.layers;) {
+        const uint32_t next = end_of_known(resource, mip, layer);
+        if (next == layer) return false;
+        layer = next;
+      }
+    return true;
+  }
+
+private:
+  // Returns the layer after those that are known from `layer` on; `layer` if it is not.
+  uint32_t end_of_known(uint32_t resource, uint32_t mip, uint32_t layer) const {
+    for (const SubresourceRange& known : ranges_[resource]) {
+      const uint32_t end = uint32_t{known.first_layer} + known.layers;
+      if (mip >= known.first_mip && mip < uint32_t{known.first_mip} + known.mips &&
+          layer >= known.first_layer && layer < end)
+        return end;
+    }
+    return layer;
+  }
+
+  std::vector<std::vector<SubresourceRange>> ranges_; // by resource
+};
+
+SubresourceRange declared_range(const ResourceDeclaration& resource, const ImagePart& part) {
+  const uint32_t mips = resource.mips == 0 ? limits::image_mips : resource.mips;
+  SubresourceRange range;
+  range.first_mip = part.first_mip;
+  range.mips =
+      part.mips == 0 ? static_cast<uint16_t>(mips - std::min<uint32_t>(mips, part.first_mip)) : part.mips;
+  range.first_layer = part.first_layer;
+  range.layers =
+      part.layers == 0
+          ? static_cast<uint16_t>(resource.layers - std::min<uint32_t>(resource.layers, part.first_layer))
+          : part.layers;
+  return range;
+}
+
+// What can be read: imported, written by a pass that is not turned off, or replaced by what can. Ports that
+// update need contents themselves.
+Subresources provided_subresources(const Graph& graph, const KindRegistry& kinds) {
+  Subresources provided(graph.resources.size());
+  for (uint32_t r = 0; r < graph.resources.size(); ++r)
+    if (graph.resources[r].origin == Origin::imported)
+      provided.add(r, declared_range(graph.resources[r], {}));
   for (const PassDeclaration& pass : graph.passes)
     for (const PortBinding& binding : graph.writes(pass))
       if (!is_off(pass) && !usage_info(kinds[pass.kind].ports[binding.port].usage).reads)
-        provided[binding.resource.value] = 1;
+        provided.add(binding.resource.value,
+                     declared_range(graph.resources[binding.resource.value], binding.part));
   for (bool again = true; again;) {
     again = false;
     for (const PassDeclaration& pass : graph.passes)
       for (const PassThrough& through : pass.otherwise) {
-        if (!is_off(pass) || provided[through.output.value] != 0 || provided[through.instead.value] == 0)
+        const SubresourceRange output = declared_range(graph.resources[through.output.value], {}),
+                               instead = declared_range(graph.resources[through.instead.value], {});
+        if (!is_off(pass) || provided.has(through.output.value, output) ||
+            !provided.has(through.instead.value, instead))
           continue;
-        provided[through.output.value] = 1;
+        provided.add(through.output.value, output);
         again = true;
       }
   }
@@ -43,84 +96,28 @@ bool turned_off_writer(const Graph& graph, ResourceId resource) {
 }
 
 // A resource that the pass has to read and that only passes which are turned off write; or none.
-ResourceId missing_input(const Graph& graph, const std::vector<uint8_t>& provided, const PassKind& kind,
+ResourceId missing_input(const Graph& graph, const Subresources& provided, const PassKind& kind,
                          const PassDeclaration& pass) {
   for (const PortBinding& binding : graph.bindings_of(pass)) {
     const Port& port = kind.ports[binding.port];
     if (port.optional || !usage_info(port.usage).reads || binding.when != ReadWhen::always) continue;
-    if (provided[binding.resource.value] == 0 && turned_off_writer(graph, binding.resource))
+    const SubresourceRange range = declared_range(graph.resources[binding.resource.value], binding.part);
+    if (!provided.has(binding.resource.value, range) && turned_off_writer(graph, binding.resource))
       return binding.resource;
   }
   return {};
 }
 
-constexpr uint32_t bit_of_port(uint32_t port) {
-  return uint32_t{1} << port;
+std::span<const PlanAccess> accesses_of(const Plan& plan, size_t pass) {
+  return std::span(plan.accesses).subspan(plan.passes[pass].first_access, plan.passes[pass].access_count);
 }
 
-struct EmptyFrame {
-  const Plan& plan;
-  const KindRegistry& kinds;
-  LeftOut out;
-  std::vector<uint32_t> missing; // by plan pass: resource that it lacks, into Plan::resources; or nothing
-
-  static constexpr uint32_t nothing = 0xffffffffu;
-
-  std::span<const PlanAccess> accesses_of(size_t p) const {
-    return std::span(plan.accesses).subspan(plan.passes[p].first_access, plan.passes[p].access_count);
-  }
-
-  // In the order of the plan: what has been written by then. True: another pass of the host lacks an input.
-  bool follow_contents() {
-    std::vector<uint8_t> filled(plan.resources.size(), 0);
-    for (size_t r = 0; r < plan.resources.size(); ++r)
-      filled[r] = plan.resources[r].origin == Origin::imported;
-    bool changed = false;
-    for (size_t p = 0; p < plan.passes.size(); ++p) {
-      if (out.passes[p] != 0) continue;
-      const PassKind& kind = kinds[plan.passes[p].kind];
-      for (const PlanAccess& access : accesses_of(p)) {
-        const bool reads = (access.access & ~all_write_access) != 0 && access.frames_back == 0;
-        if (!reads || filled[access.resource] != 0 || kind.dispatch != DispatchShape::host) continue;
-        if (kind.ports[access.port].optional) {
-          out.unbound_ports[p] |= bit_of_port(access.port);
-          continue;
-        }
-        out.passes[p] = 1;
-        missing[p] = access.resource;
-        changed = true;
-        break;
-      }
-      for (const PlanAccess& access : accesses_of(p))
-        if (out.passes[p] == 0 && (access.access & all_write_access) != 0) filled[access.resource] = 1;
-    }
-    return changed;
-  }
-
-  void leave_out_what_nobody_needs() {
-    std::vector<uint8_t> wanted(plan.resources.size(), 0), needed(plan.passes.size(), 0);
-    for (size_t r = 0; r < plan.resources.size(); ++r)
-      wanted[r] = plan.resources[r].slot >= 0;
-    for (bool again = true; again;) { // histories are wanted by passes before their writers, too
-      again = false;
-      for (size_t p = plan.passes.size(); p-- > 0;) {
-        if (out.passes[p] != 0 || needed[p] != 0) continue;
-        const auto accesses = accesses_of(p);
-        const bool writes_wanted =
-            std::any_of(accesses.begin(), accesses.end(), [&](const PlanAccess& access) {
-              return (access.access & all_write_access) != 0 && wanted[access.resource] != 0;
-            });
-        if (!writes_wanted && !kinds[plan.passes[p].kind].side_effects) continue;
-        needed[p] = 1;
-        again = true;
-        for (const PlanAccess& access : accesses)
-          wanted[access.resource] = 1;
-      }
-    }
-    for (size_t p = 0; p < plan.passes.size(); ++p)
-      out.passes[p] = needed[p] == 0;
-  }
-};
+bool writes_wanted(const Plan& plan, size_t pass, const std::vector<uint8_t>& wanted) {
+  const auto accesses = accesses_of(plan, pass);
+  return std::any_of(accesses.begin(), accesses.end(), [&](const PlanAccess& access) {
+    return (access.access & all_write_access) != 0 && wanted[access.resource] != 0;
+  });
+}
 
 } // namespace
 
@@ -137,7 +134,7 @@ void turn_scattering_off(Graph& graph, const KindRegistry& kinds) {
     }
   for (bool again = true; again;) { // what lacks its input leaves others without theirs
     again = false;
-    const std::vector<uint8_t> provided = provided_resources(graph, kinds);
+    const Subresources provided = provided_subresources(graph, kinds);
     for (PassDeclaration& pass : graph.passes) {
       if (is_off(pass)) continue;
       const ResourceId missing = missing_input(graph, provided, kinds[pass.kind], pass);
@@ -150,21 +147,48 @@ void turn_scattering_off(Graph& graph, const KindRegistry& kinds) {
   }
 }
 
-LeftOut left_out_without_bounds(const KindRegistry& kinds, CompiledPlan& compiled) {
-  const Plan& plan = compiled.plan;
-  EmptyFrame frame{plan, kinds, {}, std::vector<uint32_t>(plan.passes.size(), EmptyFrame::nothing)};
-  frame.out.unbound_ports.assign(plan.passes.size(), 0);
-  for (const PlanPass& pass : plan.passes)
-    frame.out.passes.push_back(kinds[pass.kind].serves_scattering ? 1 : 0);
-  while (frame.follow_contents()) {
+std::vector<uint8_t> left_out_without_bounds(const KindRegistry& kinds, const Plan& plan) {
+  std::vector<uint8_t> left_out(plan.passes.size(), 1), wanted(plan.resources.size(), 0);
+  for (size_t r = 0; r < plan.resources.size(); ++r)
+    wanted[r] = plan.resources[r].slot >= 0;
+  for (bool again = true; again;) { // passes before the writers of a history want it, too
+    again = false;
+    for (size_t p = plan.passes.size(); p-- > 0;) {
+      const PassKind& kind = kinds[plan.passes[p].kind];
+      if (left_out[p] == 0 || kind.serves_scattering) continue;
+      if (!kind.side_effects && !writes_wanted(plan, p, wanted)) continue;
+      left_out[p] = 0;
+      again = true;
+      for (const PlanAccess& access : accesses_of(plan, p))
+        wanted[access.resource] = 1;
+    }
   }
-  frame.leave_out_what_nobody_needs();
-  for (size_t p = 0; p < plan.passes.size(); ++p)
-    if (frame.missing[p] != EmptyFrame::nothing)
+  return left_out;
+}
+
+bool reads_what_is_left_out(const KindRegistry& kinds, const Plan& plan) {
+  Subresources written(plan.resources.size());
+  for (uint32_t r = 0; r < plan.resources.size(); ++r)
+    if (plan.resources[r].origin == Origin::imported) written.add(r, plan.resources[r].whole());
+  for (size_t p = 0; p < plan.passes.size(); ++p) {
+    if (kinds[plan.passes[p].kind].serves_scattering) continue;
+    for (const PlanAccess& access : accesses_of(plan, p))
+      if ((access.access & ~all_write_access) != 0 && access.frames_back == 0 &&
+          !written.has(access.resource, access.range))
+        return true;
+    for (const PlanAccess& access : accesses_of(plan, p))
+      if ((access.access & all_write_access) != 0) written.add(access.resource, access.range);
+  }
+  return false;
+}
+
+void explain_lacking_inputs(const Graph& without_scattering, CompiledPlan& compiled) {
+  for (const PlanPass& pass : compiled.plan.passes) {
+    const PassDeclaration& declared = without_scattering.passes[pass.declared.value];
+    if (declared.absence == PassDeclaration::Absence::no_input)
       compiled.reasons.push_back({Reason::About::pass, Reason::Why::lacks_input_without_bounds,
-                                  plan.passes[p].declared.value,
-                                  plan.resources[frame.missing[p]].declared.value, 0, 0});
-  return std::move(frame.out);
+                                  pass.declared.value, declared.missing.value, 0, 0});
+  }
 }
 
 } // namespace dermis::abi

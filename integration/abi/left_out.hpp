@@ -9,16 +9,20 @@
 namespace dermis::abi {
 
 // Turns passes off that serve scattering, and those that have to read what only such passes write where no
-// `otherwise` stands in. For a graph without a profile.
+// `otherwise` stands in. For a graph without a profile, and for the plan of frames with empty bounds.
 void turn_scattering_off(Graph& graph, const KindRegistry& kinds);
 
-struct LeftOut {                       // of a frame with empty bounds
-  std::vector<uint8_t> passes;         // by plan pass, 1: does not run
-  std::vector<uint32_t> unbound_ports; // by plan pass, bit i: port i of a pass of the host is not bound
-};
+// By plan pass, 1: does not run in a frame with empty bounds. Passes that serve scattering, and passes that
+// only those need. Passes with side effects are needed.
+std::vector<uint8_t> left_out_without_bounds(const KindRegistry& kinds, const Plan& plan);
 
-// Passes that serve scattering; passes of the host that have to read what only such passes write, with a
-// reason; and passes that only those need. Passes with side effects are needed.
-LeftOut left_out_without_bounds(const KindRegistry& kinds, CompiledPlan& compiled);
+// Returns whether a pass that does not serve scattering reads what only passes that do so have written by
+// then. A frame with empty bounds then needs a plan of its own, in which each port gets its `otherwise`, is
+// unbound, or turns the pass off.
+bool reads_what_is_left_out(const KindRegistry& kinds, const Plan& plan);
+
+// Adds a reason for each pass of the plan that `without_scattering`, which turn_scattering_off() changed,
+// turned off for lack of an input.
+void explain_lacking_inputs(const Graph& without_scattering, CompiledPlan& compiled);
 
 } // namespace dermis::abi

@@ -158,6 +158,28 @@ std::vector<Slot> slots_of(const Program& program) {
   return slots;
 }
 
+// The plan of frames with empty bounds in place of plan `number`, whose passes that it turns off get a reason.
+std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
+                                                   const std::vector<choice::Outcome>& outcomes,
+                                                   uint32_t number, PlanCache& plans, CompiledPlan& instead_of,
+                                                   Diagnostics& diagnostics) {
+  Graph graph = *input.graph;
+  turn_scattering_off(graph, *input.kinds);
+  explain_lacking_inputs(graph, instead_of);
+  CompileInput one = input;
+  one.graph = &graph;
+  const auto runs = [&](const choice::Outcome& outcome) { return outcome.plan == number; };
+  one.settings = std::find_if(outcomes.begin(), outcomes.end(), runs)->settings;
+  Diagnostics told; // warnings are about passes that the graph's own plans have as well
+  auto compiled = compile(one, plans, told);
+  for (Diagnostic& message : told.list) {
+    if (compiled) break;
+    message.text += ", in frames with empty bounds";
+    diagnostics.list.push_back(std::move(message));
+  }
+  return compiled;
+}
+
 } // namespace
 
 dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
@@ -224,11 +246,26 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
       pinned_settings(candidate->graph, input.settings));
   if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
   candidate->outcomes = std::move(made->outcomes);
-  for (CompiledPlan& compiled : made->plans) {
-    LeftOut left_out = left_out_without_bounds(context.kinds, compiled);
-    candidate->variants.push_back(
-        {std::make_shared<const CompiledPlan>(std::move(compiled)), nullptr, false, std::move(left_out)});
+  std::vector<CompiledPlan> empty_plans;
+  for (uint32_t p = 0; p < made->plans.size(); ++p) {
+    CompiledPlan& compiled = made->plans[p];
+    Variant variant;
+    variant.left_out = left_out_without_bounds(context.kinds, compiled.plan);
+    if (!candidate->without_material && reads_what_is_left_out(context.kinds, compiled.plan)) {
+      auto empty = compile_without_bounds(compile_input, candidate->outcomes, p, plans, compiled, diagnostics);
+      if (!empty) return DERMIS_ERROR_CONFIG;
+      variant.without_bounds = static_cast<uint32_t>(made->plans.size() + empty_plans.size());
+      empty_plans.push_back(std::move(*empty));
+    }
+    variant.compiled = std::make_shared<const CompiledPlan>(std::move(compiled));
+    candidate->variants.push_back(std::move(variant));
   }
+  for (CompiledPlan& compiled : empty_plans) {
+    Variant& variant = candidate->variants.emplace_back();
+    variant.left_out.assign(compiled.plan.passes.size(), 0);
+    variant.compiled = std::make_shared<const CompiledPlan>(std::move(compiled));
+  }
+  candidate->variant = candidate->outcomes[candidate->outcome].plan;
   candidate->slots = slots_of(*candidate);
   make_room_for_bindings(*candidate);
   name_options(*candidate);
@@ -258,7 +295,9 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
   candidate->files = of.files;
   candidate->outcomes = of.outcomes;
   for (const Variant& variant : of.variants)
-    candidate->variants.push_back({variant.compiled, nullptr, false, variant.left_out});
+    candidate->variants.push_back(
+        {variant.compiled, nullptr, false, variant.without_bounds, variant.left_out});
+  candidate->variant = candidate->outcomes[candidate->outcome].plan;
   candidate->settings = of.settings;
   candidate->slots = of.slots;
   make_room_for_bindings(*candidate);

@@ -70,12 +70,19 @@ struct Slot {
   uint32_t width = 0, height = 0;
 };
 
+inline constexpr uint32_t no_variant = 0xffffffffu;
+
 // One plan of the graph, with what runs it.
 struct Variant {
   std::shared_ptr<const CompiledPlan> compiled; // of all views
   std::unique_ptr<vulkan::Executor> executor;
-  bool recorded = false;                   // at least once
-  LeftOut left_out{};                      // in frames with empty bounds
+  bool recorded = false; // at least once
+  // For frames with empty bounds: the plan that then runs instead, into Program::variants; or no_variant, and
+  // which passes of this plan do not run, by plan pass.
+  uint32_t without_bounds = no_variant;
+  std::vector<uint8_t> left_out{};
+  std::vector<choice::PassLoad>
+      loads{}; // of a plan of frames with empty bounds, by plan pass; others: Outcome::passes
 };
 
 // For one view: views of one graph share what was compiled and the pipelines, all the rest is their own.
@@ -88,8 +95,9 @@ struct Program {
   std::vector<choice::Outcome> outcomes;        // what the choices by budget can come to; first: the defaults
   std::unique_ptr<vulkan::HeapPool> heap_pool;  // of all variants' transients; null where there is one
   std::unique_ptr<vulkan::KernelStore> kernels; // what it compiled, until the context has it; then null
-  std::vector<Variant> variants;                // by Outcome::plan
+  std::vector<Variant> variants;                // by Outcome::plan, then those of Variant::without_bounds
   uint32_t outcome = 0;                         // recorded last, or to be recorded first
+  uint32_t variant = 0;                         // likewise
   std::vector<SettingValue> settings;           // by Graph::settings: choices by budget at their defaults
   std::vector<std::vector<const char*>> option_names; // by Graph::settings, into `graph`
   std::vector<Slot> slots;
@@ -100,7 +108,8 @@ struct Program {
   uint64_t last_frame = 0;                       // frame_index it was recorded with last; 0: never
   std::array<double, 2> last_jitter_px{};        // of that frame
 
-  const Variant& current() const { return variants[outcomes[outcome].plan]; }
+  const Variant& current() const { return variants[outcomes[outcome].plan]; } // of the outcome
+  const Variant& recorded() const { return variants[variant]; }
 };
 
 // Parses, compiles (or takes the plan from `plans`, where it then is) and allocates. On failure `diagnostics`

@@ -50,6 +50,7 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   program.last_frame = recorded.program_last_frame;
   program.last_jitter_px = recorded.last_jitter_px;
   program.outcome = recorded.outcome;
+  program.variant = recorded.program_variant;
   forget(view.chooser, frame_index);
   view.chooser.state = recorded.decision;
   view.chooser.decided_for = recorded.decided_for;
@@ -69,6 +70,12 @@ std::array<double, 2> rescaled_jitter(const dermis_view_t& view, const vulkan::E
   const vulkan::Rectangle was = before.previous_rectangle(), is = executor.previous_rectangle(&before);
   const auto& jitter = view.running->last_jitter_px;
   return {jitter[0] * is.width / std::max(was.width, 1u), jitter[1] * is.height / std::max(was.height, 1u)};
+}
+
+uint32_t variant_of(const Program& program, uint32_t outcome, bool empty_bounds) {
+  const uint32_t plan = program.outcomes[outcome].plan;
+  const uint32_t instead = program.variants[plan].without_bounds;
+  return empty_bounds && instead != no_variant ? instead : plan;
 }
 
 constexpr uint64_t tile_side = 8, block_side = 32; // pixels
@@ -102,17 +109,18 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
              squares_of(seen, block_side), chooser.forecasts, state);
   if (!chooser.counted) state = {}; // decided for a view full of subsurface: no reason to stay
   chosen.frame_index = frame.frame_index;
-  const uint32_t variant = program.outcomes[chosen.outcome].plan;
+  const uint32_t variant = variant_of(program, chosen.outcome, checked.empty_bounds());
+  chosen.variant = variant;
   chosen.first_of_plan = !program.variants[variant].recorded;
   const vulkan::Executor* before = recorded_before(view, program, variant);
   const std::array<double, 2> jitter_before = program.last_jitter_px;
   const bool replaces = program.last_frame == 0 && before != nullptr;
   if (replaces) program.last_jitter_px = rescaled_jitter(view, *program.variants[variant].executor, *before);
   if (const dermis_result result =
-          fill_frame(view, program, chosen.outcome, before, chosen.sample_units, frame, checked);
+          fill_frame(view, program, {chosen.outcome, variant, before, chosen.sample_units}, frame, checked);
       result != DERMIS_OK)
     return result;
-  chosen.left_out = !checked.input.left_out.empty();
+  chosen.left_out = checked.empty_bounds();
   chosen.history_invalid = checked.history_invalid;
   if (chosen.left_out) chosen.forecast.ms = chosen.forecast.spread_ms = 0;
   collect(view, frame.completed_frame_index);
@@ -136,6 +144,7 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   view.recorded.program_last_frame = program.last_frame;
   view.recorded.last_jitter_px = jitter_before;
   view.recorded.outcome = program.outcome;
+  view.recorded.program_variant = program.variant;
   view.recorded.variant = variant;
   view.recorded.variant_recorded = program.variants[variant].recorded;
   view.recorded.decision = chooser.state;
@@ -144,6 +153,7 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   program.last_frame = frame.frame_index;
   program.last_jitter_px = {frame.jitter_x, frame.jitter_y};
   program.outcome = chosen.outcome;
+  program.variant = variant;
   program.variants[variant].recorded = true;
   remember(chooser, chosen, state);
   view.last_frame = frame.frame_index;
@@ -157,7 +167,7 @@ const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program
   const bool first = program.last_frame == 0;
   if (first && (!view.next || !view.running)) return nullptr;
   const Program& other = first ? *view.running : program;
-  const uint32_t last = other.outcomes[other.outcome].plan;
+  const uint32_t last = other.variant;
   if (other.last_frame == 0 || (!first && last == variant)) return nullptr;
   return other.variants[last].executor.get();
 }

@@ -87,8 +87,7 @@ void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectan
     const uint32_t bound = pass.ports[port].access;
     const bool storage =
         bound != no_index && (state.plan.accesses[bound].access & access::shader_sampled_read) == 0;
-    const bool unbound = p < frame.unbound_ports.size() && (frame.unbound_ports[p] >> port & 1) != 0;
-    state.host_ports[port] = unbound ? HostPort{} : port_now(state, frame, pass.ports[port], storage);
+    state.host_ports[port] = port_now(state, frame, pass.ports[port], storage);
   }
   for (uint32_t i = 0; i < pass.host_settings; ++i)
     state.host_settings[i] = value_of(state, frame, planned, i);

@@ -13,7 +13,7 @@ using testing::Not;
 void DERMIS_CALL keep_name(void* user, const dermis_pass_call* call) {
   std::string name = call->pass;
   for (uint32_t p = 0; p < call->port_count; ++p)
-    if (call->ports[p].image == VK_NULL_HANDLE) name += " -";
+    if (call->ports[p].image == VK_NULL_HANDLE && call->ports[p].buffer == VK_NULL_HANDLE) name += " -";
   static_cast<std::vector<std::string>*>(user)->push_back(name);
 }
 
@@ -31,6 +31,16 @@ struct HostPassSkips : DermisTest {
         {{"from", DERMIS_PORT_SAMPLED_IMAGE, true}, {"out", DERMIS_PORT_STORAGE_IMAGE_WRITE, false}}, false);
     add("studio.scatter", {{"out", DERMIS_PORT_STORAGE_IMAGE_WRITE, false}}, true);
     add("studio.count", {{"out", DERMIS_PORT_STORAGE_IMAGE_WRITE, false}}, false, true);
+    add("studio.change", {{"out", DERMIS_PORT_STORAGE_IMAGE_UPDATE, false}}, false);
+    add("studio.scatter_list", {{"list", DERMIS_PORT_STORAGE_BUFFER_WRITE, false}}, true);
+    add("studio.use_list",
+        {{"list", DERMIS_PORT_STORAGE_BUFFER_READ, false}, {"out", DERMIS_PORT_STORAGE_IMAGE_WRITE, false}},
+        false);
+    add("studio.remember",
+        {{"from", DERMIS_PORT_SAMPLED_IMAGE, false},
+         {"before", DERMIS_PORT_SAMPLED_IMAGE, true},
+         {"out", DERMIS_PORT_STORAGE_IMAGE_WRITE, false}},
+        false);
   }
 
   struct PortOf {
@@ -57,13 +67,17 @@ struct HostPassSkips : DermisTest {
     ASSERT_EQ(dermis_register_pass_kind(context, &kind), DERMIS_OK) << dermis_last_error();
   }
 
-  // Runs one frame of a graph with `passes`, whose optional export is `toned`.
+  // Makes a graph with `passes`, whose optional export is `toned`, and records a frame.
   void run(const std::string& passes, bool profiles, uint32_t flags) {
     calls.clear();
     const std::string image = R"({ "format": "rgba16f", "size": "view" })";
     GraphOptions options;
     options.text = R"({ "dermis": 1, "name": "skips", "imports": { "given": )" + image +
-                   R"( }, "resources": { "lit": )" + image +
+                   R"( }, "resources": { "list": { "buffer": { "stride": 4, "count": [16, 1] } },
+                   "usual": { "buffer": { "stride": 4, "count": [16, 1] } },
+                   "kept": { "format": "rgba16f", "size": "view", "history": { "frames": 1 } },
+                   "chain": { "format": "rgba16f", "size": "view", "mips": 2 }, "lit": )" +
+                   image +
                    R"(, "toned": { "format": "rgba16f", "size": "view", "optional": true } },
       "passes": [ )" +
                    passes + R"( ], "exports": ["toned"] })";
@@ -73,6 +87,10 @@ struct HostPassSkips : DermisTest {
     graph = make_graph(options);
     ASSERT_NE(graph, nullptr);
     make_images(graph);
+    again(flags);
+  }
+  void again(uint32_t flags) { // the next frame
+    calls.clear();
     const auto bound = bindings(graph);
     dermis_frame one = frame(bound);
     one.flags = flags;
@@ -123,12 +141,122 @@ TEST_F(HostPassSkips, InputsOfSkippedPassesAreUnboundOrSkip) {
   }
 }
 
-TEST_F(HostPassSkips, OtherwiseStandsInWithoutAProfile) {
+TEST_F(HostPassSkips, OtherwiseStandsIn) {
+  for (const Way& way : nothing_scatters) {
+    run(R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
+           { "pass": "tone", "kind": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })",
+        way.profiles, way.flags);
+    EXPECT_THAT(calls, ElementsAre("tone")) << way.profiles;
+    if (way.profiles) continue;
+    EXPECT_THAT(described(), HasSubstr("off: its kind serves scattering, and the graph has no profile"));
+  }
+}
+
+TEST_F(HostPassSkips, ABufferStandsInForABuffer) {
+  for (const Way& way : nothing_scatters) {
+    run(R"({ "pass": "usual", "kind": "clear", "write": { "target": "usual" } },
+           { "pass": "list", "kind": "studio.scatter_list", "write": { "list": "list" }, "otherwise": { "list": "usual" } },
+           { "pass": "use", "kind": "studio.use_list", "read": { "list": "list" }, "write": { "out": "toned" } })",
+        way.profiles, way.flags);
+    EXPECT_THAT(calls, ElementsAre("use")) << way.profiles;
+  }
+}
+
+TEST_F(HostPassSkips, AnUpdateNeedsContents) {
+  const std::string scatter =
+                        R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "toned" } }, )",
+                    change = R"({ "pass": "change", "kind": "studio.change", "write": { "out": "toned" } })";
+  for (const Way& way : nothing_scatters) {
+    run(scatter + change, way.profiles, way.flags);
+    EXPECT_THAT(calls, IsEmpty()) << way.profiles;
+    EXPECT_THAT(described(), HasSubstr("it reads 'toned', which only passes that"));
+    run(R"({ "pass": "make", "kind": "studio.make", "write": { "out": "toned" } }, )" + change, way.profiles,
+        way.flags);
+    EXPECT_THAT(calls, ElementsAre("make", "change")) << way.profiles;
+  }
+}
+
+TEST_F(HostPassSkips, WhatLacksItsInputLeavesOthersWithoutTheirs) {
+  for (const Way& way : nothing_scatters) {
+    run(R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" } },
+           { "pass": "first", "kind": "studio.tone", "read": { "from": "lit" }, "write": { "out": "kept" } },
+           { "pass": "second", "kind": "studio.maybe", "read": { "from": "kept" }, "write": { "out": "toned" } })",
+        way.profiles, way.flags);
+    EXPECT_THAT(calls, ElementsAre("second -")) << way.profiles;
+  }
+}
+
+TEST_F(HostPassSkips, EachMipHasWritersOfItsOwn) {
+  const std::string chain = R"({ "pass": "make", "kind": "studio.make", "write": { "out": "chain#0" } },
+      { "pass": "scatter", "kind": "studio.scatter", "write": { "out": "chain#1" } }, )";
+  run(chain +
+          R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "chain#0" }, "write": { "out": "toned" } })",
+      true, DERMIS_FRAME_BOUNDS);
+  EXPECT_THAT(calls, ElementsAre("make", "tone"));
+  run(chain +
+          R"({ "pass": "maybe", "kind": "studio.maybe", "read": { "from": "chain#1" }, "write": { "out": "toned" } })",
+      true, DERMIS_FRAME_BOUNDS);
+  EXPECT_THAT(calls, ElementsAre("maybe -"));
+  for (const Way& way : nothing_scatters) {
+    run(chain +
+            R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "chain#1" }, "write": { "out": "toned" } })",
+        way.profiles, way.flags);
+    EXPECT_THAT(calls, IsEmpty()) << way.profiles;
+    run(chain +
+            R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "chain" }, "write": { "out": "toned" } })",
+        way.profiles, way.flags);
+    EXPECT_THAT(calls, IsEmpty()) << way.profiles;
+  }
+}
+
+TEST_F(HostPassSkips, ADiscardedFrameIsForgottenByBothPlans) {
   run(R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
-         { "pass": "tone", "kind": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })",
-      false, 0);
-  EXPECT_THAT(calls, ElementsAre("tone"));
-  EXPECT_THAT(described(), HasSubstr("off: its kind serves scattering, and the graph has no profile"));
+         { "pass": "remember", "kind": "studio.remember", "read": { "from": "lit", "before": "kept@-1" },
+           "write": { "out": "kept" } },
+         { "pass": "tone", "kind": "studio.tone", "read": { "from": "kept" }, "write": { "out": "toned" } })",
+      true, 0);
+  const auto age = [&] {
+    uint32_t count = 1;
+    dermis_history history = DERMIS_HISTORY_INIT;
+    EXPECT_EQ(dermis_graph_histories(graph, &count, &history), DERMIS_OK) << dermis_last_error();
+    return history.age;
+  };
+  ASSERT_EQ(age(), 1u);
+  const auto bound = bindings(graph);
+  dermis_frame empty = frame(bound);
+  empty.flags = DERMIS_FRAME_BOUNDS;
+  uint32_t count = 0;
+  const dermis_command* commands = nullptr;
+  ASSERT_EQ(dermis_graph_commands(graph, &empty, &count, &commands), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(age(), 2u);
+  ASSERT_EQ(dermis_frame_discard(graph, empty.frame_index), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(age(), 1u);
+  again(0);
+  EXPECT_THAT(calls, ElementsAre("scatter", "remember", "tone"));
+  EXPECT_EQ(age(), 2u);
+}
+
+TEST_F(HostPassSkips, PlansTakeTurnsAndKeepTheHostsHistory) {
+  run(R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
+         { "pass": "remember", "kind": "studio.remember", "read": { "from": "lit", "before": "kept@-1" },
+           "write": { "out": "kept" } },
+         { "pass": "tone", "kind": "studio.tone", "read": { "from": "kept" }, "write": { "out": "toned" } })",
+      true, 0);
+  for (const uint32_t flags : {0u, uint32_t{DERMIS_FRAME_BOUNDS}, uint32_t{DERMIS_FRAME_BOUNDS}, 0u, 0u}) {
+    again(flags);
+    const auto expected = flags == 0 ? std::vector<std::string>{"scatter", "remember", "tone"}
+                                     : std::vector<std::string>{"remember", "tone"};
+    EXPECT_EQ(calls, expected) << flags;
+  }
+  uint32_t count = 1;
+  dermis_history history = DERMIS_HISTORY_INIT;
+  ASSERT_EQ(dermis_graph_histories(graph, &count, &history), DERMIS_OK) << dermis_last_error();
+  EXPECT_STREQ(history.name, "kept");
+  EXPECT_EQ(history.age, 6u) << history.text;
+  std::vector<dermis_pass_timing> timings(3, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
+  uint32_t timed = 3;
+  EXPECT_EQ(dermis_graph_timings(graph, last_frame, &timed, timings.data()), DERMIS_OK);
+  EXPECT_EQ(timed, 3u);
 }
 
 } // namespace
