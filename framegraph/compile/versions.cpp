@@ -52,7 +52,8 @@ struct VersionScan {
     part_uses += c.facts[use.asked.value].parts;
   }
 
-  // A port of which no part can be read is not bound; one of which some parts can is refused.
+  // A port of which no part can be read is not bound; one of which some parts can is refused, unless the
+  // others wait for a profile and the port is optional.
   void spread_trouble() {
     for (size_t first = 0; first < c.uses.size();) {
       const Use& one = c.uses[first];
@@ -65,8 +66,20 @@ struct VersionScan {
     }
   }
 
+  // Whether all passes that would write what the use reads are off for want of a profile.
+  bool lacks_profile(const Use& use) const {
+    bool lacks = false;
+    for (const PassDeclaration& pass : c.graph->passes)
+      for (const PortBinding& written : c.graph->writes(pass)) {
+        if (written.resource != use.asked || !meets(written.part, c.parts[use.part])) continue;
+        if (pass.absence == PassDeclaration::Absence::none) return false;
+        lacks = true;
+      }
+    return lacks;
+  }
+
   // `uses` are the parts of one binding.
-  static void spread_trouble(std::span<Use> uses) {
+  void spread_trouble(std::span<Use> uses) const {
     using Trouble = Use::Trouble;
     const auto has = [](Trouble trouble) {
       return [trouble](const Use& use) { return use.trouble == trouble; };
@@ -74,7 +87,12 @@ struct VersionScan {
     const auto bad = std::find_if_not(uses.begin(), uses.end(), has(Trouble::none));
     if (bad == uses.end()) return;
     const bool missing = bad->trouble == Trouble::unwritten || bad->trouble == Trouble::history_unwritten;
-    const bool partly = missing && std::any_of(uses.begin(), uses.end(), has(Trouble::none));
+    const auto may_be_missing = [&](const Use& use) {
+      return use.trouble == Trouble::none || lacks_profile(use);
+    };
+    const bool some = missing && std::any_of(uses.begin(), uses.end(), has(Trouble::none));
+    const bool partly = some && !(c.kind(bad->pass).ports[bad->port].optional &&
+                                  std::all_of(uses.begin(), uses.end(), may_be_missing));
     const Trouble all = partly ? Trouble::partly_unwritten : bad->trouble;
     for (Use& use : uses)
       if (partly || use.trouble == Trouble::none) use.trouble = all;

@@ -158,14 +158,17 @@ std::vector<Slot> slots_of(const Program& program) {
   return slots;
 }
 
-// The plan of frames with empty bounds in place of plan `number`, whose passes that it turns off get a reason.
+// The plan of frames with empty bounds in place of plan `number`, whose passes that it turns off get a
+// reason.
 std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
                                                    const std::vector<choice::Outcome>& outcomes,
-                                                   uint32_t number, PlanCache& plans, CompiledPlan& instead_of,
-                                                   Diagnostics& diagnostics) {
+                                                   uint32_t number, PlanCache& plans,
+                                                   CompiledPlan& instead_of, Diagnostics& diagnostics) {
   Graph graph = *input.graph;
   turn_scattering_off(graph, *input.kinds);
   explain_lacking_inputs(graph, instead_of);
+  for (ResourceDeclaration& resource : graph.resources) // an export that no pass writes then stays as it is
+    if (resource.exported && resource.origin != Origin::imported) resource.optional = true;
   CompileInput one = input;
   one.graph = &graph;
   const auto runs = [&](const choice::Outcome& outcome) { return outcome.plan == number; };
@@ -252,7 +255,8 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
     Variant variant;
     variant.left_out = left_out_without_bounds(context.kinds, compiled.plan);
     if (!candidate->without_material && reads_what_is_left_out(context.kinds, compiled.plan)) {
-      auto empty = compile_without_bounds(compile_input, candidate->outcomes, p, plans, compiled, diagnostics);
+      auto empty =
+          compile_without_bounds(compile_input, candidate->outcomes, p, plans, compiled, diagnostics);
       if (!empty) return DERMIS_ERROR_CONFIG;
       variant.without_bounds = static_cast<uint32_t>(made->plans.size() + empty_plans.size());
       empty_plans.push_back(std::move(*empty));

@@ -20,6 +20,7 @@ void DERMIS_CALL keep_name(void* user, const dermis_pass_call* call) {
 struct HostPassSkips : DermisTest {
   std::vector<std::string> calls;
   dermis_graph graph = nullptr;
+  bool export_is_optional = true;
 
   void SetUp() override {
     DermisTest::SetUp();
@@ -67,7 +68,7 @@ struct HostPassSkips : DermisTest {
     ASSERT_EQ(dermis_register_pass_kind(context, &kind), DERMIS_OK) << dermis_last_error();
   }
 
-  // Makes a graph with `passes`, whose optional export is `toned`, and records a frame.
+  // Makes a graph with `passes`, whose export is `toned`, and records a frame.
   void run(const std::string& passes, bool profiles, uint32_t flags) {
     calls.clear();
     const std::string image = R"({ "format": "rgba16f", "size": "view" })";
@@ -77,8 +78,8 @@ struct HostPassSkips : DermisTest {
                    "usual": { "buffer": { "stride": 4, "count": [16, 1] } },
                    "kept": { "format": "rgba16f", "size": "view", "history": { "frames": 1 } },
                    "chain": { "format": "rgba16f", "size": "view", "mips": 2 }, "lit": )" +
-                   image +
-                   R"(, "toned": { "format": "rgba16f", "size": "view", "optional": true } },
+                   image + R"(, "toned": { "format": "rgba16f", "size": "view", "optional": )" +
+                   (export_is_optional ? "true" : "false") + R"( } },
       "passes": [ )" +
                    passes + R"( ], "exports": ["toned"] })";
     options.unbound = {};
@@ -152,6 +153,21 @@ TEST_F(HostPassSkips, OtherwiseStandsIn) {
   }
 }
 
+// The export keeps what it holds: no pass of such a frame writes it.
+TEST_F(HostPassSkips, ARequiredExportMayWaitForBounds) {
+  export_is_optional = false;
+  const std::string scatter =
+      R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" } }, )";
+  const std::string tone =
+      R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })";
+  run(scatter + tone, true, 0);
+  EXPECT_THAT(calls, ElementsAre("scatter", "tone"));
+  again(DERMIS_FRAME_BOUNDS);
+  EXPECT_THAT(calls, IsEmpty());
+  again(0);
+  EXPECT_THAT(calls, ElementsAre("scatter", "tone"));
+}
+
 TEST_F(HostPassSkips, ABufferStandsInForABuffer) {
   for (const Way& way : nothing_scatters) {
     run(R"({ "pass": "usual", "kind": "clear", "write": { "target": "usual" } },
@@ -198,6 +214,10 @@ TEST_F(HostPassSkips, EachMipHasWritersOfItsOwn) {
       true, DERMIS_FRAME_BOUNDS);
   EXPECT_THAT(calls, ElementsAre("maybe -"));
   for (const Way& way : nothing_scatters) {
+    run(chain +
+            R"({ "pass": "maybe", "kind": "studio.maybe", "read": { "from": "chain" }, "write": { "out": "toned" } })",
+        way.profiles, way.flags);
+    EXPECT_THAT(calls, ElementsAre("maybe -")) << way.profiles;
     run(chain +
             R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "chain#1" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
