@@ -59,6 +59,8 @@ Error make_device(const DeviceInput& input, Device& device) {
     return {ErrorKind::unsupported, VK_SUCCESS,
             fmt::format("the device {} speaks Vulkan {}.{}, 1.2 is needed", device.properties.deviceName,
                         VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
+  if (std::string reason = explain_old_instance(device.vk.vkGetDeviceProcAddr, device.device, version); !reason.empty())
+    return {ErrorKind::unsupported, VK_SUCCESS, std::move(reason)};
   if (Error error = read_queue_family(input, device)) return error;
   device.features = input.features;
   device.separate_depth_stencil = input.separate_depth_stencil;

@@ -15,10 +15,8 @@ struct Group {
   std::array<std::string_view, 2> functions;
 };
 
-constexpr Group bind_memory{
-    VK_KHR_BIND_MEMORY_2_EXTENSION_NAME, VK_API_VERSION_1_1, {"vkBindImageMemory2", "vkBindBufferMemory2"}};
 constexpr Group groups[] = {
-    bind_memory,
+    {VK_KHR_BIND_MEMORY_2_EXTENSION_NAME, VK_API_VERSION_1_1, {"vkBindImageMemory2", "vkBindBufferMemory2"}},
     {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
      VK_API_VERSION_1_3,
      {"vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2"}},
@@ -76,17 +74,18 @@ std::string explain_missing(std::span<const std::string> missing, uint32_t devic
   return text;
 }
 
-std::string explain_instance_1_0(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                                 VkDevice device, uint32_t device_version) {
-  FunctionTable table;
-  std::vector<std::string> missing = load_functions(get_instance_proc_addr, instance, device, false, table);
-  if (device_version < VK_API_VERSION_1_2 || table.vkGetDeviceProcAddr == nullptr) return "";
-  // VK_KHR_bind_memory2 adds these functions to a 1.0 instance as well, but only under their KHR names.
-  for (const std::string_view name : bind_memory.functions) {
-    if (table.vkGetDeviceProcAddr(device, name.data()) != nullptr) return "";
-    if (!contains(missing, name)) missing.emplace_back(name);
-  }
-  return explain_missing(missing, device_version);
+std::string explain_old_instance(PFN_vkGetDeviceProcAddr get_device_proc_addr, VkDevice device,
+                                 uint32_t device_version) {
+  constexpr const char* added_by_1_2 = "vkResetQueryPool";
+  if (device_version < VK_API_VERSION_1_2 || get_device_proc_addr == nullptr ||
+      get_device_proc_addr(device, added_by_1_2) != nullptr)
+    return "";
+  return fmt::format(
+      "the device supports Vulkan {}.{}, but the instance was created for Vulkan 1.0 or 1.1, which does "
+      "not allow the kernels' SPIR-V 1.5 and hides {}; set VkApplicationInfo.apiVersion to "
+      "VK_API_VERSION_1_3, or to VK_API_VERSION_1_2 and enable {} and {} on the device",
+      VK_API_VERSION_MAJOR(device_version), VK_API_VERSION_MINOR(device_version), added_by_1_2,
+      VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME);
 }
 
 } // namespace dermis::vulkan

@@ -14,9 +14,11 @@ namespace dermis::vulkan {
 // for which version the instance was created. Free-threaded.
 std::string explain_missing(std::span<const std::string> missing, uint32_t device_version);
 
-// Returns the same text if the instance was created for Vulkan 1.0 although the device supports 1.2 or later,
-// else "". Such an instance answers that features are absent which the device has. Free-threaded.
-std::string explain_instance_1_0(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                                 VkDevice device, uint32_t device_version);
+// Returns why an instance that was created for Vulkan 1.0 or 1.1 cannot be used, although the device
+// supports 1.2 or later; else "". Such an instance hides what Vulkan 1.2 added, and answers that features are
+// absent which the device has, even if every function that the library calls is there through extensions.
+// Free-threaded.
+std::string explain_old_instance(PFN_vkGetDeviceProcAddr get_device_proc_addr, VkDevice device,
+                                 uint32_t device_version);
 
 } // namespace dermis::vulkan

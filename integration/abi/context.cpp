@@ -99,8 +99,10 @@ dermis_result check_requirements(const dermis_context_desc& desc, const Log& log
   if (const auto get = reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(
           desc.get_instance_proc_addr(desc.instance, "vkGetPhysicalDeviceProperties")))
     get(desc.physical_device, &properties);
-  if (const std::string reason = vulkan::explain_instance_1_0(desc.get_instance_proc_addr, desc.instance,
-                                                              desc.device, properties.apiVersion);
+  const auto get_device_proc_addr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(
+      desc.get_instance_proc_addr(desc.instance, "vkGetDeviceProcAddr"));
+  if (const std::string reason =
+          vulkan::explain_old_instance(get_device_proc_addr, desc.device, properties.apiVersion);
       !reason.empty())
     return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported, "dermis_context_create: {}",
                 reason);

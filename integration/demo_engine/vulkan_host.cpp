@@ -35,7 +35,8 @@ constexpr const char* ray_extensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSIO
                                           VK_KHR_RAY_QUERY_EXTENSION_NAME,
                                           VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
-Result<> create_device(VulkanHost& host, bool as_vulkan_12) {
+Result<> create_device(VulkanHost& host, const HostOptions& options) {
+  const bool as_vulkan_12 = options.as_vulkan_12;
   auto features13 =
       vulkan_struct<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   auto features12 =
@@ -66,6 +67,7 @@ Result<> create_device(VulkanHost& host, bool as_vulkan_12) {
   if (!host.ray_query) features13.pNext = nullptr;
   features.features.robustBufferAccess = VK_FALSE;
   features13.robustImageAccess = VK_FALSE;
+  if (!options.separate_depth_stencil) features12.separateDepthStencilLayouts = VK_FALSE;
   const bool fits =
       as_vulkan_12 ? extension_features.synchronization2.synchronization2 &&
                          extension_features.maintenance4.maintenance4
@@ -143,7 +145,7 @@ Result<std::unique_ptr<VulkanHost>> create_vulkan_host(const HostOptions& option
   host->properties = chosen->properties;
   host->queue_family = chosen->queue_family;
   host->timestamp_mask = chosen->timestamp_mask;
-  if (auto done = create_device(*host, options.as_vulkan_12); !done) return done.error();
+  if (auto done = create_device(*host, options); !done) return done.error();
   return host;
 }
 

@@ -15,6 +15,7 @@ struct HostOptions {
   bool validation = false;   // Khronos layer with core and synchronization checks, also across submissions
   std::string device;        // part of the device's name; "" = the first discrete GPU, else the first device
   bool as_vulkan_12 = false; // as an engine that is not on 1.3 yet: 1.2 and extensions
+  bool separate_depth_stencil = true; // false: without the feature separateDepthStencilLayouts
 };
 
 // What the validation layer said. Filled from any thread that calls Vulkan.

@@ -41,7 +41,8 @@ VKAPI_ATTR void VKAPI_CALL memory_properties(VkPhysicalDevice, VkPhysicalDeviceM
   out->memoryHeaps[0] = {VkDeviceSize{1} << 40, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
 }
 
-VKAPI_ATTR void VKAPI_CALL queue_families(VkPhysicalDevice physical, uint32_t* count, VkQueueFamilyProperties* out) {
+VKAPI_ATTR void VKAPI_CALL queue_families(VkPhysicalDevice physical, uint32_t* count,
+                                          VkQueueFamilyProperties* out) {
   if (out != nullptr && *count > 0) {
     *out = {};
     out->queueFlags = state_of(physical).queue_flags;
@@ -83,6 +84,8 @@ VKAPI_ATTR VkResult VKAPI_CALL name_object(VkDevice, const VkDebugUtilsObjectNam
   return VK_SUCCESS;
 }
 
+VKAPI_ATTR void VKAPI_CALL reset_queries(VkDevice, VkQueryPool, uint32_t, uint32_t) {}
+
 } // namespace
 
 PFN_vkVoidFunction query_function(const char* name) {
@@ -94,6 +97,7 @@ PFN_vkVoidFunction query_function(const char* name) {
       entry("vkGetPhysicalDeviceImageFormatProperties2", &image_format_properties),
       entry("vkGetPhysicalDeviceFeatures2", &features),
       entry("vkGetQueryPoolResults", &query_results),
+      entry("vkResetQueryPool", &reset_queries), // its presence shows an instance of Vulkan 1.2 or later
       entry("vkSetDebugUtilsObjectNameEXT", &name_object),
   };
   return find_entry(entries, std::size(entries), name);

@@ -294,7 +294,8 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   clear_counters(state, frame_slot);
   write_descriptors(state, frame_slot, frame);
   if (frame.taken_over) record_memory_takeover(state, frame);
-  if (frame.before != nullptr) record_carried(state, *frame.before->state_, commands, frame_slot, frame.reset_history);
+  if (frame.before != nullptr)
+    record_carried(state, *frame.before->state_, commands, frame_slot, frame.reset_history);
   begin_timestamps(state, commands, frame_slot);
   record_acquires(state, frame);
   record_initialisation(state, commands);

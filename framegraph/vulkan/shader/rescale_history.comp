@@ -1,6 +1,6 @@
 #version 460
 // Copies one mip of a history into an image of another size. Each texel is the nearest one: depths and
-// profile ids must not mix. The integer type of the component is chosen by RESCALE_UNSIGNED.
+// profile ids must not mix. RESCALE_UNSIGNED selects unsigned components instead of float.
 #extension GL_EXT_samplerless_texture_functions : require
 layout(local_size_x = 8, local_size_y = 8) in;
 #ifdef RESCALE_UNSIGNED

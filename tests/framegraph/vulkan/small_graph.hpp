@@ -10,8 +10,8 @@
 
 namespace dermis::testing {
 
-// test.fill, test.add, test.sample, test.classes, test.list, test.mark, test.stamp, test.show, test.clear; ports as in
-// kernels/*.comp.
+// test.fill, test.add, test.sample, test.classes, test.list, test.mark, test.stamp, test.show, test.clear;
+// ports as in kernels/*.comp.
 const KindRegistry& small_kinds();
 std::span<const vulkan::KernelCode> small_kernels();
 

@@ -119,6 +119,68 @@ TEST_F(Histories, ThatGoOnAreNotReportedAsNew) {
   EXPECT_EQ(std::count(said.names.begin(), said.names.end(), "history_restarts"), 2);
 }
 
+// What a call reports, by the names of the histories that start anew.
+std::vector<std::string> restarted(const Said& said) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < said.names.size(); ++i) {
+    if (said.names[i] != "history_restarts") continue;
+    const size_t first = said.texts[i].find('\'') + 1;
+    names.push_back(said.texts[i].substr(first, said.texts[i].find('\'', first) - first));
+  }
+  return names;
+}
+
+TEST_F(Histories, AReloadReportsOnlyThoseThatStartAnew) {
+  make(keeping("burley"));
+  run(2);
+  dermis_report report = nullptr;
+  ASSERT_EQ(reload_graph(graph, keeping("burley"), &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(restarted(take(report)), testing::IsEmpty());
+  GraphOptions changed = keeping("burley");
+  std::string& overlay = changed.overlays.front();
+  const std::string past =
+      R"("size": "view", "history": { "frames": 1, "on_resize": "rescale" })"; // of `past`
+  ASSERT_NE(overlay.find(past), std::string::npos);
+  overlay.replace(overlay.find(past), past.size(),
+                  R"("size": "view", "border": 1, "history": { "frames": 1, "on_resize": "invalidate" })");
+  ASSERT_EQ(reload_graph(graph, changed, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(restarted(take(report)), testing::ElementsAre("past"));
+  ASSERT_EQ(reload_graph(graph, changed, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(restarted(take(report)), testing::ElementsAre("past")) << "nothing was recorded in between";
+  run(1);
+  ASSERT_EQ(reload_graph(graph, changed, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(restarted(take(report)), testing::IsEmpty());
+}
+
+TEST_F(Histories, ASettingThatKeepsThePassesLosesNone) {
+  make(keeping("burley"));
+  run(2);
+  for (const auto& [name, value] : {std::pair{"samples", "8"}, {"texturing", "\"pre_post\""}}) {
+    dermis_report report = nullptr;
+    ASSERT_EQ(dermis_graph_set_setting(graph, name, value, &report), DERMIS_OK) << dermis_last_error();
+    EXPECT_THAT(restarted(take(report)), testing::IsEmpty()) << name;
+    run(1);
+  }
+  expect(4, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
+}
+
+TEST_F(Histories, TheLastProfileTakesThemAlong) {
+  make(keeping("burley"));
+  run(2);
+  const std::string skin = read_text("configs/profiles/skin.json");
+  const dermis_source source = source_of(skin, "skin.json");
+  dermis_report report = nullptr;
+  ASSERT_EQ(dermis_graph_set_profile(graph, 1, nullptr, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(restarted(take(report)), testing::IsEmpty()) << "nothing needs a history";
+  ASSERT_EQ(dermis_graph_set_profile(graph, 1, &source, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(restarted(take(report)), testing::IsEmpty()) << "nothing was recorded in between";
+  expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
+  ASSERT_EQ(dermis_graph_set_profile(graph, 1, nullptr, nullptr), DERMIS_OK) << dermis_last_error();
+  run(1);
+  ASSERT_EQ(dermis_graph_set_profile(graph, 1, &source, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(restarted(take(report)), testing::UnorderedElementsAre("past", "past_place"));
+}
+
 TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
   const std::string text = read_text("configs/graphs/sap_residual.json");
   GraphOptions options;

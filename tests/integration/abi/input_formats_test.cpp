@@ -1,9 +1,10 @@
 // Inputs as other engines have them: light that contains albedo, packed light, profile ids in other
 // images than r8_uint.
 
-#include "integration/demo_engine/render/pipeline.hpp"
-#include "material_ids.spv.h"
 #include "tests/integration/abi/dermis_fixture.hpp"
+#include "tests/integration/abi/example_shader.hpp"
+
+#include "material_ids.spv.h" // needs the types of those above
 
 #include <cmath>
 
@@ -158,59 +159,9 @@ TEST_F(InputFormats, MaterialMayBeAnyUnsignedInteger) {
 // Runs integration/examples/material_ids.comp over `source` into the image of slot `material`.
 struct IdExtraction : InputFormats {
   void extract_ids(VkImageView source, int32_t first_bit, int32_t bits) {
-    const VkShaderStageFlags compute = VK_SHADER_STAGE_COMPUTE_BIT;
-    auto layout = demo::create_layout(
-        *host, {{{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, compute}, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, compute}}},
-        8, compute);
-    ASSERT_TRUE(layout) << layout.error().text;
-    VkShaderModuleCreateInfo module_info{};
-    module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    module_info.codeSize = sizeof material_ids_spirv;
-    module_info.pCode = material_ids_spirv;
-    VkShaderModule module = VK_NULL_HANDLE;
-    ASSERT_EQ(host->vk.vkCreateShaderModule(host->device, &module_info, nullptr, &module), VK_SUCCESS);
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  nullptr,
-                  0,
-                  VK_SHADER_STAGE_COMPUTE_BIT,
-                  module,
-                  "main",
-                  nullptr};
-    info.layout = layout->layout.handle;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    ASSERT_EQ(host->vk.vkCreateComputePipelines(host->device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-              VK_SUCCESS);
-    auto pool = demo::create_descriptor_pool(*host, 1);
-    ASSERT_TRUE(pool) << pool.error().text;
-    auto set = demo::allocate_set(*host, *pool, layout->sets[0]);
-    ASSERT_TRUE(set) << set.error().text;
-    const demo::Image& material = images.at("material");
-    demo::write_image(*host, *set, 0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, source, VK_IMAGE_LAYOUT_GENERAL,
-                      VK_NULL_HANDLE);
-    demo::write_image(*host, *set, 1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, material.view,
-                      VK_IMAGE_LAYOUT_GENERAL, VK_NULL_HANDLE);
-    const demo::ImageState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
-    const demo::ImageState written{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                   VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
-    const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
-      demo::transition(*host, commands, material, at_rest, written);
-      host->vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-      const VkDescriptorSet bound = *set;
-      host->vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, info.layout, 0, 1, &bound, 0,
-                                       nullptr);
-      const std::array<int32_t, 2> field{first_bit, bits};
-      host->vk.vkCmdPushConstants(commands, info.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof field,
-                                  field.data());
-      host->vk.vkCmdDispatch(commands, image_side / 8, image_side / 8, 1);
-      demo::transition(*host, commands, material, written, at_rest);
-      return demo::success();
-    });
-    ASSERT_TRUE(ran) << ran.error().text;
-    host->vk.vkDestroyPipeline(host->device, pipeline, nullptr);
-    host->vk.vkDestroyShaderModule(host->device, module, nullptr);
+    const std::array<int32_t, 2> field{first_bit, bits};
+    run_example(*host,
+                {material_ids_spirv, {source}, &images.at("material"), std::as_bytes(std::span(field))});
   }
 
   // As the host's own pass needs it: the image for `material` is also a storage image.

@@ -60,6 +60,7 @@ VKAPI_ATTR void VKAPI_CALL no_features(VkPhysicalDevice, VkPhysicalDeviceFeature
 // The Vulkan version that added a function to the core.
 uint32_t core_version_of(std::string_view name) {
   if (name.starts_with("vkBind") && name.ends_with("2")) return VK_API_VERSION_1_1;
+  if (name == "vkResetQueryPool") return VK_API_VERSION_1_2;
   for (const char* added : {"vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2",
                             "vkGetDeviceImageMemoryRequirements", "vkGetDeviceBufferMemoryRequirements"})
     if (name == added) return VK_API_VERSION_1_3;
@@ -196,6 +197,16 @@ TEST_F(PoorDevice, OlderInstanceWithExtensions_IsAccepted) {
   lack.instance_version = VK_API_VERSION_1_2;
   lack.extensions_enabled = true;
   EXPECT_EQ(create(), DERMIS_OK) << dermis_last_error();
+}
+
+TEST_F(PoorDevice, Instance11WithExtensions_IsNamedAsTheCause) {
+  for (const uint32_t version : {VK_API_VERSION_1_0, VK_API_VERSION_1_1}) {
+    lack.instance_version = version;
+    lack.extensions_enabled = true;
+    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
+    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("VkApplicationInfo.apiVersion"),
+                                           HasSubstr("VK_API_VERSION_1_2"), Not(HasSubstr("device lacks"))));
+  }
 }
 
 TEST_F(PoorDevice, Vulkan12WithoutEnabledExtension_NamesIt) {
