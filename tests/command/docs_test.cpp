@@ -7,7 +7,11 @@
 namespace dermis::test {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 class Docs : public CommandTest {};
 
@@ -25,6 +29,23 @@ TEST_F(Docs, APageThatIsOldOrNotThereIsNamed) {
   const Outcome outcome = run({"docs", "--check", "--out", path("pages")});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("pass_kinds.md"));
+}
+
+TEST_F(Docs, TheTableOfSlotsIsABlockOfThePageForHosts) {
+  write("pages/integration.md", "before\n<!-- slots: `dermis docs` writes what follows -->\nold\n"
+                                "<!-- end of slots -->\nafter\n");
+  EXPECT_EQ(run({"docs", "--check", "--out", path("pages")}).exit_code, 1);
+  ASSERT_EQ(run({"docs", "--out", path("pages")}).exit_code, 0);
+  EXPECT_EQ(run({"docs", "--check", "--out", path("pages")}).exit_code, 0);
+  EXPECT_THAT(
+      read("pages/integration.md"),
+      AllOf(StartsWith("before\n"), EndsWith("<!-- end of slots -->\nafter\n"), Not(HasSubstr("old")),
+            HasSubstr("\n| `lighting` | in, out | `rgba16f`, "), HasSubstr(" | required in all | "),
+            HasSubstr("\n| `instances` | in | buffer, 64 bytes an element | optional in `restir` | ")));
+  write("pages/integration.md", "no block");
+  const Outcome outcome = run({"docs", "--check", "--out", path("pages")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("integration.md has no block 'slots'"));
 }
 
 TEST_F(Docs, EveryLinkInsideOfThePageHasItsHeading) {

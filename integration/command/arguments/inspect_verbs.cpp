@@ -187,9 +187,11 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
 
 void add_docs_verb(CLI::App& app, Invocation& invocation) {
   add_verb<DocsOptions>(
-      app, invocation, "docs", "Write the pages of documentation that follow from schemas and pass kinds",
+      app, invocation, "docs", "Write the documentation that follows from schemas, pass kinds and graphs",
       "dermis docs --out docs\n  dermis docs --check", docs, [](CLI::App& verb, DocsOptions& options) {
         verb.add_option("--out,-o", options.out, "Folder of the pages [docs]")->type_name("DIR");
+        verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")
+            ->type_name("DIR");
         verb.add_flag("--check", options.check,
                       "Write nothing, fail where a page is not as it would be written");
       });

@@ -4,15 +4,20 @@
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
+#include "integration/command/inspect/graph_input.hpp"
 #include "integration/command/inspect/reference_pages/pages.hpp"
 #include "integration/command/inspect/schemas.hpp"
 #include "integration/command/output.hpp"
+#include "integration/command/shipped.hpp"
 #include "integration/command/verbs.hpp"
 #include "integration/files/bytes.hpp"
 #include "passes/subsurface/kinds.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -39,6 +44,30 @@ ExitCode write_all(const Session& session, const std::string& path) {
     say(session, fmt::format("{}\n", file));
   }
   return ExitCode::ok;
+}
+
+// The whole file; nullopt with a `problem`.
+std::optional<std::string> text_of(const std::string& file, std::string& problem) {
+  const auto bytes = read_bytes(file, limits::file_bytes, problem);
+  if (!bytes) return std::nullopt;
+  return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+// All graphs of a folder, by name; nullopt with errors in `diagnostics`.
+std::optional<std::vector<NamedGraph>> graphs_in(const std::string& folder, Diagnostics& diagnostics) {
+  std::vector<std::filesystem::path> files;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".json" && entry.path().stem().extension() != ".expect")
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<NamedGraph> graphs;
+  for (const std::filesystem::path& file : files) {
+    std::optional<LoadedGraph> loaded = load_graph(file.string(), {}, diagnostics);
+    if (!loaded) return std::nullopt;
+    graphs.push_back({file.stem().string(), std::move(loaded->graph)});
+  }
+  return graphs;
 }
 
 } // namespace
@@ -72,18 +101,33 @@ ExitCode schema(const Session& session, const SchemaOptions& options) {
 }
 
 ExitCode docs(const Session& session, const DocsOptions& options) {
-  const std::pair<std::string, std::string> pages[] = {
-      {"format_reference.md", format_page(all_schemas())},
-      {"pass_kinds.md", kinds_page(subsurface::make_kinds())}};
   OutputFolder folder;
   if (const std::string problem = folder.open(options.out); !problem.empty())
     return fail(session, ExitCode::environment, problem);
+  Diagnostics diagnostics;
+  const auto graphs = graphs_in(shipped(options.graphs), diagnostics);
+  if (!graphs) return fail_graph(session, options.graphs, diagnostics);
+  if (graphs->empty())
+    return fail(session, ExitCode::environment, fmt::format("{} holds no graphs", options.graphs));
+  std::vector<std::pair<std::string, std::string>> pages = {
+      {"format_reference.md", format_page(all_schemas())},
+      {"pass_kinds.md", kinds_page(subsurface::make_kinds())}};
+  // Only a block of this page is generated. A folder without the page is not one of user documents.
+  const std::string hosts = folder.path_of("integration.md");
+  if (std::error_code ignored; std::filesystem::exists(hosts, ignored)) {
+    std::string problem;
+    const std::optional<std::string> page = text_of(hosts, problem);
+    if (!page) return fail(session, ExitCode::environment, problem);
+    pages.emplace_back("integration.md", replace_block(*page, "slots", slot_table(*graphs)));
+    if (pages.back().second.empty())
+      return fail(session, ExitCode::problems,
+                  fmt::format("{} has no block 'slots' between its two comments", hosts));
+  }
   for (const auto& [name, text] : pages) {
     const std::string file = folder.path_of(name);
     std::string problem;
     if (options.check) {
-      const auto bytes = read_bytes(file, limits::file_bytes, problem);
-      if (!bytes || std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()) != text)
+      if (text_of(file, problem) != text)
         return fail(session, ExitCode::problems,
                     fmt::format("{} is not what the declarations say now; dermis docs --out {} writes it",
                                 file, options.out));

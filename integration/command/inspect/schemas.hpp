@@ -19,10 +19,12 @@ struct NamedSchema {
 std::span<const NamedSchema> written_schemas();
 
 struct DocsOptions {
-  std::string out = "docs"; // folder
-  bool check = false;       // write nothing, fail where a page is not as it would be written
+  std::string out = "docs";              // folder
+  std::string graphs = "configs/graphs"; // folder of the graphs whose slots are listed
+  bool check = false;                    // write nothing, fail where a page is not as it would be written
 };
-// Writes the pages of documentation that follow from schemas and signatures.
+// Writes the pages of documentation that follow from schemas and signatures, and the table of slots into
+// integration.md where the folder has that page.
 ExitCode docs(const Session& session, const DocsOptions& options);
 
 // "graph", "fragment", ...

@@ -1,6 +1,7 @@
 #pragma once
 // Pages of documentation that follow from declarations, as Markdown.
 
+#include "framegraph/model/graph.hpp"
 #include "framegraph/model/pass_kind.hpp"
 
 #include <span>
@@ -23,5 +24,16 @@ std::string format_page(std::span<const std::pair<std::string_view, std::string>
 
 // Ports and settings of each kind.
 std::string kinds_page(const KindRegistry& kinds);
+
+struct NamedGraph {
+  std::string name; // of the file, without its ending
+  Graph graph;
+};
+// A table of all slots of `graphs`: direction, formats, in which graphs a slot is required or optional, and
+// the note of its declaration. Where graphs differ, a cell names the graphs of each text.
+std::string slot_table(std::span<const NamedGraph> graphs);
+
+// `page` with the text between the two comments of block `name` replaced; "" where they are missing.
+std::string replace_block(std::string_view page, std::string_view name, std::string_view block);
 
 } // namespace dermis::tools
