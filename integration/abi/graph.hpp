@@ -33,7 +33,6 @@ struct dermis_view_t {
     uint64_t last_frame = 0; // of the view
     bool took_over = false;  // a new program: it was `next`
     size_t retired = 0;      // where the program before went, if took_over; the number of places: nowhere
-    uint64_t replaced_last_frame = 0;
     uint64_t program_last_frame = 0;
     std::array<double, 2> last_jitter_px{};
     uint32_t outcome = 0, variant = 0, program_variant = 0;

@@ -57,7 +57,6 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   if (recorded.took_over) {
     view.next = std::move(view.running);
     if (recorded.retired < view.retired.size()) view.running = std::move(view.retired[recorded.retired]);
-    if (view.running) view.running->last_frame = recorded.replaced_last_frame;
   }
   view.last_frame = recorded.last_frame;
   recorded = {};
@@ -140,7 +139,6 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   view.recorded = {};
   view.recorded.known = true;
   view.recorded.last_frame = view.last_frame;
-  view.recorded.replaced_last_frame = view.running ? view.running->last_frame : 0;
   view.recorded.program_last_frame = program.last_frame;
   view.recorded.last_jitter_px = jitter_before;
   view.recorded.outcome = program.outcome;

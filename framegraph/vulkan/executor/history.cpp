@@ -97,7 +97,7 @@ Rectangle Executor::previous_rectangle(const Executor* before) const noexcept {
   return before == nullptr ? state_->previous_rectangle : carried_rectangle(*state_, *before->state_);
 }
 
-void remember_before_frame(State& state, uint32_t frame_slot) noexcept {
+void remember_before_frame(State& state) noexcept {
   BeforeFrame& before = state.before_frame;
   for (size_t h = 0; h < state.histories.size(); ++h)
     before.histories[h] = {state.histories[h].age, state.histories[h].reason, state.histories[h].lost};
@@ -106,7 +106,6 @@ void remember_before_frame(State& state, uint32_t frame_slot) noexcept {
   before.stand_ins_ready = state.stand_ins_ready;
   before.previous_rectangle = state.previous_rectangle;
   before.last_frame_index = state.last_frame_index;
-  before.frame_of_slot = state.frame_of_slot[frame_slot];
   before.known = true;
 }
 
@@ -125,7 +124,7 @@ bool Executor::discard_frame(uint64_t frame_index) noexcept {
   state.stand_ins_ready = before.stand_ins_ready;
   state.previous_rectangle = before.previous_rectangle;
   state.last_frame_index = before.last_frame_index;
-  state.frame_of_slot[frame_slot] = before.frame_of_slot;
+  state.frame_of_slot[frame_slot] = 0; // recording cleared the counters of the frame before it there
   if (state.timestamps.pool != VK_NULL_HANDLE) state.timestamps.frame_of_slot[frame_slot] = 0;
   --state.frame_counter;
   before.known = false;

@@ -284,7 +284,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   state.commands = frame.commands == nullptr ? &state.device->vk : frame.commands;
   const VkCommandBuffer commands = frame.command_buffer;
   const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);
-  remember_before_frame(state, frame_slot);
+  remember_before_frame(state);
   if (frame.reset_history) invalidate_for_cut(state);
 
   if (frame.taken_over) forget_histories(state, HistoryReason::switched);

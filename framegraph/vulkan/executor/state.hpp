@@ -178,7 +178,7 @@ struct BeforeFrame { // what recording the last frame changed: see Executor::dis
   std::vector<History> histories; // by history
   std::vector<uint8_t> ready;     // by instance
   Rectangle previous_rectangle;
-  uint64_t last_frame_index = 0, frame_of_slot = 0;
+  uint64_t last_frame_index = 0;
 };
 
 struct Executor::State {
@@ -260,7 +260,7 @@ Error create_pipeline(const Device& device, const std::string& thing, const std:
                       std::span<const uint32_t> spirv, VkPipelineCache cache, Kernel& kernel);
 
 // ---- history.cpp
-void remember_before_frame(State& state, uint32_t frame_slot) noexcept;
+void remember_before_frame(State& state) noexcept;
 // What stands at the port in the frame that is being recorded: into Plan::accesses, or no_index.
 uint32_t access_now(const State& state, const PortAccess& port) noexcept;
 

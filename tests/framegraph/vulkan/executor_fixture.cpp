@@ -22,11 +22,12 @@ void ExecutorTest::TearDown() {
 vulkan::Error ExecutorTest::try_executor(const SmallGraph& graph, const Plan& plan, const vulkan::Device& on,
                                          std::unique_ptr<vulkan::Executor>& result) {
   static const float table[] = {0.0f, 2.0f};
-  const vulkan::EnvironmentBinding environment[] = {
+  std::vector<vulkan::EnvironmentBinding> environment = {
       {vulkan::EnvironmentType::uniform_buffer, sizeof(SmallFrame), {}},
       {vulkan::EnvironmentType::storage_buffer, sizeof(table), std::as_bytes(std::span(table))},
       {vulkan::EnvironmentType::linear_sampler, 0, {}},
   };
+  if (counters) environment.push_back({vulkan::EnvironmentType::counters, sizeof(uint32_t), {}});
   vulkan::ExecutorInput input;
   input.device = &on;
   input.graph = &graph.graph;

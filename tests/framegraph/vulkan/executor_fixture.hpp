@@ -35,7 +35,8 @@ protected:
   std::vector<vulkan::HostImage> images; // by slot
   std::vector<SettingValue> settings;
   uint64_t frame_index = 0;
-  bool poison = false; // of the next executor
+  bool poison = false;   // of the next executor
+  bool counters = false; // likewise: its environment has counters
   uint32_t view_width = 0, view_height = 0;
 };
 

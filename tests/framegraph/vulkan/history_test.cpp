@@ -331,5 +331,22 @@ TEST_F(DiscardedFrame, IsTheLastOneAndTakenBackOnce) {
   EXPECT_FALSE(executor->discard_frame(2)) << "only one is remembered";
 }
 
+TEST_F(DiscardedFrame, LeavesNoCounters) {
+  const SmallGraph g = counter();
+  counters = true;
+  make_executor(g, side, side);
+  bind(g, "result", {});
+  ASSERT_FALSE(frame());
+  ASSERT_FALSE(frame());
+  wait();
+  uint32_t words[1];
+  EXPECT_TRUE(executor->read_counters(1, words));
+  record_in_vain(); // frame 3, in the place of frame 1
+  ASSERT_TRUE(executor->discard_frame(3));
+  EXPECT_FALSE(executor->read_counters(3, words));
+  EXPECT_FALSE(executor->read_counters(1, words)) << "frame 3 cleared them";
+  EXPECT_TRUE(executor->read_counters(2, words));
+}
+
 } // namespace
 } // namespace dermis::testing
