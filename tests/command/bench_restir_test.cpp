@@ -132,8 +132,15 @@ struct BenchRestir : test::CommandTest {
   static test::RunOptions with_rays() {
     return {{"VK_DRIVER_FILES=" + dermis::testing::driver_with_ray_queries()}, "", ""};
   }
-  static bool has_rays() { return !dermis::testing::driver_with_ray_queries().empty(); }
   nlohmann::json rows(const std::string& name) const { return nlohmann::json::parse(read(name)).at("rows"); }
+};
+
+struct BenchRestirWithRayQueries : BenchRestir {
+  void SetUp() override {
+    BenchRestir::SetUp();
+    if (dermis::testing::driver_with_ray_queries().empty())
+      GTEST_SKIP() << "no driver with ray queries: run tests/drivers/fetch.sh";
+  }
 };
 
 TEST_F(BenchRestir, WithoutRayQueriesSaysWhatBringsThemAndIsNoFailureOfAllSuites) {
@@ -149,8 +156,7 @@ TEST_F(BenchRestir, WithoutRayQueriesSaysWhatBringsThemAndIsNoFailureOfAllSuites
   EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json"));
 }
 
-TEST_F(BenchRestir, ARenderingByRaysIsNotMeasuredInScreenSpace) {
-  if (!has_rays()) GTEST_SKIP() << "no driver with ray queries: run tests/drivers/fetch.sh";
+TEST_F(BenchRestirWithRayQueries, ARenderingByRaysIsNotMeasuredInScreenSpace) {
   const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/restir.json",
                                "--out", path("out"), "--size", "32x24", "--frames", "1"},
                               with_rays());
@@ -158,8 +164,7 @@ TEST_F(BenchRestir, ARenderingByRaysIsNotMeasuredInScreenSpace) {
   EXPECT_THAT(outcome.out, HasSubstr("not measured, the technique traces rays"));
 }
 
-TEST_F(BenchRestir, WritesARowForEachReuseAndTechniqueAndKeepsTheReference) {
-  if (!has_rays()) GTEST_SKIP() << "no driver with ray queries: run tests/drivers/fetch.sh";
+TEST_F(BenchRestirWithRayQueries, WritesARowForEachReuseAndTechniqueAndKeepsTheReference) {
   const std::vector<std::string> arguments = {"bench",           "restir",   "--quick",         "--scenes",
                                               "back_lit",        "--shifts", "reconnection",    "--json",
                                               path("rows.json"), "--html",   path("page.html"), "--csv",
@@ -192,8 +197,7 @@ TEST_F(BenchRestir, WritesARowForEachReuseAndTechniqueAndKeepsTheReference) {
     EXPECT_EQ(again[i]["mse"], found[i]["mse"]) << i;
 }
 
-TEST_F(BenchRestir, ASceneThatIsNotThereLeavesNothingToMeasure) {
-  if (!has_rays()) GTEST_SKIP() << "no driver with ray queries: run tests/drivers/fetch.sh";
+TEST_F(BenchRestirWithRayQueries, ASceneThatIsNotThereLeavesNothingToMeasure) {
   const Outcome outcome = run({"bench", "restir", "--quick", "--scenes", "none"}, with_rays());
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no scene is left to measure"));

@@ -37,7 +37,7 @@ struct Way { // that paths are reused
   std::string reuse, shift;
 };
 
-struct Reuse : WithRayQueries {
+struct ReuseWithRayQueries : WithRayQueries {
   void SetUp() override {
     WithRayQueries::SetUp();
     if (IsSkipped()) return;
@@ -137,7 +137,7 @@ void expect_no_bias(const std::vector<std::vector<double>>& found,
   EXPECT_LT(judged.spread, 0.06) << name;
 }
 
-TEST_F(Reuse, HasNoBiasWithAnyShiftUnderAMovingCamera) {
+TEST_F(ReuseWithRayQueries, HasNoBiasWithAnyShiftUnderAMovingCamera) {
   const Motion motion = walking_camera();
   const auto truth_frames = frames_of(motion, alone, truth_periods, truth_samples);
   ASSERT_EQ(truth_frames.size(), truth_periods * motion.period);
@@ -169,7 +169,7 @@ TEST_F(Reuse, HasNoBiasWithAnyShiftUnderAMovingCamera) {
 }
 
 // The random numbers are those of the frame: with nothing behind it a frame is the one without a history.
-TEST_F(Reuse, BeginsAnewAfterACutBitForBit) {
+TEST_F(ReuseWithRayQueries, BeginsAnewAfterACutBitForBit) {
   Motion motion = walking_camera();
   motion.period = 4;
   for (const std::string& shift : shifts()) {
@@ -185,7 +185,7 @@ TEST_F(Reuse, BeginsAnewAfterACutBitForBit) {
   }
 }
 
-TEST_F(Reuse, ShowsNothingOfLightsThatWentOut) {
+TEST_F(ReuseWithRayQueries, ShowsNothingOfLightsThatWentOut) {
   Motion motion;
   motion.period = 8;
   motion.intensity = [](uint32_t phase) { return phase < 6 ? 0.03 : 0.0; };
@@ -199,7 +199,7 @@ TEST_F(Reuse, ShowsNothingOfLightsThatWentOut) {
   }
 }
 
-TEST_F(Reuse, FollowsALightThatJumpsInTheFirstFrame) {
+TEST_F(ReuseWithRayQueries, FollowsALightThatJumpsInTheFirstFrame) {
   Motion motion;
   motion.light = [](uint32_t phase) {
     return phase < 5 ? glm::dvec3(0.02, 0.03, -0.15) : glm::dvec3(-0.06, -0.05, -0.09);
@@ -210,7 +210,7 @@ TEST_F(Reuse, FollowsALightThatJumpsInTheFirstFrame) {
                    "light jumps, " + shift);
 }
 
-TEST_F(Reuse, HasNoBiasWhereAnObjectMoves) {
+TEST_F(ReuseWithRayQueries, HasNoBiasWhereAnObjectMoves) {
   Motion motion;
   motion.lobe = [](uint32_t phase) { return glm::dvec3(-0.022 + 0.003 * phase, -0.012, 0.012); };
   const auto truth =
@@ -223,7 +223,7 @@ TEST_F(Reuse, HasNoBiasWhereAnObjectMoves) {
 
 // What stood before the light is seen to be gone by new paths alone; history, which knew none, counts for at
 // most confidence_cap of them, and fewer with each frame.
-TEST_F(Reuse, ForgetsAShadowAsFastAsTheCapAllows) {
+TEST_F(ReuseWithRayQueries, ForgetsAShadowAsFastAsTheCapAllows) {
   constexpr uint32_t shaded = 30, lit = 50;
   Motion motion;
   motion.period = shaded + lit;
