@@ -183,6 +183,27 @@ struct Soak : DermisTest {
     put(view, "velocity", view.surface.velocity, 2);
   }
 
+  // A value of its own for another view than the graph's, or the graph's value again. Settings of the graph
+  // are refused.
+  void set_for_a_view(Stage& stage) {
+    const dermis_view view = stage.views.back().view;
+    if (view == nullptr) return;
+    const auto& [name, values] = any(stage.desc.settings);
+    uint32_t count = 0;
+    ASSERT_EQ(dermis_view_settings(view, &count, nullptr), DERMIS_OK) << dermis_last_error();
+    std::vector<dermis_setting> settings(count, dermis_setting DERMIS_SETTING_INIT);
+    ASSERT_EQ(dermis_view_settings(view, &count, settings.data()), DERMIS_OK) << dermis_last_error();
+    const auto found = std::find_if(settings.begin(), settings.end(),
+                                    [&](const dermis_setting& one) { return one.name == name; });
+    ASSERT_NE(found, settings.end()) << name;
+    const dermis_result expected = found->per_frame != 0 ? DERMIS_OK : DERMIS_ERROR_ARGUMENT;
+    EXPECT_EQ(
+        dermis_view_set_setting(view, name.c_str(), chance(0.3) ? nullptr : any(values).c_str(), nullptr),
+        expected)
+        << name << ": " << dermis_last_error();
+    ++totals.view_settings;
+  }
+
   void change(Stage& stage) {
     if (chance(0.02)) { // half of them broken
       std::string text = text_of(stage.desc);
@@ -204,6 +225,17 @@ struct Soak : DermisTest {
       EXPECT_EQ(dermis_graph_set_setting(stage.graph, name.c_str(), any(values).c_str(), nullptr), DERMIS_OK)
           << dermis_last_error();
       ++totals.settings;
+    }
+    if (chance(0.05)) set_for_a_view(stage);
+    if (chance(0.01)) {
+      const std::string text =
+          read_text(chance(0.5) ? "configs/profiles/wax.json" : "configs/profiles/jade.json");
+      const dermis_source source = source_of(text, "profile.json");
+      EXPECT_EQ(
+          dermis_graph_set_profile(stage.graph, static_cast<uint32_t>(1 + random.below(2)), &source, nullptr),
+          DERMIS_OK)
+          << dermis_last_error();
+      ++totals.profiles;
     }
     if (chance(0.03)) {
       dermis_budget budget = DERMIS_BUDGET_INIT;
@@ -407,12 +439,12 @@ TEST_F(Soak, FramesWithoutEndAddNothingUp) {
     rounds_alike += more == 0 && rests.size() > 1;
     EXPECT_EQ(rest.device_blocks, 0);
   }
-  fmt::print("{} frames, {} pictures: {} reloads, {} refused, {} resizes, {} settings, {} budgets, {} cuts, "
-             "{} taken "
-             "back, {} views, {} graphs; {} lights damaged, {} pictures judged as even\n",
+  fmt::print("{} frames, {} pictures: {} reloads, {} refused, {} resizes, {} settings, {} settings of "
+             "views, {} profiles, {} budgets, {} cuts, {} discarded, {} views, {} graphs; {} lights damaged, "
+             "{} pictures judged as even\n",
              totals.frames, totals.pictures, totals.reloads, totals.refused_reloads, totals.resizes,
-             totals.settings, totals.budgets, totals.cuts, totals.discards, totals.views, totals.graphs,
-             totals.damaged, totals.even);
+             totals.settings, totals.view_settings, totals.profiles, totals.budgets, totals.cuts,
+             totals.discards, totals.views, totals.graphs, totals.damaged, totals.even);
   for (const auto& [name, most] : totals.brightest)
     fmt::print("{}: brightest {:.5f} of the light, off even light {:.5f}\n", name, most,
                totals.even_error[name]);
