@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs every fuzz target for some seconds from its committed corpus, the shipped files and a dictionary; as many at a
+# Runs every fuzz target for some seconds from its committed corpus, the shipped files and a dictionary of their words; as many at a
 # time as there are processors.
 # usage: run.sh [SECONDS [TARGET...]]; exit code 1: a finding, kept in build/fuzz/findings
 set -euo pipefail
@@ -10,8 +10,11 @@ shift || true
 targets=("$@")
 [[ ${#targets[@]} -gt 0 ]] || targets=(graph overlay profile scene capture exr plan)
 
-findings=build/fuzz/findings
+findings=build/fuzz/findings dictionary=build/fuzz/keys.dict
 mkdir -p "$findings"
+# Every short word that stands in quotes in a schema or a shipped file: the keys and values of all formats.
+grep -ohE '"[$A-Za-z0-9_./@-]{1,32}"' configs/{schema,graphs,overlays,profiles,scenes}/*.json | sort -u |
+  sed 's/^"\(.*\)"$/"\\"\1\\""/' >"$dictionary"
 run_one() { # target, seconds, folder of findings
   local target=$1 seconds=$2 findings=$3 grown=build/fuzz/corpus/$1 log=build/fuzz/$1.log runs covered
   mkdir -p "$grown" # what earlier runs found stays for the next
@@ -20,7 +23,7 @@ run_one() { # target, seconds, folder of findings
     graph | overlay | profile | scene) folders+=("configs/${target}s") ;;
   esac
   if build/fuzz/fuzz/fuzz_"$target" -max_total_time="$seconds" -timeout=5 -rss_limit_mb=2048 -max_len=65536 \
-    -dict=tests/fuzz/keys.dict -artifact_prefix="$findings/$target-" -print_final_stats=1 -verbosity=1 \
+    -dict="$dictionary" -artifact_prefix="$findings/$target-" -print_final_stats=1 -verbosity=1 \
     "${folders[@]}" >"$log" 2>&1; then
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
     covered=$(grep -o 'cov: [0-9]*' "$log" | tail -n 1)
@@ -32,4 +35,5 @@ run_one() { # target, seconds, folder of findings
   fi
 }
 export -f run_one
+export dictionary
 printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I{} bash -c 'run_one "$@"' run {} "$seconds" "$findings" || exit 1
