@@ -39,8 +39,10 @@ TEST_F(Accumulate, NoiseOfAStillSceneFallsAsAMovingMeanOfItsFramesSays) {
   RecordProperty("mean", std::to_string(mean.mean_psnr_db));
   RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
   // What does not average out is the bias of few samples divided by their own sum.
+  // Regression bound: it follows the product.
   EXPECT_GT(mean.mean_psnr_db, single.mean_psnr_db + 8);
   EXPECT_LT(mean.mean_psnr_db, single.mean_psnr_db + 12.8 + 0.5);
+  // Regression bound: it follows the product.
   EXPECT_GT(clipped.mean_psnr_db, mean.mean_psnr_db - 1); // clipping leaves noise around the truth alone
 }
 
@@ -89,7 +91,8 @@ protected:
   struct Row {
     std::string graph;
     std::vector<NamedValue> set;
-    double gain_at_rest_natural, gain_at_rest_close; // dB; measured when the mean was of the light itself
+    // Regression bounds, dB: measured when the mean was of the light itself.
+    double gain_at_rest_natural, gain_at_rest_close;
   };
   static std::vector<Row> rows() {
     return {{"sap", {}, -0.23, 0.06},
@@ -136,6 +139,7 @@ TEST_F(Accumulate, WhatComesIntoSightStartsAnewAndWhatStaysInSightDoesNot) {
   RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
   // The truth is that of each frame's own light, whose edges fall between pixels anew in each frame. Without
   // clipping the remainder lags behind them.
+  // Regression bounds: they follow the product.
   EXPECT_GT(mean.mean_psnr_db, now.mean_psnr_db - 2);
   EXPECT_GT(clipped.mean_psnr_db, now.mean_psnr_db - 1);
   // At the edge that the camera moves towards no past is there: those pixels are this frame's, bit by bit.
@@ -157,6 +161,7 @@ TEST_F(Accumulate, WhatComesIntoSightStartsAnewAndWhatStaysInSightDoesNot) {
   RecordProperty("left", std::to_string(left));
   RecordProperty("right", std::to_string(right));
   EXPECT_EQ(std::max(left, right), 1);
+  // Regression bound: it follows the product.
   EXPECT_LT(middle, 0.2);
 }
 

@@ -28,10 +28,12 @@ TEST_F(Afis, TheMeanOfManyFramesIsTheTruthAtEveryPixelWithoutMips) {
     };
     EXPECT_NEAR(run_with("hashed", "none"), 1, 0.36) << channels; // three sd
     // 256 points of one sequence are closer than chance.
+    // Regression bounds: they follow the product.
     EXPECT_LT(run_with("continued", "none"), 0.85) << channels;
     EXPECT_LT(run_with("stratified", "none"), 0.85) << channels;
     // With the pixel's own light taken exactly there is less noise, and the truth's sub-points (8 x 8 a
     // pixel) begin to show.
+    // Regression bound: it follows the product.
     EXPECT_LT(run_with("hashed", "inscribed"), 1.6) << channels;
   }
 }
@@ -49,6 +51,7 @@ TEST_F(Afis, MipsAreBiasedAndHaveLessError) {
     RecordProperty(std::string("rms_") + mips, std::to_string(with.rms));
     RecordProperty(std::string("share_") + mips, std::to_string(with.share));
     EXPECT_GT(std::abs(with.sigmas), 10) << mips << ": " << with.share;
+    // Regression bound: it follows the product.
     EXPECT_LT(with.rms, 0.7 * without.rms) << mips;
   }
   RecordProperty("rms_none", std::to_string(without.rms));
@@ -85,6 +88,7 @@ TEST_F(Afis, TheErrorFallsWithTheNumberOfSamplesFasterThanThatOfIndependentOnes)
     const double slope = (3 * (logs[3] - logs[0]) + (logs[2] - logs[1])) / 10;
     RecordProperty(std::string("slope_") + sequence, std::to_string(slope));
     RecordProperty(std::string("rms_16_") + sequence, std::to_string(std::exp2(logs[1])));
+    // Regression bounds: they follow the product.
     EXPECT_LT(slope, -0.55) << sequence;
     EXPECT_GT(slope, -1.2) << sequence;
   }
@@ -107,6 +111,7 @@ TEST_F(Afis, AverageFramesComeCloserWhereTheSequenceGoesOn) {
   RecordProperty("hashed", std::to_string(hashed));
   RecordProperty("continued", std::to_string(continued));
   RecordProperty("stratified", std::to_string(stratified));
+  // Regression bounds: they follow the product.
   EXPECT_LT(continued, 0.85 * hashed);
   EXPECT_LT(stratified, 0.85 * hashed);
 }

@@ -127,6 +127,7 @@ TEST_F(GuidedSequence, HalfSequencesTakeAsManyMoreSamplesUnderLightThatFlashesAs
   RecordProperty("flashing", std::to_string(mean(two)));
   RecordProperty("still_clamped", std::to_string(clamped(one)));
   RecordProperty("flashing_clamped", std::to_string(clamped(two)));
+  // Regression bounds: they follow the product.
   EXPECT_GE(mean(one), 16);
   EXPECT_LE(mean(one), 24);
   EXPECT_LT(clamped(one), 0.02);

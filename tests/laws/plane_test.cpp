@@ -265,6 +265,7 @@ TEST_F(Edge, BurleyAt256SamplesFollowsTheClosedForm) {
     for (uint32_t channel = 0; channel < 3; ++channel) {
       const EdgeError error = edge_error(burley_256, d, channel);
       RecordProperty("rms", std::to_string(error.rms));
+      // Regression bounds: they follow the product.
       EXPECT_LE(error.worst_column_mean, 0.005) << d << " px, channel " << channel;
       EXPECT_LE(error.rms, 0.006) << d << " px, channel " << channel;
     }
@@ -272,6 +273,7 @@ TEST_F(Edge, BurleyAt256SamplesFollowsTheClosedForm) {
 
 TEST_F(Edge, SeparableStaysWithinItsDocumentedFloor) {
   // docs/techniques.md, "Floors": rms over 112 columns around an edge, widest channel, 25 taps.
+  // Regression bounds: they follow the product.
   EXPECT_LE(edge_error(separable_25, 2.0).rms, 0.008);
   EXPECT_LE(edge_error(separable_25, 4.0).rms, 0.0135);
 }

@@ -77,6 +77,7 @@ TEST_F(Sampler, TheErrorFallsFasterThanThatOfIndependentSamples) {
   // Least squares over four points one octave apart.
   const double slope = (3 * (logs[3] - logs[0]) + (logs[2] - logs[1])) / 10;
   RecordProperty("slope", std::to_string(slope));
+  // Regression bounds: they follow the product.
   EXPECT_LT(slope, -0.6);
   EXPECT_GT(slope, -0.9);
 }

@@ -59,7 +59,7 @@ TEST_F(SeedBias, TheApproximateInverseDividedByTheProfileDrawsLightTooClose) {
   RecordProperty("exact", std::to_string(ours));
   RecordProperty("approximate", std::to_string(theirs));
   EXPECT_NEAR(ours, 0, 0.01);      // light is constant over a pixel, d is two of them
-  EXPECT_GT(theirs, ours + 0.012); // measured .020: the mean square of its radii is 10.6 % short
+  EXPECT_GT(theirs, ours + 0.012); // regression bound: .020: the mean square of its radii is 10.6 % short
   EXPECT_LT(theirs, ours + 0.12);
 }
 
@@ -68,6 +68,7 @@ TEST_F(SeedBias, TheCircumscribedRadiusKeepsTooMuchOfTheOwnLight) {
     const Bias ours = of(std::string(name) + "_inscribed", "fixed", d, exact),
                theirs =
                    of(std::string(name) + "_circumscribed", "fixed", d, with("direct", "\"circumscribed\""));
+    // Regression bound: it follows the product.
     EXPECT_GT(theirs.share, ours.share + 0.005) << name;
     EXPECT_GT(theirs.sigmas, 10) << name;
   }

@@ -143,6 +143,7 @@ TEST_F(Shimmer, ThePyramidIsSteadyUnderPansByWholePixels) {
   RecordProperty("smooth", std::to_string(smooth));
   RecordProperty("base", std::to_string(base));
   RecordProperty("afis_16", std::to_string(afis));
+  // Regression bounds: they follow the product.
   EXPECT_LE(smooth, 2.4e-3); // H9 of the project's notes, measured there on a scanned head
   EXPECT_LE(base, 4.5e-3);
 }
@@ -156,6 +157,7 @@ TEST_F(Shimmer, MendingThePyramidMakesItNoLessSteadyThanSamplesAre) {
   RecordProperty("sap", std::to_string(sap));
   RecordProperty("residual", std::to_string(residual));
   RecordProperty("afis_16", std::to_string(afis));
+  // Regression bound: it follows the product.
   EXPECT_LT(residual, 0.5 * afis);
 }
 

@@ -51,6 +51,7 @@ TEST_F(Temporal, TheRatioMendsThePyramidOnASceneThatStandsStill) {
   RecordProperty("blend", std::to_string(blend.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("samples", std::to_string(residual.samples.back()));
+  // Regression bounds, here and for the samples: they follow the product.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.5);
   EXPECT_GT(blend.mean_psnr_db, sap.mean_psnr_db);
   EXPECT_LE(residual.samples.back(), 4.1); // 16 every fourth frame, where it is unsure
@@ -68,6 +69,7 @@ TEST_F(Temporal, TheRatioDoesNotLagBehindLightThatFlashes) {
   const SequenceRun sap = run(judge, "sap", period), residual = run(judge, "sap_residual", period);
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
+  // Regression bound: it follows the product.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.0);
 }
 
@@ -80,6 +82,7 @@ TEST_F(Temporal, ACameraThatPansLeavesNoTrail) {
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("without_history", std::to_string(never.mean_psnr_db));
+  // Regression bounds: they follow the product.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1.0);
   EXPECT_GT(residual.mean_psnr_db, never.mean_psnr_db);
   EXPECT_LT(residual.samples.back(), 0.6 * never.samples.back()); // it does find its history again
@@ -103,6 +106,7 @@ TEST_F(Temporal, AThingThatMovesBeforeACameraThatRestsKeepsItsHistory) {
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("untold", std::to_string(untold.mean_psnr_db));
+  // Regression bounds: they follow the product.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1.0);
   EXPECT_GT(residual.mean_psnr_db, untold.mean_psnr_db + 0.5);
 }
@@ -147,7 +151,7 @@ TEST_F(Temporal, AFlashFromAnotherSideCostsNothingAndLeavesTheRatioAsItWas) {
   }
   for (const uint32_t t : judged)
     if (std::find(lit.begin(), lit.end(), t) == lit.end()) {
-      EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 4.3) << t; // 5.0 to 6.6
+      EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 4.3) << t; // regression bound: 5.0 to 6.6
     }
 }
 
@@ -247,6 +251,7 @@ TEST_F(Temporal, HistoryIsFoundAgainWhereTheRenderedRectangleChanges) {
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("small_sap", std::to_string(small_sap.mean_psnr_db));
   RecordProperty("small_residual", std::to_string(small_residual.mean_psnr_db));
+  // Regression bounds: they follow the product.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1.5);
   EXPECT_GT(small_residual.mean_psnr_db, small_sap.mean_psnr_db + 1.0);
   EXPECT_LT(residual.samples[28], 5);

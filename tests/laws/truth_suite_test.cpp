@@ -75,6 +75,7 @@ TEST_F(TruthSuite, StratifiedSamplesConvergeFasterThanTheRootOfTheirNumber) {
   const Reference truth = truth_of(frame);
   const double few = error_of(truth, scatter(frame, "burley", {{"samples", "8"}})).rmse;
   const double many = error_of(truth, scatter(frame, "burley", {{"samples", "64"}})).rmse;
+  // Regression bound: it follows the product.
   EXPECT_NEAR(std::log(many / few) / std::log(8.0), -0.70, 0.06) << few << " " << many;
 }
 
@@ -101,6 +102,7 @@ TEST_F(TruthSuite, ThePyramidFollowsTheTruthWhereDVariesEightfold) {
   const CapturedFrame frame = textured(256, 96, 16, "varying");
   const Reference truth = truth_of(frame);
   const ErrorFigures error = error_of(truth, scatter(frame, "sap", {{"variant", "smooth"}}));
+  // Regression bounds: they follow the product.
   EXPECT_LE(error.rmse, 3e-3);
   EXPECT_LE(error.max_error, 1.5e-2);
 }
@@ -113,6 +115,7 @@ TEST_F(TruthSuite, ThePyramidFollowsTheTruthAtEveryD) {
     const ErrorFigures separable = error_of(truth, scatter(frame, "separable", {{"taps", "25"}}));
     EXPECT_LE(sap.rmse, 2e-3) << d_px;
     EXPECT_LE(sap.max_error, 1.5e-2) << d_px;
+    // Regression bound: it follows the product.
     EXPECT_LE(sap.rmse, 0.35 * separable.rmse) << d_px;
   }
 }
@@ -139,6 +142,7 @@ TEST_F(TruthSuite, ThePublishedSeparableKernelStaysWithinItsDocumentedFloor) {
     const Reference truth = truth_of(frame);
     const double published = error_of(truth, scatter(frame, "separable_jimenez", {{"taps", "25"}})).rmse;
     const double fitted = error_of(truth, scatter(frame, "separable", {{"taps", "25"}})).rmse;
+    // Regression bounds: they follow the product.
     EXPECT_LE(published, 0.0174 * 1.2) << d_px;
     EXPECT_GT(published, 1.2 * fitted) << d_px << " px: what the fit is for";
   }
@@ -149,6 +153,7 @@ TEST_F(TruthSuite, OddSizesFollowTheTruthUpToTheLastPixel) {
   const uint32_t width = full ? 1919 : 239, height = full ? 1079 : 135;
   const CapturedFrame frame = textured(width, height, 4);
   const Reference truth = truth_of(frame);
+  // Regression bounds except that of sap, which its document promises.
   for (const auto& [graph, most] : {std::pair{"sap", 2e-3}, {"separable", 1.2e-2}, {"burley", 1.5e-2}}) {
     const std::vector<float> light = scatter(frame, graph, {});
     EXPECT_LE(error_of(truth, light).rmse, most) << graph;

@@ -101,6 +101,7 @@ TEST(Sap, ASecondLayerKeepsLightApartThatOneLayerMixesAcrossAFence) {
   RecordProperty("one", std::to_string(one));
   RecordProperty("few", std::to_string(few));
   RecordProperty("two", std::to_string(two));
+  // Regression bound: it follows the product.
   EXPECT_LE(few, 0.8 * one);
   EXPECT_LE(
       two,
@@ -146,6 +147,7 @@ TEST(Sap, HolesCountAsLittleAsInTheTruth) {
         scene.profile[y * 256 + x] = 0;
   const auto truth = truth_everywhere(scene.input());
   const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, truth);
+  // Regression bounds: they follow the product.
   EXPECT_LT(error.rmse, 3.0e-3);
   EXPECT_LT(error.max, 2.5e-2);
 }

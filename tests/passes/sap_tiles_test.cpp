@@ -33,6 +33,7 @@ std::vector<uint32_t> disc(uint32_t width, uint32_t height, double share) {
 TEST(SapTiles, FivePercentOfThePictureLaunchLessThanAFifthOfTheGroups) {
   for (const auto& [width, height] : {std::pair{640u, 360u}, {1280u, 720u}, {3840u, 2160u}}) {
     const double full = all_groups(width, height, disc(width, height, 10));
+    // Regression bound: it follows the product.
     EXPECT_LE(all_groups(width, height, disc(width, height, 0.05)), 0.2 * full) << width;
     EXPECT_EQ(all_groups(width, height, disc(width, height, 0)), 0u);
   }
