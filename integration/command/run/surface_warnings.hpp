@@ -9,7 +9,9 @@ namespace dermis::tools {
 
 // Longer side of a pixel over the shorter one; 1: square.
 double pixel_aspect(const subsurface::PixelRays& rays);
-inline constexpr double largest_square_aspect = 1.05; // beyond, errors grow visibly
+// The loss of `sap` on a plane stays below 1 dB up to this aspect: -0.8 dB at 1.05, 0.7 at 1.07, 3.1 at 1.1
+// (docs/limits.md has the commands).
+inline constexpr double largest_square_aspect = 1.07;
 
 // Fraction (0..1) of the 8x8 tiles with subsurface that show a dithered surface: an eighth of the tile's pixels
 // and more lie between two neighbours, along a row or a column, that are both nearer or both farther by more
