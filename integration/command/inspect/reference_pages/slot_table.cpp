@@ -58,7 +58,7 @@ private:
   std::vector<Entry> entries_;
 };
 
-struct Row {
+struct SlotRow {
   std::string name;
   TextOfGraphs direction, type, need, meaning;
 };
@@ -66,13 +66,13 @@ struct Row {
 } // namespace
 
 std::string slot_table(std::span<const NamedGraph> graphs) {
-  std::vector<Row> rows;
+  std::vector<SlotRow> rows;
   for (const NamedGraph& one : graphs)
     for (const ResourceDeclaration& slot : one.graph.resources) {
       if (slot.origin != Origin::imported && !slot.exported) continue;
-      auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == slot.name; });
+      auto row = std::find_if(rows.begin(), rows.end(), [&](const SlotRow& r) { return r.name == slot.name; });
       if (row == rows.end()) {
-        row = rows.insert(row, Row{});
+        row = rows.insert(row, SlotRow{});
         row->name = slot.name;
       }
       row->direction.add(one.name, direction_text(slot));
@@ -81,7 +81,7 @@ std::string slot_table(std::span<const NamedGraph> graphs) {
       row->meaning.add(one.name, slot.note);
     }
   std::string out = "| slot | | type or formats | needed | is |\n|---|---|---|---|---|\n";
-  for (const Row& row : rows)
+  for (const SlotRow& row : rows)
     out += fmt::format("| `{}` | {} | {} | {} | {} |\n", row.name, row.direction.say(), row.type.say(),
                        row.need.say_in(graphs.size()), cell(row.meaning.say()));
   return out;
