@@ -39,7 +39,7 @@ struct InputFormats : DermisTest {
   }
 };
 
-float largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+float largest_gap(const std::vector<float>& a, const std::vector<float>& b) {
   EXPECT_EQ(a.size(), b.size());
   float largest = 0.0f;
   for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
@@ -106,7 +106,7 @@ TEST_P(Demodulation, EqualsIrradianceTexturedAfterwards) {
   upload("albedo", image_of(albedo));
   upload("lighting",
          image_of([&](uint32_t x, uint32_t y, uint32_t c) { return irradiance(x, y, c) * albedo(x, y, c); }));
-  EXPECT_LT(largest_difference(picture(graph), expected), 2 * 0x1p-10f);
+  EXPECT_LT(largest_gap(picture(graph), expected), 2 * 0x1p-10f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Graphs, Demodulation, testing::Values("burley", "pyramid", "sap", "skin"),
@@ -128,7 +128,7 @@ TEST_F(InputFormats, LightingMayBeB10g11r11) {
     pictures.push_back(picture(graph));
   }
   // Values up to 1 are stored with 5 bits behind the point (blue) and may be truncated.
-  EXPECT_LT(largest_difference(pictures[0], pictures[1]), 0x1p-5f);
+  EXPECT_LT(largest_gap(pictures[0], pictures[1]), 0x1p-5f);
 }
 
 // ---- profile ids ------------------------------------------------------------------------------------
