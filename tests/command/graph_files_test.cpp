@@ -59,8 +59,7 @@ TEST_F(GraphFiles, AnUnknownKeyIsAnsweredWithTheNearestOne) {
 }
 
 TEST_F(GraphFiles, AMissingImportIsNamedWithThePassThatReadsIt) {
-  const std::string bad =
-      write("bad.json", burley_with("\"depth\": { \"format\": \"depth\", \"size\": \"view\" },", ""));
+  const std::string bad = write("bad.json", burley_with("\"depth\": { \"format\"", "\"other\": { \"format\""));
   const Outcome outcome = run({"validate", bad});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(bad + ":"), HasSubstr("'depth'"), HasSubstr("'classify'")));

@@ -164,6 +164,30 @@ TEST_F(Histories, ASettingThatKeepsThePassesLosesNone) {
   expect(4, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
+TEST_F(Histories, AnotherProfileLosesNone) {
+  make(keeping("burley"));
+  run(2);
+  const std::string wax = read_text("configs/profiles/wax.json");
+  const dermis_source source = source_of(wax, "wax.json");
+  dermis_report report = nullptr;
+  ASSERT_EQ(dermis_graph_set_profile(graph, 1, &source, &report), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(restarted(take(report)), testing::IsEmpty());
+  run(1);
+  expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
+}
+
+TEST_F(Histories, ASettingThatBringsPassesBackRestartsTheirs) {
+  make(keeping("skin", "rescale", "technique == 'sap'"));
+  run(2);
+  for (const auto& [value, names] : {std::pair<const char*, std::vector<std::string>>{"\"separable\"", {}},
+                                     {"\"sap\"", {"past", "past_place"}}}) {
+    dermis_report report = nullptr;
+    ASSERT_EQ(dermis_graph_set_setting(graph, "technique", value, &report), DERMIS_OK) << dermis_last_error();
+    EXPECT_THAT(restarted(take(report)), testing::UnorderedElementsAreArray(names)) << value;
+    run(1);
+  }
+}
+
 TEST_F(Histories, TheLastProfileTakesThemAlong) {
   make(keeping("burley"));
   run(2);
