@@ -37,6 +37,9 @@ TEST_F(Usage, AMisspeltVerbIsAnsweredWithTheNearestOne) {
   const Outcome outcome = run({"rendr"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no verb 'rendr'; did you mean 'render'?"));
+  const Outcome suite = run({"bench", "stabilty"});
+  EXPECT_EQ(suite.exit_code, 2);
+  EXPECT_THAT(suite.err, HasSubstr("no verb of 'bench' 'stabilty'; did you mean 'stability'?"));
 }
 
 TEST_F(Usage, AMisspeltOptionIsAnsweredWithTheNearestOneBeforeAnythingElseIsMissing) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs every fuzz target for some seconds from its committed corpus, the shipped files and a dictionary of their words; as many at a
-# time as there are processors.
+# Runs every fuzz target for some seconds from its committed corpus, the shipped files and a dictionary
+# of their words; as many at a time as there are processors.
 # usage: run.sh [SECONDS [TARGET...]]; exit code 1: a finding, kept in build/fuzz/findings
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."

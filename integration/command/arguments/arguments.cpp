@@ -16,41 +16,47 @@ std::string_view name_part(std::string_view argument) {
   return argument.substr(0, argument.find('='));
 }
 
+// Returns the subcommand of that name; null and a message in `problem` if there is none.
+CLI::App* find_subcommand(CLI::App& app, const std::string& name, std::string_view what,
+                          std::string& problem) {
+  const std::vector<CLI::App*> all = app.get_subcommands([](CLI::App*) { return true; });
+  std::vector<std::string> names;
+  for (CLI::App* one : all) {
+    if (one->get_name() == name) return one;
+    names.push_back(one->get_name());
+  }
+  const std::vector<std::string_view> words(names.begin(), names.end());
+  const std::string suggestion = did_you_mean(name, words);
+  problem = fmt::format("there is no {} '{}'; {}", what, name,
+                        suggestion.empty() ? "verbs: " + list_words(words) : suggestion);
+  return nullptr;
+}
+
 // A misspelt verb or option, said before CLI11 complains of what else is missing; "" when all are known.
 std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
-  if (argc < 2) return "";
-  const std::string first = argv[1];
-  if (first.starts_with("-")) return "";
-  const std::vector<CLI::App*> verbs = app.get_subcommands([](CLI::App*) { return true; });
-  const auto found =
-      std::find_if(verbs.begin(), verbs.end(), [&](const CLI::App* one) { return one->get_name() == first; });
-  std::vector<std::string> names;
-  if (found == verbs.end()) {
-    for (const CLI::App* one : verbs)
-      names.push_back(one->get_name());
-    const std::vector<std::string_view> words(names.begin(), names.end());
-    const std::string suggestion = did_you_mean(first, words);
-    return fmt::format("there is no verb '{}'; {}", first,
-                       suggestion.empty() ? "verbs: " + list_words(words) : suggestion);
-  }
-  CLI::App* verb = *found;
+  if (argc < 2 || std::string_view(argv[1]).starts_with("-")) return "";
+  std::string problem;
+  CLI::App* verb = find_subcommand(app, argv[1], "verb", problem);
+  if (verb == nullptr) return problem;
   int options_from = 2;
-  if (argc > 2)
-    for (CLI::App* inner : verb->get_subcommands([](CLI::App*) { return true; }))
-      if (inner->get_name() == argv[2]) {
-        verb = inner;
-        options_from = 3;
-      }
+  const bool has_inner = !verb->get_subcommands([](CLI::App*) { return true; }).empty();
+  if (argc > 2 && has_inner && !std::string_view(argv[2]).starts_with("-")) {
+    verb = find_subcommand(*verb, argv[2], fmt::format("verb of '{}'", argv[1]), problem);
+    if (verb == nullptr) return problem;
+    options_from = 3;
+  }
   for (int i = options_from; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string name(name_part(argv[i]));
     if (!name.starts_with("--") || verb->get_option_no_throw(name) != nullptr) continue;
+    std::vector<std::string> names;
     for (const CLI::Option* one : verb->get_options())
       for (const std::string& known : one->get_lnames())
         names.push_back("--" + known);
     const std::vector<std::string_view> words(names.begin(), names.end());
     const std::string suggestion = did_you_mean(name, words);
-    return fmt::format("'{}' has no option '{}'; {}", first, name,
-                       suggestion.empty() ? fmt::format("'dermis {} --help' lists them", first) : suggestion);
+    return fmt::format("'{}' has no option '{}'; {}", argv[1], name,
+                       suggestion.empty() ? fmt::format("'dermis {} --help' lists them", argv[1])
+                                          : suggestion);
   }
   return "";
 }
