@@ -25,7 +25,7 @@ memory=$((8 << 20)) # KiB that a suite may take: a driver gone astray must not t
 swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
 
 drivers=()
-fetched=$(tests/drivers/fetch.sh) && drivers+=("$fetched")
+fetched=$(tests/drivers/fetch.sh) && drivers+=("$(readlink -f "$fetched")") # tests change the folder
 [[ -e $swiftshader ]] && drivers+=("$swiftshader") || echo "SwiftShader: skipped, chromium-common is not installed" >&2
 named=${DERMIS_DRIVERS:-}
 for manifest in ${named//:/ }; do
