@@ -20,7 +20,7 @@ usage="usage: ./test.sh [--full]
 test_parts=6
 soak_parts=10 soaks_a_part=2 soak_frames=5000 # of each soak: a driver that forgets mappings runs out of them in one process
 graph_parts=10 chunks_a_part=2 chunk_graphs=20
-driver_suites=(framegraph_vulkan passes_kernels passes_device integration_abi integration_embedding integration_demo_engine
+driver_suites=(framegraph_vulkan shaders passes_device integration_abi integration_embedding integration_examples_demo_engine
   laws:{1..8}/8)
 full=no
 for argument in "$@"; do
@@ -121,9 +121,9 @@ random_graphs() { # part, from 1
 # the driver where fetch.sh leaves it. With the driver there, none of them may be skipped.
 ray_queries() {
   local log=build/ray_queries.log rc=0 program
-  tests/drivers/fetch.sh >/dev/null || return 77
-  built test_integration_demo_engine test_command
-  for program in integration_demo_engine command; do
+  tests/scripts/fetch_driver.sh >/dev/null || return 77
+  built test_integration_examples_demo_engine test_integration_tools
+  for program in integration_examples_demo_engine command; do
     LP_NUM_THREADS=$(nproc) quick "build/release/tests/test_$program" --gtest_filter="*$ray_suites.*" || rc=1
   done >"$log" 2>&1
   [[ $rc -eq 0 ]] || { grep -B20 'FAILED' "$log" | tail -60; fail 1 "tests on ray queries failed; the log: $log"; }
@@ -138,9 +138,9 @@ ray_queries() {
 }
 other_drivers() { # suite, from 1
   build_preset release >/dev/null
-  quick tests/drivers/run.sh build/release "${driver_suites[$1 - 1]}"
+  quick tests/scripts/run_on_drivers.sh build/release "${driver_suites[$1 - 1]}"
 }
-coverage() { tests/coverage/run.sh; }
+coverage() { tests/scripts/coverage.sh; }
 benches() {
   built dermis
   build/release/dermis bench all --out build/bench

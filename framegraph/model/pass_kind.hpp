@@ -83,12 +83,12 @@ struct HistoryWeight {
 
 struct PassKind {
   std::string_view name;   // "subsurface.burley"
-  std::string_view shader; // file stem in shaders/, "" for kinds without one
+  std::string_view shader; // path below shaders/ without ".comp", "" for kinds without one
   std::string_view doc;
   std::span<const Port> ports;           // read and written, in binding order: port i is binding i of set 0
   std::span<const KindSetting> settings; // push constants: uint port_mask, then 4 bytes each in this order
   DispatchShape dispatch = DispatchShape::over_view;
-  bool side_effects = false; // never culled
+  bool side_effects = false;      // never culled
   bool serves_scattering = false; // left out where nothing scatters
   // over_tiles: the integer setting that says which entry of the arguments counts, 16 bytes each; "": the
   // first.

@@ -1,7 +1,7 @@
 #pragma once
 // One message with a stable id: what, where, what was expected, what to do. Errors are values.
 
-#include "framegraph/model/ids.hpp"
+#include "framegraph/text/index.hpp"
 
 #include <cstdint>
 #include <span>

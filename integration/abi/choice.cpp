@@ -4,7 +4,7 @@
 #include "integration/abi/graph.hpp"
 #include "integration/abi/graph_desc.hpp"
 #include "integration/abi/report.hpp"
-#include "passes/subsurface/probe.hpp"
+#include "passes/common/probe.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include "framegraph/text/document.hpp"
 #include "integration/abi/program.hpp"
 #include "passes/choice/defaults.hpp"
-#include "passes/subsurface/probe.hpp"
+#include "passes/common/probe.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -130,16 +130,6 @@ Chooser make_chooser() {
   chooser.calibration = default_calibration();
   chooser.costs = choice::CostModel(chooser.calibration.costs);
   return chooser;
-}
-
-std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
-                                       const choice::ErrorModel& errors, choice::CostModel& costs,
-                                       std::vector<choice::Outcome> outcomes) {
-  std::vector<const Plan*> plans;
-  for (const Variant& variant : program.variants)
-    plans.push_back(&variant.compiled->plan);
-  describe_outcomes(kinds, plans, errors, costs, outcomes);
-  return outcomes;
 }
 
 void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program) {

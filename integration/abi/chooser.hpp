@@ -11,7 +11,7 @@
 #include "passes/choice/outcomes.hpp"
 #include "passes/choice/trend.hpp"
 #include "passes/choice/wanted.hpp"
-#include "passes/subsurface/environment.hpp"
+#include "passes/common/environment.hpp"
 
 #include <array>
 #include <string>
@@ -75,12 +75,6 @@ Chooser make_chooser();
 // Makes a program one of this chooser's: what deciding and observing need is allocated. Before its first
 // record.
 void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program);
-
-// The outcomes of `program` with what their passes cost and which technique they are, by these tables;
-// `costs` gets entries for what is new. After a setting or a table changed.
-std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
-                                       const choice::ErrorModel& errors, choice::CostModel& costs,
-                                       std::vector<choice::Outcome> outcomes);
 
 // Learns from frames of `program` that the device has finished. Allocates nothing.
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;

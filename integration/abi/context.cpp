@@ -3,7 +3,7 @@
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/missing_functions.hpp"
 #include "integration/abi/requirements.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "passes/common/kinds.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -2,8 +2,9 @@
 // A graph of the host and its views. Each view has the program that it runs, the one that waits for its next
 // record, and those that the device may still be executing.
 
+#include "integration/abi/chooser.hpp"
 #include "integration/abi/commands/capture.hpp"
-#include "integration/abi/image_views/image_views.hpp"
+#include "integration/abi/image_views.hpp"
 #include "integration/abi/program.hpp"
 
 #include <array>

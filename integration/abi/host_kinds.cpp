@@ -86,10 +86,6 @@ dermis_result add(dermis_context_t& context, const dermis_pass_kind* given) {
   return add_host_kind(context, std::move(kind), desc.record, desc.user);
 }
 
-double number_of(const SettingValue& value) {
-  return value.type == SettingType::real ? value.real : static_cast<double>(value.integer);
-}
-
 dermis_pass_port port_of(const vulkan::HostPort& port) {
   dermis_pass_port out = DERMIS_PASS_PORT_INIT;
   out.image = port.image;
@@ -106,6 +102,10 @@ dermis_pass_port port_of(const vulkan::HostPort& port) {
 }
 
 } // namespace
+
+double number_of(const SettingValue& value) {
+  return value.type == SettingType::real ? value.real : static_cast<double>(value.integer);
+}
 
 dermis_result add_host_kind(dermis_context_t& context, HostKindDeclaration kind, dermis_pass_fn record,
                             void* user) {

@@ -25,6 +25,9 @@ struct HostPasses {
 dermis_result add_host_kind(dermis_context_t& context, HostKindDeclaration kind, dermis_pass_fn record,
                             void* user);
 
+// A value as hosts see it: reals and integers as they are, booleans as 0 or 1, words as their index.
+double number_of(const SettingValue& value);
+
 // A call as the host sees it. `call` points into the two arrays.
 struct HostPassCall {
   std::array<dermis_pass_port, limits::host_kind_ports> ports;

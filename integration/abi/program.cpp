@@ -6,7 +6,7 @@
 #include "framegraph/text/document.hpp"
 #include "integration/abi/host_files.hpp"
 #include "integration/abi/slots.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "passes/common/kinds.hpp"
 
 #include <fmt/format.h>
 
@@ -203,13 +203,23 @@ vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse&
   return {};
 }
 
-std::vector<choice::Outcome> outcomes_with(const Program& program, Chooser& chooser,
-                                           const KindRegistry& kinds, uint32_t setting,
-                                           const SettingValue& value) {
+std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
+                                       const choice::ErrorModel& errors, choice::CostModel& costs,
+                                       std::vector<choice::Outcome> outcomes) {
+  std::vector<const Plan*> plans;
+  for (const Variant& variant : program.variants)
+    plans.push_back(&variant.compiled->plan);
+  describe_outcomes(kinds, plans, errors, costs, outcomes);
+  return outcomes;
+}
+
+std::vector<choice::Outcome> outcomes_with(const Program& program, const KindRegistry& kinds,
+                                           const choice::ErrorModel& errors, choice::CostModel& costs,
+                                           uint32_t setting, const SettingValue& value) {
   std::vector<choice::Outcome> outcomes = program.outcomes;
   for (choice::Outcome& outcome : outcomes)
     outcome.settings[setting] = value;
-  return described(kinds, program, chooser.errors, chooser.costs, std::move(outcomes));
+  return described(kinds, program, errors, costs, std::move(outcomes));
 }
 
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,

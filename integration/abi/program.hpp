@@ -7,11 +7,11 @@
 #include "framegraph/serial/plan_cache.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/heap_pool.hpp"
-#include "integration/abi/chooser.hpp"
 #include "integration/abi/context.hpp"
 #include "integration/abi/left_out.hpp"
 #include "integration/abi/shaders/runtime_shaders.hpp"
-#include "passes/subsurface/kernel_tables.hpp"
+#include "passes/choice/outcomes.hpp"
+#include "passes/common/kernel_tables.hpp"
 
 #include <array>
 #include <map>
@@ -133,10 +133,16 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
                            vulkan::HistoryReason history, Diagnostics& diagnostics,
                            std::shared_ptr<Program>& program);
 
-// The outcomes of the program with a new value of a setting that turns no pass on or off.
-std::vector<choice::Outcome> outcomes_with(const Program& program, Chooser& chooser,
-                                           const KindRegistry& kinds, uint32_t setting,
-                                           const SettingValue& value);
+// The outcomes of `program` with what their passes cost and which technique they are, by these tables;
+// `costs` gets entries for what is new. After a setting or a table changed.
+std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
+                                       const choice::ErrorModel& errors, choice::CostModel& costs,
+                                       std::vector<choice::Outcome> outcomes);
+
+// The same with a new value of a setting that turns no pass on or off.
+std::vector<choice::Outcome> outcomes_with(const Program& program, const KindRegistry& kinds,
+                                           const choice::ErrorModel& errors, choice::CostModel& costs,
+                                           uint32_t setting, const SettingValue& value);
 
 // The value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
 std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,

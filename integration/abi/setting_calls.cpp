@@ -2,6 +2,7 @@
 #include "framegraph/model/expression.hpp"
 #include "framegraph/model/frame_settings.hpp"
 #include "integration/abi/graph.hpp"
+#include "integration/abi/host_kinds.hpp"
 #include "integration/abi/report.hpp"
 #include "integration/abi/two_call.hpp"
 
@@ -23,10 +24,6 @@ dermis_setting_type type_of(SettingType type) {
     break;
   }
   return DERMIS_SETTING_OPTION;
-}
-
-double number_of(const SettingValue& value) {
-  return value.type == SettingType::real ? value.real : static_cast<double>(value.integer);
 }
 
 bool is_set(const std::vector<HostSetting>& given, const std::string& name) {
@@ -129,7 +126,8 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
-    outcomes.push_back(outcomes_with(newest(view), view.chooser, graph.context->kinds, index, *value));
+    outcomes.push_back(outcomes_with(newest(view), graph.context->kinds, view.chooser.errors,
+                                     view.chooser.costs, index, *value));
   });
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
@@ -185,7 +183,8 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   std::vector<choice::Outcome> outcomes;
   {
     const std::lock_guard lock(view.mutex);
-    outcomes = outcomes_with(newest(view), view.chooser, view.context->kinds, index, *value);
+    outcomes = outcomes_with(newest(view), view.context->kinds, view.chooser.errors, view.chooser.costs,
+                             index, *value);
   }
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;

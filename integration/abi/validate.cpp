@@ -4,7 +4,7 @@
 #include "framegraph/text/document.hpp"
 #include "integration/abi/graph_desc.hpp"
 #include "integration/abi/report.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "passes/common/kinds.hpp"
 
 namespace dermis::abi {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-// Which tiles get samples, and how many: the rule of shaders/subsurface_allot.comp on the CPU, bit for bit
-// (shaders/include/allotment.glsl). A step of samples is worth the tile's doubt times what the step takes off
+// Which tiles get samples, and how many: the rule of shaders/sap/subsurface_allot.comp on the CPU, bit for
+// bit (shaders/sap/allotment.glsl). A step of samples is worth the tile's doubt times what the step takes off
 // its error, over what it costs.
 
 #include <array>

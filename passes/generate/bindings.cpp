@@ -1,14 +1,14 @@
 #include "passes/generate/bindings.hpp"
 
 #include "passes/choice/allotment.hpp"
-#include "passes/subsurface/flat_light.hpp"
-#include "passes/subsurface/kinds.hpp"
-#include "passes/subsurface/profiles/radial_table.hpp"
-#include "passes/subsurface/sap/sap_tiles.hpp"
-#include "passes/subsurface/separable/separable_kernel.hpp"
-#include "passes/subsurface/temporal/accumulate.hpp"
-#include "passes/subsurface/temporal/reproject.hpp"
-#include "passes/subsurface/truth/surface.hpp"
+#include "passes/common/accumulate.hpp"
+#include "passes/common/flat_light.hpp"
+#include "passes/common/kinds.hpp"
+#include "passes/common/profiles/radial_table.hpp"
+#include "passes/common/reproject.hpp"
+#include "passes/common/truth/surface.hpp"
+#include "passes/sap/sap_tiles.hpp"
+#include "passes/separable/separable_kernel.hpp"
 
 #include <fmt/format.h>
 
@@ -81,7 +81,7 @@ std::string header_of(const PassKind& kind) {
 // Numbers that C++ and GLSL must agree on.
 std::string shared_constants() {
   return fmt::format(
-      "// Generated from the constants of passes/subsurface/.\n"
+      "// Generated from the constants of passes/common/.\n"
       "#ifndef DERMIS_CONSTANTS_GLSL\n#define DERMIS_CONSTANTS_GLSL\n\n"
       "const float copy_below_d_px = {}; // kinds.hpp\n"
       "const float flat_reach_d = {:.1f}; // flat_light.hpp\n"

@@ -8,7 +8,7 @@
 namespace dermis {
 
 struct GeneratedFile {
-  std::string name; // "subsurface_afis.bindings.glsl", "constants.glsl"; what #include names
+  std::string name; // "afis/subsurface_afis.bindings.glsl", "constants.glsl"; what #include names
   std::string text;
 };
 

@@ -1,9 +1,9 @@
-// Prints a SHA-256 of each plan: all graph files of a folder in every combination of bound slots, then drawn
-// graphs at every packing level and order. usage: plan_digests FOLDER DRAWN
+// Prints a SHA-256 of each plan: all graph files below a folder in every combination of bound slots, then
+// drawn graphs at every packing level and order. usage: plan_digests FOLDER DRAWN
 
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/serial/plan_file.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "passes/common/kinds.hpp"
 #include "tests/framegraph/random_graph.hpp"
 
 #include <fmt/format.h>
@@ -68,11 +68,12 @@ bool digest_drawn(uint64_t seed) {
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(argv[1])) {
     const std::string name = entry.path().filename().string();
     if (name.ends_with(".json") && !name.ends_with(".expect.json")) files.push_back(entry.path());
   }
-  std::sort(files.begin(), files.end());
+  std::sort(files.begin(), files.end(),
+            [](const auto& a, const auto& b) { return a.filename() < b.filename(); });
   bool good = !files.empty();
   for (const auto& file : files)
     good = digest_file(file) && good;

@@ -2,8 +2,8 @@
 // What a graph means, computed from its declarations alone: every pass in the order of the file, every
 // resource with contents of its own. No plan, no memory, no barriers.
 
-#include "framegraph/interpret/interpret.hpp"
 #include "framegraph/model/graph.hpp"
+#include "tests/framegraph/interpret/interpret.hpp"
 
 namespace dermis::testing {
 

@@ -54,6 +54,56 @@ std::string violation(const std::string& path, const std::string& target) {
   return {};
 }
 
+// Folders in the order in which they may know of each other, below each of these roots.
+struct Order {
+  std::string_view root;
+  std::vector<std::string_view> folders;
+};
+const Order orders[] = {
+    {"framegraph/",
+     {"text", "compose", "model", "schema", "compile", "verify", "serial", "explain", "vulkan"}},
+    {"integration/tools/command/",
+     {"expect", "run", "bench", "inspect", "plan", "keep", "watch", "arguments"}},
+    {"integration/",
+     {"include", "abi", "tools/references", "tools/files", "tools/null_device", "examples/demo_engine",
+      "tools/viewer", "tools/command"}},
+};
+constexpr std::string_view techniques[] = {"separable", "burley", "sap", "afis", "restir"};
+
+// Index of the folder of `path` in `order`; -1: another root, or a file of the root itself.
+int place_of(const Order& order, std::string_view path) {
+  if (!path.starts_with(order.root)) return -1;
+  path.remove_prefix(order.root.size());
+  for (size_t i = 0; i < order.folders.size(); ++i)
+    if (path.starts_with(order.folders[i]) && path.substr(order.folders[i].size()).starts_with('/'))
+      return static_cast<int>(i);
+  return -1;
+}
+
+std::string_view technique_of(std::string_view path) {
+  for (const std::string_view technique : techniques)
+    if (path.starts_with("passes/" + std::string(technique) + "/")) return technique;
+  return {};
+}
+
+// What is wrong with `path` including `target`, both of one part of the house; empty: nothing.
+std::string violation_within(const std::string& path, const std::string& target) {
+  for (const Order& order : orders) {
+    const int from = place_of(order, path), to = place_of(order, target);
+    const bool base = from < 0 && path.starts_with(order.root) && order.root.ends_with("command/") &&
+                      !path.ends_with("main.cpp");
+    if (to > from && (from >= 0 || base)) return path + " includes " + target + ", whose folder comes later";
+  }
+  const std::string_view from = technique_of(path), to = technique_of(target);
+  if (!from.empty() && !to.empty() && from != to)
+    return path + " includes " + target + ", which is another technique's";
+  if (path.starts_with("passes/choice/") && !to.empty())
+    return path + " includes " + target + ", but the choice knows no technique";
+  if (path.ends_with("abi/program.hpp") && target.ends_with("abi/chooser.hpp"))
+    return path + " includes the chooser, which reads programs";
+  return {};
+}
+
 TEST(IncludeRule, NoFileIncludesARoomBelowItsOwn) {
   const std::filesystem::path root = DERMIS_SOURCE_DIR;
   size_t files = 0, includes = 0;
@@ -71,6 +121,7 @@ TEST(IncludeRule, NoFileIncludesARoomBelowItsOwn) {
         if (target.empty()) continue;
         ++includes;
         EXPECT_EQ(violation(path, target), "");
+        EXPECT_EQ(violation_within(path, target), "");
       }
     }
   }
@@ -87,10 +138,30 @@ TEST(IncludeRule, TheRuleSeesWhatItForbids) {
   EXPECT_NE(violation("framegraph/compile/pack.cpp", "framegraph/vulkan/device.hpp"), "");
   EXPECT_NE(violation("framegraph/model/graph.hpp", "vulkan/vulkan.h"), "");
   EXPECT_NE(violation("framegraph/vulkan/device.hpp", "integration/abi/x.hpp"), "");
-  EXPECT_NE(violation("passes/subsurface/x.cpp", "integration/files/exr.hpp"), "");
-  EXPECT_NE(violation("integration/command/main.cpp", "tests/x.hpp"), "");
+  EXPECT_NE(violation("passes/common/x.cpp", "integration/tools/files/exr.hpp"), "");
+  EXPECT_NE(violation("integration/tools/command/main.cpp", "tests/x.hpp"), "");
   EXPECT_EQ(violation("framegraph/vulkan/device.hpp", "vulkan/vulkan.h"), "");
-  EXPECT_EQ(violation("passes/subsurface/x.cpp", "framegraph/vulkan/device.hpp"), "");
+  EXPECT_EQ(violation("passes/common/x.cpp", "framegraph/vulkan/device.hpp"), "");
+}
+
+TEST(IncludeRule, FoldersIncludeOnlyThoseBeforeThem) {
+  EXPECT_NE(violation_within("framegraph/text/diagnostic.hpp", "framegraph/model/ids.hpp"), "");
+  EXPECT_NE(
+      violation_within("integration/tools/command/expect/a.cpp", "integration/tools/command/inspect/b.hpp"),
+      "");
+  EXPECT_NE(violation_within("integration/tools/command/run/a.cpp", "integration/tools/command/bench/b.hpp"),
+            "");
+  EXPECT_NE(violation_within("integration/tools/command/session.hpp", "integration/tools/command/run/b.hpp"),
+            "");
+  EXPECT_NE(violation_within("integration/abi/program.hpp", "integration/abi/chooser.hpp"), "");
+  EXPECT_NE(violation_within("integration/abi/a.cpp", "integration/tools/files/exr.hpp"), "");
+  EXPECT_NE(violation_within("passes/sap/a.cpp", "passes/separable/b.hpp"), "");
+  EXPECT_NE(violation_within("passes/choice/a.cpp", "passes/sap/b.hpp"), "");
+  EXPECT_EQ(violation_within("passes/papers/a.cpp", "passes/separable/b.hpp"), "");
+  EXPECT_EQ(violation_within("framegraph/model/graph.hpp", "framegraph/text/index.hpp"), "");
+  EXPECT_EQ(
+      violation_within("integration/tools/command/main.cpp", "integration/tools/command/arguments/b.hpp"),
+      "");
 }
 
 } // namespace

@@ -8,9 +8,9 @@
 #include "tests/framegraph/second_opinion.hpp"
 #include "tests/framegraph/test_tier.hpp"
 
-#include "framegraph/interpret/commands.hpp"
 #include "framegraph/serial/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
+#include "tests/framegraph/interpret/commands.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -111,7 +111,8 @@ TEST(TwoQueues, AfterIsAPointBetweenPassesOfTwoQueues) {
   Plan mutant = whole.plan;
   mutant.passes[3].wait =
       std::exchange(mutant.passes[2].wait, no_point); // nothing of `aside` is needed before
-  EXPECT_THAT(verify(mutant).objections.front(), HasSubstr("pass 2: does not come after pass 1, as it is to"));
+  EXPECT_THAT(verify(mutant).objections.front(),
+              HasSubstr("pass 2: does not come after pass 1, as it is to"));
   EXPECT_NE(first_hazard(mutant), "");
 }
 
@@ -180,7 +181,8 @@ TEST(TwoQueues, WhateverOrderThePointsAllowGivesThePixelsThatTheGraphMeans) {
 
 void expect_no_needless_barrier(const Plan& plan, uint64_t seed) {
   for (uint32_t b = 0; b < plan.barriers.size(); ++b)
-    EXPECT_FALSE(verify(without_barrier(plan, b)).objections.empty()) << "seed " << seed << ": without barrier " << b;
+    EXPECT_FALSE(verify(without_barrier(plan, b)).objections.empty())
+        << "seed " << seed << ": without barrier " << b;
 }
 
 // Another pass reads a buffer in other ways, behind one for which a wait had made it visible. These seeds

@@ -1,7 +1,7 @@
 // Any bytes as a frame.json: the profiles that it names are looked for where there are none.
 
 #include "framegraph/text/document.hpp"
-#include "integration/files/capture.hpp"
+#include "integration/tools/files/capture.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,6 +1,6 @@
 // Any bytes as a picture of a capture.
 
-#include "integration/files/exr.hpp"
+#include "integration/tools/files/exr.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 #include <fcntl.h>

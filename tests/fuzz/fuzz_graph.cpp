@@ -6,7 +6,7 @@
 #include "framegraph/explain/plan_json.hpp"
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/verify/verify.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "passes/common/kinds.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -2,7 +2,7 @@
 
 #include "framegraph/compose/compose.hpp"
 #include "framegraph/model/read_graph.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "passes/common/kinds.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 // Any bytes as a profile file.
 
 #include "framegraph/text/document.hpp"
-#include "passes/subsurface/profile.hpp"
+#include "passes/common/profiles/profile.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 #include <cmath>

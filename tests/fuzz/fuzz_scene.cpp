@@ -1,6 +1,6 @@
 // Any bytes as a scene file.
 
-#include "integration/demo_engine/scene/read_scene.hpp"
+#include "integration/examples/demo_engine/scene/read_scene.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,7 +1,7 @@
 #include "tests/laws/head_frames.hpp"
 
-#include "integration/command/bench/subject.hpp"
-#include "integration/files/metrics.hpp"
+#include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/files/metrics.hpp"
 #include "tests/laws/sequences.hpp"
 
 #include <algorithm>

@@ -5,10 +5,10 @@
 
 #include "tests/laws/plane.hpp"
 
-#include "integration/command/bench/reference.hpp"
-#include "integration/command/bench/technique.hpp"
-#include "integration/files/capture_truth.hpp"
-#include "passes/subsurface/sap/sap_twin.hpp"
+#include "integration/tools/command/bench/reference.hpp"
+#include "integration/tools/command/bench/technique.hpp"
+#include "integration/tools/files/capture_truth.hpp"
+#include "tests/passes/sap/cpu/sap_twin.hpp"
 
 #include <memory>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "tests/laws/noise.hpp"
 
-#include "passes/subsurface/truth/planar.hpp"
-#include "passes/subsurface/truth/truth.hpp"
+#include "passes/common/truth/planar.hpp"
+#include "passes/common/truth/truth.hpp"
 
 #include <cmath>
 

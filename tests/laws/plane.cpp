@@ -1,7 +1,8 @@
 #include "tests/laws/plane.hpp"
 
-#include "integration/command/run/device_graph.hpp"
-#include "passes/subsurface/burley_profile.hpp"
+#include "integration/tools/command/run/device_graph.hpp"
+#include "passes/common/profiles/burley_profile.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <fmt/format.h>
 
@@ -87,7 +88,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
   }
   dermis::tools::DeviceGraphRequest request;
   request.graph_name = graph + ".json";
-  request.graph_text = read_text(DERMIS_SOURCE_DIR "/configs/graphs/" + request.graph_name);
+  request.graph_text = read_text(DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph));
   if (!plane.overlay.empty())
     request.overlays = {{plane.overlay + ".json",
                          read_text(DERMIS_SOURCE_DIR "/configs/overlays/" + plane.overlay + ".json")}};

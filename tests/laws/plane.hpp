@@ -51,7 +51,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
 // Why tests of this room cannot run here; "" when they can. The answer is found once.
 const std::string& missing();
 
-class DeviceTest : public testing::Test {
+class DeviceTest : public ::testing::Test {
 protected:
   void SetUp() override {
     if (!missing().empty()) GTEST_SKIP() << missing();

@@ -2,8 +2,8 @@
 #include "tests/framegraph/test_tier.hpp"
 #include "tests/laws/plane.hpp"
 
-#include "passes/subsurface/truth/analytic.hpp"
-#include "passes/subsurface/truth/truth.hpp"
+#include "integration/tools/references/analytic.hpp"
+#include "passes/common/truth/truth.hpp"
 
 #include <algorithm>
 #include <array>

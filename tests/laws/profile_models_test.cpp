@@ -1,8 +1,8 @@
 // Every technique reproduces the profile it is given, whatever its model, on a plane against the truth.
 #include "tests/laws/plane.hpp"
 
-#include "passes/subsurface/profile.hpp"
-#include "passes/subsurface/truth/truth.hpp"
+#include "passes/common/profiles/profile.hpp"
+#include "passes/common/truth/truth.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,7 @@
 #include "tests/laws/sequences.hpp"
 
-#include "integration/command/bench/dynamic/figures.hpp"
+#include "integration/tools/command/bench/dynamic/figures.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -38,7 +39,7 @@ std::string root() {
 }
 
 TechniqueRequest request_of(const std::string& graph, const std::vector<NamedValue>& set) {
-  return {graph, "", root() + "/configs/graphs/" + graph + ".json", set, false, {}};
+  return {graph, "", root() + "/" + dermis::shipped::graph_file(graph), set, false, {}};
 }
 
 Frames range(uint32_t first, uint32_t end) {

@@ -4,8 +4,8 @@
 
 #include "tests/laws/plane.hpp"
 
-#include "integration/command/bench/dynamic/sequence.hpp"
-#include "integration/command/bench/technique.hpp"
+#include "integration/tools/command/bench/dynamic/sequence.hpp"
+#include "integration/tools/command/bench/technique.hpp"
 
 #include <functional>
 #include <map>

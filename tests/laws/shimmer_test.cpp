@@ -3,9 +3,9 @@
 #include "tests/framegraph/test_tier.hpp"
 #include "tests/laws/sequences.hpp"
 
-#include "integration/command/bench/dynamic/figures.hpp"
-#include "integration/files/capture.hpp"
-#include "integration/files/metrics.hpp"
+#include "integration/tools/command/bench/dynamic/figures.hpp"
+#include "integration/tools/files/capture.hpp"
+#include "integration/tools/files/metrics.hpp"
 
 #include <array>
 #include <cmath>

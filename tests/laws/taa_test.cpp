@@ -3,8 +3,9 @@
 #include "tests/framegraph/test_tier.hpp"
 #include "tests/laws/sequences.hpp"
 
-#include "integration/demo_engine/engine.hpp"
-#include "integration/files/metrics.hpp"
+#include "integration/examples/demo_engine/engine.hpp"
+#include "integration/tools/files/metrics.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <cmath>
 
@@ -20,7 +21,7 @@ struct Taa : laws::DeviceTest {
                            uint32_t frames) {
     demo::RenderOptions options;
     options.scene = laws::root() + "/configs/scenes/pan.json"; // less than a pixel a frame at this size
-    options.graph = laws::root() + "/configs/graphs/" + graph + ".json";
+    options.graph = laws::root() + "/" + dermis::shipped::graph_file(graph);
     options.settings = std::move(settings);
     options.width = 160;
     options.height = 90;

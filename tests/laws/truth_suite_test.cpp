@@ -1,11 +1,12 @@
 // Laws that need many runs or large pictures: convergence of sampling, bias, d that varies, odd sizes.
 #include "tests/laws/plane.hpp"
 
-#include "integration/command/bench/reference.hpp"
-#include "integration/command/bench/still_error.hpp"
-#include "integration/command/bench/subject.hpp"
-#include "integration/command/bench/technique.hpp"
+#include "integration/tools/command/bench/reference.hpp"
+#include "integration/tools/command/bench/still_error.hpp"
+#include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/command/bench/technique.hpp"
 #include "tests/framegraph/test_tier.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <cmath>
 
@@ -32,7 +33,7 @@ protected:
   // Mean of `frames` frames of a technique.
   std::vector<float> scatter(const CapturedFrame& frame, const std::string& graph,
                              std::vector<NamedValue> set, uint32_t frames = 1) {
-    const TechniqueRequest request{graph, "", DERMIS_SOURCE_DIR "/configs/graphs/" + graph + ".json",
+    const TechniqueRequest request{graph, "", DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph),
                                    std::move(set), false};
     auto run = TechniqueRun::create(*host_, request, frame.description.profiles, {});
     if (!run) {

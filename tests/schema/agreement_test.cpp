@@ -6,13 +6,13 @@
 #include "framegraph/model/host_kind.hpp"
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/schema/graph_schema.hpp"
-#include "integration/command/expect/expectation.hpp"
-#include "integration/demo_engine/scene/read_scene.hpp"
-#include "integration/files/capture.hpp"
+#include "integration/examples/demo_engine/scene/read_scene.hpp"
+#include "integration/tools/command/expect/expectation.hpp"
+#include "integration/tools/files/capture.hpp"
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/error_model.hpp"
-#include "passes/subsurface/kinds.hpp"
-#include "passes/subsurface/profile.hpp"
+#include "passes/common/kinds.hpp"
+#include "passes/common/profiles/profile.hpp"
 #include "tests/framegraph/test_tier.hpp"
 #include "tests/schema/validator.hpp"
 
@@ -111,12 +111,13 @@ json parse(const std::string& text) {
 
 std::vector<fs::path> files_in(const char* folder, bool expectations = false) {
   std::vector<fs::path> out;
-  for (const auto& entry : fs::directory_iterator(fs::path(DERMIS_SOURCE_DIR) / folder)) {
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(DERMIS_SOURCE_DIR) / folder)) {
     const std::string name = entry.path().filename().string();
     if (entry.path().extension() == ".json" && (name.find(".expect.") != std::string::npos) == expectations)
       out.push_back(entry.path());
   }
-  std::sort(out.begin(), out.end());
+  std::sort(out.begin(), out.end(),
+            [](const fs::path& a, const fs::path& b) { return a.filename() < b.filename(); });
   return out;
 }
 

@@ -1,8 +1,8 @@
 // What the command writes for other programs is what those programs' formats ask for.
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
-#include "integration/command/expect/junit.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "integration/tools/command/expect/junit.hpp"
+#include "passes/common/kinds.hpp"
 #include "tests/schema/validator.hpp"
 
 #include <gtest/gtest.h>

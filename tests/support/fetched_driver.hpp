@@ -1,5 +1,5 @@
 #pragma once
-// The driver with ray queries that tests/drivers/fetch.sh leaves in build/drivers.
+// The driver with ray queries that tests/scripts/fetch_driver.sh leaves in build/drivers.
 
 #include <filesystem>
 #include <string>

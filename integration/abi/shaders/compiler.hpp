@@ -14,7 +14,7 @@ namespace dermis::abi {
 std::string shader_compiler();
 
 // Compiles each kernel of `shaders` (PassKind::shader) from "NAME.comp" and from what that includes:
-// "include/FILE" of `open` for #include "FILE", but for headers that come from signatures (*.bindings.glsl,
+// "FILE" of `open` for #include "FILE", but for headers that come from signatures (*.bindings.glsl,
 // constants.glsl), which are the library's. Names that lead out are refused before `open` is asked. spirv[i]
 // is empty where `open` has no such kernel. False with errors of all kernels in `diagnostics`. Takes its
 // memory from the C library. Free-threaded if `open` is.

@@ -53,11 +53,10 @@ public:
     for (const GeneratedFile& file : generated_)
       if (file.name == name) return keep(name, {name, file.text, ""});
     if (std::string problem = why_not_to_be_opened(name); !problem.empty()) return refuse(problem);
-    const std::string asked = "include/" + name;
-    if (const auto known = files_.find(asked); known != files_.end()) return give(*known);
-    FileText file = open_(asked);
-    if (!file.problem.empty()) return refuse(fmt::format("'{}': {}", asked, file.problem));
-    return keep(asked, std::move(file));
+    if (const auto known = files_.find(name); known != files_.end()) return give(*known);
+    FileText file = open_(name);
+    if (!file.problem.empty()) return refuse(fmt::format("'{}': {}", name, file.problem));
+    return keep(name, std::move(file));
   }
   IncludeResult* includeSystem(const char*, const char*, size_t) override {
     if (problem_.empty()) problem_ = "only #include \"FILE\" is known";
@@ -114,7 +113,7 @@ std::string_view line_of(std::string_view text, uint32_t number) {
   return text.substr(0, text.find('\n'));
 }
 
-// "ERROR: include/afis.glsl:12: 'x' : undeclared identifier", a line each; what glslang sums up behind is
+// "ERROR: afis/afis.glsl:12: 'x' : undeclared identifier", a line each; what glslang sums up behind is
 // left out.
 std::vector<Complaint> complaints_in(std::string_view log, const std::string& kernel, const Files& files) {
   constexpr std::string_view mark = "ERROR: ";

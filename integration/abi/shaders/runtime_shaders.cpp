@@ -2,7 +2,7 @@
 
 #include "integration/abi/host_files.hpp"
 #include "integration/abi/shaders/compiler.hpp"
-#include "passes/kernels.hpp"
+#include "passes/common/kernels.hpp"
 
 #include <fmt/format.h>
 

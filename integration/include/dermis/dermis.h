@@ -407,8 +407,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph,
                                                          const dermis_graph_desc* desc,
                                                          dermis_report* report);
 /* Replaces kernels by GLSL of the host, so that shaders can be edited while the program runs.
- * `open` provides "subsurface_combine.comp" and the files it includes, such as
- * "include/tiles.glsl"; the library provides bindings and constants. Kernels for which `open`
+ * `open` provides "common/subsurface_combine.comp" and the files it includes, such as
+ * "common/tiles.glsl"; the library provides bindings and constants. Kernels for which `open`
  * returns 0 stay; NULL restores all. `open` must be callable until it is replaced or the graph
  * is destroyed. Otherwise like a reload: errors have file and line, on failure nothing changes,
  * histories and settings continue. The compiler uses the C library's memory. Takes seconds.

@@ -1,5 +1,5 @@
 // What is recorded, seen through a function table that records calls instead of making them.
-#include "integration/command/bench/record/allocation_count.hpp"
+#include "integration/tools/command/bench/record/allocation_count.hpp"
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <gmock/gmock.h>

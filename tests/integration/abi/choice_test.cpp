@@ -1,8 +1,8 @@
 // Budgets: what is chosen, what it does to the picture, and what is told about it.
 
 #include "framegraph/text/document.hpp"
-#include "passes/subsurface/environment.hpp"
-#include "passes/subsurface/profile.hpp"
+#include "passes/common/environment.hpp"
+#include "passes/common/profiles/profile.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "tests/integration/abi/invented_times.hpp"
 
@@ -275,7 +275,7 @@ struct ThinParts : Choice {
   // Of a host that gives no scene.
   static GraphOptions without_scene() {
     GraphOptions options;
-    options.text = read_text("configs/graphs/restir.json");
+    options.text = read_text("configs/graphs/papers/restir.json");
     options.unbound = {"albedo",   "scatter_scale", "velocity",  "normal", "scene",
                        "vertices", "indices",       "instances", "lights", "scattered_light"};
     return options;
@@ -374,7 +374,7 @@ TEST_F(Choice, ChoicesByBudgetShareTheMemoryOfTheLargest) {
   dermis_memory all = DERMIS_MEMORY_INIT, one = DERMIS_MEMORY_INIT;
   ASSERT_EQ(dermis_graph_memory(graph, &all), DERMIS_OK);
   GraphOptions options;
-  options.text = read_text("configs/graphs/hybrid.json");
+  options.text = read_text("configs/graphs/papers/hybrid.json");
   options.unbound = {"albedo", "scatter_scale", "scattered_light", "importance"};
   const dermis_graph hybrid = make_graph(options);
   ASSERT_NE(hybrid, nullptr);

@@ -2,7 +2,7 @@
 // A device under validation, a context and small G-buffers for tests of the C interface. Every test fails on
 // any message of the validation layer.
 
-#include "integration/demo_engine/vulkan_image.hpp"
+#include "integration/examples/demo_engine/vulkan_image.hpp"
 #include "tests/integration/abi/sources.hpp"
 
 #include <dermis/dermis.h>
@@ -34,12 +34,12 @@ struct GraphOptions {
   std::vector<std::string> overlays; // texts
   dermis_include_fn include = nullptr;
   void* include_user = nullptr;
-  bool profiles = true; // false: none
+  bool profiles = true;       // false: none
   uint32_t profile_count = 1; // ids from 1 on, all of them `profile`
-  std::string profile;  // text; empty: configs/profiles/skin.json
+  std::string profile;        // text; empty: configs/profiles/skin.json
 };
 
-struct DermisTest : testing::Test {
+struct DermisTest : ::testing::Test {
   static void SetUpTestSuite();
   static void TearDownTestSuite();
   void SetUp() override;

@@ -1,6 +1,6 @@
 #include "tests/integration/abi/example_shader.hpp"
 
-#include "integration/demo_engine/render/pipeline.hpp"
+#include "integration/examples/demo_engine/render/pipeline.hpp"
 
 #include <gtest/gtest.h>
 

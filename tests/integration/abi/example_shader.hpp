@@ -1,7 +1,7 @@
 #pragma once
 // Runs a compute shader of integration/examples once on a test's device.
 
-#include "integration/demo_engine/vulkan_image.hpp"
+#include "integration/examples/demo_engine/vulkan_image.hpp"
 
 #include <cstdint>
 #include <span>

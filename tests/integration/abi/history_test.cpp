@@ -1,6 +1,7 @@
 // What a graph tells of its histories: whether they hold something, for how long, and why they last did not.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -26,7 +27,7 @@ struct Histories : DermisTest {
       overlay.replace(overlay.find(clear), clear.size(), clear + R"("when": ")" + when + R"(",)");
     }
     GraphOptions options;
-    options.text = read_text("configs/graphs/" + graph_name + ".json");
+    options.text = read_text(dermis::shipped::graph_file(graph_name));
     options.overlays = {overlay};
     options.unbound.emplace_back("velocity");
     return options;
@@ -206,7 +207,7 @@ TEST_F(Histories, TheLastProfileTakesThemAlong) {
 }
 
 TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
-  const std::string text = read_text("configs/graphs/sap_residual.json");
+  const std::string text = read_text("configs/graphs/papers/sap_residual.json");
   GraphOptions options;
   options.text = text;
   for (const auto& [from, to] : {std::pair<std::string, std::string>{R"("ratio": {)", R"("mending": {)"},

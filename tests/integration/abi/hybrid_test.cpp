@@ -53,7 +53,7 @@ struct Hybrid : DermisTest {
     ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
   }
 
-  const char* file = "configs/graphs/hybrid.json";
+  const char* file = "configs/graphs/papers/hybrid.json";
   std::string times = unit_times;
   std::vector<std::string> overlays;
 
@@ -91,7 +91,7 @@ struct Hybrid : DermisTest {
 
 TEST_F(Hybrid, TheDeviceGivesSamplesAsTheRuleOnTheCpuDoes) {
   GraphOptions options;
-  options.text = read_text("configs/graphs/hybrid.json");
+  options.text = read_text("configs/graphs/papers/hybrid.json");
   options.overlays = {painted};
   options.unbound = {"albedo", "scatter_scale", "importance"}; // handed out light keeps the samples alive
   graph = make_graph(options);
@@ -251,7 +251,7 @@ TEST_F(Hybrid, ABudgetBetweenBuysSomeOfTheSamplesAndSaysWhatErrorIsLeft) {
 // The papers' pair: filtered importance sampling where light varies, separable elsewhere.
 struct Pair : Hybrid {
   Pair() {
-    file = "configs/graphs/hybrid_afis_separable.json";
+    file = "configs/graphs/papers/hybrid_afis_separable.json";
     times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
       { "work": "subsurface.allot", "base_us": 0, "group_us": 0, "spread": 0 },
       { "work": "subsurface.afis_tiles samples=16", "base_us": 0, "group_us": 1, "spread": 0 } ] })";

@@ -3,6 +3,7 @@
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "tests/integration/abi/example_shader.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include "material_ids.spv.h" // needs the types of those above
 
@@ -17,7 +18,7 @@ constexpr size_t image_pixels = size_t{image_side} * image_side;
 struct InputFormats : DermisTest {
   static GraphOptions options_of(const std::string& graph) {
     GraphOptions options;
-    options.text = read_text("configs/graphs/" + graph + ".json");
+    options.text = read_text(dermis::shipped::graph_file(graph));
     options.unbound = {"albedo",   "scatter_scale", "scattered_light", "thickness", "back_lighting",
                        "velocity", "sampling",      "importance",      "normal"};
     return options;

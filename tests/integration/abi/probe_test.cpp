@@ -1,8 +1,8 @@
 // The error probe finds the error that the exact reference finds.
 
 #include "framegraph/text/document.hpp"
-#include "passes/subsurface/profile.hpp"
-#include "passes/subsurface/truth/truth.hpp"
+#include "passes/common/profiles/profile.hpp"
+#include "passes/common/truth/truth.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <algorithm>

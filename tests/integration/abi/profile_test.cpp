@@ -3,7 +3,8 @@
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
-#include "passes/subsurface/kinds.hpp"
+#include "passes/common/kinds.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ std::string profile_text(const std::string& name) {
 struct SetProfile : DermisTest {
   static GraphOptions with(const std::string& graph, const std::string& profile) {
     GraphOptions options;
-    options.text = read_text("configs/graphs/" + graph + ".json");
+    options.text = read_text(dermis::shipped::graph_file(graph));
     options.profile = profile_text(profile);
     options.unbound = {"albedo",    "scatter_scale", "scattered_light",
                        "thickness", "back_lighting", "velocity"};
@@ -120,7 +121,8 @@ TEST_F(SetProfile, KeepsHistoriesWhichSettleAsStated) {
   skin.overlays = marble.overlays = {read_text("configs/overlays/accumulate.json")};
   const dermis_graph graph = make_graph(skin), fresh = make_graph(marble);
   for (const dermis_graph one : {graph, fresh}) // a running mean alone: what settles_after is computed from
-    ASSERT_EQ(dermis_graph_set_setting(one, "accumulate_clip", "0", nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(dermis_graph_set_setting(one, "accumulate_clip", "0", nullptr), DERMIS_OK)
+        << dermis_last_error();
   const uint32_t settles = settles_after(graph, "past");
   EXPECT_EQ(settles, 44u) << "0.9^44 is 0.0097, 0.9^43 is 0.0108";
   EXPECT_EQ(settles_after(graph, "past_place"), 1u);

@@ -1,6 +1,6 @@
 // What frames do not need is not done, and the picture is the one that doing it would give.
 
-#include "passes/subsurface/flat_light.hpp"
+#include "passes/common/flat_light.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <cmath>

@@ -15,7 +15,7 @@ namespace {
 using testing::Each;
 using testing::HasSubstr;
 
-struct TwoCalls : testing::Test {
+struct TwoCalls : ::testing::Test {
   NullHost host;
   dermis_view view = nullptr;
   void SetUp() override {

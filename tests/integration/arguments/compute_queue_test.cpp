@@ -30,7 +30,7 @@ struct FrameCommands {
   uint32_t dispatches = 0, image_copies = 0;
 };
 
-class ComputeQueue : public testing::Test {
+class ComputeQueue : public ::testing::Test {
 protected:
   FrameCommands record(uint64_t index) {
     const dermis_frame frame = host.frame_at(index);
@@ -52,7 +52,7 @@ protected:
 TEST_F(ComputeQueue, RescalesHistoriesByDispatches) {
   host.device.set_queue_flags(VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT);
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-  const std::string text = read_text("configs/graphs/sap_residual.json"),
+  const std::string text = read_text("configs/graphs/papers/sap_residual.json"),
                     skin = read_text("configs/profiles/skin.json");
   dermis_profile profile = DERMIS_PROFILE_INIT;
   profile.id = 1;

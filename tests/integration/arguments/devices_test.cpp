@@ -95,7 +95,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less(VkInstance instance, const char* n
   return NullDevice::loader()(instance, name);
 }
 
-struct PoorDevice : testing::Test {
+struct PoorDevice : ::testing::Test {
   NullHost host;
   void SetUp() override { lack = {}; }
   dermis_result create() {

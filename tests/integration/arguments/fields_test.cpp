@@ -48,7 +48,7 @@ struct Description {
   Description& operator=(const Description&) = delete;
 };
 
-struct Fields : testing::Test {
+struct Fields : ::testing::Test {
   NullHost host;
   void SetUp() override {
     ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();

@@ -36,7 +36,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL load(VkInstance instance, const char* n
   return NullDevice::loader()(instance, name);
 }
 
-struct QueueFamilies : testing::Test {
+struct QueueFamilies : ::testing::Test {
   NullHost host;
   std::vector<dermis_image_binding> bindings;
   dermis_frame frame = DERMIS_FRAME_INIT;

@@ -2,6 +2,7 @@
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -50,7 +51,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL load_with_rays(VkInstance instance, con
   return NullDevice::loader()(instance, name);
 }
 
-struct UnboundNames : testing::Test {
+struct UnboundNames : ::testing::Test {
   NullHost host;
   std::vector<Message> logged;
 
@@ -97,10 +98,7 @@ struct UnboundNames : testing::Test {
 };
 
 TEST_F(UnboundNames, OneListForShippedGraphs_GivesNoWarning) {
-  std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/graphs"))
-    if (const std::string name = entry.path().filename().string(); !name.ends_with(".expect.json"))
-      paths.push_back("configs/graphs/" + name);
+  const std::vector<std::string> paths = dermis::shipped::graph_files();
   ASSERT_GE(paths.size(), 16u);
   std::set<std::string> optional, required;
   for (const std::string& path : paths) {

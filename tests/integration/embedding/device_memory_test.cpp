@@ -247,7 +247,7 @@ TEST_F(DeviceMemory, ThatTheHostRefusesIsToldAndNothingIsKept) {
 
 enum class Change { reload, resize, view };
 
-struct FailingNull : testing::TestWithParam<Change> {
+struct FailingNull : ::testing::TestWithParam<Change> {
   NullHost host;
   std::vector<dermis_view> views;
   uint32_t calls = 0;

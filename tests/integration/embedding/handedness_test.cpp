@@ -73,7 +73,8 @@ struct Handedness : DermisTest {
   // Light of the last of some frames of a camera that moves and turns, jittered, before a slanted wall.
   std::vector<float> picture(const View& view) {
     GraphOptions options;
-    options.text = read_text("configs/graphs/sap_residual.json"); // keeps light, depth and ids over frames
+    options.text =
+        read_text("configs/graphs/papers/sap_residual.json"); // keeps light, depth and ids over frames
     for (const char* unbound : {"velocity", "thickness", "back_lighting"})
       options.unbound.emplace_back(unbound);
     const dermis_graph graph = make_graph(options);

@@ -2,6 +2,7 @@
 // that is exposed already.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +149,7 @@ TEST_F(Inputs, LightThatIsExposedAlreadyScattersAlike) {
   for (const char* name : {"separable", "sap_residual", "afis_guided"}) {
     const auto frames = [&](float light, float exposure) {
       GraphOptions options;
-      options.text = read_text(std::string("configs/graphs/") + name + ".json");
+      options.text = read_text(dermis::shipped::graph_file(name));
       for (const char* unbound : {"velocity", "thickness", "back_lighting"})
         options.unbound.emplace_back(unbound);
       const dermis_graph graph = make_graph(options);

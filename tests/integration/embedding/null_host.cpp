@@ -115,9 +115,9 @@ dermis_result NullHost::record(dermis_view view, uint64_t index) const {
 
 uint32_t DERMIS_CALL open_kernel(void* user, const char* name, dermis_source* source) {
   static const std::string text = "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
-                                  "#include \"subsurface_combine.bindings.glsl\"\n"
+                                  "#include \"common/subsurface_combine.bindings.glsl\"\n"
                                   "layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}\n";
-  if (std::string(name) != "subsurface_combine.comp") return 0;
+  if (std::string(name) != "common/subsurface_combine.comp") return 0;
   ++*static_cast<uint32_t*>(user);
   source->text = text.data();
   source->length = text.size();

@@ -1,7 +1,7 @@
 #pragma once
 // A host on a device that runs nothing: the whole interface where failures can be asked for and counted.
 
-#include "integration/null_device/null_device.hpp"
+#include "integration/tools/null_device/null_device.hpp"
 
 #include <dermis/dermis.h>
 

@@ -2,6 +2,7 @@
 // place and depth.
 
 #include "tests/integration/embedding/two_views.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 namespace dermis::abi_test {
 namespace {
@@ -35,7 +36,7 @@ struct ProfilesOfHistories : TwoViewsTest, ::testing::WithParamInterface<History
 TEST_P(ProfilesOfHistories, ThatChangePlacesBeginAnew) {
   std::vector<std::string> overlays;
   if (GetParam().accumulated) overlays.push_back(read_text("configs/overlays/accumulate.json"));
-  make(read_text("configs/graphs/" + std::string(GetParam().graph) + ".json"), overlays, side, "", 2);
+  make(read_text(dermis::shipped::graph_file(GetParam().graph)), overlays, side, "", 2);
   for (uint64_t index = 1; index <= 3; ++index)
     for (const dermis_view view : {dermis_view{nullptr}, other})
       run_frame(view, index, false, 0);

@@ -2,6 +2,7 @@
 // tiles of 8x8 pixels.
 
 #include "tests/integration/embedding/two_views.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 namespace dermis::abi_test {
 namespace {
@@ -46,7 +47,7 @@ struct Rectangles : TwoViewsTest, ::testing::WithParamInterface<const char*> {
 };
 
 TEST_P(Rectangles, AreAllThatIsReadAndWritten) {
-  make(read_text("configs/graphs/" + std::string(GetParam()) + ".json"), {}, side);
+  make(read_text(dermis::shipped::graph_file(GetParam())), {}, side);
   uint64_t index = 1;
   for (uint32_t rest_of_tile = 0; rest_of_tile < 8; ++rest_of_tile) {
     const RenderedPart rectangle{.width = 16 + rest_of_tile, .height = 24 + (rest_of_tile * 3 + 7) % 8};

@@ -1,6 +1,6 @@
 // Graphs are edited while they run, and mostly they are broken then. Pictures must not show it.
 
-#include "integration/demo_engine/engine.hpp"
+#include "integration/examples/demo_engine/engine.hpp"
 #include "tests/integration/embedding/cameras.hpp"
 
 namespace dermis::abi_test {
@@ -39,7 +39,7 @@ struct Storm {
 Storm rendered(const std::function<std::vector<std::string>(uint32_t)>& reloads) {
   demo::RenderOptions options;
   options.scene = std::string(DERMIS_SOURCE_DIR) + "/configs/scenes/flashing.json";
-  options.graph = std::string(DERMIS_SOURCE_DIR) + "/configs/graphs/sap_residual.json";
+  options.graph = std::string(DERMIS_SOURCE_DIR) + "/configs/graphs/papers/sap_residual.json";
   options.width = storm_width;
   options.height = storm_height;
   options.frames = storm_frames;
@@ -59,7 +59,7 @@ Storm rendered(const std::function<std::vector<std::string>(uint32_t)>& reloads)
 }
 
 TEST(ReloadStorm, BrokenGraphsLeaveNoTraceInThePicturesAndGoodOnesKeepTheirHistory) {
-  const std::string text = read_text("configs/graphs/sap_residual.json");
+  const std::string text = read_text("configs/graphs/papers/sap_residual.json");
   const Storm calm = rendered({});
   const Storm refused = rendered([&](uint32_t frame) {
     std::vector<std::string> texts;

@@ -85,7 +85,7 @@ dermis_setting named(const std::vector<dermis_setting>& all, std::string_view na
   return found != all.end() ? *found : dermis_setting DERMIS_SETTING_INIT;
 }
 
-struct Settings : testing::Test {
+struct Settings : ::testing::Test {
   Calls calls;
   NullHost host;
   dermis_view view = nullptr;

@@ -2,6 +2,7 @@
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <gmock/gmock.h>
 
@@ -123,7 +124,7 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
     format.name = row.slot.c_str();
     format.format = format_named(names[choice % names.size()]);
   }
-  const std::string text = read_text("configs/graphs/" + name + ".json");
+  const std::string text = read_text(dermis::shipped::graph_file(name));
   const std::string skin = read_text("configs/profiles/skin.json");
   dermis_profile profile = DERMIS_PROFILE_INIT;
   profile.id = 1;

@@ -1,7 +1,7 @@
 #pragma once
 // Allocators of a host that count what they have handed out.
 
-#include "integration/demo_engine/vulkan_host.hpp"
+#include "integration/examples/demo_engine/vulkan_host.hpp"
 
 #include <dermis/dermis.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 // What the library has made of a device and not given back: a loader that counts, in front of the real one.
 
-#include "integration/demo_engine/vulkan_host.hpp"
+#include "integration/examples/demo_engine/vulkan_host.hpp"
 
 #include <cstdint>
 #include <string>

@@ -8,6 +8,7 @@
 #include "tests/integration/soak/memory_counts.hpp"
 #include "tests/integration/soak/object_counts.hpp"
 #include "tests/integration/soak/stage.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <fmt/format.h>
 
@@ -107,7 +108,7 @@ struct Soak : DermisTest {
       sizes.emplace_back(1 + random.below(soak_side), 1 + random.below(soak_side));
   }
 
-  std::string text_of(const StageDesc& desc) { return read_text("configs/graphs/" + desc.graph); }
+  std::string text_of(const StageDesc& desc) { return read_text(dermis::shipped::graph_file(desc.graph)); }
 
   void create(const StageDesc& desc) {
     Stage stage;

@@ -14,7 +14,7 @@ namespace dermis::abi_test {
 inline constexpr double soak_rounding = 1.0 / 1024;
 
 struct StageDesc {
-  std::string name, graph;           // file of configs/graphs
+  std::string name, graph;           // as graph_file() names it
   std::vector<std::string> overlays; // files of configs/overlays
   // Settings that change, with the values that they may have, as JSON.
   std::vector<std::pair<std::string, std::vector<std::string>>> settings;

@@ -4,7 +4,7 @@ namespace dermis::abi_test {
 
 namespace {
 
-constexpr double largest_ratio = 4.0; // subsurface_residual.comp
+constexpr double largest_ratio = 4.0; // papers/subsurface_residual.comp
 
 } // namespace
 
@@ -15,7 +15,7 @@ std::vector<StageDesc> soak_stages() {
   const std::vector<std::string> samples = {"2", "8", "16"};
   return {
       {"skin",
-       "skin.json",
+       "skin",
        {},
        {{"technique", {"\"sap\"", "\"hybrid\"", "\"separable\"", "\"off\""}},
         {"variant", {"\"base\"", "\"smooth\""}},
@@ -24,7 +24,7 @@ std::vector<StageDesc> soak_stages() {
         {"share", {"0", "0.5", "1"}},
         {"lod_bias", {"-8", "-1.5", "4"}}}},
       {"residual",
-       "sap_residual.json",
+       "sap_residual",
        {},
        {{"variant", {"\"base\"", "\"smooth\""}},
         {"samples", samples},
@@ -34,7 +34,7 @@ std::vector<StageDesc> soak_stages() {
        true,
        largest_ratio * (1.0 + soak_rounding)},
       {"guided",
-       "afis_guided.json",
+       "afis_guided",
        {},
        {{"guidance", {"\"split_half\"", "\"spvg\"", "\"ccv\"", "\"ocv\"", "\"ocv_seed\""}},
         {"most", {"8", "16", "32"}},
@@ -44,18 +44,18 @@ std::vector<StageDesc> soak_stages() {
        4.0,
        0.1},
       {"accumulated",
-       "burley.json",
+       "burley",
        {"accumulate.json"},
        {{"accumulate_weight", {"0.001", "0.1", "1"}}, {"accumulate_clip", {"0", "1.5", "64"}}},
        true,
        8.0,
        1.0},
       {"by_tile",
-       "hybrid_afis_separable.json",
+       "hybrid_afis_separable",
        {},
        {{"samples", samples}, {"least", {"0", "0.01", "4"}}, {"taps", {"\"11\"", "\"25\""}}}},
-      {"layered", "sap_layered.json", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
-      {"blended", "sap_blend.json", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
+      {"layered", "sap_layered", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
+      {"blended", "sap_blend", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
   };
 }
 

@@ -1,6 +1,6 @@
 #include "framegraph/model/read_graph.hpp"
 #include "passes/choice/outcomes.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "passes/common/kinds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/vulkan/create_infos.hpp"
-#include "integration/demo_engine/pixel_format.hpp"
+#include "integration/examples/demo_engine/pixel_format.hpp"
 
 #include <fmt/format.h>
 
@@ -73,7 +73,8 @@ protected:
 TEST_F(BetweenDrivers, LightOfRandomGraphsIsThatOfAnotherDriverButForRoundingAndFewSamples) {
   const KeptPictures kept = kept_pictures();
   if (kept.folder.empty())
-    GTEST_SKIP() << "DERMIS_PICTURES names no folder with light of another driver (tests/drivers/run.sh)";
+    GTEST_SKIP()
+        << "DERMIS_PICTURES names no folder with light of another driver (tests/scripts/run_on_drivers.sh)";
   const FuzzSeeds seeds = fuzz_seeds(24);
   constexpr double rounding = 1.0 / 2048;
   std::vector<double> all;

@@ -1,10 +1,10 @@
 // Random graphs of the real pass kinds on a device: whatever the compiler decides about order and memory, the
 // host gets the same bits.
-#include "framegraph/interpret/interpret.hpp"
 #include "framegraph/model/expression.hpp"
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/interpret/interpret.hpp"
 #include "tests/passes/device/fuzz_seeds.hpp"
 #include "tests/passes/device/player.hpp"
 

@@ -1,7 +1,7 @@
 #include "tests/passes/device/golden.hpp"
 
 #include "framegraph/serial/sha256.hpp"
-#include "integration/demo_engine/pixel_format.hpp"
+#include "integration/examples/demo_engine/pixel_format.hpp"
 
 #include <fstream>
 #include <map>

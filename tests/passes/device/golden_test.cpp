@@ -83,7 +83,8 @@ TEST_P(Golden, FramesAreTheSameHoweverManyThreadsTheDriverHas) {
 TEST_P(Golden, FramesAreThoseOfAnotherDriverButForRoundingAndFewSamples) {
   const KeptPictures kept = kept_pictures();
   if (kept.folder.empty())
-    GTEST_SKIP() << "DERMIS_PICTURES names no folder with frames of another driver (tests/drivers/run.sh)";
+    GTEST_SKIP()
+        << "DERMIS_PICTURES names no folder with frames of another driver (tests/scripts/run_on_drivers.sh)";
   constexpr double rounding = 1.0 / 2048, contrast = 0.625, samples = 16;
   const std::string path = fmt::format("{}/{}.floats", kept.folder, GetParam());
   const std::vector<float> here = light_of(frames());

@@ -1,6 +1,7 @@
 #pragma once
 // Pictures of one driver, kept in a folder and held against those of another one. DERMIS_PICTURES names the
-// folder; with DERMIS_PICTURES_KEEP pictures are kept there, without it compared (tests/drivers/run.sh).
+// folder; with DERMIS_PICTURES_KEEP pictures are kept there, without it compared
+// (tests/scripts/run_on_drivers.sh).
 
 #include <string>
 #include <vector>

@@ -1,9 +1,9 @@
 #include "tests/passes/device/player.hpp"
 
 #include "framegraph/vulkan/create_infos.hpp"
-#include "integration/demo_engine/pixel_format.hpp"
-#include "passes/kernels.hpp"
-#include "passes/subsurface/kinds.hpp"
+#include "integration/examples/demo_engine/pixel_format.hpp"
+#include "passes/common/kernels.hpp"
+#include "passes/common/kinds.hpp"
 
 #include <fmt/format.h>
 

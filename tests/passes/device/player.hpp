@@ -6,7 +6,7 @@
 #include "framegraph/vulkan/device_profile.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
-#include "passes/subsurface/kernel_tables.hpp"
+#include "passes/common/kernel_tables.hpp"
 #include "tests/passes/device/real_graph.hpp"
 #include "tests/passes/device/show.hpp"
 #include "tests/support/vulkan_fixture.hpp"

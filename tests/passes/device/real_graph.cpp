@@ -4,6 +4,7 @@
 #include "framegraph/model/splitmix.hpp"
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/text/document.hpp"
+#include "tests/support/shipped_graphs.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -21,11 +22,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* folder = DERMIS_SOURCE_DIR "/configs/graphs/";
 constexpr int64_t most_steps = 6; // of an integer setting above its least value
 
 Json read_shipped(const std::string& name) {
-  std::ifstream file(folder + name + ".json");
+  std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
   return Json::parse(file, nullptr, true, true);
 }
 
@@ -158,9 +158,8 @@ struct Draft {
 
 std::vector<std::string> graphs_of_images() {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string file = entry.path().filename().string(), name = entry.path().stem().string();
-    if (!file.ends_with(".json") || file.ends_with(".expect.json")) continue;
+  for (const std::string& file : shipped::graph_files()) {
+    const std::string name = std::filesystem::path(file).stem().string();
     const Json imports = read_shipped(name)["imports"];
     if (std::none_of(imports.begin(), imports.end(), [](const Json& declared) {
           return declared.contains("buffer") || declared.contains("acceleration_structure");
@@ -172,7 +171,7 @@ std::vector<std::string> graphs_of_images() {
 }
 
 std::optional<RealGraph> shipped_graph(const std::string& name, const KindRegistry& kinds) {
-  std::ifstream file(folder + name + ".json");
+  std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
   std::stringstream text;
   text << file.rdbuf();
   return made(name, text.str(), kinds);

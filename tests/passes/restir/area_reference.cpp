@@ -1,7 +1,7 @@
 #include "tests/passes/restir/area_reference.hpp"
 
-#include "passes/restir/random.hpp"
-#include "passes/subsurface/truth/parallel.hpp"
+#include "passes/common/truth/parallel.hpp"
+#include "tests/passes/restir/cpu/random.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,6 @@
 // Light sampling: shares, places, irradiance.
-#include "passes/restir/lights.hpp"
-#include "passes/restir/random.hpp"
+#include "tests/passes/restir/cpu/lights.hpp"
+#include "tests/passes/restir/cpu/random.hpp"
 #include "tests/passes/restir/statistics.hpp"
 
 #include <gtest/gtest.h>

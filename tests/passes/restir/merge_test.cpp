@@ -1,5 +1,5 @@
 // What merging keeps, whatever is merged.
-#include "passes/restir/reuse.hpp"
+#include "tests/passes/restir/cpu/reuse.hpp"
 #include "tests/passes/restir/triangle_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Probes, their density, and the inversion that finds their random numbers again.
-#include "passes/restir/reuse.hpp"
-#include "passes/subsurface/burley_profile.hpp"
+#include "passes/common/profiles/burley_profile.hpp"
+#include "tests/passes/restir/cpu/reuse.hpp"
 #include "tests/passes/restir/statistics.hpp"
 #include "tests/passes/restir/triangle_scene.hpp"
 

@@ -1,5 +1,5 @@
-#include "passes/restir/random.hpp"
-#include "passes/restir/reservoir.hpp"
+#include "tests/passes/restir/cpu/random.hpp"
+#include "tests/passes/restir/cpu/reservoir.hpp"
 
 #include <gtest/gtest.h>
 

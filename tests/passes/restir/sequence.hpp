@@ -1,8 +1,8 @@
 #pragma once
 // Frames of the whole pipeline on the CPU: own samples, history, neighbours twice, light.
 
-#include "passes/restir/reuse.hpp"
 #include "tests/passes/restir/area_reference.hpp"
+#include "tests/passes/restir/cpu/reuse.hpp"
 
 namespace dermis::restir::testing {
 

@@ -1,5 +1,5 @@
 // Shifts and their Jacobians against finite differences, and back again.
-#include "passes/restir/reuse.hpp"
+#include "tests/passes/restir/cpu/reuse.hpp"
 #include "tests/passes/restir/triangle_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // A small scene of triangles in fp64, as restir::Scene asks of one: a sphere and a slab of one medium, a thin
 // bent sheet like an ear of another, under a point light behind the sheet and a rectangle above.
 
-#include "passes/restir/scene.hpp"
+#include "tests/passes/restir/cpu/scene.hpp"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 // Every shift that claims it converges to the reference that shares no sampler. Means of regions over
 // independent restarts, 3 sigma over all of them (Bonferroni, Student's t). DERMIS_TESTS_FULL: 64x64 pixels.
-#include "passes/subsurface/truth/parallel.hpp"
+#include "passes/common/truth/parallel.hpp"
 #include "tests/framegraph/test_tier.hpp"
 #include "tests/passes/restir/sequence.hpp"
 

@@ -1,0 +1,20 @@
+#pragma once
+// Small integers that name objects in lists. Distinct types, so that a pass is never used to index resources.
+
+#include <compare>
+#include <cstdint>
+
+namespace dermis {
+
+template <class Tag> struct Index {
+  static constexpr uint32_t none = 0xffffffffu;
+  uint32_t value = none;
+
+  constexpr bool valid() const { return value != none; }
+  constexpr auto operator<=>(const Index&) const = default;
+};
+
+using NodeId = Index<struct NodeTag>; // into Document
+using FileId = Index<struct FileTag>; // into the list of files a document was read from
+
+} // namespace dermis

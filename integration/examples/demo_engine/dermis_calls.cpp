@@ -1,0 +1,63 @@
+#include "integration/examples/demo_engine/dermis_calls.hpp"
+
+#include <fmt/format.h>
+
+namespace demo {
+namespace {
+
+ErrorKind kind_of(dermis_result result) {
+  switch (result) {
+  case DERMIS_ERROR_CONFIG:
+  case DERMIS_ERROR_SHADER:
+    return ErrorKind::input;
+  case DERMIS_ERROR_UNSUPPORTED:
+  case DERMIS_ERROR_MEMORY:
+  case DERMIS_ERROR_DEVICE_MEMORY:
+  case DERMIS_ERROR_VULKAN:
+  case DERMIS_ERROR_DEVICE_LOST:
+    return ErrorKind::environment;
+  default:
+    return ErrorKind::internal;
+  }
+}
+
+} // namespace
+
+Error dermis_error(const char* call, dermis_result result, dermis_report report) {
+  if (dermis_report_count(report) > 0) return {kind_of(result), dermis_report_text(report)};
+  const char* detail = dermis_last_error();
+  return {kind_of(result), fmt::format("{}: {}{}{}", call, dermis_result_name(result), detail ? ": " : "",
+                                       detail ? detail : "")};
+}
+
+dermis_source source_of(const std::string& name, const std::string& text) {
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = name.c_str();
+  source.text = text.data();
+  source.length = text.size();
+  return source;
+}
+
+Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool rays_wanted,
+                      std::shared_ptr<dermis_context_t>& context, const ContextHooks& hooks) {
+  if (context != nullptr) return success();
+  dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
+  if (host.timestamp_mask != 0) desc.flags |= DERMIS_CONTEXT_TIMINGS;
+  if (host.ray_query && rays_wanted) desc.flags |= DERMIS_CONTEXT_RAY_QUERY;
+  desc.frames_in_flight = frames_in_flight;
+  desc.queue_family = host.queue_family;
+  desc.instance = host.instance;
+  desc.physical_device = host.physical_device;
+  desc.device = host.device;
+  desc.get_instance_proc_addr = vkGetInstanceProcAddr;
+  dermis_context made = nullptr;
+  const dermis_result result = dermis_context_create(&desc, &made);
+  if (result != DERMIS_OK) return dermis_error("dermis_context_create", result);
+  std::shared_ptr<dermis_context_t> owned(made, dermis_context_destroy);
+  if (hooks.prepare)
+    if (auto prepared = hooks.prepare(made); !prepared) return prepared;
+  context = std::move(owned);
+  return success();
+}
+
+} // namespace demo

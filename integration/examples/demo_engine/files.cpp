@@ -1,0 +1,36 @@
+#include "integration/examples/demo_engine/files.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace demo {
+
+Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_t most) {
+  std::error_code problem;
+  const auto status = std::filesystem::status(path, problem);
+  if (problem || !std::filesystem::exists(status))
+    return Error{ErrorKind::input, fmt::format("{}: there is no such file", path)};
+  if (!std::filesystem::is_regular_file(status))
+    return Error{ErrorKind::input, fmt::format("{}: this is not a regular file", path)};
+  const uint64_t size = std::filesystem::file_size(path, problem);
+  if (problem) return Error{ErrorKind::input, fmt::format("{}: {}", path, problem.message())};
+  if (size > most)
+    return Error{ErrorKind::input,
+                 fmt::format("{}: the file has {} bytes; at most {} are read", path, size, most)};
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<std::byte> bytes(size);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!stream) return Error{ErrorKind::input, fmt::format("{}: the file cannot be read", path)};
+  return bytes;
+}
+
+Result<std::string> read_text_file(const std::string& path) {
+  constexpr uint64_t most = uint64_t{16} << 20;
+  auto bytes = read_binary_file(path, most);
+  if (!bytes) return bytes.error();
+  return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+} // namespace demo

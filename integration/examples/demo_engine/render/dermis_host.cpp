@@ -1,0 +1,458 @@
+#include "integration/examples/demo_engine/render/dermis_host.hpp"
+
+#include "integration/examples/demo_engine/dermis_calls.hpp"
+#include "integration/examples/demo_engine/files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+
+namespace demo {
+
+// Keeps the texts that it delivers until the call that asks for them is over.
+struct Delivery {
+  std::function<std::optional<NamedText>(const std::string& name)> open;
+  std::deque<NamedText> delivered = {};
+};
+
+struct DermisHost {
+  std::shared_ptr<dermis_context_t> context; // the device's, which its graphs share
+  dermis_graph graph = nullptr;
+  std::vector<dermis_slot> slots;
+  std::vector<std::string> slot_names; // slots' own strings end with the graph that is replaced
+  std::vector<std::string> warnings;
+  Delivery shaders;                   // asked as long as the graph lives
+  std::function<Result<>()> recorded; // asked after each recorded frame, if not empty
+};
+
+namespace {
+
+constexpr uint32_t frames_in_flight = 2;
+
+std::optional<Target> target_of(std::string_view slot) {
+  for (size_t i = 0; i < target_count; ++i)
+    if (!slot.empty() && target_info(static_cast<Target>(i)).slot == slot) return static_cast<Target>(i);
+  return std::nullopt;
+}
+
+// Texts that a dermis_graph_desc points into.
+struct Sources {
+  std::string graph;
+  std::vector<std::string> profiles;
+};
+
+Result<Sources> read_sources(const DermisDesc& desc) {
+  Sources sources;
+  auto graph = read_text_file(desc.graph_file);
+  if (!graph) return graph.error();
+  sources.graph = graph.take();
+  for (const ScatteringProfile& profile : desc.profiles) {
+    auto text = read_text_file(profile.file);
+    if (!text) return text.error();
+    sources.profiles.push_back(text.take());
+  }
+  return sources;
+}
+
+// What rays see of the scene, by the name of the slot.
+enum class RayPart : uint8_t { none, structure, vertices, indices, instances, lights };
+
+RayPart ray_part_of(const dermis_slot& slot) {
+  const std::string_view name = slot.name;
+  if (slot.type == DERMIS_SLOT_ACCELERATION_STRUCTURE)
+    return name == "scene" ? RayPart::structure : RayPart::none;
+  if (slot.type != DERMIS_SLOT_BUFFER) return RayPart::none;
+  return name == "vertices"    ? RayPart::vertices
+         : name == "indices"   ? RayPart::indices
+         : name == "instances" ? RayPart::instances
+         : name == "lights"    ? RayPart::lights
+                               : RayPart::none;
+}
+
+bool is_rays(const dermis_slot& slot) {
+  return ray_part_of(slot) != RayPart::none;
+}
+
+Result<> query_slots(DermisHost& host) {
+  uint32_t count = 0;
+  dermis_result result = dermis_graph_slots(host.graph, &count, nullptr);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_slots", result);
+  host.slots.assign(count, dermis_slot DERMIS_SLOT_INIT);
+  if (count > 0) result = dermis_graph_slots(host.graph, &count, host.slots.data());
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_slots", result);
+  host.slot_names.clear();
+  for (const dermis_slot& slot : host.slots)
+    host.slot_names.emplace_back(slot.name);
+  return success();
+}
+
+uint32_t DERMIS_CALL deliver(void* user, const char* name, dermis_source* source) {
+  auto& delivery = *static_cast<Delivery*>(user);
+  std::optional<NamedText> file = delivery.open(name);
+  if (!file) return 0;
+  const NamedText& kept = delivery.delivered.emplace_back(std::move(*file));
+  *source = source_of(kept.name, kept.text);
+  return 1;
+}
+
+// Builds the graph; `unbound` and the formats may only name slots that it has.
+Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& sources,
+                     const std::vector<std::string>& unbound) {
+  std::vector<dermis_profile> profiles;
+  for (size_t i = 0; i < desc.profiles.size(); ++i) {
+    dermis_profile profile = DERMIS_PROFILE_INIT;
+    profile.id = desc.profiles[i].id;
+    profile.source = source_of(desc.profiles[i].file, sources.profiles[i]);
+    profiles.push_back(profile);
+  }
+  std::vector<dermis_slot_format> formats;
+  for (const std::string& name : host.slot_names) {
+    const auto target = target_of(name);
+    if (!target) continue;
+    dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
+    format.name = name.c_str();
+    format.format = target_info(*target).format;
+    formats.push_back(format);
+  }
+  std::vector<const char*> unbound_names;
+  for (const std::string& name : unbound)
+    unbound_names.push_back(name.c_str());
+  dermis_graph_desc info = DERMIS_GRAPH_DESC_INIT;
+  info.source = source_of(desc.graph_file, sources.graph);
+  info.width = desc.width;
+  info.height = desc.height;
+  info.profiles = profiles.data();
+  info.profile_count = static_cast<uint32_t>(profiles.size());
+  info.unbound = unbound_names.data();
+  info.unbound_count = static_cast<uint32_t>(unbound_names.size());
+  info.formats = formats.data();
+  info.format_count = static_cast<uint32_t>(formats.size());
+  std::vector<dermis_source> overlays;
+  for (const NamedText& overlay : desc.overlays)
+    overlays.push_back(source_of(overlay.name, overlay.text));
+  info.overlays = overlays.data();
+  info.overlay_count = static_cast<uint32_t>(overlays.size());
+  Delivery includes{desc.include};
+  if (desc.include) info.include = deliver;
+  info.include_user = &includes; // never asked again: this engine reloads no graph that includes others
+  Report report;
+  dermis_graph graph = nullptr;
+  const dermis_result result = dermis_graph_create(host.context.get(), &info, &graph, &report.handle);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_create", result, report.handle);
+  host.warnings.clear();
+  for (uint32_t i = 0; i < dermis_report_count(report.handle); ++i) {
+    dermis_message message = DERMIS_MESSAGE_INIT;
+    if (dermis_report_message(report.handle, i, &message) == DERMIS_OK)
+      host.warnings.push_back(
+          fmt::format("{}:{}:{}: {}", message.file, message.line, message.column, message.text));
+  }
+  dermis_graph_destroy(host.graph);
+  host.graph = graph;
+  return query_slots(host);
+}
+
+Result<> set_budget(DermisHost& host, const DermisDesc& desc) {
+  if (desc.budget_ms == 0 && !desc.metered && desc.calibration.text.empty()) return success();
+  const dermis_source calibration = source_of(desc.calibration.name, desc.calibration.text);
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  budget.milliseconds = static_cast<float>(desc.budget_ms);
+  budget.flags = desc.metered ? DERMIS_BUDGET_METER : 0;
+  budget.calibration = desc.calibration.text.empty() ? nullptr : &calibration;
+  Report report;
+  const dermis_result result = dermis_graph_set_budget(host.graph, &budget, &report.handle);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_set_budget", result, report.handle);
+  return success();
+}
+
+Result<> use_shaders(DermisHost& host, const DermisDesc& desc) {
+  if (!desc.shaders) return success();
+  host.shaders = {desc.shaders};
+  Report report;
+  const dermis_result result =
+      dermis_graph_reload_shaders(host.graph, deliver, &host.shaders, &report.handle);
+  host.shaders.delivered.clear();
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_reload_shaders", result, report.handle);
+  return success();
+}
+
+// Slots that this engine does not fill. Errors: input (the graph requires one of them).
+Result<std::vector<std::string>> find_unbound(const DermisHost& host, const DermisDesc& desc, bool rays) {
+  std::vector<std::string> unbound;
+  for (const dermis_slot& slot : host.slots) {
+    if (rays && is_rays(slot)) continue;
+    const auto target = target_of(slot.name);
+    if (target && (target != Target::sampling || desc.sampling) && (target != Target::skips || desc.skips))
+      continue;
+    if (slot.required)
+      return Error{
+          ErrorKind::input,
+          fmt::format("graph '{}' wants '{}' bound, which the demo engine does not make; it offers "
+                      "lighting, depth, normal, material, albedo, velocity, thickness, back_lighting and "
+                      "scattered_light",
+                      desc.graph_file, slot.name)};
+    unbound.emplace_back(slot.name);
+  }
+  return unbound;
+}
+
+} // namespace
+
+void DermisHostDeleter::operator()(DermisHost* host) const {
+  dermis_graph_destroy(host->graph);
+  delete host;
+}
+
+Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc, KnownSlots* known) {
+  auto sources = read_sources(desc);
+  if (!sources) return sources.error();
+  DermisHandle host(new DermisHost);
+  if (auto ready = make_context(vulkan, frames_in_flight, true, vulkan.engine_context, desc.hooks); !ready)
+    return ready.error();
+  host->context = vulkan.engine_context;
+  host->recorded = desc.hooks.recorded;
+  const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.skips;
+  if (!whole) known = nullptr;
+  std::vector<std::string> unbound;
+  if (known && known->graph == sources->graph) {
+    host->slot_names = known->names;
+    unbound = known->unbound;
+  } else {
+    // The slots are known only when the graph is there: a first one tells their names, a second one is built
+    // for the formats of this engine and without what it cannot bind.
+    if (auto done = build_graph(*host, desc, *sources, {}); !done) return done.error();
+    auto found = find_unbound(*host, desc, vulkan.ray_query);
+    if (!found) return found.error();
+    unbound = found.take();
+    if (known) *known = {sources->graph, host->slot_names, unbound};
+  }
+  if (auto done = build_graph(*host, desc, *sources, unbound); !done) return done.error();
+  for (const auto& [name, json] : desc.settings) {
+    Report report;
+    const dermis_result set =
+        dermis_graph_set_setting(host->graph, name.c_str(), json.c_str(), &report.handle);
+    if (set == DERMIS_OK) continue;
+    Error error = dermis_error("dermis_graph_set_setting", set, report.handle);
+    error.kind = ErrorKind::usage; // names and values come from whoever starts the rendering
+    return error;
+  }
+  if (auto done = set_budget(*host, desc); !done) return done.error();
+  if (auto done = use_shaders(*host, desc); !done) return done.error();
+  // A setting may change what the graph uses; slots and their names belong to the plan that was replaced.
+  if (auto done = query_slots(*host); !done) return done.error();
+  return host;
+}
+
+Result<bool> reload_graph(DermisHost& host, const std::string& text) {
+  const std::string name = "reloaded graph";
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(name, text);
+  desc.keep = DERMIS_KEEP_ALL & ~DERMIS_KEEP_SOURCE;
+  Report report;
+  const dermis_result result = dermis_graph_reload(host.graph, &desc, &report.handle);
+  if (result == DERMIS_ERROR_CONFIG) return false;
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_reload", result, report.handle);
+  if (auto done = query_slots(host); !done) return done.error();
+  return true;
+}
+
+std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& host) {
+  std::array<VkImageUsageFlags, target_count> usage{};
+  for (const dermis_slot& slot : host.slots)
+    if (const auto target = target_of(slot.name)) usage[static_cast<size_t>(*target)] |= slot.usage;
+  return usage;
+}
+
+namespace {
+
+bool writes(const DermisHost& host, Target target) {
+  return std::any_of(host.slots.begin(), host.slots.end(), [&](const dermis_slot& slot) {
+    return slot.written && slot.bound && target_of(slot.name) == target;
+  });
+}
+
+} // namespace
+
+bool hands_out_light(const DermisHost& host) {
+  return writes(host, Target::scattered);
+}
+
+bool wants_rays(const DermisHost& host) {
+  return std::any_of(host.slots.begin(), host.slots.end(),
+                     [](const dermis_slot& slot) { return slot.bound && is_rays(slot); });
+}
+
+bool hands_out_sampling(const DermisHost& host) {
+  return writes(host, Target::sampling);
+}
+
+bool hands_out_skips(const DermisHost& host) {
+  return writes(host, Target::skips);
+}
+
+Scattering scattering_of(const DermisHost& host) {
+  if (writes(host, Target::lighting)) return Scattering::in_place;
+  return hands_out_light(host) ? Scattering::apart : Scattering::none;
+}
+
+const std::vector<std::string>& warnings_of(const DermisHost& host) {
+  return host.warnings;
+}
+
+namespace {
+
+// This engine waits for its uploads and builds: nothing is left to wait for.
+void bind_rays(const dermis_slot& slot, const RayScene& rays, std::vector<dermis_buffer_binding>& buffers,
+               dermis_acceleration_structure_binding& structure) {
+  const RayPart part = ray_part_of(slot);
+  if (part == RayPart::structure) {
+    structure.slot = slot.id;
+    structure.structure = rays.top.handle;
+    structure.before.stages = structure.after.stages = ray_build_stages;
+    structure.before.access = structure.after.access = ray_build_access;
+    return;
+  }
+  const Buffer& buffer = part == RayPart::vertices    ? rays.vertices
+                         : part == RayPart::indices   ? rays.indices
+                         : part == RayPart::instances ? rays.instances
+                                                      : rays.lights;
+  dermis_buffer_binding& binding = buffers.emplace_back(dermis_buffer_binding DERMIS_BUFFER_BINDING_INIT);
+  binding.slot = slot.id;
+  binding.buffer = buffer.buffer;
+  binding.bytes = buffer.size / slot.stride * slot.stride;
+  binding.before.stages = binding.after.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+  binding.before.access = binding.after.access = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+}
+
+} // namespace
+
+Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,
+                      VkCommandBuffer commands, uint64_t frame_index) {
+  dermis_image_state rests{};
+  rests.layout = resting.layout;
+  rests.stages = resting.stages;
+  rests.access = resting.access;
+  std::vector<dermis_image_binding> bindings;
+  for (const dermis_slot& slot : host.slots) {
+    const auto target = target_of(slot.name);
+    if (!target || !slot.bound) continue;
+    const Image& image = renderer[*target];
+    dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
+    binding.slot = slot.id;
+    binding.format = image.format;
+    binding.image = image.image;
+    binding.view = image.view;
+    binding.width = image.width;
+    binding.height = image.height;
+    binding.before = rests;
+    binding.after = rests;
+    bindings.push_back(binding);
+  }
+  std::vector<dermis_buffer_binding> buffers;
+  dermis_acceleration_structure_binding structure = DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT;
+  for (const dermis_slot& slot : host.slots)
+    if (slot.bound && is_rays(slot)) bind_rays(slot, *renderer.rays, buffers, structure);
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  frame.buffers = buffers.data();
+  frame.buffer_count = static_cast<uint32_t>(buffers.size());
+  frame.structures = &structure;
+  frame.structure_count = structure.structure != VK_NULL_HANDLE ? 1 : 0;
+  frame.command_buffer = commands;
+  frame.bindings = bindings.data();
+  frame.binding_count = static_cast<uint32_t>(bindings.size());
+  frame.frame_index = frame_index;
+  if (state.cut) frame.flags |= DERMIS_FRAME_RESET_HISTORY;
+  frame.completed_frame_index = frame_index - 1; // this engine waits for every frame
+  const auto put = [](const glm::dmat4& m, float(&rows)[16]) {
+    for (int r = 0; r < 4; ++r)
+      for (int c = 0; c < 4; ++c)
+        rows[r * 4 + c] = static_cast<float>(m[c][r]);
+  };
+  put(state.now.clip_from_view, frame.clip_from_view);
+  put(state.now.view_from_world, frame.view_from_world);
+  put(state.previous.clip_from_view, frame.previous_clip_from_view);
+  put(state.previous.view_from_world, frame.previous_view_from_world);
+  frame.jitter_x = static_cast<float>(state.now.jitter.x);
+  frame.jitter_y = static_cast<float>(state.now.jitter.y);
+  frame.metres_per_unit = 1.0f;
+  frame.exposure = static_cast<float>(renderer.scene->exposure);
+  frame.delta_seconds = static_cast<float>(1.0 / renderer.scene->frames_per_second);
+  frame.depth_kind = DERMIS_DEPTH_DEVICE;
+  const dermis_result result = dermis_graph_record(host.graph, &frame);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_record", result);
+  return host.recorded ? host.recorded() : success();
+}
+
+std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index) {
+  uint32_t count = 0;
+  if (dermis_graph_timings(host.graph, frame_index, &count, nullptr) != DERMIS_OK || count == 0) return {};
+  std::vector<dermis_pass_timing> timings(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
+  if (dermis_graph_timings(host.graph, frame_index, &count, timings.data()) != DERMIS_OK) return {};
+  std::vector<PassTime> times;
+  for (const dermis_pass_timing& one : timings)
+    times.push_back({one.pass, static_cast<double>(one.nanoseconds) * 1e-6});
+  return times;
+}
+
+Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
+  dermis_choice choice = DERMIS_CHOICE_INIT;
+  const dermis_result result = dermis_graph_choice(host.graph, frame_index, &choice);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_choice", result);
+  FrameChoice out;
+  out.outcome = choice.outcome;
+  out.technique = choice.technique;
+  out.why = choice.why;
+  out.next_better = choice.next_better;
+  out.budget_ms = choice.budget_ms;
+  out.predicted_ms = choice.predicted_ms;
+  out.predicted_spread_ms = choice.predicted_spread_ms;
+  out.measured_ms = choice.measured_ms;
+  out.metered_ms = choice.metered_ms;
+  out.predicted_rmse = choice.predicted_rmse;
+  out.next_better_missing_ms = choice.next_better_missing_ms;
+  out.mean_d_px = choice.mean_d_px;
+  out.outcomes = choice.outcome_count;
+  out.view_tiles = choice.view_tiles;
+  out.scattering_tiles = choice.scattering_tiles;
+  out.copied_tiles = choice.copied_tiles;
+  out.switches = choice.switches;
+  out.flat_tiles = choice.flat_tiles;
+  out.dispatches = choice.dispatches;
+  out.groups = choice.groups;
+  std::copy(std::begin(choice.sampled_tiles), std::end(choice.sampled_tiles), out.sampled_tiles.begin());
+  out.sample_units = choice.sample_units;
+  out.wanted_units = choice.wanted_units;
+  out.probed_tiles = choice.probed_tiles;
+  out.probed_rmse = static_cast<double>(choice.probed_rmse);
+  out.probed_rmse_low = static_cast<double>(choice.probed_rmse_low);
+  out.probed_rmse_high = static_cast<double>(choice.probed_rmse_high);
+  out.through_rms = static_cast<double>(choice.through_rms);
+  out.miss = choice.miss;
+  return out;
+}
+
+Result<std::vector<FrameHistory>> graph_histories(DermisHost& host) {
+  uint32_t count = 0;
+  dermis_result result = dermis_graph_histories(host.graph, &count, nullptr);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_histories", result);
+  std::vector<FrameHistory> out;
+  if (count == 0) return out;
+  std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
+  result = dermis_graph_histories(host.graph, &count, all.data());
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_histories", result);
+  for (const dermis_history& one : all)
+    out.push_back({one.name, one.valid != 0, one.age, one.text});
+  return out;
+}
+
+std::string graph_calibration(DermisHost& host) {
+  size_t size = 0;
+  if (dermis_graph_calibration(host.graph, &size, nullptr) != DERMIS_OK || size == 0) return "";
+  std::string text(size, '\0');
+  if (dermis_graph_calibration(host.graph, &size, text.data()) != DERMIS_OK) return "";
+  text.resize(size - 1); // without the final 0
+  return text;
+}
+
+} // namespace demo

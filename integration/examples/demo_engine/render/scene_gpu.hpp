@@ -1,0 +1,48 @@
+#pragma once
+// A scene's meshes, materials and maps on the device.
+
+#include "integration/examples/demo_engine/geometry/mesh.hpp"
+#include "integration/examples/demo_engine/render/pipeline.hpp"
+#include "integration/examples/demo_engine/scene/scene.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace demo {
+
+// Four bytes a texel, row by row from the top.
+struct Texture {
+  uint32_t width = 0, height = 0; // 0: none
+  std::vector<std::byte> texels;
+};
+
+// What takes the place of objects of shape "model".
+struct Model {
+  Mesh mesh; // empty: none
+  Texture albedo, normal, specular;
+  glm::dvec3 albedo_factor{1.0};
+  std::vector<std::string> credits, warnings;
+};
+
+struct DrawnMesh {
+  Buffer vertices, indices;
+  uint32_t index_count = 0;
+};
+
+struct SceneGpu {
+  std::vector<DrawnMesh> meshes;
+  std::vector<Mesh> shapes;             // of meshes, where the device has ray queries
+  std::vector<uint32_t> mesh_of;        // one an object
+  std::vector<VkDescriptorSet> maps_of; // one an object
+  Buffer materials;
+  std::vector<Image> images;
+  uint64_t triangles = 0; // of all objects
+};
+
+// Builds each shape once. `maps` is the layout of the set with albedo, normal and specular map.
+// Errors: usage (a shape "model" without a model), environment.
+Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& model,
+                            const OwnedDescriptorPool& pool, const OwnedSetLayout& maps, VkSampler sampler);
+
+} // namespace demo

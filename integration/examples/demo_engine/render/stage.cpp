@@ -1,0 +1,116 @@
+#include "integration/examples/demo_engine/render/stage.hpp"
+
+#include "integration/examples/demo_engine/model/load_model.hpp"
+#include "integration/examples/demo_engine/scene/read_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace demo {
+namespace {
+
+Result<Scene> read(const std::string& path, const std::vector<std::string>& roots) {
+  dermis::Diagnostics diagnostics;
+  auto scene = read_scene(path, diagnostics, roots);
+  if (scene) return *scene;
+  std::string text;
+  for (const dermis::Diagnostic& one : diagnostics.list) {
+    if (!text.empty()) text += '\n';
+    text += dermis::format_for_people(diagnostics, one);
+  }
+  return Error{ErrorKind::input, text};
+}
+
+// A model takes the place of the bust in scenes that were not made for one.
+void put_in_place(Scene& scene) {
+  const auto is = [](Shape shape) { return [shape](const Object& object) { return object.shape == shape; }; };
+  if (std::any_of(scene.objects.begin(), scene.objects.end(), is(Shape::model))) return;
+  const auto bust = std::find_if(scene.objects.begin(), scene.objects.end(), is(Shape::bust));
+  if (bust == scene.objects.end()) return;
+  bust->shape = Shape::model;
+  bust->pattern = Pattern::plain;
+  bust->albedo = glm::dvec3(1.0); // the map has it
+}
+
+void move_camera(Scene& scene, const CameraPlace& place) {
+  const auto point = [](const std::array<double, 3>& p) {
+    return Curve<glm::dvec3>(glm::dvec3(p[0], p[1], p[2]));
+  };
+  scene.camera.orthographic = false;
+  scene.camera.position = point(place.position);
+  scene.camera.target = point(place.target);
+  scene.camera.vertical_fov = Curve<double>(place.vertical_fov);
+}
+
+void zoom_in(Camera& camera, double zoom) {
+  for (auto& key : camera.vertical_fov.keys)
+    key.value = 2.0 * glm::degrees(std::atan(std::tan(0.5 * glm::radians(key.value)) / zoom));
+  for (auto& key : camera.height.keys)
+    key.value /= zoom;
+}
+
+bool same_stage(const RenderOptions& a, const RenderOptions& b) {
+  const auto of = [](const RenderOptions& o) {
+    return std::tie(o.scene, o.model, o.roots, o.width, o.height, o.frames_per_second, o.reversed_depth,
+                    o.jitter, o.taa, o.validation, o.device, o.camera, o.zoom);
+  };
+  return of(a) == of(b);
+}
+
+} // namespace
+
+Result<> load_stage(Stage& stage, const RenderOptions& options) {
+  if (stage.made_for && same_stage(*stage.made_for, options)) return success();
+  stage.kept = {};
+  stage.renderer.reset();
+  stage.made_for.reset();
+  auto scene = read(options.scene, options.roots);
+  if (!scene) return scene.error();
+  if (options.camera) move_camera(*scene, *options.camera);
+  zoom_in(scene->camera, options.zoom);
+  if (options.frames_per_second > 0) scene->frames_per_second = options.frames_per_second;
+  stage.model = {};
+  if (!options.model.mesh.empty()) {
+    auto loaded = load_model(options.model, options.roots);
+    if (!loaded) return loaded.error();
+    stage.model = loaded.take();
+    put_in_place(*scene);
+  }
+  stage.scene = std::make_unique<const Scene>(scene.take());
+  HostOptions host_options;
+  host_options.validation = options.validation;
+  host_options.device = options.device;
+  auto host = create_vulkan_host(host_options);
+  if (!host) return host.error();
+  stage.host = host.take();
+  stage.slots = {}; // other devices may have others
+  stage.made_for = options;
+  return success();
+}
+
+Result<> furnish_stage(Stage& stage, const RenderOptions& options,
+                       const std::array<VkImageUsageFlags, target_count>& usage) {
+  bool fits = stage.renderer != nullptr;
+  for (size_t i = 0; i < target_count; ++i)
+    fits = fits && (usage[i] & ~stage.desc.more_usage[i]) == 0;
+  if (fits) return success();
+  stage.kept = {};
+  stage.renderer.reset();
+  stage.desc = {{options.width, options.height, options.reversed_depth, options.jitter || options.taa},
+                usage};
+  auto renderer = create_renderer(*stage.host, *stage.scene, stage.model, stage.desc);
+  if (!renderer) return renderer.error();
+  stage.renderer = renderer.take();
+  return success();
+}
+
+void StageDeleter::operator()(Stage* stage) const {
+  delete stage;
+}
+
+StageHandle make_stage() {
+  return StageHandle(new Stage);
+}
+
+} // namespace demo

@@ -1,0 +1,26 @@
+#pragma once
+// Curves in scene files: a constant, {"keys": [[seconds, value...], ...]} or {"sine": {...}}.
+
+#include "framegraph/text/reader.hpp"
+#include "integration/examples/demo_engine/scene/curve.hpp"
+
+#include <string_view>
+
+namespace demo {
+
+inline constexpr double longest_seconds = 86400.0; // of a scene
+
+// Inclusive range of every value on the curve's keys.
+struct ValueRange {
+  double least, greatest;
+};
+
+// Leave `curve` untouched when the key is absent and optional, or wrong (an error was added then).
+void read_curve(dermis::ObjectReader& object, std::string_view key, const ValueRange& range,
+                dermis::Need need, const dermis::Document& document, dermis::Diagnostics& diagnostics,
+                Curve<double>& curve);
+void read_curve(dermis::ObjectReader& object, std::string_view key, const ValueRange& range,
+                dermis::Need need, const dermis::Document& document, dermis::Diagnostics& diagnostics,
+                Curve<glm::dvec3>& curve);
+
+} // namespace demo

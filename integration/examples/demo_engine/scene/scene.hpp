@@ -1,0 +1,68 @@
+#pragma once
+// What is to be rendered, over time. Metres, seconds, degrees; x right, y up, right-handed; colours linear
+// Rec.709.
+
+#include "integration/examples/demo_engine/scene/curve.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace demo {
+
+struct Camera {
+  bool orthographic = false;
+  Curve<glm::dvec3> position{glm::dvec3(0, 0, 1)}, target{glm::dvec3(0, 0, 0)};
+  Curve<double> vertical_fov{25.0}; // degrees; perspective
+  Curve<double> height{1.0};        // metres seen from top to bottom; orthographic
+  double near_plane = 0.05, far_plane = 20.0;
+};
+
+enum class LightType : uint8_t { directional, point, spot };
+
+// An intensity of 1 lifts a white diffuse surface that faces the light to radiance 1: anywhere for a
+// directional light, at a distance of 1 m for the others.
+struct Light {
+  LightType type = LightType::directional;
+  Curve<glm::dvec3> position{glm::dvec3(0, 1, 0)}, target{glm::dvec3(0, 0, 0)};
+  glm::dvec3 color{1.0};
+  Curve<double> intensity{1.0};
+  double angle = 40.0;   // full cone, degrees; spot
+  double penumbra = 4.0; // width of its soft edge, degrees
+  double extent = 1.0;   // half size of the shadowed square around target, metres; directional
+  bool shadow = true;
+};
+
+enum class Shape : uint8_t { bust, ear, knot, candle, sphere, plane, box, model };
+enum class Pattern : uint32_t { plain, skin, jade, wax, plaster, checker }; // values as in gbuffer.frag
+
+struct Object {
+  std::string name;
+  Shape shape = Shape::sphere;
+  Curve<glm::dvec3> position, rotation; // rotation: degrees about x, then y, then z
+  glm::dvec3 scale{1.0};
+  uint32_t profile = 0; // 0 = none, else 1 + index into Scene::profiles
+  glm::dvec3 albedo{0.8};
+  double roughness = 0.5, reflectance = 0.04;
+  double emission = 0.0; // times albedo
+  Pattern pattern = Pattern::plain;
+  bool casts_shadow = true;
+};
+
+struct SceneProfile {
+  std::string name, file; // path as it can be opened
+};
+
+struct Scene {
+  std::string name;
+  double frames_per_second = 25.0;
+  double exposure = 1.0;
+  glm::dvec3 background{0.0}, sky{0.0}, ground{0.0}; // ambient light from above and below
+  std::vector<SceneProfile> profiles;                // at most 255
+  Camera camera;
+  std::vector<double> cuts;    // seconds, ascending: the camera jumps there, at most 256
+  std::vector<Light> lights;   // at most 8
+  std::vector<Object> objects; // at most 256
+};
+
+} // namespace demo

@@ -1,0 +1,48 @@
+#pragma once
+// A scene at one moment: where everything is, as matrices. Pure arithmetic, no device.
+
+#include "integration/examples/demo_engine/scene/scene.hpp"
+
+#include <glm/glm.hpp>
+
+#include <vector>
+
+namespace demo {
+
+struct ViewDesc {
+  uint32_t width = 1, height = 1; // pixels
+  bool reversed_depth = false;
+  bool jitter = false;
+};
+
+// Vulkan's clip space: y down, depth 0..1. View space: x right, y up, looking down -z.
+struct ViewState {
+  glm::dmat4 clip_from_view{1.0};        // with jitter
+  glm::dmat4 clip_from_view_steady{1.0}; // without
+  glm::dmat4 view_from_world{1.0};
+  glm::dvec2 jitter{0.0}; // pixels, +x right, +y down
+};
+
+struct SceneState {
+  double seconds = 0.0;
+  bool cut = false; // the camera has jumped since the frame before
+  ViewState now, previous;
+  std::vector<glm::dmat4> world, previous_world; // one an object
+  std::vector<uint32_t> first_layer;             // one a light; no_layer: no shadow
+  std::vector<glm::dmat4> shadow_from_world;     // one a layer; depth 0..1 from the light
+};
+
+inline constexpr uint32_t no_layer = 0xffffffffu;
+inline constexpr uint32_t most_shadow_layers = 24;
+inline constexpr uint32_t shadow_map_size = 1024; // texels a side
+
+// Number of shadow maps that a light takes.
+uint32_t shadow_layers_of(const Light& light);
+
+// Frame 0 has no past, nor has the first after a cut: its previous state is its own.
+SceneState state_at(const Scene& scene, uint32_t frame, const ViewDesc& desc);
+
+// Metres along the view axis of a depth value; any projection of the kind above.
+double view_depth(const glm::dmat4& clip_from_view, double depth);
+
+} // namespace demo

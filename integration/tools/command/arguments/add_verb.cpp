@@ -1,0 +1,103 @@
+#include "integration/tools/command/arguments/add_verb.hpp"
+
+#include <charconv>
+#include <map>
+
+namespace dermis::tools {
+namespace {
+
+std::string check_size(const std::string& text) {
+  uint32_t width = 0, height = 0;
+  return parse_size(text, width, height);
+}
+
+std::string check_named_value(const std::string& text) {
+  const size_t equals = text.find('=');
+  return equals == std::string::npos || equals == 0 || equals + 1 == text.size()
+             ? fmt::format("'{}' is not name=value", text)
+             : "";
+}
+
+} // namespace
+
+CLI::Option* repeat(CLI::Option* option) {
+  return option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
+}
+
+CLI::Option* add_size(CLI::App& verb, Size& size, const char* name) {
+  return verb
+      .add_option_function<std::string>(
+          name, [&size](const std::string& text) { parse_size(text, size.width, size.height); },
+          fmt::format("Pixels, WIDTHxHEIGHT, each 1..{}{}", max_side,
+                      size.width == 0 ? "" : fmt::format(" [{}x{}]", size.width, size.height)))
+      ->check(CLI::Validator(check_size, "WxH"));
+}
+
+void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name) {
+  repeat(verb.add_option_function<std::vector<std::string>>(
+                 name,
+                 [&settings](const std::vector<std::string>& all) {
+                   for (const std::string& one : all) {
+                     const size_t equals = one.find('=');
+                     settings.emplace_back(one.substr(0, equals), one.substr(equals + 1));
+                   }
+                 },
+                 "Value of a setting of the graph; may be repeated")
+             ->check(CLI::Validator(check_named_value, "NAME=VALUE")));
+}
+
+void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what) {
+  repeat(verb.add_option("--root", roots, what)->type_name("DIR"));
+}
+
+void add_parts(CLI::App& verb, GraphParts& parts) {
+  repeat(
+      verb.add_option("--overlay", parts.overlays, "Overlay to apply to the graph; may be repeated, in order")
+          ->type_name("FILE"));
+  add_root(verb, parts.roots,
+           "Folder that graph, scene, model or capture may read from, beside their own; may be repeated");
+  add_kinds(verb, parts.kinds);
+}
+
+void add_kinds(CLI::App& verb, std::vector<std::string>& kinds) {
+  repeat(verb.add_option("--kinds", kinds,
+                         "File of the host's pass kinds (dermis_export_pass_kinds); may be repeated")
+             ->type_name("FILE"));
+}
+
+void add_common(CLI::App& verb, Session& session, bool json_is_file) {
+  static const std::map<std::string, ColorMode> modes{
+      {"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}};
+  const char* group = "Common options";
+  if (!json_is_file)
+    verb.add_flag("--json", session.json, "One JSON document on standard output, for programs")->group(group);
+  verb.add_flag("--quiet,-q", session.quiet, "Errors only")->group(group);
+  add_choice(verb, "--color", session.color, modes, "Colour: auto, always or never [auto]")
+      ->type_name("MODE")
+      ->group(group);
+}
+
+CLI::App& add_group(CLI::App& app, const char* name, const char* what, const char* example) {
+  CLI::App& group = *app.add_subcommand(name, what);
+  group.require_subcommand(1);
+  group.footer(fmt::format("Example:\n  {}", example));
+  return group;
+}
+
+std::string parse_size(const std::string& text, uint32_t& width, uint32_t& height) {
+  const std::string expected =
+      fmt::format("expected WIDTHxHEIGHT such as 640x360, each 1..{}, found '{}'", max_side, text);
+  const char* end = text.data() + text.size();
+  uint32_t sides[2] = {};
+  const auto first = std::from_chars(text.data(), end, sides[0]);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != 'x') return expected;
+  const auto second = std::from_chars(first.ptr + 1, end, sides[1]);
+  if (second.ec != std::errc() || second.ptr != end) return expected;
+  for (const uint32_t side : sides)
+    if (side < 1 || side > max_side) return expected;
+  width = sides[0];
+  height = sides[1];
+  return "";
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,68 @@
+#pragma once
+// What the verbs' options have in common, and how a verb is added. Internal to arguments/.
+
+#include "integration/tools/command/arguments/arguments.hpp"
+#include "integration/tools/command/verbs.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+inline constexpr uint32_t max_side = 16384; // pixels; dermis.h, dermis_graph_desc
+inline constexpr uint32_t max_frames = 100000;
+
+// The option may be repeated and takes one value each time, so that a positional may follow.
+CLI::Option* repeat(CLI::Option* option);
+
+CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
+void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
+void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
+void add_parts(CLI::App& verb, GraphParts& parts);
+// --kinds alone, for verbs that take no other parts; add_parts() has it.
+void add_kinds(CLI::App& verb, std::vector<std::string>& kinds);
+void add_common(CLI::App& verb, Session& session, bool json_is_file);
+
+// One of some names, each of which stands for a value.
+template <class Value>
+CLI::Option* add_choice(CLI::App& verb, const char* option, Value& value,
+                        const std::map<std::string, Value>& names, const char* what) {
+  return verb
+      .add_option_function<std::string>(
+          option, [&value, names](const std::string& name) { value = names.at(name); }, what)
+      ->check(CLI::IsMember(names));
+}
+
+// A verb that has verbs below it.
+CLI::App& add_group(CLI::App& app, const char* name, const char* what, const char* example);
+
+// The verb's options live as long as the function that runs it.
+template <class Options, class Declare>
+void add_verb(CLI::App& app, Invocation& invocation, const char* name, const char* what, const char* example,
+              ExitCode (*work)(const Session&, const Options&), Declare declare, bool json_is_file = false) {
+  CLI::App& verb = *app.add_subcommand(name, what);
+  verb.footer(fmt::format("Example:\n  {}", example));
+  auto options = std::make_shared<Options>();
+  add_common(verb, invocation.session, json_is_file);
+  declare(verb, *options);
+  verb.callback([&invocation, options, work] {
+    invocation.run = [options, work](const Session& session) { return work(session, *options); };
+  });
+}
+
+// Verbs by what they do; each function adds its own.
+void add_text_verbs(CLI::App& app, Invocation& invocation);
+void add_plan_verbs(CLI::App& app, Invocation& invocation);
+void add_schema_verb(CLI::App& app, Invocation& invocation);
+void add_docs_verb(CLI::App& app, Invocation& invocation);
+void add_doctor_verb(CLI::App& app, Invocation& invocation);
+void add_picture_verbs(CLI::App& app, Invocation& invocation);
+void add_bench_verbs(CLI::App& app, Invocation& invocation);
+void add_shell_verbs(CLI::App& app, Invocation& invocation);
+
+} // namespace dermis::tools

@@ -1,0 +1,106 @@
+#include "integration/tools/command/arguments/arguments.hpp"
+
+#include "framegraph/text/suggest.hpp"
+#include "integration/tools/command/arguments/add_verb.hpp"
+
+#include <CLI/CLI.hpp>
+#include <dermis/dermis.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+std::string_view name_part(std::string_view argument) {
+  return argument.substr(0, argument.find('='));
+}
+
+// Returns the subcommand of that name; null and a message in `problem` if there is none.
+CLI::App* find_subcommand(CLI::App& app, const std::string& name, std::string_view what,
+                          std::string& problem) {
+  const std::vector<CLI::App*> all = app.get_subcommands([](CLI::App*) { return true; });
+  std::vector<std::string> names;
+  for (CLI::App* one : all) {
+    if (one->get_name() == name) return one;
+    names.push_back(one->get_name());
+  }
+  const std::vector<std::string_view> words(names.begin(), names.end());
+  const std::string suggestion = did_you_mean(name, words);
+  problem = fmt::format("there is no {} '{}'; {}", what, name,
+                        suggestion.empty() ? "verbs: " + list_words(words) : suggestion);
+  return nullptr;
+}
+
+// A misspelt verb or option, said before CLI11 complains of what else is missing; "" when all are known.
+std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || std::string_view(argv[1]).starts_with("-")) return "";
+  std::string problem;
+  CLI::App* verb = find_subcommand(app, argv[1], "verb", problem);
+  if (verb == nullptr) return problem;
+  int options_from = 2;
+  const bool has_inner = !verb->get_subcommands([](CLI::App*) { return true; }).empty();
+  if (argc > 2 && has_inner && !std::string_view(argv[2]).starts_with("-")) {
+    verb = find_subcommand(*verb, argv[2], fmt::format("verb of '{}'", argv[1]), problem);
+    if (verb == nullptr) return problem;
+    options_from = 3;
+  }
+  for (int i = options_from; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string name(name_part(argv[i]));
+    if (!name.starts_with("--") || verb->get_option_no_throw(name) != nullptr) continue;
+    std::vector<std::string> names;
+    for (const CLI::Option* one : verb->get_options())
+      for (const std::string& known : one->get_lnames())
+        names.push_back("--" + known);
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    const std::string suggestion = did_you_mean(name, words);
+    return fmt::format("'{}' has no option '{}'; {}", argv[1], name,
+                       suggestion.empty() ? fmt::format("'dermis {} --help' lists them", argv[1])
+                                          : suggestion);
+  }
+  return "";
+}
+
+} // namespace
+
+Invocation read_arguments(int argc, const char* const* argv) {
+  Invocation invocation;
+  CLI::App app("Frame graphs that scatter light under the skin.\n", "dermis");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", fmt::format("dermis {}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR,
+                                                DERMIS_VERSION_PATCH));
+  app.footer("Example:\n"
+             "  dermis render configs/scenes/bust.json --graph configs/graphs/sap.json --out out/\n\n"
+             "Exit codes: 0 done; 1 the input has problems; 2 bad option or value; 3 no driver, unwritable "
+             "output or\n"
+             "missing package; 4 a defect of the program; 130 stopped by Ctrl-C.");
+  add_text_verbs(app, invocation);
+  add_plan_verbs(app, invocation);
+  add_schema_verb(app, invocation);
+  add_docs_verb(app, invocation);
+  add_doctor_verb(app, invocation);
+  add_picture_verbs(app, invocation);
+  add_bench_verbs(app, invocation);
+  add_shell_verbs(app, invocation);
+
+  for (int i = 0; i < argc; ++i)
+    invocation.session.command += (i == 0 ? "" : " ") + std::string(argv[i]);
+
+  // Also a line that cannot be read is answered in the way it asks for.
+  invocation.session.json = std::count(argv, argv + argc, std::string_view("--json")) > 0;
+  invocation.message = find_misspelling(app, argc, argv);
+  if (!invocation.message.empty()) return invocation;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    invocation.help = app.help(); // of the verb that was chosen, with the whole of its name
+  } catch (const CLI::CallForVersion& version) {
+    invocation.help = std::string(version.what()) + "\n";
+  } catch (const CLI::ParseError& error) {
+    invocation.message = error.what();
+    invocation.run = nullptr;
+  }
+  return invocation;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,97 @@
+#include "integration/tools/command/bench/choice/budget_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace dermis::tools {
+namespace {
+
+constexpr double within = 0.99; // share of frames whose meter a single technique must keep
+
+std::span<const RunFrame> judged_frames(const SceneRun& run) {
+  return std::span(run.frames).subspan(unjudged_frames);
+}
+
+} // namespace
+
+double Single::metered_at(double share) const {
+  std::vector<double> sorted = metered_ms;
+  std::sort(sorted.begin(), sorted.end());
+  const auto rank = static_cast<size_t>(std::ceil(share * double(sorted.size())));
+  return sorted[std::clamp<size_t>(rank, 1, sorted.size()) - 1];
+}
+
+Single single_of(const SceneRun& run, std::vector<NamedValue> set) {
+  Single single{std::move(set), {}, pooled_rmse(run)};
+  for (const RunFrame& frame : judged_frames(run))
+    single.metered_ms.push_back(frame.choice.metered_ms);
+  return single;
+}
+
+const Single* best_within(const std::vector<Single>& singles, double budget_ms) {
+  const Single* best = nullptr;
+  for (const Single& one : singles)
+    if (one.metered_at(within) <= meter_tolerance * budget_ms && (best == nullptr || one.rmse < best->rmse))
+      best = &one;
+  return best;
+}
+
+double budget_at(const std::vector<Single>& singles, double share) {
+  double floor_ms = singles.front().metered_at(within);
+  for (const Single& single : singles)
+    floor_ms = std::min(floor_ms, single.metered_at(within));
+  const auto best = std::min_element(singles.begin(), singles.end(),
+                                     [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
+  return floor_ms + share * (best->metered_at(within) - floor_ms);
+}
+
+TimedFigures judge_times(const SceneRun& run, double budget_ms) {
+  TimedFigures out;
+  std::vector<double> times;
+  for (const RunFrame& frame : judged_frames(run))
+    times.push_back(frame.choice.measured_ms);
+  std::sort(times.begin(), times.end());
+  for (const double ms : times) {
+    out.mean_ms += ms / double(times.size());
+    out.over += ms > measured_tolerance * budget_ms ? 1.0 / double(times.size()) : 0;
+  }
+  constexpr double tail = 0.95;
+  out.p95_ms = times[static_cast<size_t>(tail * double(times.size() - 1) + 0.5)];
+  out.switches = double(run.frames.back().choice.switches);
+  return out;
+}
+
+TimedFigures median_of(const std::vector<TimedFigures>& runs) {
+  const auto median = [&](double TimedFigures::*figure) {
+    std::vector<double> values;
+    for (const TimedFigures& run : runs)
+      values.push_back(run.*figure);
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  return {median(&TimedFigures::mean_ms), median(&TimedFigures::p95_ms), median(&TimedFigures::over),
+          median(&TimedFigures::switches)};
+}
+
+double share_over_meter(const SceneRun& run, double budget_ms) {
+  double over = 0;
+  const auto frames = judged_frames(run);
+  for (const RunFrame& frame : frames)
+    over += frame.choice.metered_ms > meter_tolerance * budget_ms ? 1 / double(frames.size()) : 0;
+  return over;
+}
+
+double pooled_rmse(const SceneRun& run) {
+  double sum = 0;
+  uint32_t count = 0;
+  for (const RunFrame& frame : judged_frames(run))
+    if (frame.rmse) {
+      sum += *frame.rmse * *frame.rmse;
+      ++count;
+    }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,92 @@
+#include "integration/tools/command/bench/dynamic/figures.hpp"
+
+#include "integration/examples/demo_engine/engine.hpp"
+#include "integration/tools/files/metrics.hpp"
+
+#include <cmath>
+
+namespace dermis::tools {
+namespace {
+
+constexpr double accumulation = 0.1; // weight of the new frame
+
+double luminance(const std::vector<double>& light, size_t pixel) {
+  double sum = 0;
+  for (size_t c = 0; c < 3; ++c)
+    sum += rec709[c] * light[3 * pixel + c];
+  return sum;
+}
+
+std::vector<uint8_t> shown(const std::vector<double>& light, double exposure) {
+  demo::FloatImage image{static_cast<uint32_t>(light.size() / 3), 1, 3, {}};
+  for (const double value : light)
+    image.texels.push_back(static_cast<float>(value * exposure));
+  return demo::tonemap(image);
+}
+
+// Mean of a square over pixels.
+struct Mean {
+  double sum = 0;
+  uint64_t count = 0;
+  void add_square(double x) {
+    sum += x * x;
+    ++count;
+  }
+  double value() const { return count > 0 ? sum / double(count) : 0; }
+};
+
+} // namespace
+
+SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t counted, bool still,
+                                 double exposure) {
+  SequenceFigures figures;
+  double frame_sum = 0, shown_sum = 0, accumulated_sum = 0;
+  uint32_t used = 0;
+  Mean flicker;
+  std::vector<double> found_mean, truth_mean;
+  for (uint32_t t = 0; t < frames.size(); ++t) {
+    const FrameLight& now = frames[t];
+    const size_t pixels = now.truth.size() / 3;
+    Mean error;
+    for (size_t i = 0; i < pixels; ++i)
+      error.add_square(exposure * (luminance(now.found, i) - luminance(now.truth, i)));
+    figures.psnr_db.push_back(psnr_from_mse(error.value()));
+    if (still) {
+      if (found_mean.empty()) {
+        found_mean = now.found;
+        truth_mean = now.truth;
+      }
+      for (size_t i = 0; i < found_mean.size(); ++i) {
+        found_mean[i] += accumulation * (now.found[i] - found_mean[i]);
+        truth_mean[i] += accumulation * (now.truth[i] - truth_mean[i]);
+      }
+    }
+    if (t < counted) continue;
+    ++used;
+    frame_sum += error.value();
+    const std::vector<uint8_t> here = shown(now.found, exposure), there = shown(now.truth, exposure);
+    Mean eight_bit;
+    for (size_t i = 0; i < here.size(); ++i)
+      eight_bit.add_square((double(here[i]) - double(there[i])) / 255.0);
+    shown_sum += eight_bit.value();
+    Mean accumulated;
+    for (size_t i = 0; !still && i < now.accumulated.size() / 3; ++i)
+      accumulated.add_square(exposure * (luminance(now.accumulated, i) - luminance(now.truth, i)));
+    for (size_t i = 0; still && i < pixels; ++i) {
+      accumulated.add_square(exposure * (luminance(found_mean, i) - luminance(truth_mean, i)));
+      if (t == 0) continue;
+      const FrameLight& last = frames[t - 1];
+      flicker.add_square(exposure * ((luminance(now.found, i) - luminance(last.found, i)) -
+                                     (luminance(now.truth, i) - luminance(last.truth, i))));
+    }
+    accumulated_sum += accumulated.value();
+  }
+  if (used == 0) return figures;
+  figures.psnr_db_frame = psnr_from_mse(frame_sum / used);
+  figures.psnr_db_sdr8 = psnr_from_mse(shown_sum / used);
+  if (still || accumulated_sum > 0) figures.psnr_db_accumulated = psnr_from_mse(accumulated_sum / used);
+  if (still) figures.flicker = std::sqrt(flicker.value());
+  return figures;
+}
+
+} // namespace dermis::tools

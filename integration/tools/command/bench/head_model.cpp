@@ -1,0 +1,31 @@
+// The head scan by the names of its files.
+
+#include "integration/tools/command/bench/subject.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace dermis::tools {
+namespace {
+
+constexpr double head_height = 0.426; // metres; .24 from chin to crown
+constexpr const char* mesh_name = "LeePerrySmith.glb";
+
+} // namespace
+
+demo::ModelOptions head_model(const std::string& folder) {
+  if (folder.empty()) return {};
+  const std::filesystem::path head = folder;
+  return {(head / mesh_name).string(), (head / "Map-COL.jpg").string(),
+          (head / "Infinite-Level_02_Tangent_SmoothUV.jpg").string(), (head / "Map-SPEC.jpg").string(),
+          head_height};
+}
+
+std::string why_no_head(const std::string& folder) {
+  if (folder.empty()) return "no model was given (--head FOLDER)";
+  const std::string mesh = (std::filesystem::path(folder) / mesh_name).string();
+  return std::filesystem::exists(mesh) ? "" : fmt::format("there is no '{}'", mesh);
+}
+
+} // namespace dermis::tools

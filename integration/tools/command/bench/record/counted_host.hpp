@@ -1,0 +1,53 @@
+#pragma once
+// A host for measuring the library itself: a graph on a device that runs nothing, through the C interface.
+
+#include "integration/examples/demo_engine/context_hooks.hpp"
+#include "integration/tools/null_device/null_device.hpp"
+
+#include <dermis/dermis.h>
+
+#include <string>
+#include <vector>
+
+namespace dermis::tools {
+
+struct CountedInput {
+  std::string name, graph; // name for messages, JSON text
+  std::string profile_name, profile;
+  uint32_t width = 0, height = 0;
+  demo::ContextHooks hooks = {};
+};
+
+// One thread at a time.
+class CountedHost {
+public:
+  CountedHost() = default;
+  ~CountedHost();
+  CountedHost(const CountedHost&) = delete;
+  CountedHost& operator=(const CountedHost&) = delete;
+
+  // Every image that the graph can use is bound, neither buffers nor scenes. Returns what went wrong, as text
+  // for people; "" for nothing.
+  std::string open(const CountedInput& input);
+  // The next frame; images alternate between two sets, as those of hosts with two frames in flight do.
+  dermis_result record_frame();
+
+  NullDevice& device() { return device_; }
+  dermis_graph graph() const { return graph_; }
+  // Passes of the plan.
+  uint32_t passes() const;
+
+private:
+  static constexpr uint32_t image_sets = 2;
+  std::string create(const dermis_graph_desc& desc);
+  std::vector<dermis_slot> slots() const; // empty: dermis_last_error() says why
+  std::string bind();
+
+  NullDevice device_;
+  dermis_context context_ = nullptr;
+  dermis_graph graph_ = nullptr;
+  std::vector<dermis_image_binding> bindings_[image_sets];
+  dermis_frame frame_ = DERMIS_FRAME_INIT;
+};
+
+} // namespace dermis::tools

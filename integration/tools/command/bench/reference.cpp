@@ -1,0 +1,70 @@
+#include "integration/tools/command/bench/reference.hpp"
+
+#include "integration/tools/command/bench/kept_values.hpp"
+#include "integration/tools/command/run/truth_run.hpp"
+#include "integration/tools/files/capture_truth.hpp"
+
+namespace dermis::tools {
+namespace {
+
+// Changes whenever the truth's definition does.
+constexpr uint64_t definition_version = 1;
+
+Hash hash_of(const TruthFrame& frame, std::span<const uint32_t> pixels) {
+  Hash hash;
+  const uint64_t sizes[] = {definition_version, frame.width, frame.height, frame.rays.perspective};
+  const double rays[] = {frame.rays.scale_x, frame.rays.offset_x, frame.rays.scale_y, frame.rays.offset_y};
+  hash.add(std::span<const uint64_t>(sizes));
+  hash.add(std::span<const double>(rays));
+  hash.add(frame.light);
+  hash.add(frame.depth);
+  hash.add(frame.scatter_scale);
+  hash.add(frame.profile);
+  hash.add(frame.d_m);
+  hash.add(pixels);
+  return hash;
+}
+
+std::optional<std::vector<double>> compute(const Session& session, const TruthFrame& frame,
+                                           const std::string& what, std::span<const uint32_t> pixels,
+                                           bool planar) {
+  const subsurface::TruthInput input = frame.input();
+  if (!planar) return run_truth(session, what, input, pixels);
+  const std::vector<double> everywhere = subsurface::truth_everywhere(input);
+  std::vector<double> chosen;
+  chosen.reserve(3 * pixels.size());
+  for (const uint32_t pixel : pixels)
+    for (size_t c = 0; c < 3; ++c)
+      chosen.push_back(everywhere[size_t{3} * pixel + c]);
+  return chosen;
+}
+
+} // namespace
+
+std::optional<Reference> make_reference(const Session& session, const CapturedFrame& frame,
+                                        const std::string& what, uint32_t subset, const std::string& cache) {
+  const TruthFrame truth = make_truth_frame(frame);
+  const bool planar = subsurface::is_planar(truth.input());
+  Reference reference;
+  reference.population = subsurface_pixels(truth.profile);
+  reference.everywhere = planar || subset == 0 || subset >= reference.population;
+  reference.pixels = subsurface::stratified_subset(
+      truth.width, truth.height, truth.profile,
+      reference.everywhere ? static_cast<uint32_t>(truth.profile.size()) : subset);
+  ExposureMeter meter;
+  meter.add(truth.light, truth.profile);
+  reference.exposure = meter.result();
+
+  const Hash hash = hash_of(truth, reference.pixels);
+  if (auto kept = read_kept(cache, hash, 3 * reference.pixels.size())) {
+    reference.light = std::move(*kept);
+    return reference;
+  }
+  auto light = compute(session, truth, what, reference.pixels, planar);
+  if (!light) return std::nullopt;
+  reference.light = std::move(*light);
+  keep(cache, hash, reference.light);
+  return reference;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,64 @@
+// Scenes that the demo engine renders, seen as a graph would see them.
+
+#include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/command/run/rendered_frame.hpp"
+#include "integration/tools/command/run/truth_run.hpp"
+#include "integration/tools/files/capture_truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::tools {
+namespace {
+
+constexpr double half_a_degree = 0.5 * 3.14159265358979323846 / 180; // in radians
+constexpr double close_enough = 0.02;                                // of d_px
+constexpr int most_tries = 5;
+
+demo::Result<Subject> render_once(const SceneRequest& request, const SubjectOptions& options,
+                                  const std::optional<demo::CameraPlace>& camera) {
+  demo::RenderOptions engine;
+  engine.scene = request.file;
+  if (request.model) engine.model = options.model;
+  engine.width = options.width;
+  engine.height = options.height;
+  engine.camera = camera;
+  std::vector<CaptureProfile> profiles;
+  Subject subject{request.scene, request.framing, {}, 0};
+  demo::RenderCallbacks callbacks;
+  callbacks.on_start = [&](const demo::RenderInfo& info) -> demo::Result<> {
+    auto read = read_profiles(info.profiles);
+    if (!read) return read.error();
+    profiles = read.take();
+    return demo::success();
+  };
+  callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
+    auto captured = captured_frame(frame, profiles);
+    if (!captured) return captured.error();
+    subject.frame = captured.take();
+    return demo::success();
+  };
+  if (auto done = demo::render(engine, callbacks); !done) return done.error();
+  const TruthFrame truth = make_truth_frame(subject.frame);
+  subject.d_px = median_d_px(truth.input());
+  return subject;
+}
+
+} // namespace
+
+demo::Result<Subject> render_subject(const SceneRequest& request, const SubjectOptions& options) {
+  std::optional<demo::CameraPlace> camera = request.camera;
+  auto subject = render_once(request, options, camera);
+  if (!subject || request.d_px.empty() || !camera) return subject;
+  const double wanted = request.d_px.front();
+  for (int i = 0; i < most_tries && subject->d_px > 0 && std::abs(subject->d_px / wanted - 1) > close_enough;
+       ++i) {
+    const double half = std::tan(camera->vertical_fov * half_a_degree) * subject->d_px / wanted;
+    camera->vertical_fov = std::clamp(std::atan(half) / half_a_degree, 1.0, 150.0);
+    subject = render_once(request, options, camera);
+    if (!subject) return subject;
+  }
+  return subject;
+}
+
+} // namespace dermis::tools

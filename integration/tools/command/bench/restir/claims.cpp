@@ -1,0 +1,58 @@
+#include "integration/tools/command/bench/restir/claims.hpp"
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+constexpr double much = 0.5;   // of the error is left at most
+constexpr double chance = 1.1; // that a mean square error of this many pixels and frames is off by
+
+// The row of as many paths with this reuse and shift; null where it was not measured.
+const RestirRow* find_row(std::span<const RestirRow> rows, const RestirRow& like, std::string_view reuse,
+                          std::string_view shift) {
+  const auto found = std::find_if(rows.begin(), rows.end(), [&](const RestirRow& row) {
+    return row.samples == like.samples && row.variant.reuse == reuse && row.variant.shift == shift;
+  });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+std::optional<double> limit_of(std::span<const RestirRow> rows, const RestirRow& row) {
+  const RestirVariant& variant = row.variant;
+  if (variant.shift == "sequential") {
+    const RestirRow* reconnected = find_row(rows, row, variant.reuse, "reconnection");
+    const RestirRow* replayed = find_row(rows, row, variant.reuse, "delayed");
+    if (reconnected == nullptr || replayed == nullptr) return std::nullopt;
+    return chance * std::max(reconnected->error.all.mse, replayed->error.all.mse);
+  }
+  const RestirRow* none = find_row(rows, row, "none", "");
+  if (none == nullptr || variant.reuse == "none") return std::nullopt;
+  if (variant.reuse == "spatial") return chance * none->error.all.mse;
+  const RestirRow* spatial = find_row(rows, row, "spatial", variant.shift);
+  const bool both = variant.reuse == "spatiotemporal" && spatial != nullptr;
+  return much * (both ? std::min(none->error.all.mse, spatial->error.all.mse) : none->error.all.mse);
+}
+
+} // namespace
+
+std::string expectation_text() {
+  return "by frames, not by time: spatial reuse no more error than none, 10 % for chance; reuse with history "
+         "half of it at most, and half of spatial reuse alone; a sequence no more than the worse of its "
+         "parts";
+}
+
+void expect_of_reuse(std::span<RestirRow> rows) {
+  for (RestirRow& row : rows)
+    if (row.samples > 0) row.mse_at_most = limit_of(rows, row);
+}
+
+size_t rows_that_err_more(const ReportTable& table) {
+  size_t count = 0;
+  for (size_t i = 0; i < table.rows.size(); ++i) {
+    const bool* holds = std::get_if<bool>(&table.at(i, "holds"));
+    count += holds != nullptr && !*holds ? 1 : 0;
+  }
+  return count;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,25 @@
+// Whether this machine can measure light by rays.
+
+#include "integration/examples/demo_engine/vulkan_host.hpp"
+#include "integration/tools/command/bench/restir/ray_frames.hpp"
+#include "integration/tools/command/verbs.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis::tools {
+
+std::string why_no_rays(const demo::VulkanHost& host) {
+  if (host.ray_query) return "";
+  return fmt::format(
+      "'{}' has no ray queries (VK_KHR_ray_query, VK_KHR_acceleration_structure); where there "
+      "is no such device, tests/scripts/fetch_driver.sh brings a software driver with them and "
+      "prints its manifest: set VK_DRIVER_FILES to that",
+      host.properties.deviceName);
+}
+
+std::string why_no_restir() {
+  auto host = demo::create_vulkan_host({});
+  return host ? why_no_rays(**host) : host.error().text;
+}
+
+} // namespace dermis::tools

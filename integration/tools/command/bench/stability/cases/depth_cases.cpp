@@ -1,0 +1,129 @@
+// Depths that are none, and depth as depth tests leave it, whichever way it runs and wherever it ends.
+#include "integration/tools/command/bench/stability/cases.hpp"
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+// The right half has a depth that is none; the left one goes on as if there were nothing.
+StabilityCase odd_depth(std::string_view name, float depth) {
+  const auto with = [depth](bool damaged) {
+    return [depth, damaged](uint32_t) {
+      CapturedFrame frame = sound_frame();
+      for (uint32_t y = 0; y < stability_side; ++y)
+        for (uint32_t x = stability_side / 2; x < stability_side; ++x) {
+          frame.depth.at(x, y, 0) = damaged ? depth : 0.0f;
+          frame.profile[y * stability_side + x] = damaged ? 1 : 0;
+        }
+      return frame;
+    };
+  };
+  StabilityCase made;
+  made.name = name;
+  made.given = with(true);
+  made.same_as = with(false);
+  made.bound = furnace;
+  return made;
+}
+
+StabilityCase far_plane(std::string_view name, float metres) {
+  StabilityCase made;
+  made.name = name;
+  made.given = [metres](uint32_t) {
+    CapturedFrame frame = sound_frame();
+    std::fill(frame.depth.values.begin(), frame.depth.values.end(), metres);
+    return frame;
+  };
+  made.wanted = [](uint32_t) { return 1.0; };
+  made.bound = furnace;
+  return made;
+}
+
+StabilityCase nothing_but_sky() {
+  StabilityCase made;
+  made.name = "nothing_but_sky";
+  made.given = [](uint32_t) {
+    CapturedFrame frame = sound_frame();
+    std::fill(frame.depth.values.begin(), frame.depth.values.end(), 0.0f);
+    return frame;
+  };
+  made.finite_only = true;
+  return made;
+}
+
+enum class View : uint8_t { perspective, orthographic };
+enum class Range : uint8_t { forward, reversed };
+constexpr double near_m = 0.1, far_m = 100, no_far_m = infinity;
+
+// Rows and columns of a projection that matter for depth: device = (f * z + g) / w at view z, w = -z or 1.
+subsurface::Matrix4 projection(View view, Range range, double far_plane, double slope) {
+  subsurface::Matrix4 m{};
+  m[0] = 1 / slope;
+  m[5] = -1 / slope;
+  double f = 0, g = 0;
+  if (view == View::perspective) {
+    const bool ends = far_plane < no_far_m;
+    f = ends ? -far_plane / (far_plane - near_m) : -1;
+    g = ends ? -far_plane * near_m / (far_plane - near_m) : -near_m;
+    m[14] = -1;
+    if (range == Range::reversed) f = -1 - f, g = -g; // 1 - device
+  } else {
+    f = -1 / (far_plane - near_m);
+    g = -near_m / (far_plane - near_m);
+    m[15] = 1;
+    if (range == Range::reversed) f = -f, g = 1 - g;
+  }
+  m[10] = f;
+  m[11] = g;
+  return m;
+}
+
+// A plane at 1 m that turns away, with sky on the right: as a depth buffer it means what it does as
+// distances.
+StabilityCase depth_buffer(std::string_view name, View view, Range range, double far_plane) {
+  const auto make = [=](uint32_t) {
+    CapturedFrame frame = textured_frame();
+    FrameDescription& description = frame.description;
+    const double pitch = *description.pixel_pitch_m;
+    description.pixel_pitch_m.reset();
+    description.perspective = view == View::perspective;
+    description.clip_from_view = projection(view, range, far_plane, pitch * stability_side / 2);
+    complete_projection(description, frame.rays);
+    description.previous_clip_from_view = description.clip_from_view;
+    for (uint32_t y = 0; y < stability_side; ++y)
+      for (uint32_t x = 0; x < stability_side; ++x) {
+        const bool sky = x >= 36;
+        frame.depth.at(x, y, 0) = sky ? 0.0f : static_cast<float>(1 + pitch * x);
+        if (sky) frame.profile[y * stability_side + x] = 0;
+      }
+    return frame;
+  };
+  StabilityCase made;
+  made.name = name;
+  made.given = made.same_as = make;
+  made.depth = DepthGiven::depth_buffer;
+  made.judged = Judged::light_rms;
+  made.bound = furnace; // a float's step is a micrometre there, a thousandth of d
+  return made;
+}
+
+} // namespace
+
+std::vector<StabilityCase> depth_cases() {
+  return {odd_depth("depth_zero_beside", 0),
+          odd_depth("depth_nan_beside", not_a_number),
+          odd_depth("depth_infinity_beside", infinity),
+          odd_depth("depth_negative_beside", -1),
+          far_plane("depth_1e-6_m", 1e-6f),
+          far_plane("depth_1e6_m", 1e6f),
+          nothing_but_sky(),
+          depth_buffer("depth_forward", View::perspective, Range::forward, far_m),
+          depth_buffer("depth_reversed", View::perspective, Range::reversed, far_m),
+          depth_buffer("depth_forward_infinite_far", View::perspective, Range::forward, no_far_m),
+          depth_buffer("depth_reversed_infinite_far", View::perspective, Range::reversed, no_far_m),
+          depth_buffer("depth_orthographic", View::orthographic, Range::forward, far_m),
+          depth_buffer("depth_orthographic_reversed", View::orthographic, Range::reversed, far_m)};
+}
+
+} // namespace dermis::tools

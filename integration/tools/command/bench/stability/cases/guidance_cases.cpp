@@ -1,0 +1,76 @@
+// Numbers of samples that follow what was found: how soon, and by what not.
+#include "integration/tools/command/bench/stability/cases.hpp"
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+// Light and dark halves.
+CapturedFrame edge_frame() {
+  CapturedFrame frame = sound_frame();
+  for (uint32_t y = 0; y < stability_side; ++y)
+    for (uint32_t x = 0; x < stability_side / 2; ++x)
+      set_light(frame, x, y, 0);
+  return frame;
+}
+
+// Even light for 600 frames leaves nothing that varies; then there is an edge. In the second frame with it a
+// pixel beside it takes twice the least number of samples.
+StabilityCase wakes_up() {
+  constexpr uint32_t comes = 600; // frame
+  StabilityCase made;
+  made.name = "samples_after_600_even_frames";
+  made.frames = comes + 3;
+  made.given = [](uint32_t frame) { return frame < comes ? sound_frame() : edge_frame(); };
+  made.judged = Judged::samples_at_edge;
+  made.asked = Asked::guided;
+  made.large = true;
+  made.first_judged = comes + 1;
+  made.bound = 0.5;
+  return made;
+}
+
+// Light in other units under another exposure is the same light.
+StabilityCase in_other_units() {
+  const auto with = [](float change) {
+    return [change](uint32_t frame) {
+      CapturedFrame out = edge_frame();
+      if (frame < 8) return out;
+      for (float& value : out.lighting.values)
+        value *= change;
+      out.description.exposure = 1 / change;
+      return out;
+    };
+  };
+  StabilityCase made;
+  made.name = "samples_under_exposure_x16";
+  made.frames = 24;
+  made.given = with(16);
+  made.same_as = with(1);
+  made.judged = Judged::mean_samples;
+  made.asked = Asked::guided;
+  made.bound = 0.02;
+  return made;
+}
+
+// One pixel that takes many samples keeps its group waiting: the most in a tile over its mean, which the
+// range of the number of samples (8 to 64) bounds.
+StabilityCase uneven() {
+  StabilityCase made;
+  made.name = "samples_in_a_tile";
+  made.frames = 24;
+  made.given = [](uint32_t) { return edge_frame(); };
+  made.judged = Judged::samples_in_tile;
+  made.asked = Asked::guided;
+  made.bound = 8;
+  return made;
+}
+
+} // namespace
+
+std::vector<StabilityCase> guidance_cases() {
+  return {wakes_up(), in_other_units(), uneven()};
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,99 @@
+// Sequences that lead history astray: velocities that are none, and light that leaves what was learned wrong.
+#include "integration/tools/command/bench/stability/cases.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace dermis::tools {
+namespace {
+
+using Velocity = std::array<float, 3>; // pixels to the right, down; units of view depth
+constexpr Velocity rests{0, 0, 0};
+constexpr Velocity leads_outside{1e3f, 0, 0}; // of any picture here: a surface that was not to be seen
+
+StabilityCase velocity(std::string_view name, float value) {
+  StabilityCase made;
+  made.name = name;
+  made.frames = 4;
+  made.given = [value](uint32_t) {
+    CapturedFrame frame = sound_frame();
+    frame.velocity = Image::sized(stability_side, stability_side, 2);
+    std::fill(frame.velocity.values.begin(), frame.velocity.values.end(), value);
+    return frame;
+  };
+  made.wanted = [](uint32_t) { return 1.0; };
+  made.bound = furnace;
+  made.asked = Asked::with_history;
+  return made;
+}
+
+// Stripes of velocities that are none, with stripes at rest between them, under light that varies. A pixel
+// with such a velocity is one that was not to be seen before.
+StabilityCase striped(std::string_view name, std::array<Velocity, 3> broken) {
+  const auto with = [broken](bool damaged) {
+    return [broken, damaged](uint32_t) {
+      constexpr uint32_t stripe = 8; // pixels
+      CapturedFrame frame = textured_frame();
+      frame.velocity = Image::sized(stability_side, stability_side, 3);
+      for (uint32_t y = 0; y < stability_side; ++y)
+        for (uint32_t x = 0; x < stability_side; ++x) {
+          const uint32_t number = x / stripe;
+          const Velocity there = damaged ? broken[number / 2] : leads_outside;
+          for (uint32_t c = 0; c < 3; ++c)
+            frame.velocity.at(x, y, c) = (number % 2 == 0 ? there : rests)[c];
+        }
+      return frame;
+    };
+  };
+  StabilityCase made;
+  made.name = name;
+  made.frames = 5;
+  made.given = with(true);
+  made.same_as = with(false);
+  made.asked = Asked::with_history;
+  return made;
+}
+
+// Terraces, of which pyramids are unsure. First red falls on a single pixel, of which samples find many times
+// as much as the pyramid does; then it falls on all, and the pattern of the luminance stays, so that ratios
+// are trusted.
+StabilityCase red_comes() {
+  constexpr uint32_t comes = 8;               // frame
+  constexpr uint32_t terrace = 6;             // pixels
+  constexpr float level = 0.5f, step = 2e-3f; // metres: two d
+  constexpr double largest_ratio = 4;         // shaders/papers/subsurface_residual.comp
+  StabilityCase made;
+  made.name = "red_comes";
+  made.frames = 16;
+  made.given = [](uint32_t frame) {
+    CapturedFrame out = sound_frame();
+    fill_light(out, level);
+    for (uint32_t y = 0; y < stability_side; ++y)
+      for (uint32_t x = 0; x < stability_side; ++x) {
+        out.depth.at(x, y, 0) = 1 + step * static_cast<float>((x / terrace + y / terrace) % 2);
+        if (frame < comes) out.lighting.at(x, y, 0) = x == 24 && y == 24 ? 1.0f : 0.0f;
+      }
+    return out;
+  };
+  made.wanted = [](uint32_t) { return double(level); };
+  made.first_judged = comes;
+  made.scale = level;
+  made.bound = largest_ratio - 1;
+  made.asked = Asked::with_history;
+  return made;
+}
+
+} // namespace
+
+std::vector<StabilityCase> motion_cases() {
+  return {
+      velocity("velocity_nan", not_a_number),
+      velocity("velocity_infinity", infinity),
+      velocity("velocity_1e6_px", 1e6f),
+      striped("velocity_in_stripes", {{{not_a_number, 0, 0}, {infinity, -infinity, 0}, {0x1p31f, 1e30f, 0}}}),
+      striped("velocity_of_depth_in_stripes", {{{0, 0, -infinity}, {0, 0, not_a_number}, {0, 0, -1e30f}}}),
+      red_comes()};
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,155 @@
+// Distances, slopes, sizes and radii at their limits.
+#include "integration/tools/command/bench/stability/cases.hpp"
+
+#include "passes/common/kinds.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dermis::tools {
+namespace {
+
+StabilityCase furnace_of(std::string_view name, std::function<CapturedFrame()> make, double bound = furnace) {
+  StabilityCase made;
+  made.name = name;
+  made.given = [make = std::move(make)](uint32_t) { return make(); };
+  made.wanted = [](uint32_t) { return 1.0; };
+  made.bound = bound;
+  return made;
+}
+
+// A plane that turns away by `degrees` about the vertical axis.
+StabilityCase grazing(std::string_view name, double degrees) {
+  return furnace_of(name, [degrees] {
+    CapturedFrame frame = sound_frame();
+    const double slope = std::tan(degrees * 3.14159265358979323846 / 180) * *frame.description.pixel_pitch_m;
+    for (uint32_t y = 0; y < stability_side; ++y)
+      for (uint32_t x = 0; x < stability_side; ++x)
+        frame.depth.at(x, y, 0) = static_cast<float>(1 + slope * x);
+    return frame;
+  });
+}
+
+StabilityCase sized(std::string_view name, uint32_t width, uint32_t height) {
+  return furnace_of(name, [width, height] { return sound_frame(width, height); });
+}
+
+CapturedFrame with_scale(CapturedFrame frame, float scale) {
+  frame.scatter_scale = Image::sized(frame.description.width, frame.description.height, 1);
+  std::fill(frame.scatter_scale.values.begin(), frame.scatter_scale.values.end(), scale);
+  return frame;
+}
+
+// A factor on d that leaves nothing to scatter: the light stays as it is, bit for bit.
+StabilityCase without_scattering(std::string_view name, float scale) {
+  StabilityCase made;
+  made.name = name;
+  made.given = [scale](uint32_t) { return with_scale(textured_frame(), scale); };
+  made.same_as = [](uint32_t) { return with_scale(textured_frame(), 0.0f); };
+  return made;
+}
+
+// Of the third profile blue comes out as it went in, beside red and green that scatter.
+StabilityCase without_blue() {
+  StabilityCase made;
+  made.name = "d_0_of_blue";
+  made.given = [](uint32_t) {
+    CapturedFrame frame = textured_frame();
+    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{3});
+    return frame;
+  };
+  made.first_channel = 2;
+  return made;
+}
+
+// Of the fourth profile blue has a thousandth of the width: no sample that red asks for says anything of it.
+StabilityCase narrow_blue() {
+  return furnace_of("d_of_blue_1e-3", [] {
+    CapturedFrame frame = sound_frame();
+    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{4});
+    return frame;
+  });
+}
+
+// Each pixel at a depth of its own, d and more from those beside it, of which blue has a hundredth: what they
+// say of it is at the end of what floats hold.
+StabilityCase far_apart() {
+  return furnace_of("surfaces_far_apart", [] {
+    constexpr float step = 3e-3f; // metres: three d
+    CapturedFrame frame = sound_frame(stability_side, stability_side, 1000);
+    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{5});
+    for (uint32_t i = 0; i < frame.depth.values.size(); ++i)
+      frame.depth.values[i] = 1 + step * static_cast<float>(i * 37 % 251);
+    return frame;
+  });
+}
+
+// Light and dark from pixel to pixel, where d has just become wide enough to scatter: what a camera that
+// comes closer sees all at once.
+StabilityCase begins_to_scatter() {
+  constexpr double leaves = 0.0354;     // share of the light beyond the pixel's inscribed circle, 9.16 d
+  constexpr double sample = 1.0 / 16.0; // what one says where light is drawn from all radii, as by burley
+  StabilityCase made;
+  made.name = "d_begins_to_scatter";
+  made.given = [](uint32_t) {
+    CapturedFrame frame =
+        with_scale(sound_frame(), static_cast<float>(1.001 * subsurface::copy_below_d_px / stability_d_px));
+    for (uint32_t y = 0; y < stability_side; ++y)
+      for (uint32_t x = 0; x < stability_side; ++x)
+        set_light(frame, x, y, (x + y) % 2 == 0 ? 1.0f : 0.0f);
+    return frame;
+  };
+  made.asked = Asked::of_profile;
+  made.bound = std::max(leaves, sample) + furnace;
+  return made;
+}
+
+// Another size in each frame, histories going on.
+StabilityCase resized() {
+  StabilityCase made;
+  made.name = "size_changes_every_frame";
+  made.frames = 8;
+  made.given = [](uint32_t frame) {
+    constexpr std::array<uint32_t, 4> widths{48, 31, 64, 17};
+    return sound_frame(widths[frame % widths.size()], widths[(frame + 1) % widths.size()]);
+  };
+  made.wanted = [](uint32_t) { return 1.0; };
+  made.bound = furnace;
+  return made;
+}
+
+} // namespace
+
+std::vector<StabilityCase> shape_cases() {
+  StabilityCase no_number = without_scattering("scatter_scale_nan", not_a_number);
+  StabilityCase endless =
+      furnace_of("scatter_scale_infinity", [] { return with_scale(sound_frame(), infinity); });
+  StabilityCase widest = sized("size_16384x64", 16384, 64);
+  StabilityCase odd = sized("size_1919x1079", 1919, 1079);
+  odd.large = true;
+  widest.may_be_refused = true; // where images have a border, the last columns have no room on the device
+  return {grazing("grazing_85", 85),
+          grazing("grazing_89", 89),
+          grazing("grazing_89_9", 89.9),
+          sized("size_1x1", 1, 1),
+          sized("size_1x7", 1, 7),
+          sized("size_131x3", 131, 3),
+          sized("size_8191x3", 8191, 3),
+          odd,
+          widest,
+          resized(),
+          without_scattering("d_1e-30", 1e-30f),
+          without_scattering("d_1e-6", 1e-6f),
+          without_blue(),
+          narrow_blue(),
+          far_apart(),
+          begins_to_scatter(),
+          without_scattering("scatter_scale_negative", -1),
+          no_number,
+          endless,
+          furnace_of("d_1e4_px",
+                     [] { return with_scale(sound_frame(), static_cast<float>(1e4 / stability_d_px)); })};
+}
+
+} // namespace dermis::tools

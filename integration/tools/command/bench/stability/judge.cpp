@@ -1,0 +1,162 @@
+#include "integration/tools/command/bench/stability/judge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dermis::tools {
+namespace {
+
+constexpr uint32_t tile = 8;    // pixels a side
+constexpr uint32_t period = 16; // two tiles: seams of groups of 16 show as well
+constexpr uint32_t beside = 4;  // columns on either side of the middle that count as beside an edge
+
+// What a frame must give, 3 values a pixel.
+std::vector<float> wanted_light(const StabilityCase& asked, uint32_t t, const CapturedFrame& frame) {
+  std::vector<float> light(frame.lighting.values);
+  if (asked.wanted)
+    for (size_t i = 0; i < frame.profile.size(); ++i)
+      if (frame.profile[i] != 0)
+        for (size_t c = 0; c < 3; ++c)
+          light[3 * i + c] = static_cast<float>(asked.wanted(t));
+  return light;
+}
+
+struct Mean {
+  double sum = 0;
+  uint64_t count = 0;
+  void add(double value) {
+    sum += value;
+    ++count;
+  }
+  double value() const { return count > 0 ? sum / static_cast<double>(count) : 0; }
+};
+
+// Errors of light at pixels with a profile, however they are looked at.
+struct LightErrors {
+  double largest = 0;
+  Mean squares, all;
+  std::array<Mean, period> columns, rows;
+
+  void add(uint32_t x, uint32_t y, double error) {
+    largest = std::max(largest, std::abs(error));
+    squares.add(error * error);
+    all.add(error);
+    columns[x % period].add(error);
+    rows[y % period].add(error);
+  }
+  double edges() const {
+    double most = 0;
+    for (const auto& lines : {columns, rows})
+      for (const Mean& one : lines)
+        most = std::max(most, std::abs(one.value() - all.value()));
+    return most;
+  }
+};
+
+// Of pixels with a profile that `counts` takes.
+template <class Counts>
+Mean samples_of(const CapturedFrame& frame, const StabilityAnswer& answer, Counts counts) {
+  Mean mean;
+  for (uint32_t y = 0; y < frame.description.height; ++y)
+    for (uint32_t x = 0; x < frame.description.width; ++x) {
+      const size_t i = size_t{y} * frame.description.width + x;
+      if (frame.profile[i] != 0 && counts(x, y)) mean.add(answer.samples[3 * i]);
+    }
+  return mean;
+}
+
+double beyond(double share) {
+  return std::max({0.0, -share, share - 1});
+}
+
+double samples_at_edge(const CapturedFrame& frame, const StabilityAnswer& answer) {
+  const uint32_t middle = frame.description.width / 2;
+  const double mean = samples_of(frame, answer, [&](uint32_t x, uint32_t) {
+                        return x + beside >= middle && x < middle + beside;
+                      }).value();
+  constexpr double least = 8;
+  return mean > 0 ? least / mean : infinity;
+}
+
+double samples_in_tile(const CapturedFrame& frame, const StabilityAnswer& answer) {
+  double worst = 0;
+  for (uint32_t y = 0; y < frame.description.height; y += tile)
+    for (uint32_t x = 0; x < frame.description.width; x += tile) {
+      double most = 0;
+      const double mean =
+          samples_of(frame, answer, [&](uint32_t i, uint32_t j) {
+            if (i / tile != x / tile || j / tile != y / tile) return false;
+            most = std::max(most, double(answer.samples[3 * (size_t{j} * frame.description.width + i)]));
+            return true;
+          }).value();
+      if (mean > 0) worst = std::max(worst, most / mean);
+    }
+  return worst > 0 ? worst : infinity;
+}
+
+double mean_samples(const CapturedFrame& frame, const StabilityAnswer& found, const StabilityAnswer& sound) {
+  const auto all = [](uint32_t, uint32_t) { return true; };
+  const double difference =
+      std::abs(samples_of(frame, found, all).value() / samples_of(frame, sound, all).value() - 1);
+  return std::isfinite(difference) ? difference : infinity; // NaN would hold
+}
+
+double samples_error(const StabilityCase& asked, const CapturedFrame& frame, const StabilityAnswer& found,
+                     const StabilityAnswer* sound) {
+  if (found.samples.size() != frame.lighting.values.size()) return infinity; // nothing was handed out
+  if (asked.judged == Judged::samples_at_edge) return samples_at_edge(frame, found);
+  if (asked.judged == Judged::samples_in_tile) return samples_in_tile(frame, found);
+  return sound != nullptr ? mean_samples(frame, found, *sound) : infinity;
+}
+
+} // namespace
+
+Judgement judge(const StabilityCase& asked, uint32_t t, const StabilityAnswer& found,
+                const StabilityAnswer* sound) {
+  // A frame in which a pixel has no profile, or no place, says nothing of its light.
+  const CapturedFrame frame = asked.same_as ? asked.same_as(t) : asked.given(t);
+  const std::vector<float> wanted = sound != nullptr ? sound->light : wanted_light(asked, t, frame);
+  Judgement judgement;
+  LightErrors errors;
+  const uint32_t width = frame.description.width, height = frame.description.height;
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      const size_t i = size_t{y} * width + x;
+      bool finite = true, negative = false;
+      for (size_t c = 0; c < 3; ++c) {
+        finite = finite && std::isfinite(found.light[3 * i + c]);
+        negative = negative || found.light[3 * i + c] < 0;
+      }
+      judgement.nonfinite += finite ? 0 : 1;
+      judgement.negative += finite && negative ? 1 : 0;
+      const bool inside =
+          x >= asked.margin && x + asked.margin < width && y >= asked.margin && y + asked.margin < height;
+      if (!finite || asked.finite_only || frame.profile[i] == 0 || !inside) continue;
+      for (size_t c = asked.first_channel; c < 3; ++c)
+        if (asked.judged == Judged::light_beyond)
+          errors.add(x, y, beyond(double(found.light[3 * i + c]) / asked.scale));
+        else
+          errors.add(x, y, (double(found.light[3 * i + c]) - double(wanted[3 * i + c])) / asked.scale);
+    }
+  switch (asked.judged) {
+  case Judged::light:
+  case Judged::light_beyond:
+    judgement.error = errors.largest;
+    break;
+  case Judged::light_rms:
+    judgement.error = std::sqrt(errors.squares.value());
+    break;
+  case Judged::tile_edges:
+    judgement.error = errors.edges();
+    break;
+  case Judged::mean_samples:
+  case Judged::samples_at_edge:
+  case Judged::samples_in_tile:
+    judgement.error = samples_error(asked, frame, found, sound);
+    break;
+  }
+  return judgement;
+}
+
+} // namespace dermis::tools

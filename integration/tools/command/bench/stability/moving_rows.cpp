@@ -1,0 +1,200 @@
+// Moving values that are rounded a million times, beside their fp64 twins.
+#include "integration/tools/command/bench/stability/rows.hpp"
+
+#include "framegraph/model/splitmix.hpp"
+#include "integration/examples/demo_engine/pixel_format.hpp"
+#include "integration/tools/references/guidance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::tools {
+namespace {
+
+constexpr double half_step = 0x1p-11; // largest relative error of a half float
+
+float as_half(double value) {
+  return demo::float_from_half(demo::half_from_float(static_cast<float>(value)));
+}
+
+// Mean and standard deviation in half floats beside the twin in fp64, of a value with ±2 % noise; error:
+// relative, of the standard deviation, which is what sample numbers go by, over the last tenth.
+StabilityRow moving(std::string name, double level, uint64_t updates) {
+  constexpr double eta = 0.2; // GuidanceSettings::eta
+  subsurface::MovingVariance twin;
+  float mean = 0, deviation = 0;
+  SplitMix64 random{7};
+  double squares = 0, twin_squares = 0;
+  bool finite = true;
+  for (uint64_t i = 0; i < updates; ++i) {
+    const double noise = static_cast<double>(random.next() >> 11) * 0x1p-53;
+    const double x = level * (1 + 0.02 * (2 * noise - 1));
+    twin.add(x, eta);
+    if (i == 0) mean = as_half(x);
+    const double step = x - double(mean);
+    mean = as_half(double(mean) + eta * step);
+    deviation = as_half(std::sqrt((1 - eta) * (double(deviation) * double(deviation) + eta * step * step)));
+    finite = finite && std::isfinite(mean) && std::isfinite(deviation);
+    if (i >= updates - updates / 10) {
+      squares += double(deviation) * double(deviation);
+      twin_squares += twin.variance;
+    }
+  }
+  // Each rounding of the mean adds at most half a step to the next deviation, of 2 % of the mean or more.
+  StabilityRow made =
+      formula_row(std::move(name), std::abs(std::sqrt(squares / twin_squares) - 1), 0.02, finite);
+  made.frames = updates;
+  return made;
+}
+
+// Samples of a pixel whose spread they are to bring down to the target, in a closed loop: what is kept in
+// half floats says how many are taken, and those what is kept. Beside it the twin in fp64 with draws of the
+// same. Error: relative, of the mean number of samples.
+StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
+  struct Loop {
+    subsurface::MovingVariance moments;
+    double mean_count = 0, samples = 0;
+    int count = 0;
+  };
+  const subsurface::GuidanceSettings settings;
+  Loop kept, twin;
+  const auto frame = [&](Loop& loop, double draw, bool halves) {
+    const auto store = [&](double value) { return halves ? double(as_half(value)) : value; };
+    const bool begun = loop.moments.begun;
+    loop.count =
+        begun ? subsurface::clamped_samples(
+                    subsurface::wanted_samples(loop.moments.variance, loop.mean_count, settings), settings)
+              : static_cast<int>(settings.least);
+    loop.samples += loop.count;
+    loop.moments.add(1 + spread * draw / std::sqrt(double(loop.count)), settings.eta);
+    const double deviation = store(std::sqrt(loop.moments.variance));
+    loop.moments.variance = deviation * deviation;
+    loop.moments.mean = store(loop.moments.mean);
+    loop.mean_count =
+        store(begun ? loop.mean_count + settings.eta * (loop.count - loop.mean_count) : loop.count);
+  };
+  SplitMix64 random{11};
+  for (uint64_t i = 0; i < updates; ++i) {
+    const double even = static_cast<double>(random.next() >> 11) * 0x1p-53;
+    const double draw = std::sqrt(12.0) * (even - 0.5); // variance 1
+    frame(kept, draw, true);
+    frame(twin, draw, false);
+  }
+  StabilityRow made = formula_row(std::move(name), std::abs(kept.samples / twin.samples - 1), 0.02,
+                                  std::isfinite(kept.samples));
+  made.frames = updates;
+  return made;
+}
+
+// A frozen mean would stay where it is: it must follow a step to within a step of a half float over (1 - eta)
+// / eta.
+StabilityRow following(std::string name, double eta, double bound) {
+  float mean = as_half(0);
+  for (uint32_t i = 0; i < 10000; ++i)
+    mean = as_half(double(mean) + eta * (1 - double(mean)));
+  StabilityRow made = formula_row(std::move(name), std::abs(1 - double(mean)), bound);
+  made.frames = 10000;
+  return made;
+}
+
+// A value that a float can only just tell from its level: its deviation is that of the floats, and never one
+// of a negative variance. Error: of mean and deviation, in units of the level.
+StabilityRow steady(std::string name, double level, uint64_t updates) {
+  constexpr double eta = 0.2;
+  const double next = std::nextafter(static_cast<float>(level), HUGE_VALF);
+  subsurface::MovingVariance moments;
+  double worst = 0;
+  bool finite = true;
+  for (uint64_t i = 0; i < updates; ++i) {
+    moments.add(i % 2 == 0 ? level : next, eta);
+    const double deviation = as_half(std::sqrt(moments.variance));
+    moments.mean = as_half(moments.mean);
+    moments.variance = deviation * deviation;
+    finite = finite && std::isfinite(deviation) && deviation >= 0;
+    worst = std::max({worst, deviation / level, std::abs(moments.mean / level - 1)});
+  }
+  StabilityRow made = formula_row(std::move(name), worst, half_step, finite);
+  made.frames = updates;
+  return made;
+}
+
+using Store = double (*)(double);
+double in_half(double value) {
+  return as_half(value);
+}
+double in_float(double value) {
+  return static_cast<float>(value);
+}
+
+// The control's weight as shaders/afis/subsurface_guided.comp keeps it (weight, deviation and both means),
+// where half of what changes the control, by `swing` at most, is in what it controls, beside fp64. Error:
+// between both weights, over the last tenth.
+StabilityRow control_over_frames(std::string name, double swing, double eta, double eps_alpha, Store store) {
+  constexpr uint64_t frames = 36000; // ten minutes at 60 Hz
+  subsurface::MovingCovariance twin, kept;
+  SplitMix64 random{13};
+  const auto noise = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-52 - 1; };
+  double error = 0;
+  bool finite = true;
+  for (uint64_t i = 0; i < frames; ++i) {
+    const double own = swing * noise(), f = 1 + own / 2 + 0.03 * noise(), g = 1 + own;
+    twin.add(f, g, eta);
+    kept.add(f, g, eta);
+    const double weight = store(kept.variance_g > 0 ? kept.covariance / kept.variance_g : 1);
+    const double deviation = store(std::sqrt(kept.variance_g));
+    kept.variance_g = deviation * deviation;
+    kept.covariance = weight * kept.variance_g;
+    kept.mean_f = store(kept.mean_f);
+    kept.mean_g = store(kept.mean_g);
+    const double found = subsurface::control_weight(kept, eps_alpha);
+    finite = finite && std::isfinite(found) && found >= 0 && found <= 2.1; // 1 + mean_f / mean_g at most
+    if (i >= frames - frames / 10)
+      error = std::max(error, std::abs(found - subsurface::control_weight(twin, eps_alpha)));
+  }
+  StabilityRow made = formula_row(std::move(name), error, 0.02, finite);
+  made.frames = frames;
+  return made;
+}
+
+// Even light leaves no spread, and the number of samples at its least; light that changes then is seen in the
+// frame after. Error: the least number over what is taken there.
+StabilityRow awakening(std::string name) {
+  const subsurface::GuidanceSettings settings;
+  subsurface::MovingVariance moments;
+  double mean_count = settings.least;
+  int count = 0;
+  constexpr int even = 600;
+  for (int i = 0; i < even + 2; ++i) {
+    count = subsurface::clamped_samples(subsurface::wanted_samples(moments.variance, mean_count, settings),
+                                        settings);
+    moments.add(i < even ? 1 : 0.5, settings.eta);
+    const double deviation = as_half(std::sqrt(moments.variance));
+    moments.variance = deviation * deviation;
+    mean_count = as_half(mean_count + settings.eta * (count - mean_count));
+  }
+  StabilityRow made = formula_row(std::move(name), settings.least / count, 0.5);
+  made.frames = even + 2;
+  return made;
+}
+
+} // namespace
+
+std::vector<StabilityRow> moving_rows(uint64_t updates) {
+  return {moving("guidance_updates_6e4", 6e4, updates),
+          moving("guidance_updates_bright", 1000, updates),
+          moving("guidance_updates_at_1", 1, updates),
+          moving("guidance_updates_faint", 1e-3, updates),
+          moving("guidance_updates_1e-4", 1e-4, updates),
+          steady("guidance_updates_within_a_step", 1000, updates),
+          closed_loop("closed_loop_of_few_samples", 0.03, updates),
+          closed_loop("closed_loop_of_samples", 0.06, updates),
+          awakening("variance_of_0_wakes_up"),
+          control_over_frames("control_weight_of_ocv", 0.5, 0.005, 5e-3, in_half),
+          control_over_frames("control_weight_of_ocv_trembling", 0.1, 0.005, 5e-3, in_half),
+          control_over_frames("control_weight_of_ocv_seed", 0.5, 1e-6, 1e-6, in_float),
+          following("half_mean_follows_eta_0.2", 0.2, half_step * 4),
+          following("half_mean_follows_eta_0.05", 0.05, half_step * 19),
+          following("half_mean_follows_eta_0.01", 0.01, half_step * 99)};
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,206 @@
+#include "integration/tools/command/bench/technique.hpp"
+
+#include "integration/tools/command/run/captured.hpp"
+#include "integration/tools/references/image_reads.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace dermis::tools {
+namespace {
+
+// Hands light to tools and to hosts that texture later: no part of a technique.
+constexpr std::string_view hand_out_kind = "subsurface.light";
+// What every technique does before and after it scatters.
+constexpr std::array<std::string_view, 6> common_kinds = {"subsurface.classify",      "subsurface.tile_list",
+                                                          "subsurface.setup",         "subsurface.sap_setup",
+                                                          "subsurface.pyramid_setup", "subsurface.combine"};
+
+std::string text_of(const Diagnostics& diagnostics) {
+  std::string text;
+  for (const Diagnostic& one : diagnostics.list)
+    text.append(text.empty() ? "" : "\n").append(format_for_people(diagnostics, one));
+  return text;
+}
+
+demo::Error input_error(const std::string& graph, const std::string& text) {
+  return {demo::ErrorKind::input, fmt::format("{}\nthe graph '{}' cannot be used", text, graph)};
+}
+
+// Texels that a pass computes for one pixel of the view: those of the first image that it writes, if it
+// writes one.
+double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
+  for (uint32_t i = 0; i < pass.access_count; ++i) {
+    const PlanAccess& access = plan.accesses[pass.first_access + i];
+    const PlanResource& resource = plan.resources[access.resource];
+    if (kind.ports[access.port].usage != Usage::storage_image_write || resource.type != ResourceType::image)
+      continue;
+    const uint32_t mip = access.range.first_mip;
+    const double texels = double(std::max(resource.width >> mip, 1u)) * std::max(resource.height >> mip, 1u);
+    return texels / (double(plan.view_width) * plan.view_height);
+  }
+  return 1;
+}
+
+// Vulkan's depth, 0 to 1, of view distances in host units; distance 0: nothing there.
+std::vector<float> depth_buffer_of(std::span<const float> distances,
+                                   const subsurface::Matrix4& clip_from_view) {
+  const subsurface::Matrix4& m = clip_from_view;
+  const bool reversed = m[14] == 0 ? m[10] > 0 : m[11] > 0; // what is nearer has the larger value
+  std::vector<float> depth;
+  depth.reserve(distances.size());
+  for (const float distance : distances)
+    depth.push_back(distance == 0 ? (reversed ? 0.0f : 1.0f)
+                                  : static_cast<float>((m[11] - m[10] * double(distance)) /
+                                                       (m[15] - m[14] * double(distance))));
+  return depth;
+}
+
+} // namespace
+
+demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHost& host,
+                                                                 const TechniqueRequest& request,
+                                                                 std::span<const CaptureProfile> profiles,
+                                                                 std::span<const float> sap_tables) {
+  Diagnostics diagnostics;
+  std::optional<LoadedGraph> loaded =
+      load_graph(request.graph, {.overlays = request.overlays, .roots = {}, .kinds = {}}, diagnostics);
+  if (!loaded) return input_error(request.graph, text_of(diagnostics));
+  const CompileChoices choices = read_choices(loaded->graph, request.set);
+  if (!choices.problem.empty()) return input_error(request.graph, choices.problem);
+  std::unique_ptr<TechniqueRun> made(new TechniqueRun(host, request));
+  made->loaded_ = std::move(*loaded);
+  made->text_ = diagnostics.files.front().text;
+  made->sap_tables_ = sap_tables;
+  for (const CaptureProfile& one : profiles)
+    made->profiles_.push_back({one.id, one.profile.name, profile_as_json(one.profile)});
+  return made;
+}
+
+demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoice& slots, bool follows) {
+  DeviceGraphRequest wanted;
+  wanted.graph_name = request_.graph;
+  wanted.graph_text = text_;
+  wanted.overlays = loaded_.overlays;
+  wanted.width = frame.description.width;
+  wanted.height = frame.description.height;
+  wanted.profiles = profiles_;
+  wanted.settings = settings_as_json(loaded_.graph, request_.set);
+  wanted.unbound = slots.unbound;
+  for (const auto& [slot, format] : slots.formats)
+    wanted.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
+  const bool same = device_ != nullptr && same_but_size(wanted, made_for_);
+  made_anew_ = !same || wanted.width != made_for_.width || wanted.height != made_for_.height;
+  if (!made_anew_) return demo::success();
+  Diagnostics diagnostics;
+  const CompileChoices choices = read_choices(loaded_.graph, request_.set, slots.unbound);
+  if (!choices.problem.empty()) return input_error(request_.graph, choices.problem);
+  auto plan = compile_generic(loaded_, {wanted.width, wanted.height}, choices, diagnostics);
+  if (!plan) return input_error(request_.graph, text_of(diagnostics));
+  if (same && follows) {
+    if (auto resized = device_->resize(wanted.width, wanted.height); !resized) return resized.error();
+  } else {
+    device_.reset();
+    auto device = DeviceGraph::create(host_, wanted);
+    if (!device) return device.error();
+    device_ = device.take();
+  }
+  plan_ = std::move(*plan);
+  made_for_ = std::move(wanted);
+  return demo::success();
+}
+
+demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& frame, bool follows,
+                                                       DepthGiven depth) {
+  SlotChoice slots = choose_slots(loaded_.graph, frame);
+  if (!slots.problem.empty()) return input_error(request_.graph, slots.problem);
+  if (auto ready = prepare(frame, slots, follows); !ready) return ready.error();
+  if (depth == DepthGiven::depth_buffer)
+    for (SlotData& data : slots.data)
+      if (data.slot == "depth") data.texels = depth_buffer_of(data.texels, frame.description.clip_from_view);
+  for (const SlotData& data : slots.data)
+    if (auto given = device_->upload(data.slot, data.texels, data.channels); !given) return given.error();
+  device_->skip_to(std::exchange(next_frame_index_, 0));
+  frame_ = c_frame(frame.description);
+  if (depth == DepthGiven::depth_buffer) frame_.depth_kind = DERMIS_DEPTH_DEVICE;
+  if (!follows) frame_.flags |= DERMIS_FRAME_RESET_HISTORY;
+  if (auto ran = device_->run(frame_); !ran) return ran.error();
+  return device_->read_rgb("scattered_light");
+}
+
+void TechniqueRun::skip_to(uint64_t frame_index) {
+  next_frame_index_ = frame_index;
+}
+
+demo::Result<std::vector<float>> TechniqueRun::sampling() {
+  if (!device_->has("sampling")) return std::vector<float>();
+  return device_->read_rgb("sampling");
+}
+
+uint64_t TechniqueRun::history_bytes() {
+  return device_->memory().history_bytes;
+}
+
+demo::Result<TechniqueTimes> TechniqueRun::run_again() {
+  if (auto ran = device_->run(frame_); !ran) return ran.error();
+  return times();
+}
+
+demo::Result<TechniqueTimes> TechniqueRun::times() {
+  TechniqueTimes times;
+  const std::vector<DeviceGraph::PassTime> all = device_->times();
+  if (all.empty())
+    return demo::Error{demo::ErrorKind::environment, "the device has no timestamps; nothing can be compared"};
+  for (const DeviceGraph::PassTime& one : all) {
+    const auto pass =
+        std::find_if(plan_.plan.passes.begin(), plan_.plan.passes.end(), [&](const PlanPass& each) {
+          return loaded_.graph.passes[each.declared.value].name == one.pass;
+        });
+    const std::string_view kind = pass != plan_.plan.passes.end() ? loaded_.kinds[pass->kind].name : "";
+    if (kind == hand_out_kind) continue;
+    times.device += one.milliseconds;
+    if (std::find(common_kinds.begin(), common_kinds.end(), kind) == common_kinds.end())
+      times.sampling += one.milliseconds;
+  }
+  return times;
+}
+
+TechniqueCounts TechniqueRun::counts(double sampled_share, const subsurface::PerChannel& d_px,
+                                     std::optional<double> taken) {
+  TechniqueCounts counts;
+  counts.transient_bytes = device_->memory().transient_bytes;
+  counts.reads_per_pixel = 0.0;
+  const Plan& plan = plan_.plan;
+  for (const PlanPass& pass : plan.passes) {
+    const PassKind& kind = loaded_.kinds[pass.kind];
+    if (kind.name == hand_out_kind) continue;
+    counts.dispatches += kind.dispatch != DispatchShape::none && kind.dispatch != DispatchShape::host;
+    std::vector<SettingValue> settings;
+    for (size_t i = 0; i < kind.settings.size(); ++i)
+      settings.push_back(plan.settings[pass.first_setting + i].value);
+    subsurface::ReadsQuestion question{settings, std::vector<bool>(kind.ports.size(), false), d_px,
+                                       sap_tables_};
+    for (uint32_t i = 0; i < pass.access_count; ++i)
+      question.bound[plan.accesses[pass.first_access + i].port] = true;
+    auto reads = subsurface::image_reads(kind, question);
+    if (reads && taken && reads->samples > 0) {
+      question.sampled_share = *taken / reads->samples;
+      reads = subsurface::image_reads(kind, question);
+      counts.mean_spp += reads->samples * (1 - sampled_share); // they were counted over all pixels
+    }
+    if (!reads) {
+      counts.reads_per_pixel.reset();
+      counts.unknown_kind = kind.name;
+      continue;
+    }
+    counts.mean_spp += reads->samples * sampled_share;
+    if (counts.reads_per_pixel)
+      *counts.reads_per_pixel += reads->per_invocation * invocations_per_pixel(plan, pass, kind);
+  }
+  return counts;
+}
+
+} // namespace dermis::tools

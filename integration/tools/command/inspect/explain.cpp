@@ -1,0 +1,125 @@
+// dermis explain: the plan with a reason for each decision, or what the code of a message means.
+
+#include "framegraph/explain/plan_json.hpp"
+#include "framegraph/explain/plan_text.hpp"
+#include "framegraph/text/json_writer.hpp"
+#include "integration/examples/demo_engine/engine.hpp"
+#include "integration/tools/command/graph_input.hpp"
+#include "integration/tools/command/inspect/diagnostics_page.hpp"
+#include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/choice_report.hpp"
+#include "integration/tools/command/run/host_passes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+// "d0103" and "103" -> "D0103"; "" for what can be no code.
+std::string code_in(std::string_view text) {
+  constexpr size_t digits = 4; // also of the format below
+  if (text.starts_with('D') || text.starts_with('d')) text.remove_prefix(1);
+  if (text.empty() || text.size() > digits || text.find_first_not_of("0123456789") != std::string_view::npos)
+    return "";
+  return fmt::format("D{:0>4}", text);
+}
+
+const DiagnosticInfo* find_code(std::string_view code) {
+  const auto all = all_diagnostic_infos();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const DiagnosticInfo& one) { return one.code == code; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::string_view severity_word(Severity severity) {
+  return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
+}
+
+std::string describe_code(const DiagnosticInfo& info, bool json) {
+  if (json) {
+    JsonWriter answer;
+    answer.open_object().member("id", info.code).member("name", info.name);
+    answer.member("severity", severity_word(info.severity)).member("hint", info.hint);
+    answer.member("text", diagnostic_paragraph(info.code)).close();
+    return std::move(answer).finish();
+  }
+  return fmt::format("{} {} ({})\n{}\n\n{}\n", info.code, info.name, severity_word(info.severity),
+                     diagnostic_paragraph(info.code), info.hint);
+}
+
+ExitCode deliver(const Session& session, const std::string& path, std::string_view text) {
+  const std::string problem = deliver_text(path, text);
+  return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
+}
+
+// Some frames of a scene, so that times and counts are known; the newest is told of.
+ExitCode explain_frame(const Session& session, const ExplainOptions& options, const LoadedGraph& loaded) {
+  constexpr uint32_t frames = 6;
+  demo::RenderOptions engine;
+  engine.scene = options.scene;
+  engine.roots = options.parts.roots;
+  engine.graph = options.graph;
+  engine.width = options.size.width;
+  engine.height = options.size.height;
+  engine.frames = frames;
+  engine.settings = settings_as_json(loaded.graph, options.settings);
+  engine.budget_ms = options.budget_ms;
+  engine.metered = options.metered;
+  for (const auto& [name, text] : loaded.overlays)
+    engine.overlays.push_back({name, text});
+  engine.include = [open = open_beside(options.graph, options.parts.roots)](
+                       const std::string& name) -> std::optional<demo::NamedText> {
+    const FileText file = open(name);
+    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+  };
+  HostPasses host_passes(loaded.host_kinds);
+  engine.hooks = host_passes.hooks();
+  ChoiceReport report;
+  demo::RenderCallbacks callbacks;
+  callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
+    if (frame.choice && frame.frame + 1 == frames)
+      report.add(frame.frame, *frame.choice, frame.histories,
+                 tile_costs(loaded, options.size, options.settings, *frame.choice));
+    return interrupted() ? demo::Result<>(demo::Error{demo::ErrorKind::environment, "stopped"})
+                         : demo::success();
+  };
+  const auto summary = demo::render(engine, callbacks);
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  if (!summary) return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+  if (!session.json) return deliver(session, options.out, report.text());
+  JsonWriter answer;
+  report.write(answer);
+  return deliver(session, options.out, std::move(answer).finish());
+}
+
+} // namespace
+
+ExitCode explain(const Session& session, const ExplainOptions& options) {
+  if (const std::string code = code_in(options.graph); !code.empty()) {
+    const DiagnosticInfo* info = find_code(code);
+    return info != nullptr ? deliver(session, options.out, describe_code(*info, session.json))
+                           : fail(session, ExitCode::usage,
+                                  fmt::format("there is no message {}; docs/diagnostics.md lists all", code));
+  }
+
+  Diagnostics diagnostics;
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  if (!loaded) return fail_graph(session, options.graph, diagnostics);
+  CompileChoices choices = read_choices(loaded->graph, options.settings, options.unbound);
+  choices.two_queues = options.two_queues;
+  if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+  if (options.frame) return explain_frame(session, options, *loaded);
+  const std::optional<CompiledPlan> compiled = compile_generic(*loaded, options.size, choices, diagnostics);
+  if (!compiled) return fail_graph(session, options.graph, diagnostics);
+  print_diagnostics(session, diagnostics);
+  return deliver(
+      session, options.out,
+      session.json
+          ? plan_json(loaded->graph, loaded->kinds, *compiled, {loaded->changes, diagnostics.files})
+          : plan_text(loaded->graph, loaded->kinds, *compiled, {loaded->changes, diagnostics.files}));
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,31 @@
+#include "integration/tools/command/inspect/file_kind.hpp"
+
+namespace dermis::tools {
+namespace {
+
+constexpr FileKind kinds[] = {
+    {"dermis", "graph", 1},
+    {"dermis_profile", "profile", 1},
+    {"dermis_scene", "scene", 1},
+    {"dermis_expect", "expectations", 1},
+    {"dermis_capture", "capture", 1},
+    {"dermis_overlay", "overlay", 1},
+    {"dermis_fragment", "fragment", 1},
+    {"dermis_errors", "error table", 1},
+    {"dermis_calibration", "calibration", 1},
+    {"dermis_kinds", "pass kinds", 1},
+};
+
+} // namespace
+
+std::span<const FileKind> file_kinds() {
+  return kinds;
+}
+
+FileKindId file_kind_of(const Document& document) {
+  for (size_t i = 0; i < std::size(kinds); ++i)
+    if (document.find(document.root(), kinds[i].version_key).valid()) return static_cast<FileKindId>(i);
+  return FileKindId::graph;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,151 @@
+// dermis schema: the JSON Schemas of all file formats.
+
+#include "framegraph/schema/graph_schema.hpp"
+#include "framegraph/text/json_writer.hpp"
+#include "framegraph/text/limits.hpp"
+#include "framegraph/text/suggest.hpp"
+#include "integration/tools/command/graph_input.hpp"
+#include "integration/tools/command/inspect/reference_pages/pages.hpp"
+#include "integration/tools/command/inspect/schemas.hpp"
+#include "integration/tools/command/output.hpp"
+#include "integration/tools/command/shipped.hpp"
+#include "integration/tools/command/verbs.hpp"
+#include "integration/tools/files/bytes.hpp"
+#include "passes/common/kinds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace dermis::tools {
+namespace {
+
+std::vector<std::pair<std::string_view, std::string>> all_schemas() {
+  std::vector<std::pair<std::string_view, std::string>> all;
+  all.emplace_back("graph", graph_schema(subsurface::make_kinds()));
+  all.emplace_back("fragment", fragment_schema(subsurface::make_kinds()));
+  for (const NamedSchema& one : written_schemas())
+    all.emplace_back(one.name, std::string(one.text));
+  return all;
+}
+
+ExitCode write_all(const Session& session, const std::string& path) {
+  OutputFolder folder;
+  if (const std::string problem = folder.open(path); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
+  for (const auto& [name, text] : all_schemas()) {
+    const std::string file = folder.path_of(fmt::format("{}.schema.json", name));
+    if (const std::string problem = deliver_text(file, text); !problem.empty())
+      return fail(session, ExitCode::environment, problem);
+    say(session, fmt::format("{}\n", file));
+  }
+  return ExitCode::ok;
+}
+
+// The whole file; nullopt with a `problem`.
+std::optional<std::string> text_of(const std::string& file, std::string& problem) {
+  const auto bytes = read_bytes(file, limits::file_bytes, problem);
+  if (!bytes) return std::nullopt;
+  return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+// All graphs of a folder, by name; nullopt with errors in `diagnostics`.
+std::optional<std::vector<NamedGraph>> graphs_in(const std::string& folder, Diagnostics& diagnostics) {
+  std::vector<std::filesystem::path> files;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".json" && entry.path().stem().extension() != ".expect")
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<NamedGraph> graphs;
+  for (const std::filesystem::path& file : files) {
+    std::optional<LoadedGraph> loaded = load_graph(file.string(), {}, diagnostics);
+    if (!loaded) return std::nullopt;
+    graphs.push_back({file.stem().string(), std::move(loaded->graph)});
+  }
+  return graphs;
+}
+
+} // namespace
+
+std::vector<std::string> schema_names() {
+  std::vector<std::string> names = {"graph", "fragment"};
+  for (const NamedSchema& one : written_schemas())
+    names.emplace_back(one.name);
+  return names;
+}
+
+ExitCode schema(const Session& session, const SchemaOptions& options) {
+  if (options.name.empty()) {
+    if (options.out != "-") return write_all(session, options.out);
+    return fail(
+        session, ExitCode::usage,
+        fmt::format("name one of {}, or a folder for all of them with --out", format_list(schema_names())));
+  }
+  std::vector<std::string_view> names;
+  const auto all = all_schemas();
+  for (const auto& [name, text] : all) {
+    names.push_back(name);
+    if (name != options.name) continue;
+    const std::string problem = deliver_text(options.out, text);
+    return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
+  }
+  const std::string suggestion = did_you_mean(options.name, names);
+  return fail(session, ExitCode::usage,
+              fmt::format("there is no schema '{}'; {}", options.name,
+                          suggestion.empty() ? "schemas: " + format_list(schema_names()) : suggestion));
+}
+
+ExitCode docs(const Session& session, const DocsOptions& options) {
+  OutputFolder folder;
+  if (const std::string problem = folder.open(options.out); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
+  Diagnostics diagnostics;
+  const auto graphs = graphs_in(shipped(options.graphs), diagnostics);
+  if (!graphs) return fail_graph(session, options.graphs, diagnostics);
+  if (graphs->empty())
+    return fail(session, ExitCode::environment, fmt::format("{} holds no graphs", options.graphs));
+  std::vector<std::pair<std::string, std::string>> pages = {
+      {"format_reference.md", format_page(all_schemas())},
+      {"pass_kinds.md", kinds_page(subsurface::make_kinds())}};
+  // Only a block of this page is generated. A folder without the page is not one of user documents.
+  const std::string hosts = folder.path_of("integration.md");
+  if (std::error_code ignored; std::filesystem::exists(hosts, ignored)) {
+    std::string problem;
+    const std::optional<std::string> page = text_of(hosts, problem);
+    if (!page) return fail(session, ExitCode::environment, problem);
+    pages.emplace_back("integration.md", replace_block(*page, "slots", slot_table(*graphs)));
+    if (pages.back().second.empty())
+      return fail(session, ExitCode::problems,
+                  fmt::format("{} has no block 'slots' between its two comments", hosts));
+  }
+  for (const auto& [name, text] : pages) {
+    const std::string file = folder.path_of(name);
+    std::string problem;
+    if (options.check) {
+      if (text_of(file, problem) != text)
+        return fail(session, ExitCode::problems,
+                    fmt::format("{} is not what the declarations say now; dermis docs --out {} writes it",
+                                file, options.out));
+      continue;
+    }
+    problem = deliver_text(file, text);
+    if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+    say(session, fmt::format("{}\n", file));
+  }
+  if (session.json) {
+    JsonWriter answer;
+    answer.open_object().member("ok", true).key("pages").open_array();
+    for (const auto& [name, text] : pages)
+      answer.value(folder.path_of(name));
+    answer.close().close();
+    print(std::move(answer).finish());
+  }
+  return ExitCode::ok;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,12 @@
+#pragma once
+// What a machine has of what Dermis needs, for programs: the answer of `dermis doctor --json`.
+
+#include "integration/examples/demo_engine/device_survey.hpp"
+
+#include <string>
+
+namespace dermis::tools {
+
+std::string survey_as_json(const demo::DeviceSurvey& survey);
+
+} // namespace dermis::tools

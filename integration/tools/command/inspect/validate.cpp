@@ -1,0 +1,188 @@
+// dermis validate: reads files as strictly as everything else does, compiles graphs with the generic device
+// and lets the verifier check their plans; reads the pictures of captures.
+
+#include "framegraph/text/document.hpp"
+#include "framegraph/text/json_writer.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "integration/examples/demo_engine/scene/read_scene.hpp"
+#include "integration/tools/command/expect/expectation.hpp"
+#include "integration/tools/command/graph_input.hpp"
+#include "integration/tools/command/inspect/diagnose.hpp"
+#include "integration/tools/command/inspect/file_kind.hpp"
+#include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/captured.hpp"
+#include "integration/tools/files/capture_pictures.hpp"
+#include "passes/choice/calibration.hpp"
+#include "passes/choice/error_model.hpp"
+#include "passes/common/profiles/profile.hpp"
+
+#include <dermis/dermis.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+bool check_graph(const Document& document, const std::string& path, const GraphParts& parts,
+                 Diagnostics& diagnostics, bool& verified) {
+  auto overlays = read_overlays(parts.overlays, diagnostics);
+  if (!overlays) return false;
+  const std::optional<LoadedGraph> loaded =
+      load_graph(document, std::move(*overlays), open_beside(path, parts.roots), diagnostics, parts.kinds);
+  if (!loaded) return false;
+  const CompileChoices choices = read_choices(loaded->graph);
+  const std::optional<CompiledPlan> compiled = compile_generic(*loaded, default_size, choices, diagnostics);
+  if (!compiled) return false;
+  const Verdict verdict = verify(compiled->plan);
+  for (const std::string& objection : verdict.objections)
+    diagnostics.add(DiagnosticId::internal_defect, document.where(document.root()),
+                    fmt::format("the verifier refuses the plan: {}", objection));
+  verified = verdict.not_verified.empty();
+  if (!verified)
+    diagnostics.add(DiagnosticId::plan_not_verified, document.where(document.root()),
+                    fmt::format("the plan is not verified: {}", verdict.not_verified));
+  return verdict.objections.empty();
+}
+
+bool check_profile(const Document& document, Diagnostics& diagnostics, std::string& about) {
+  const std::optional<subsurface::Profile> profile = subsurface::read_profile(document, diagnostics);
+  if (profile) about = subsurface::describe_profile(*profile);
+  return profile.has_value();
+}
+
+bool check_scene(const Document& document, const std::vector<std::string>& roots, Diagnostics& diagnostics) {
+  const SourceFile file = diagnostics.files[document.file.value];
+  return demo::parse_scene(file.name, file.text, diagnostics, roots).has_value();
+}
+
+bool check_expectations(const Document& document, Diagnostics& diagnostics) {
+  return read_expectations(document, diagnostics).has_value();
+}
+
+struct CheckedFile {
+  std::string path;
+  std::string_view kind = "unreadable";
+  bool good = false;
+  std::string about = {}; // a line on what the file holds
+  bool verified = true;   // the plan of a graph; false: the verifier gave up
+};
+
+void check_capture(const Document& document, const ValidateOptions& options, Diagnostics& diagnostics,
+                   CheckedFile& checked) {
+  const std::filesystem::path folder = std::filesystem::path(checked.path).parent_path();
+  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint32_t warnings = diagnostics.count(Severity::warning);
+  std::optional<CapturedFrame> frame =
+      read_description(document, folder, profiles_folder(options.profiles), diagnostics, options.parts.roots);
+  if (frame) read_pictures(folder, document, *frame, diagnostics, options.parts.roots);
+  checked.good = diagnostics.count(Severity::error) == errors;
+  if (!checked.good || !options.diagnose) return;
+  checked.about = diagnose_frame(*frame, document.where(document.root()), diagnostics);
+  checked.good = diagnostics.count(Severity::warning) == warnings;
+}
+
+CheckedFile check_file(const std::string& path, const ValidateOptions& options, Diagnostics& diagnostics) {
+  const std::optional<Document> document = read_input(path, diagnostics);
+  if (!document) return {path};
+  const FileKindId kind = file_kind_of(*document);
+  CheckedFile checked{path, file_kinds()[static_cast<size_t>(kind)].name};
+  switch (kind) {
+  case FileKindId::graph:
+    checked.good = check_graph(*document, path, options.parts, diagnostics, checked.verified);
+    break;
+  case FileKindId::profile:
+    checked.good = check_profile(*document, diagnostics, checked.about);
+    break;
+  case FileKindId::scene:
+    checked.good = check_scene(*document, options.parts.roots, diagnostics);
+    break;
+  case FileKindId::expectations:
+    checked.good = check_expectations(*document, diagnostics);
+    break;
+  case FileKindId::capture:
+    check_capture(*document, options, diagnostics, checked);
+    break;
+  case FileKindId::overlay:
+    checked.good = check_overlay(*document, diagnostics);
+    break;
+  case FileKindId::fragment:
+    checked.good =
+        load_fragment(*document, open_beside(path, options.parts.roots), diagnostics, options.parts.kinds)
+            .has_value();
+    break;
+  case FileKindId::errors:
+    checked.good = choice::read_error_model(*document, diagnostics).has_value();
+    break;
+  case FileKindId::calibration:
+    checked.good = choice::read_calibration(*document, diagnostics).has_value();
+    break;
+  case FileKindId::kinds:
+    checked.good = read_host_kinds(*document, diagnostics).has_value();
+    break;
+  }
+  return checked;
+}
+
+// A folder stands for the frames of the capture in it.
+std::vector<CheckedFile> check_path(const std::string& path, const ValidateOptions& options,
+                                    Diagnostics& diagnostics) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) return {check_file(path, options, diagnostics)};
+  std::vector<CheckedFile> checked;
+  for (const std::filesystem::path& frame : find_frames(path, diagnostics, options.parts.roots))
+    checked.push_back(check_file((frame / "frame.json").string(), options, diagnostics));
+  if (checked.empty()) checked.push_back({path});
+  return checked;
+}
+
+} // namespace
+
+ExitCode validate(const Session& session, const ValidateOptions& options) {
+  if (session.json && options.sarif == "-")
+    return fail(session, ExitCode::usage, "--json and --sarif - both want standard output; name a file");
+  Diagnostics diagnostics;
+  std::vector<CheckedFile> files;
+  for (const std::string& path : options.files)
+    for (CheckedFile& one : check_path(path, options, diagnostics))
+      files.push_back(std::move(one));
+  if (!options.sarif.empty()) {
+    const std::string version =
+        fmt::format("{}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH);
+    const std::string problem = deliver_text(options.sarif, format_as_sarif(diagnostics, version));
+    if (!problem.empty()) return fail(session, ExitCode::environment, problem, &diagnostics);
+  }
+  const std::string_view graph_kind = file_kinds()[static_cast<size_t>(FileKindId::graph)].name;
+  const bool has_graph =
+      std::any_of(files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == graph_kind; });
+  if (!options.parts.overlays.empty() && !has_graph && !diagnostics.has_errors())
+    return fail(session, ExitCode::usage, "--overlay needs a graph among the files");
+  const auto capture = file_kinds()[static_cast<size_t>(FileKindId::capture)].name;
+  const bool has_capture =
+      std::any_of(files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == capture; });
+  if (options.diagnose && !has_capture && !diagnostics.has_errors())
+    return fail(session, ExitCode::usage, "--diagnose needs captured frames among the files");
+  const bool all_good =
+      std::all_of(files.begin(), files.end(), [](const CheckedFile& one) { return one.good; });
+  print_diagnostics(session, diagnostics);
+  for (const CheckedFile& one : files)
+    if (one.good && options.sarif != "-")
+      say(session, fmt::format("{}: {}, {}\n{}", one.path, one.kind,
+                               one.verified ? "no problems" : "plan not verified",
+                               one.about.empty() ? "" : fmt::format("  {}\n", one.about)));
+  if (session.json) {
+    JsonWriter answer;
+    answer.open_object().member("ok", all_good).key("files").open_array();
+    for (const CheckedFile& one : files) {
+      answer.open_object(true).member("file", one.path).member("kind", one.kind).member("ok", one.good);
+      if (!one.verified) answer.member("verified", false);
+      if (!one.about.empty()) answer.member("about", one.about);
+      answer.close();
+    }
+    answer.close().key("diagnostics").json(format_as_json(diagnostics)).close();
+    print(std::move(answer).finish());
+  }
+  return all_good ? ExitCode::ok : ExitCode::problems;
+}
+
+} // namespace dermis::tools

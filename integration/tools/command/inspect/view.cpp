@@ -1,0 +1,260 @@
+#include "integration/tools/command/inspect/view.hpp"
+
+#include "framegraph/explain/plan_json.hpp"
+#include "framegraph/text/json_writer.hpp"
+#include "integration/tools/command/bench/report/html.hpp"
+#include "integration/tools/files/zlib.hpp"
+#include "integration/tools/viewer/viewer.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace dermis::tools {
+namespace {
+
+// The values that a page may switch a setting to; empty: none.
+std::vector<std::string> values_of(const SettingDeclaration& setting) {
+  if (setting.type == SettingType::boolean) return {"false", "true"};
+  return setting.options;
+}
+
+std::string value_text(const SettingDeclaration& setting, const SettingValue& value) {
+  const std::vector<std::string> names = values_of(setting);
+  if (!names.empty()) return names[static_cast<size_t>(value.integer)];
+  return setting.type == SettingType::real ? fmt::format("{}", value.real) : fmt::format("{}", value.integer);
+}
+
+std::vector<uint32_t> switched_settings(const Graph& graph) {
+  std::vector<uint32_t> switched;
+  size_t outcomes = 1;
+  for (const bool by_budget : {true, false})
+    for (uint32_t i = 0; i < graph.settings.size(); ++i) {
+      const size_t values = values_of(graph.settings[i]).size();
+      if (graph.settings[i].by_budget != by_budget || values < 2 || outcomes * values > most_view_outcomes)
+        continue;
+      outcomes *= values;
+      switched.push_back(i);
+    }
+  return switched;
+}
+
+// Plans as runs of lines of one table: plans of one graph have most of their lines in common.
+class LineTable {
+public:
+  void add(JsonWriter& out, std::string_view text) {
+    out.open_array(true);
+    uint32_t first = 0, count = 0;
+    while (!text.empty()) {
+      const size_t end = std::min(text.find('\n'), text.size());
+      const auto [at, is_new] = numbers_.try_emplace(std::string(text.substr(0, end)), numbers_.size());
+      if (is_new) lines_.push_back(&at->first);
+      text.remove_prefix(std::min(end + 1, text.size()));
+      if (count > 0 && at->second == first + count) {
+        ++count;
+        continue;
+      }
+      if (count > 0) out.value(first).value(count);
+      first = static_cast<uint32_t>(at->second);
+      count = 1;
+    }
+    if (count > 0) out.value(first).value(count);
+    out.close();
+  }
+  void write(JsonWriter& out) const {
+    out.open_array();
+    for (const std::string* line : lines_)
+      out.value(std::string_view(*line));
+    out.close();
+  }
+
+private:
+  std::map<std::string, size_t> numbers_;
+  std::vector<const std::string*> lines_;
+};
+
+// `id` and all below as the writer writes it: comments are gone then.
+void copy_json(JsonWriter& out, const Document& document, NodeId id) {
+  const Node& node = document[id];
+  switch (node.kind) {
+  case NodeKind::null:
+    out.null();
+    return;
+  case NodeKind::boolean:
+    out.value(node.integer != 0);
+    return;
+  case NodeKind::integer:
+    out.value(node.integer);
+    return;
+  case NodeKind::real:
+    out.value(node.real);
+    return;
+  case NodeKind::string:
+    out.value(document.text(id));
+    return;
+  case NodeKind::array:
+  case NodeKind::object:
+    break;
+  }
+  const bool object = node.kind == NodeKind::object;
+  object ? out.open_object(true) : out.open_array(true);
+  for (NodeId child = node.first_child; child.valid(); child = document[child].next) {
+    if (object) out.key(document.key(child));
+    copy_json(out, document, child);
+  }
+  out.close();
+}
+
+// Has it the passes with their times that the page shows?
+bool check_report(const Document& report, Diagnostics& diagnostics) {
+  const NodeId passes = report.find(report.root(), "passes");
+  bool whole = passes.valid() && report[passes].kind == NodeKind::array;
+  if (whole)
+    for (NodeId pass = report[passes].first_child; pass.valid() && whole; pass = report[pass].next) {
+      const NodeId name = report.find(pass, "pass"), time = report.find(pass, "milliseconds");
+      whole = name.valid() && report[name].kind == NodeKind::string && time.valid() &&
+              (report[time].kind == NodeKind::real || report[time].kind == NodeKind::integer);
+    }
+  if (!whole)
+    diagnostics.add(DiagnosticId::wrong_type, report.where(passes.valid() ? passes : report.root()),
+                    "expected the answer of 'dermis render --json': \"passes\", each with \"pass\" and "
+                    "\"milliseconds\"");
+  return whole;
+}
+
+struct View {
+  const LoadedGraph& loaded;
+  const ViewOptions& options;
+  Diagnostics& diagnostics;
+  std::vector<uint32_t> switched;
+  JsonWriter out = {};
+
+  // Where it is declared, for the page's list of files.
+  void place(const SourceLocation& where) {
+    out.key("file");
+    where.file.valid() ? out.value(where.file.value) : out.null();
+    out.member("line", where.line);
+  }
+
+  void declarations() {
+    const Graph& graph = loaded.graph;
+    out.key("files").open_array();
+    for (const SourceFile& file : diagnostics.files)
+      out.open_object(true).member("name", file.name).member("text", file.text).close();
+    out.close().key("passes").open_array();
+    for (const PassDeclaration& pass : graph.passes) {
+      out.open_object(true).member("name", pass.name).member("kind", loaded.kinds[pass.kind].name);
+      place(pass.where);
+      out.member("note", pass.note).close();
+    }
+    out.close().key("resources").open_array();
+    for (const ResourceDeclaration& resource : graph.resources) {
+      out.open_object(true).member("name", resource.name);
+      place(resource.where);
+      out.member("note", resource.note).close();
+    }
+    out.close().key("settings").open_array();
+    for (uint32_t i = 0; i < graph.settings.size(); ++i) {
+      const SettingDeclaration& setting = graph.settings[i];
+      const auto at = std::find(switched.begin(), switched.end(), i);
+      out.open_object(true).member("name", setting.name).member("by_budget", setting.by_budget);
+      out.member("note", setting.note).member("value", value_text(setting, options.chosen.settings[i]));
+      out.key("switched");
+      at == switched.end() ? out.null() : out.value(static_cast<uint32_t>(at - switched.begin()));
+      out.key("values").open_array(true);
+      for (const std::string& value : values_of(setting))
+        out.value(value);
+      out.close().close();
+    }
+    out.close();
+  }
+
+  // The next combination, the last setting fastest; false behind the last one.
+  bool next(CompileChoices& choices) const {
+    for (size_t i = switched.size(); i-- > 0;) {
+      SettingValue& value = choices.settings[switched[i]];
+      const auto values = static_cast<int64_t>(values_of(loaded.graph.settings[switched[i]]).size());
+      value.integer = (value.integer + 1) % values;
+      if (value.integer != options.chosen.settings[switched[i]].integer) return true;
+    }
+    return false;
+  }
+
+  // All outcomes; the first is what was chosen. False with errors where that one has no plan.
+  bool plans() {
+    LineTable lines;
+    JsonWriter runs, list;
+    runs.open_array();
+    list.open_array();
+    CompileChoices choices = options.chosen;
+    uint32_t count = 0;
+    do {
+      Diagnostics found; // of this outcome; what is wrong with the first is wrong with the page
+      const auto compiled = compile_generic(loaded, options.size, choices, count == 0 ? diagnostics : found);
+      if (!compiled && list_is_empty_) return false;
+      list_is_empty_ = false;
+      list.open_object(true).key("values").open_array(true);
+      for (const uint32_t setting : switched)
+        list.value(choices.settings[setting].integer);
+      list.close().key("plan");
+      if (compiled) {
+        list.value(count++);
+        lines.add(runs,
+                  plan_json(loaded.graph, loaded.kinds, *compiled, {loaded.changes, diagnostics.files}));
+      } else {
+        list.null().member("problem", found.list.empty() ? "" : found.list.front().text);
+      }
+      list.close();
+    } while (next(choices));
+    runs.close();
+    list.close();
+    lines.write(out.key("lines"));
+    out.key("plans").json(std::move(runs).finish()).key("outcomes").json(std::move(list).finish());
+    return true;
+  }
+
+  bool list_is_empty_ = true;
+};
+
+} // namespace
+
+ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diagnostics& diagnostics) {
+  const ViewerPage page = viewer_page();
+  if (!page.missing.empty())
+    return {"", fmt::format("this program has no viewer: {}; with nodejs and npm installed and a "
+                            "network, configure and build it again, or use --dot",
+                            page.missing)};
+
+  std::optional<Document> report;
+  const size_t files = diagnostics.files.size(); // the report is none of the graph's
+  if (!options.frame.empty()) {
+    report = read_document(options.frame, diagnostics);
+    if (!report || !check_report(*report, diagnostics)) return {};
+  }
+  const std::vector<SourceFile> all = diagnostics.files;
+  diagnostics.files.resize(files);
+  View view{loaded, options, diagnostics, switched_settings(loaded.graph)};
+  view.out.open_object().member("dermis_view", 1).member("graph", loaded.graph.name);
+  view.out.member("command", options.command);
+  view.declarations();
+  const bool compiled = view.plans();
+  diagnostics.files = all;
+  if (!compiled) return {};
+  view.out.key("frame");
+  report ? copy_json(view.out, *report, report->root()) : void(view.out.null());
+  view.out.close();
+
+  const std::string text = std::move(view.out).finish();
+  const std::vector<uint8_t> packed =
+      zlib_deflate({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  if (packed.empty()) return {"", "out of memory"};
+  ViewAnswer answer;
+  for (const std::string_view piece : page.before)
+    answer.page += piece;
+  answer.page += base64(packed);
+  for (const std::string_view piece : page.after)
+    answer.page += piece;
+  return answer;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,29 @@
+#include "integration/tools/command/interrupt.hpp"
+
+#include <atomic>
+#include <csignal>
+
+namespace dermis::tools {
+namespace {
+
+// A signal handler can reach nothing but a global.
+std::atomic<bool> asked_to_stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+extern "C" void note_interrupt(int signal) {
+  asked_to_stop.store(true);
+  std::signal(signal, SIG_DFL);
+}
+
+} // namespace
+
+void listen_for_interrupts() {
+  std::signal(SIGINT, note_interrupt);
+  std::signal(SIGTERM, note_interrupt);
+}
+
+bool interrupted() {
+  return asked_to_stop.load(std::memory_order_relaxed);
+}
+
+} // namespace dermis::tools

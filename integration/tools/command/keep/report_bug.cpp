@@ -1,0 +1,246 @@
+// dermis report-bug: a folder, or an archive of one, with what somebody else needs to see the same, and the
+// line that shows it.
+#include "framegraph/explain/plan_json.hpp"
+#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/text/json_writer.hpp"
+#include "framegraph/text/limits.hpp"
+#include "integration/tools/command/child.hpp"
+#include "integration/tools/command/graph_input.hpp"
+#include "integration/tools/command/inspect/survey.hpp"
+#include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/keep/capture_scene.hpp"
+#include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/captured.hpp"
+#include "integration/tools/files/bytes.hpp"
+#include "integration/tools/files/capture.hpp"
+
+#include <dermis/dermis.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+namespace dermis::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The folder while it is made; it gets its name at the end or goes into an archive of that name, or goes
+// away.
+struct Parcel {
+  fs::path target, part;
+  std::string archived{}; // the folder's name in the archive; "": there is none
+  std::string problem{};
+
+  ~Parcel() {
+    std::error_code ignored;
+    fs::remove_all(part, ignored);
+  }
+  fs::path folder() const { return part / archived; }
+  bool add(const fs::path& name, std::string_view text) {
+    std::error_code error;
+    fs::create_directories((folder() / name).parent_path(), error);
+    return problem.empty() && write_text(folder() / name, text, problem);
+  }
+  bool finish() {
+    std::error_code error;
+    fs::path made = part;
+    if (!archived.empty()) {
+      made = part / "archive";
+      const auto tar = run_child({"tar", "--create", "--gzip", "--file", made.string(), "--directory",
+                                  part.string(), "--owner=0", "--group=0", "--sort=name", "--", archived},
+                                 problem);
+      if (tar && tar->exit_code != 0) problem = fmt::format("'tar' ended with {}", tar->exit_code);
+      if (!problem.empty()) return false;
+    }
+    fs::rename(made, target, error);
+    if (error) problem = fmt::format("cannot make '{}': {}", target.string(), error.message());
+    return !error;
+  }
+};
+
+// What the folder in an archive is called, "": the name is a folder's.
+std::string folder_in(const fs::path& target) {
+  const std::string name = target.filename().string();
+  for (const std::string_view ending : {".tar.gz", ".tgz"})
+    if (name.size() > ending.size() && name.ends_with(ending))
+      return name.substr(0, name.size() - ending.size());
+  return "";
+}
+
+// A word of a line for a shell.
+std::string word(const std::string& text) {
+  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,") ==
+      std::string::npos)
+    return text;
+  std::string quoted = "'";
+  for (const char c : text)
+    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+struct GraphFiles {
+  std::string graph;                           // its name in the parcel
+  std::vector<std::string> overlays, kinds;    // likewise, in order
+  std::map<std::string, std::string> included; // text by name
+};
+
+// Graph, overlays, kinds and what they include, under names that find each other again.
+bool add_graph(Parcel& parcel, const ReportBugOptions& options, const Diagnostics& diagnostics,
+               GraphFiles& files) {
+  files.graph = options.graph == "-" ? "graph.json" : fs::path(options.graph).filename().string();
+  bool good = parcel.add(files.graph, diagnostics.files.front().text);
+  const auto add_all = [&](const char* folder, const std::vector<std::string>& paths,
+                           std::vector<std::string>& names) {
+    for (size_t i = 0; i < paths.size() && good; ++i) {
+      const auto bytes = read_bytes(paths[i], limits::file_bytes, parcel.problem);
+      names.push_back(fmt::format("{}/{}_{}", folder, i, fs::path(paths[i]).filename().string()));
+      good = bytes && parcel.add(names.back(), {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    }
+  };
+  add_all("overlays", options.parts.overlays, files.overlays);
+  add_all("kinds", options.parts.kinds, files.kinds);
+  for (const auto& [name, text] : files.included)
+    good = good && parcel.add(name, text);
+  return good;
+}
+
+std::string settings_json(const LoadedGraph& loaded, const CompileChoices& choices, const SavedPlan& saved) {
+  JsonWriter out;
+  out.open_object();
+  for (size_t i = 0; i < loaded.graph.settings.size() && i < choices.settings.size(); ++i)
+    out.key(saved.names.settings[i].name).json(saved.names.settings[i].text);
+  out.close();
+  return std::move(out).finish();
+}
+
+std::string device_json() {
+  const auto survey = demo::survey_devices();
+  if (survey) return survey_as_json(*survey);
+  JsonWriter out;
+  out.open_object().member("ok", false).member("error", survey.error().text).close();
+  return std::move(out).finish();
+}
+
+// The last frame of the capture that was given, or one of the scene.
+demo::Result<> add_frame(const Session& session, const ReportBugOptions& options, Parcel& parcel) {
+  const std::string folder = (parcel.folder() / "capture").string();
+  if (options.frames.empty()) {
+    Session quiet = session;
+    quiet.quiet = true; // one frame
+    CaptureOptions one;
+    one.scene = options.scene;
+    one.out = folder;
+    one.size = options.size;
+    one.frames = 1;
+    one.first = options.count - 1;
+    one.roots = options.parts.roots;
+    return capture_scene(quiet, one);
+  }
+  Diagnostics diagnostics;
+  const std::vector<fs::path> frames = find_frames(options.frames, diagnostics, options.parts.roots);
+  const auto frame = frames.empty()
+                         ? std::nullopt
+                         : read_frame(frames.back(), profiles_folder(""), diagnostics, options.parts.roots);
+  if (!frame) {
+    print_diagnostics(session, diagnostics);
+    return demo::Error{demo::ErrorKind::input,
+                       fmt::format("the capture '{}' cannot be used", options.frames)};
+  }
+  CaptureWriter writer;
+  std::string problem;
+  if (writer.begin(folder, problem) && writer.add(*frame, problem) && writer.finish(problem))
+    return demo::success();
+  return demo::Error{demo::ErrorKind::environment, problem};
+}
+
+std::string replay_line(const ReportBugOptions& options, const GraphFiles& files) {
+  std::string line = fmt::format("dermis apply --graph {} --frames capture --out replay", word(files.graph));
+  for (const std::string& overlay : files.overlays)
+    line += " --overlay " + word(overlay);
+  for (const std::string& kinds : files.kinds)
+    line += " --kinds " + word(kinds);
+  for (const auto& [name, value] : options.settings)
+    line += " --set " + word(name + "=" + value);
+  return line;
+}
+
+std::string about(const Session& session, const std::string& replay) {
+  return fmt::format(
+      "Made by dermis {}.{}.{}: {}\n\nTo see the same, in this folder:\n\n  {}\n\n"
+      "settings.json  values that the plan was compiled with\n"
+      "plan.json      the plan with its reasons (dermis explain --json), for the generic device\n"
+      "graph.plan     the same for dermis plan verify and dermis plan diff\n"
+      "device.json    what the machine has (dermis doctor --json)\n"
+      "capture/       one frame as the graph sees it\n",
+      DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH, session.command, replay);
+}
+
+} // namespace
+
+ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
+  std::error_code error;
+  const fs::path target = fs::absolute(options.out, error).lexically_normal();
+  const fs::path named = target.has_filename() ? target : target.parent_path();
+  const std::string archived = folder_in(named);
+  for (const std::string_view ending : {".zip", ".tar", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar"})
+    if (archived.empty() && named.extension() == ending)
+      return fail(
+          session, ExitCode::usage,
+          fmt::format("'{}': archives are written as .tar.gz or .tgz; a name without such an ending is "
+                      "a folder's",
+                      options.out));
+  if (fs::exists(named, error) && (!archived.empty() || !fs::is_empty(named, error)))
+    return fail(session, ExitCode::environment,
+                fmt::format("'{}' is there{}: choose another name", options.out,
+                            archived.empty() ? " and not empty" : ""));
+
+  Diagnostics diagnostics;
+  GraphFiles files;
+  std::optional<Document> document = read_input(options.graph, diagnostics);
+  auto overlays = read_overlays(options.parts.overlays, diagnostics);
+  const OpenFile recorded = [&,
+                             open = open_beside(options.graph, options.parts.roots)](std::string_view name) {
+    FileText file = open(name);
+    if (file.problem.empty()) files.included[std::string(name)] = file.text;
+    return file;
+  };
+  const auto loaded = document && overlays ? load_graph(std::move(*document), std::move(*overlays), recorded,
+                                                        diagnostics, options.parts.kinds)
+                                           : std::nullopt;
+  if (!loaded) return fail_graph(session, options.graph, diagnostics);
+  const CompileChoices choices = read_choices(loaded->graph, options.settings);
+  if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+  const auto compiled = compile_generic(*loaded, options.size, choices, diagnostics);
+  if (!compiled) return fail_graph(session, options.graph, diagnostics);
+  const DeviceProfile generic = generic_profile();
+  const SavedPlan saved = saved_plan(compile_input(*loaded, generic, options.size, choices), compiled->plan);
+
+  Parcel parcel{named, temporary_beside(named), archived};
+  bool good = add_graph(parcel, options, diagnostics, files) &&
+              parcel.add("settings.json", settings_json(*loaded, choices, saved)) &&
+              parcel.add("plan.json", plan_json(loaded->graph, loaded->kinds, *compiled,
+                                                {loaded->changes, diagnostics.files})) &&
+              parcel.add("graph.plan", write_plan(saved)) && parcel.add("device.json", device_json()) &&
+              parcel.add("README.txt", about(session, replay_line(options, files)));
+  if (!good) return fail(session, ExitCode::environment, parcel.problem);
+  const auto captured = add_frame(session, options, parcel);
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  if (!captured) return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
+  if (archived.empty()) fs::remove(named, error); // an empty folder may be there
+  if (!parcel.finish()) return fail(session, ExitCode::environment, parcel.problem);
+  say(session, fmt::format("{}: send it as it is; README.txt in it has the line that shows the same:\n  {}\n",
+                           options.out, replay_line(options, files)));
+  if (session.json) {
+    JsonWriter answer;
+    answer.open_object()
+        .member("ok", true)
+        .member("out", options.out)
+        .member("replay", replay_line(options, files))
+        .close();
+    print(std::move(answer).finish());
+  }
+  return ExitCode::ok;
+}
+
+} // namespace dermis::tools

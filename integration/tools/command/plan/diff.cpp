@@ -1,0 +1,56 @@
+// dermis plan diff: two plans beside each other.
+
+#include "framegraph/explain/plan_diff.hpp"
+#include "integration/tools/command/plan/input.hpp"
+
+#include <initializer_list>
+
+namespace dermis::tools {
+namespace {
+
+template <class T> void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+bool tells_sides_apart(const PlanDiffOptions& options) {
+  return !options.b_settings.empty() || !options.b_unbound.empty() || !options.b_overlays.empty() ||
+         options.b_size.width > 0;
+}
+
+} // namespace
+
+ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
+  if (options.files.size() == 1 && !tells_sides_apart(options))
+    return fail(
+        session, ExitCode::usage,
+        "name two plans, or say with --b-set, --b-size, --b-unbound or --b-overlay how the second one "
+        "is to differ");
+  const PlanSource a{options.files.front(), options.parts, options.size, options.settings, options.unbound};
+  PlanSource b = a;
+  b.file = options.files.back();
+  append(b.parts.overlays, options.b_overlays);
+  append(b.settings, options.b_settings);
+  append(b.unbound, options.b_unbound);
+  if (options.b_size.width > 0) b.size = options.b_size;
+
+  Diagnostics diagnostics;
+  std::vector<NamedPlan> plans;
+  for (const PlanSource* source : std::initializer_list<const PlanSource*>{&a, &b}) {
+    std::string problem;
+    auto plan = load_plan(*source, diagnostics, problem);
+    if (!problem.empty()) return fail(session, ExitCode::usage, source->file + ": " + problem);
+    if (!plan) return fail_graph(session, source->file, diagnostics);
+    plans.push_back(std::move(*plan));
+  }
+  if (!plans.back().from_graph && tells_sides_apart(options))
+    return fail(session, ExitCode::usage,
+                options.files.back() + ": is a saved plan; --b-set, --b-size, --b-unbound and "
+                                       "--b-overlay need a graph to compile");
+  print_diagnostics(session, diagnostics);
+  const PlanDiff diff = diff_plans(plans[0].saved, plans[1].saved);
+  print(session.json ? plan_diff_json(diff, plans[0].name, plans[1].name)
+                     : plan_diff_text(diff, plans[0].name, plans[1].name));
+  return options.exit_code && !diff.same ? ExitCode::problems : ExitCode::ok;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,187 @@
+// dermis apply: a graph on captured frames, through the C interface; scattered light and combined colour as
+// EXR.
+
+#include "framegraph/text/json_writer.hpp"
+#include "integration/tools/command/graph_input.hpp"
+#include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/apply_slots.hpp"
+#include "integration/tools/command/run/captured.hpp"
+#include "integration/tools/command/run/device_graph.hpp"
+#include "integration/tools/command/run/host_passes.hpp"
+#include "integration/tools/command/run/pass_times.hpp"
+#include "integration/tools/command/run/surface_warnings.hpp"
+#include "integration/tools/files/exr.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace dermis::tools {
+namespace {
+
+struct Run {
+  const Session& session;
+  const ApplyOptions& options;
+  const LoadedGraph& loaded;
+  std::string graph_text;
+  demo::VulkanHost& host;
+  std::unique_ptr<DeviceGraph> device; // made for one size and one choice of slots
+  DeviceGraphRequest request;
+  PassTimes times;
+  uint64_t runs = 0, all_runs = 0; // done, and to be done
+  demo::ContextHooks hooks = {};
+};
+
+// A frame that has other images or profiles than the one before needs a graph of its own; history starts
+// anew. One of another size goes on with what the graph keeps over that.
+demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& slots) {
+  DeviceGraphRequest request;
+  request.graph_name = run.options.graph;
+  request.graph_text = run.graph_text;
+  request.overlays = run.loaded.overlays;
+  request.open = open_beside(run.options.graph, run.options.parts.roots);
+  request.width = frame.description.width;
+  request.height = frame.description.height;
+  request.settings = settings_as_json(run.loaded.graph, run.options.settings);
+  request.unbound = slots.unbound;
+  request.hooks = run.hooks;
+  for (const auto& [slot, format] : slots.formats)
+    request.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
+  for (const auto& one : frame.description.profiles)
+    request.profiles.push_back({one.id, one.profile.name, profile_as_json(one.profile)});
+  if (run.device != nullptr && same_but_size(request, run.request)) {
+    if (request.width == run.request.width && request.height == run.request.height) return demo::success();
+    run.request = std::move(request);
+    return run.device->resize(run.request.width, run.request.height);
+  }
+  run.device.reset();
+  auto made = DeviceGraph::create(run.host, request);
+  if (!made) return made.error();
+  run.device = made.take();
+  run.request = std::move(request);
+  return demo::success();
+}
+
+bool was_rendered(const CapturedFrame& frame, size_t pixel) {
+  const Rectangle& render = frame.description.render;
+  const size_t x = pixel % frame.description.width, y = pixel / frame.description.width;
+  return x >= render.x && x < size_t{render.x} + render.width && y >= render.y &&
+         y < size_t{render.y} + render.height;
+}
+
+// Where the graph wrote nothing, outside of what was rendered, the light as it came.
+Image scattered_light(const CapturedFrame& frame, std::vector<float> written) {
+  Image light{frame.lighting.width, frame.lighting.height, 3, std::move(written)};
+  for (size_t i = 0; i < light.values.size(); ++i)
+    if (!was_rendered(frame, i / 3)) light.values[i] = frame.lighting.values[i];
+  return light;
+}
+
+// What the host does with what comes back: scattered light is there already times albedo where there is a
+// profile. Where there is none, light is as bright as the capture says.
+Image combine(const CapturedFrame& frame, const std::vector<float>& lighting) {
+  Image combined = Image::sized(frame.lighting.width, frame.lighting.height, 3);
+  for (size_t i = 0; i < combined.values.size(); ++i) {
+    const bool is_colour = frame.profile[i / 3] != 0 && was_rendered(frame, i / 3);
+    const float albedo =
+        frame.albedo.values.empty() || is_colour ? 1.0f : std::min(frame.albedo.values[i], 1.0f);
+    const float specular = frame.specular.values.empty() ? 0.0f : frame.specular.values[i];
+    combined.values[i] = std::min(lighting[i] * albedo + specular, std::numeric_limits<float>::max());
+  }
+  return combined;
+}
+
+demo::Result<> write_frame(const CapturedFrame& frame, const std::string& name, DeviceGraph& device,
+                           OutputFolder& out) {
+  if (const std::string problem = out.open_below(name); !problem.empty())
+    return demo::Error{demo::ErrorKind::environment, problem};
+  const auto write = [&](const char* file, const Image& image) -> demo::Result<> {
+    std::string problem;
+    if (write_exr(out.path_of(name + "/" + file), image, rgb_names, problem)) return demo::success();
+    return demo::Error{demo::ErrorKind::environment, problem};
+  };
+  auto lighting = device.read_rgb("lighting");
+  if (!lighting) return lighting.error();
+  if (auto written = write("combined.exr", combine(frame, *lighting)); !written) return written;
+  if (!device.has("scattered_light")) return demo::success();
+  auto scattered = device.read_rgb("scattered_light");
+  if (!scattered) return scattered.error();
+  return write("scattered.exr", scattered_light(frame, scattered.take()));
+}
+
+demo::Result<> apply_frame(Run& run, const CapturedFrame& frame, const std::string& name, OutputFolder& out) {
+  const SlotChoice slots = choose_slots(run.loaded.graph, frame);
+  if (!slots.problem.empty()) return demo::Error{demo::ErrorKind::input, slots.problem};
+  if (auto ready = prepare(run, frame, slots); !ready) return ready;
+  for (uint32_t i = 0; i < run.options.repeat; ++i) {
+    if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+    for (const SlotData& data : slots.data) // also on repeats: the graph may write into what it was given
+      if (auto given = run.device->upload(data.slot, data.texels, data.channels); !given) return given;
+    if (auto ran = run.device->run(c_frame(frame.description)); !ran) return ran;
+    if (run.runs++ == 0 && run.all_runs > 1) continue; // the first of several warms the caches up
+    for (const DeviceGraph::PassTime& time : run.device->times())
+      run.times.add(time.pass, time.milliseconds);
+  }
+  return write_frame(frame, name, *run.device, out);
+}
+
+ExitCode report(const Run& run, const CapturedSequence& sequence, const Diagnostics& surfaces) {
+  if (!run.times.empty())
+    say(run.session, format_times(run.times, run.all_runs == 1 ? std::string("pass") + first_frame : "pass"));
+  say(run.session,
+      fmt::format("{} in {}\n", format_count(sequence.folders.size(), "frame", true), run.options.out));
+  if (run.session.json) {
+    JsonWriter answer;
+    answer.open_object().member("ok", true).member("graph", run.options.graph);
+    answer.member("device", std::string_view(run.host.properties.deviceName));
+    answer.member("frames", static_cast<uint64_t>(sequence.folders.size())).member("out", run.options.out);
+    answer.member("sanitised_values", sequence.sanitised_values).key("passes");
+    write_times(answer, run.times);
+    answer.member("device_ms", run.times.total());
+    answer.key("diagnostics").json(format_as_json(surfaces)).close();
+    print(std::move(answer).finish());
+  }
+  return ExitCode::ok;
+}
+
+} // namespace
+
+ExitCode apply(const Session& session, const ApplyOptions& options) {
+  Diagnostics diagnostics;
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  if (!loaded) return fail_graph(session, options.graph, diagnostics);
+  const CompileChoices choices = read_choices(loaded->graph, options.settings);
+  if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+  const std::optional<CapturedSequence> sequence =
+      check_sequence(session, options.frames, options.profiles, options.parts.roots);
+  if (!sequence) return ExitCode::problems;
+
+  HostPasses host_passes(loaded->host_kinds); // outlives the device's context
+  auto host = demo::create_vulkan_host({});
+  if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
+  OutputFolder out;
+  if (const std::string problem = out.open(options.out); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
+
+  Run run{session, options, *loaded, diagnostics.files.front().text, **host, nullptr, {}, {}};
+  run.hooks = host_passes.hooks();
+  run.all_runs = sequence->folders.size() * uint64_t{options.repeat};
+  Progress progress(progress_style(session.quiet, session.json), "apply", "frame", sequence->folders.size());
+  Diagnostics surfaces; // of the sequence, each warning once
+  for (size_t i = 0; i < sequence->folders.size(); ++i) {
+    const std::optional<CapturedFrame> frame = load_frame(*sequence, i);
+    if (!frame) return fail(session, ExitCode::problems, "the capture changed while it was read");
+    warn_of_surfaces(*frame, surfaces);
+    const auto done = apply_frame(run, *frame, sequence->names[i], out);
+    if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+    if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
+    progress.update(i + 1);
+  }
+  print_diagnostics(session, surfaces);
+  return report(run, *sequence, surfaces);
+}
+
+} // namespace dermis::tools

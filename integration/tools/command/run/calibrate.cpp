@@ -1,0 +1,65 @@
+// dermis calibrate: what a graph's passes cost on this device, as a file for budgets.
+
+#include "framegraph/text/json_writer.hpp"
+#include "integration/examples/demo_engine/files.hpp"
+#include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/choice_sets.hpp"
+#include "integration/tools/command/run/device_costs.hpp"
+#include "integration/tools/command/run/host_passes.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis::tools {
+
+ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
+  Diagnostics diagnostics;
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  if (!loaded) return fail_graph(session, options.graph, diagnostics);
+  const auto all = choice_sets(*loaded, options.size, diagnostics);
+  if (all.empty()) return fail_graph(session, options.graph, diagnostics);
+  HostPasses host_passes(loaded->host_kinds);
+  CostsRequest request;
+  request.hooks = host_passes.hooks();
+  request.graph = options.graph;
+  request.scene = options.scene;
+  request.roots = options.parts.roots;
+  request.size = options.size;
+  request.frames = options.frames;
+  request.sets = all;
+  if (!options.calibration.empty()) {
+    auto text = demo::read_text_file(options.calibration);
+    if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
+    request.calibration = {options.calibration, text.take()};
+  }
+  for (const auto& [name, text] : loaded->overlays)
+    request.overlays.push_back({name, text});
+  request.include = [open = open_beside(options.graph, options.parts.roots)](
+                        const std::string& name) -> std::optional<demo::NamedText> {
+    const FileText file = open(name);
+    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+  };
+  Progress progress(progress_style(session.quiet, session.json), "calibrate", "run",
+                    count_cost_runs(request));
+  uint32_t done = 0;
+  const auto costs = measure_costs(request, [&] { progress.update(++done); });
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  if (!costs) return fail(session, static_cast<ExitCode>(costs.error().kind), costs.error().text);
+  if (const std::string problem = deliver_text(options.out, costs->calibration); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
+  say(session, options.out == "-" ? ""
+                                  : fmt::format("{} holds what {} costs on {}\n", options.out, options.graph,
+                                                costs->device));
+  if (session.json && options.out != "-") {
+    JsonWriter answer;
+    answer.open_object()
+        .member("ok", true)
+        .member("out", options.out)
+        .member("device", costs->device)
+        .close();
+    print(std::move(answer).finish());
+  }
+  return ExitCode::ok;
+}
+
+} // namespace dermis::tools

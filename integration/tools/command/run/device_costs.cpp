@@ -1,0 +1,60 @@
+#include "integration/tools/command/run/device_costs.hpp"
+
+#include "integration/tools/command/interrupt.hpp"
+
+namespace dermis::tools {
+namespace {
+
+// Near and far, so that times can be split into what a dispatch and what a tile costs.
+constexpr demo::CameraPlace places[] = {
+    {{0.03, 0.0, 0.6}, {0.008, -0.027, 0.0}, 25.0},
+    {{0.03, 0.0, 2.4}, {0.008, -0.027, 0.0}, 25.0},
+};
+
+} // namespace
+
+uint32_t count_cost_runs(const CostsRequest& request) {
+  return static_cast<uint32_t>(request.sets.size() * std::size(places));
+}
+
+demo::Result<DeviceCosts> measure_costs(const CostsRequest& request, const std::function<void()>& on_run) {
+  const demo::Error stopped = {demo::ErrorKind::environment, "stopped"};
+  DeviceCosts costs{{}, request.calibration.text};
+  const demo::StageHandle stage = demo::make_stage();
+  demo::RenderOptions engine;
+  engine.scene = request.scene;
+  engine.roots = request.roots;
+  engine.graph = request.graph;
+  engine.overlays = request.overlays;
+  engine.include = request.include;
+  engine.hooks = request.hooks;
+  engine.width = request.size.width;
+  engine.height = request.size.height;
+  engine.frames = request.frames;
+  engine.pictures_of = [](uint32_t) { return false; };
+  engine.calibration.name = request.calibration.text.empty() ? "calibration" : request.calibration.name;
+  demo::RenderCallbacks callbacks;
+  callbacks.on_start = [&](const demo::RenderInfo& info) {
+    costs.device = info.device;
+    return demo::success();
+  };
+  callbacks.on_frame = [&](const demo::FrameOutputs&) -> demo::Result<> {
+    if (interrupted()) return stopped;
+    return demo::success();
+  };
+  for (const demo::CameraPlace& place : places)
+    for (const auto& values : request.sets) {
+      engine.camera = place;
+      engine.settings = values;
+      engine.calibration.text = costs.calibration;
+      const auto summary = demo::render(engine, callbacks, stage.get());
+      if (interrupted()) return stopped;
+      if (!summary) return summary.error();
+      costs.calibration = summary->calibration;
+      engine.calibration.name = "calibration"; // what the run before found
+      on_run();
+    }
+  return costs;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,36 @@
+#pragma once
+// Pass kinds of a host in a program that has no kernels for them. Graphs with such passes run as long as each
+// of those passes is off or not needed; a pass that would run is refused by its name.
+
+#include "framegraph/model/host_kind.hpp"
+#include "integration/examples/demo_engine/context_hooks.hpp"
+
+#include <deque>
+#include <memory>
+#include <string>
+
+namespace dermis::tools {
+
+// Must outlive the contexts that its hooks were given to. One thread.
+class HostPasses {
+public:
+  explicit HostPasses(std::shared_ptr<const HostKinds> kinds);
+  HostPasses(const HostPasses&) = delete;
+  HostPasses& operator=(const HostPasses&) = delete;
+
+  demo::ContextHooks hooks();
+  demo::Result<> prepare(dermis_context_t* context); // registers the kinds
+  demo::Result<> recorded() const; // an error names the first pass that the last frames would have run
+
+private:
+  struct Kind {
+    HostPasses* owner;
+    std::string name;
+  };
+
+  std::shared_ptr<const HostKinds> declared_;
+  std::deque<Kind> kinds_; // their addresses stay
+  std::string refused_;
+};
+
+} // namespace dermis::tools

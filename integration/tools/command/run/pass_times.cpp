@@ -1,0 +1,64 @@
+#include "integration/tools/command/run/pass_times.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace dermis::tools {
+namespace {
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+} // namespace
+
+void PassTimes::add(std::string_view pass, double milliseconds) {
+  auto found =
+      std::find_if(samples_.begin(), samples_.end(), [&](const Samples& one) { return one.pass == pass; });
+  if (found == samples_.end()) found = samples_.insert(found, {std::string(pass), {}});
+  found->milliseconds.push_back(milliseconds);
+}
+
+std::vector<PassTimes::Row> PassTimes::rows() const {
+  std::vector<Row> rows;
+  for (const Samples& one : samples_)
+    rows.push_back({one.pass, median(one.milliseconds), one.milliseconds.size()});
+  return rows;
+}
+
+double PassTimes::total() const {
+  double sum = 0.0;
+  for (const Row& row : rows())
+    sum += row.median;
+  return sum;
+}
+
+std::string format_times(const PassTimes& times, const std::string& title) {
+  const double total = times.total();
+  const auto share = [&](double part) {
+    return fmt::format("{:.1f} %", total > 0.0 ? 100.0 * part / total : 0.0);
+  };
+  Table table;
+  const std::vector<PassTimes::Row> rows = times.rows();
+  const size_t frames = rows.empty() ? 0 : rows.front().frames;
+  table.columns = {{fmt::format("{}, median of {}", title, frames)}, {"device time", true}, {"share", true}};
+  for (const PassTimes::Row& row : rows)
+    table.rows.push_back({row.pass, format_milliseconds(row.median), share(row.median)});
+  table.rows.push_back({});
+  table.rows.push_back({"all", format_milliseconds(total), share(total)});
+  return format_table(table);
+}
+
+void write_times(JsonWriter& writer, const PassTimes& times) {
+  writer.open_array();
+  for (const PassTimes::Row& row : times.rows()) {
+    writer.open_object(true).member("pass", row.pass).member("milliseconds", row.median);
+    writer.member("frames", static_cast<uint64_t>(row.frames)).close();
+  }
+  writer.close();
+}
+
+} // namespace dermis::tools

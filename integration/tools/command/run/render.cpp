@@ -1,0 +1,339 @@
+// dermis render: a scene through the demo engine and a graph; pictures, device times, and the error against
+// the truth.
+
+#include "framegraph/text/json_writer.hpp"
+#include "integration/examples/demo_engine/files.hpp"
+#include "integration/tools/command/graph_input.hpp"
+#include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/choice_report.hpp"
+#include "integration/tools/command/run/host_passes.hpp"
+#include "integration/tools/command/run/pass_times.hpp"
+#include "integration/tools/command/run/rendered_frame.hpp"
+#include "integration/tools/command/run/surface_warnings.hpp"
+#include "integration/tools/command/run/trace.hpp"
+#include "integration/tools/command/run/truth_run.hpp"
+#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/files/exr.hpp"
+#include "integration/tools/files/png.hpp"
+#include "integration/tools/files/roots.hpp"
+#include "passes/choice/defaults.hpp"
+#include "passes/choice/error_model.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+namespace dermis::tools {
+namespace {
+
+constexpr std::string_view no_graph = "none"; // for --graph: as the engine looks without Dermis
+
+demo::Error cannot_write(std::string problem) {
+  return {demo::ErrorKind::environment, std::move(problem)};
+}
+
+// Everything that the frames leave behind while they pass.
+struct Run {
+  const Session& session;
+  const RenderOptions& options;
+  Progress progress;
+  OutputFolder out{};
+  demo::RenderInfo info{};
+  std::vector<CaptureProfile> profiles{};
+  PassTimes graph_times{}, host_times{};
+  ExposureMeter exposure{};
+  uint32_t frames = 0;
+  TruthFrame last{}; // with what came out for it:
+  std::vector<float> last_scattered{};
+  CaptureWriter capture{};
+  bool textured_before = false;
+  ChoiceReport choices{};
+  Trace trace{};
+  bool transmission = false; // the graph adds light from behind before it scatters
+  bool by_rays = false;      // the last frame scattered by rays, which see more than the screen
+  Diagnostics surfaces{};    // warnings of frames, each once
+};
+
+demo::Result<> start(Run& run, const demo::RenderInfo& info) {
+  run.info = info;
+  for (const std::string& warning : info.warnings)
+    spdlog::warn("{}", warning);
+  for (const std::string& credit : info.credits)
+    say(run.session, credit + "\n");
+  auto profiles = read_profiles(info.profiles);
+  if (!profiles) return profiles.error();
+  run.profiles = profiles.take();
+  if (const std::string problem = run.out.open(run.options.out); !problem.empty())
+    return cannot_write(problem);
+  std::string problem;
+  if (!run.options.capture.empty() && !run.capture.begin(run.options.capture, problem))
+    return cannot_write(problem);
+  return demo::success();
+}
+
+// Green by samples, up to the most that a graph takes by default; red where a surface was not to be seen in
+// the frame before; dim where there is subsurface and no sample; black where there is none.
+std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
+  constexpr float most_samples = 64, dim = 0.25f;
+  std::vector<uint8_t> rgb(frame.display.size());
+  for (size_t i = 0; i < frame.inputs.profile.texels.size(); ++i) {
+    if (!(frame.inputs.profile.texels[i] > 0)) continue;
+    const float* sampled = &frame.sampling.texels[4 * i];
+    for (size_t c = 0; c < 3; ++c)
+      rgb[3 * i + c] = static_cast<uint8_t>(dim * static_cast<float>(frame.display[3 * i + c]));
+    // The square root keeps one sample apart from none.
+    if (sampled[0] > 0)
+      rgb[3 * i + 1] = static_cast<uint8_t>(255 * std::sqrt(std::min(sampled[0] / most_samples, 1.0f)));
+    if (sampled[3] > 0.5f) rgb[3 * i] = 255;
+  }
+  return rgb;
+}
+
+// By the class of a pixel's tile, in the picture's own light: grey has no subsurface in it, green scatters,
+// blue is below a pixel, yellow flat in light.
+std::vector<uint8_t> skips_picture(const demo::FrameOutputs& frame) {
+  constexpr std::array<std::array<float, 3>, 4> tints{
+      {{0.25f, 0.25f, 0.25f}, {0.3f, 1, 0.3f}, {0.3f, 0.3f, 1}, {1, 1, 0.3f}}};
+  constexpr float least = 64; // of 255, so that dark tiles can be told apart, too
+  std::vector<uint8_t> rgb(frame.display.size());
+  for (size_t i = 0; i < rgb.size() / 3; ++i) {
+    const auto tile = std::min(static_cast<size_t>(frame.skips.texels[2 * i]), tints.size() - 1);
+    const float floor = tile == 0 ? 0 : least;
+    for (size_t c = 0; c < 3; ++c)
+      rgb[3 * i + c] = static_cast<uint8_t>(tints[tile][c] *
+                                            (floor + (255 - floor) / 255 * float(frame.display[3 * i + c])));
+  }
+  return rgb;
+}
+
+demo::Result<> write_pictures(Run& run, const demo::FrameOutputs& frame) {
+  std::string problem;
+  const auto name = [&](const char* what, const char* extension) {
+    return run.out.path_of(fmt::format("{}_{:04}.{}", what, frame.frame, extension));
+  };
+  if (!write_png(name("frame", "png"), frame.color.width, frame.color.height, frame.display, problem) ||
+      !write_exr(name("color", "exr"), to_image(frame.color), rgb_names, problem))
+    return cannot_write(problem);
+  if (!frame.scattered.texels.empty() &&
+      !write_exr(name("scattered", "exr"), to_image(frame.scattered), rgb_names, problem))
+    return cannot_write(problem);
+  if (!frame.sampling.texels.empty() && !write_png(name("debug", "png"), frame.color.width,
+                                                   frame.color.height, sampling_picture(frame), problem))
+    return cannot_write(problem);
+  if (!frame.skips.texels.empty() &&
+      !write_png(name("debug", "png"), frame.color.width, frame.color.height, skips_picture(frame), problem))
+    return cannot_write(problem);
+  return demo::success();
+}
+
+bool scatters_by_rays(const std::string& technique) {
+  Diagnostics ignored;
+  const auto document = parse_document("errors", std::string(choice::default_errors_text()), ignored);
+  const auto errors = document ? choice::read_error_model(*document, ignored) : std::nullopt;
+  return errors && std::any_of(errors->techniques.begin(), errors->techniques.end(),
+                               [&](const auto& one) { return one.by_rays && one.name == technique; });
+}
+
+demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
+  if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+  if (auto written = write_pictures(run, frame); !written) return written;
+  auto captured = captured_frame(frame, run.profiles);
+  if (!captured) return captured.error();
+  warn_of_surfaces(*captured, run.surfaces);
+  std::string problem;
+  if (!run.options.capture.empty() && !run.capture.add(*captured, problem)) return cannot_write(problem);
+
+  // The first frame of several warms the caches up.
+  if (frame.frame > 0 || run.options.frames == 1) {
+    for (const demo::PassTime& time : frame.dermis_times)
+      run.graph_times.add(time.pass, time.milliseconds);
+    for (const demo::PassTime& time : frame.host_times)
+      run.host_times.add(time.pass, time.milliseconds);
+  }
+  if (frame.choice) run.choices.add(frame.frame, *frame.choice, frame.histories);
+  if (!run.options.trace.empty()) run.trace.add(frame);
+  run.by_rays = frame.choice && scatters_by_rays(frame.choice->technique);
+  run.exposure.add(captured->lighting.values, captured->profile);
+  run.last = make_truth_frame(*captured);
+  if (run.transmission) add_transmission(*captured, run.last);
+  run.last_scattered = frame.scattered.texels;
+  run.progress.update(++run.frames);
+  return demo::success();
+}
+
+// Only 'post' scatters the light that the reference scatters: irradiance before albedo.
+bool textured_before(const Graph& graph, const CompileChoices& choices) {
+  for (size_t i = 0; i < graph.settings.size(); ++i) {
+    const SettingDeclaration& setting = graph.settings[i];
+    if (setting.name == "texturing" && setting.type == SettingType::enumeration)
+      return setting.options[static_cast<size_t>(choices.settings[i].integer)] != "post";
+  }
+  return false;
+}
+
+bool hands_out_samples(const Graph& graph) {
+  return std::any_of(graph.resources.begin(), graph.resources.end(),
+                     [](const ResourceDeclaration& one) { return one.name == "sampling"; });
+}
+
+bool transmits(const Graph& graph, const CompileChoices& choices) {
+  for (size_t i = 0; i < graph.settings.size(); ++i)
+    if (graph.settings[i].name == "transmission" && graph.settings[i].type == SettingType::boolean)
+      return choices.settings[i].integer != 0;
+  return false;
+}
+
+// Nothing to compare with: no scattered light handed out, no subsurface pixel, or not asked for.
+std::string why_no_error(const Run& run) {
+  if (run.textured_before) return "the reference needs 'texturing' = 'post'";
+  if (run.options.graph == no_graph) return "rendered without a graph";
+  if (run.by_rays)
+    return "the technique traces rays, and the reference of screen space does not apply; "
+           "'dermis bench restir' has one that does";
+  if (run.options.subset == 0) return "not asked for (--subset 0)";
+  if (run.last_scattered.empty()) return "the graph does not export 'scattered_light'";
+  if (subsurface_pixels(run.last.profile) == 0) return "no pixel of the last frame has a profile";
+  return "";
+}
+
+ExitCode report(Run& run) {
+  std::string text, error_json = "null";
+  const std::string cold = run.options.frames == 1 ? first_frame : "";
+  if (!run.graph_times.empty()) text += format_times(run.graph_times, "pass of the graph" + cold) + '\n';
+  if (!run.host_times.empty()) text += format_times(run.host_times, "pass of the engine" + cold) + '\n';
+  if (!run.choices.empty()) text += run.choices.text() + '\n';
+  const std::string no_error = why_no_error(run);
+  if (no_error.empty()) {
+    const TruthFrame& last = run.last;
+    const subsurface::TruthInput input = last.input();
+    const std::vector<uint32_t> pixels =
+        subsurface::stratified_subset(last.width, last.height, last.profile, run.options.subset);
+    const auto truth = run_truth(run.session, "truth", input, pixels);
+    if (!truth) return fail(run.session, ExitCode::interrupted, "stopped");
+    const double exposure = run.exposure.result();
+    const uint64_t population = subsurface_pixels(last.profile);
+    const ErrorFigures figures = measure_error(run.last_scattered, *truth, pixels, exposure, population);
+    const double d_px = median_d_px(input);
+    text += format_error(figures, fmt::format("frame {}", run.frames - 1), population, exposure, d_px);
+    error_json = error_as_json(figures, population, exposure, d_px);
+  } else {
+    text += fmt::format("error of the scattered light: not measured, {}\n", no_error);
+  }
+  say(run.session,
+      text + fmt::format("\n{} in {}\n", format_count(run.frames, "frame", true), run.options.out));
+  if (run.session.json) {
+    JsonWriter answer;
+    answer.open_object()
+        .member("ok", true)
+        .member("scene", run.info.scene)
+        .member("graph", run.options.graph);
+    answer.member("device", run.info.device).member("frames", run.frames).member("out", run.options.out);
+    answer.member("width", run.options.size.width).member("height", run.options.size.height).key("passes");
+    write_times(answer, run.graph_times);
+    write_times(answer.key("engine_passes"), run.host_times);
+    answer.member("device_ms", run.graph_times.total()).key("error").json(error_json);
+    run.choices.write(answer.key("choices"));
+    answer.key("diagnostics").json(format_as_json(run.surfaces)).key("credits").open_array();
+    for (const std::string& credit : run.info.credits)
+      answer.value(credit);
+    answer.close().close();
+    print(std::move(answer).finish());
+  }
+  return ExitCode::ok;
+}
+
+} // namespace
+
+ExitCode render(const Session& session, const RenderOptions& options) {
+  demo::RenderOptions engine;
+  engine.scene = options.scene;
+  engine.roots = options.parts.roots;
+  engine.model = {options.model.model, options.model.albedo, options.model.normal, options.model.specular,
+                  options.model.height};
+  engine.width = options.size.width;
+  engine.height = options.size.height;
+  engine.frames = options.frames;
+  engine.budget_ms = options.budget_ms;
+  engine.metered = options.metered;
+  engine.taa = options.taa;
+  engine.sampling = options.debug == RenderOptions::Debug::samples;
+  engine.skips = options.debug == RenderOptions::Debug::skips;
+  GraphParts parts = options.parts;
+  constexpr const char* skips = "skips.json"; // given as well: it is in already
+  if (engine.skips && std::none_of(parts.overlays.begin(), parts.overlays.end(), [&](const std::string& one) {
+        return std::filesystem::path(one).filename() == skips;
+      }))
+    parts.overlays.push_back(shipped(std::string("configs/overlays/") + skips));
+  if (!options.calibration.empty()) {
+    auto text = demo::read_text_file(options.calibration);
+    if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
+    engine.calibration = {options.calibration, text.take()};
+  }
+
+  // The graph is read here first: its messages then come with excerpts and as JSON, and --set is checked.
+  bool textured = false, transmission = false;
+  std::optional<HostPasses> host_passes;
+  if (options.graph != no_graph) {
+    Diagnostics diagnostics;
+    const std::optional<LoadedGraph> loaded = load_graph(options.graph, parts, diagnostics);
+    if (!loaded) return fail_graph(session, options.graph, diagnostics);
+    const CompileChoices choices = read_choices(loaded->graph, options.settings);
+    if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+    if (engine.sampling && !hands_out_samples(loaded->graph))
+      return fail(
+          session, ExitCode::usage,
+          fmt::format("--debug samples: '{}' exports no 'sampling', which would say where it sampled; "
+                      "afis_guided.json, sap_blend.json and sap_residual.json do",
+                      options.graph));
+    if (!compile_generic(*loaded, options.size, choices, diagnostics))
+      return fail_graph(session, options.graph, diagnostics);
+    engine.graph = options.graph;
+    host_passes.emplace(loaded->host_kinds);
+    engine.hooks = host_passes->hooks();
+    for (const auto& [name, text] : loaded->overlays)
+      engine.overlays.push_back({name, text});
+    const auto files_of = [](OpenFile open) {
+      return [open = std::move(open)](const std::string& name) -> std::optional<demo::NamedText> {
+        const FileText file = open(name);
+        return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+      };
+    };
+    engine.include = files_of(open_beside(options.graph, options.parts.roots));
+    if (!options.shaders.empty()) engine.shaders = files_of(open_below({options.shaders}));
+    engine.settings = settings_as_json(loaded->graph, options.settings);
+    textured = textured_before(loaded->graph, choices);
+    transmission = transmits(loaded->graph, choices);
+  } else if (!options.settings.empty() || !options.parts.overlays.empty() || !options.parts.kinds.empty() ||
+             !options.shaders.empty()) {
+    return fail(session, ExitCode::usage, "--set, --overlay, --kinds and --shaders need a graph");
+  }
+
+  Run run{.session = session,
+          .options = options,
+          .progress =
+              Progress(progress_style(session.quiet, session.json), "render", "frame", options.frames),
+          .textured_before = textured,
+          .transmission = transmission};
+  demo::RenderCallbacks callbacks;
+  callbacks.on_start = [&](const demo::RenderInfo& info) { return start(run, info); };
+  callbacks.on_frame = [&](const demo::FrameOutputs& frame) { return take_frame(run, frame); };
+  const auto summary = demo::render(engine, callbacks);
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  if (!summary) return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+  std::string problem;
+  if (!options.capture.empty() && !run.capture.finish(problem))
+    return fail(session, ExitCode::environment, problem);
+  if (!options.trace.empty())
+    problem = deliver_text(options.trace, run.trace.json(session.command, run.info.device));
+  if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+  print_diagnostics(session, run.surfaces);
+  return report(run);
+}
+
+} // namespace dermis::tools

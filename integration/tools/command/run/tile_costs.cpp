@@ -1,0 +1,125 @@
+#include "integration/tools/command/run/tile_costs.hpp"
+
+#include "integration/tools/command/present.hpp"
+#include "integration/tools/references/image_reads.hpp"
+#include "passes/common/environment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace dermis::tools {
+namespace {
+
+constexpr double tile_pixels = 64;
+
+// "technique=hybrid, variant=smooth" as settings.
+void add_outcome(const Graph& graph, std::string_view outcome, std::vector<NamedValue>& settings) {
+  while (!outcome.empty()) {
+    const size_t end = std::min(outcome.find(", "), outcome.size()), equals = outcome.find('=');
+    if (equals < end) {
+      const std::string name(outcome.substr(0, equals));
+      if (std::any_of(graph.settings.begin(), graph.settings.end(),
+                      [&](const SettingDeclaration& one) { return one.name == name; }))
+        settings.emplace_back(name, std::string(outcome.substr(equals + 1, end - equals - 1)));
+    }
+    outcome.remove_prefix(std::min(end + 2, outcome.size()));
+  }
+}
+
+double texels_of(const PlanResource& resource) {
+  return double(resource.width) * double(resource.height);
+}
+
+// Texels that the pass writes, where it runs over an image of its own.
+double written_texels(const Plan& plan, const PlanPass& pass) {
+  for (uint32_t a = 0; a < pass.access_count; ++a) {
+    const PlanAccess& access = plan.accesses[pass.first_access + a];
+    const PlanResource& resource = plan.resources[access.resource];
+    if ((access.access & access::shader_storage_write) != 0 && resource.type == ResourceType::image)
+      return texels_of(resource);
+  }
+  return 0;
+}
+
+} // namespace
+
+double TileCosts::total() const {
+  return std::accumulate(classes.begin(), classes.end(), reads_beside, [](double sum, const TileClass& one) {
+    return sum + tile_pixels * double(one.tiles) * one.reads;
+  });
+}
+
+TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<const NamedValue> settings,
+                     const demo::FrameChoice& choice) {
+  std::vector<NamedValue> values(settings.begin(), settings.end());
+  add_outcome(loaded.graph, choice.outcome, values);
+  Diagnostics scratch; // the frame ran: the graph compiles
+  const auto compiled = compile_generic(loaded, size, read_choices(loaded.graph, values), scratch);
+  TileCosts out;
+  if (!compiled) return out;
+  const Plan& plan = compiled->plan;
+  const std::vector<float> tables = subsurface::make_sap_tables({true, true}, {});
+  const double d = choice.mean_d_px;
+  double everywhere = 0, per_step = 0; // a pixel of every scattering tile; of one with a step of samples
+  double first_step = 0;               // samples
+  for (const PlanPass& pass : plan.passes) {
+    const PassKind& kind = loaded.kinds[pass.kind];
+    std::vector<SettingValue> own;
+    double finer = 1; // texels of level 0 for one of the pass's
+    for (size_t i = 0; i < kind.settings.size(); ++i) {
+      own.push_back(plan.settings[pass.first_setting + i].value);
+      if (kind.settings[i].name == "level") finer = std::exp2(2.0 * double(own.back().integer));
+    }
+    subsurface::ReadsQuestion question{own, std::vector<bool>(kind.ports.size(), false), {d, d, d}, tables};
+    for (uint32_t a = 0; a < pass.access_count; ++a)
+      question.bound[plan.accesses[pass.first_access + a].port] = true;
+    const auto reads = subsurface::image_reads(kind, question);
+    if (!reads) continue;
+    const bool by_tile = find_port(kind, "shares", PortSide::read) >= 0;
+    if (by_tile) { // counted at twice the first step's samples
+      question.sampled_share = 0;
+      const double without = subsurface::image_reads(kind, question)->per_invocation;
+      out.reads_per_sample = (reads->per_invocation - without) / reads->samples;
+      first_step = reads->samples / 2;
+      per_step += without;
+    } else if (kind.dispatch == DispatchShape::over_tiles) {
+      everywhere += reads->per_invocation / finer;
+    } else if (kind.dispatch == DispatchShape::over_written) {
+      out.reads_beside += reads->per_invocation * written_texels(plan, pass);
+    } else {
+      out.reads_beside += reads->per_invocation * tile_pixels * double(choice.view_tiles);
+    }
+  }
+  if (first_step <= 0) return out;
+  const uint64_t sampled =
+      std::accumulate(choice.sampled_tiles.begin(), choice.sampled_tiles.end(), uint64_t{0});
+  out.classes.push_back(
+      {0, choice.scattering_tiles - std::min<uint64_t>(choice.scattering_tiles, sampled), everywhere});
+  for (size_t k = 0; k < choice.sampled_tiles.size(); ++k) {
+    const auto samples = static_cast<uint32_t>(first_step) << k;
+    out.classes.push_back(
+        {samples, choice.sampled_tiles[k], everywhere + per_step + double(samples) * out.reads_per_sample});
+  }
+  return out;
+}
+
+std::string describe_tile_costs(const TileCosts& costs) {
+  if (costs.classes.empty()) return "";
+  Table table;
+  table.columns = {{"samples a pixel, m", true},
+                   {"tiles, w", true},
+                   {"S(m), reads a pixel", true},
+                   {"w S(m), M reads", true}};
+  for (const TileClass& one : costs.classes)
+    table.rows.push_back({fmt::format("{}", one.samples), fmt::format("{}", one.tiles),
+                          fmt::format("{:.1f}", one.reads),
+                          fmt::format("{:.3f}", tile_pixels * double(one.tiles) * one.reads * 1e-6)});
+  return format_table(table) +
+         fmt::format("M(d) = {:.1f} reads a sample, O(n) = {:.3f} M reads, T'(n) = {:.3f} M reads\n",
+                     costs.reads_per_sample, costs.reads_beside * 1e-6, costs.total() * 1e-6);
+}
+
+} // namespace dermis::tools

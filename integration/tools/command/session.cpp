@@ -1,0 +1,47 @@
+#include "integration/tools/command/session.hpp"
+
+#include "framegraph/text/json_writer.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <unistd.h>
+
+namespace dermis::tools {
+
+ExitCode fail(const Session& session, ExitCode code, std::string_view message,
+              const Diagnostics* diagnostics) {
+  if (diagnostics != nullptr) print_diagnostics(session, *diagnostics);
+  if (session.json) {
+    JsonWriter answer;
+    answer.open_object().member("ok", false).member("exit_code", static_cast<int32_t>(code));
+    answer.member("error", message).key("diagnostics");
+    answer.json(diagnostics != nullptr ? format_as_json(*diagnostics) : "[]").close();
+    print(std::move(answer).finish());
+  } else {
+    spdlog::error("{}", message);
+  }
+  return code;
+}
+
+void print_diagnostics(const Session& session, const Diagnostics& diagnostics) {
+  if (session.json) return;
+  const bool color = color_wanted(session.color, STDERR_FILENO);
+  for (const Diagnostic& one : diagnostics.list) {
+    if (session.quiet && diagnostic_info(one.id).severity != Severity::error) continue;
+    const std::string text = format_for_people(diagnostics, one);
+    fmt::print(stderr, "{}\n", color ? color_diagnostic(text) : text);
+  }
+}
+
+void say(const Session& session, std::string_view text) {
+  if (!session.json && !session.quiet) print(text);
+}
+
+void print(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,32 @@
+#include "integration/tools/command/shipped.hpp"
+
+#include <filesystem>
+#include <string_view>
+
+namespace dermis::tools {
+
+std::string shipped(const std::string& path) {
+  namespace fs = std::filesystem;
+  const auto prefix = std::string_view(path).substr(0, path.find('/') + 1);
+  std::error_code error;
+  if (fs::exists(path, error) || (prefix != "configs/" && prefix != "tests/")) return path;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error); // Linux; elsewhere sources alone
+  if (error) return path;
+  const fs::path installed =
+      program.parent_path().parent_path() / "share" / "dermis" / path.substr(prefix.size());
+  return fs::exists(installed, error) ? installed.string() : path;
+}
+
+std::string shipped(std::string_view folder, std::string_view name) {
+  const auto below = [&](std::string_view more) {
+    return shipped(std::string("configs/").append(folder).append(more).append(name).append(".json"));
+  };
+  std::error_code error;
+  std::string found = below("/");
+  if (std::string of_papers = below("/papers/");
+      !std::filesystem::exists(found, error) && std::filesystem::exists(of_papers, error))
+    return of_papers;
+  return found;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,85 @@
+#include "integration/tools/files/bytes.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+namespace dermis::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Close>;
+
+std::string last_error() {
+  return std::generic_category().message(errno);
+}
+
+} // namespace
+
+std::optional<std::vector<uint8_t>> read_bytes(const fs::path& path, uint64_t limit, std::string& error) {
+  std::error_code code;
+  if (!fs::is_regular_file(path, code)) {
+    error = fmt::format("'{}' {}", path.string(),
+                        fs::exists(path, code) ? "is not a regular file" : "does not exist");
+    return std::nullopt;
+  }
+  const uint64_t size = fs::file_size(path, code);
+  if (code || size > limit) {
+    error = code ? fmt::format("the size of '{}' cannot be read: {}", path.string(), code.message())
+                 : fmt::format("'{}' has {} bytes; at most {} are read", path.string(), size, limit);
+    return std::nullopt;
+  }
+  const File file(std::fopen(path.c_str(), "rb"));
+  std::vector<uint8_t> bytes(size);
+  if (!file || std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
+    error = fmt::format("'{}' cannot be read: {}", path.string(), last_error());
+    return std::nullopt;
+  }
+  return bytes;
+}
+
+fs::path temporary_beside(const fs::path& path) {
+  static std::atomic<uint64_t> counter{0}; // tells calls within the process apart; nothing else depends on it
+  fs::path result = path;
+  result += fmt::format(".{}-{}.part", ::getpid(), counter.fetch_add(1));
+  return result;
+}
+
+bool write_bytes(const fs::path& path, std::span<const uint8_t> bytes, std::string& error) {
+  const fs::path part = temporary_beside(path);
+  std::error_code code;
+  bool complete = false;
+  {
+    File file(std::fopen(part.c_str(), "wb"));
+    complete = file && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
+    // A full disk may show only when the buffer is flushed.
+    complete = complete && std::fclose(file.release()) == 0;
+  }
+  if (!complete) {
+    error = fmt::format("'{}' cannot be written: {}", path.string(), last_error());
+  } else {
+    fs::rename(part, path, code);
+    if (!code) return true;
+    error = fmt::format("'{}' cannot be put in place: {}", path.string(), code.message());
+  }
+  fs::remove(part, code);
+  return false;
+}
+
+bool write_text(const fs::path& path, std::string_view text, std::string& error) {
+  return write_bytes(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()}, error);
+}
+
+} // namespace dermis::tools

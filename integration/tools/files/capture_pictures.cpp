@@ -1,0 +1,166 @@
+#include "integration/tools/files/capture_pictures.hpp"
+
+#include "framegraph/text/file_roots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::optional<Image> read_sized(const fs::path& path, const std::vector<ChannelNames>& channels,
+                                const Document& document, const FrameDescription& description,
+                                std::span<const fs::path> roots, Diagnostics& diagnostics) {
+  const PlacedFile placed = place_file(path.parent_path(), path.filename().string(), roots);
+  if (!placed.problem.empty()) {
+    diagnostics.add(DiagnosticId::outside_root, document.where(document.root()),
+                    fmt::format("'{}' is not read: {}", path.string(), placed.problem));
+    return std::nullopt;
+  }
+  std::string error;
+  auto image = read_exr(path, channels, error);
+  if (!image) {
+    diagnostics.add(DiagnosticId::capture_picture, document.where(document.root()), error);
+    return std::nullopt;
+  }
+  if (image->width != description.width || image->height != description.height) {
+    diagnostics.add(DiagnosticId::capture_picture_size,
+                    document.where(document.find(document.root(), "width")),
+                    fmt::format("'{}' is {} x {}; frame.json says {} x {}", path.string(), image->width,
+                                image->height, description.width, description.height));
+    return std::nullopt;
+  }
+  return image;
+}
+
+// Ids as bytes. What is no whole number from 0 to 255 is an error, since no guess would be right; NaN is 0.
+void take_profile_ids(const Image& image, const fs::path& path, const Document& document,
+                      CapturedFrame& frame, Diagnostics& diagnostics) {
+  frame.profile.resize(image.values.size());
+  for (size_t i = 0; i < image.values.size(); ++i) {
+    float value = image.values[i];
+    if (std::isnan(value)) {
+      ++frame.sanitised.not_finite;
+      value = 0;
+    }
+    if (value < 0 || value > 255 || value != std::floor(value)) {
+      diagnostics.add(DiagnosticId::capture_profile,
+                      document.where(document.find(document.root(), "profiles")),
+                      fmt::format("'{}' holds {} at pixel ({}, {}); ids are whole numbers from 0 to 255",
+                                  path.string(), value, i % image.width, i / image.width));
+      return;
+    }
+    frame.profile[i] = static_cast<uint8_t>(value);
+  }
+}
+
+void check_profiles_known(const Document& document, const CapturedFrame& frame, Diagnostics& diagnostics) {
+  std::array<uint64_t, 256> pixels{};
+  std::array<size_t, 256> first{};
+  for (size_t i = 0; i < frame.profile.size(); ++i)
+    if (pixels[frame.profile[i]]++ == 0) first[frame.profile[i]] = i;
+  for (const CaptureProfile& known : frame.description.profiles)
+    pixels[known.id] = 0;
+  for (uint32_t id = 1; id < pixels.size(); ++id)
+    if (pixels[id] > 0)
+      diagnostics.add(
+          DiagnosticId::capture_profile, document.where(document.find(document.root(), "profiles")),
+          fmt::format("{} pixels have profile {}, first at ({}, {}), which 'profiles' does not list",
+                      pixels[id], id, first[id] % frame.description.width,
+                      first[id] / frame.description.width));
+}
+
+void mend(Image& image, bool signed_values, const std::vector<uint8_t>& profile, SanitisedCounts& counts) {
+  for (size_t i = 0; i < image.values.size(); ++i) {
+    float& value = image.values[i];
+    const bool finite = std::isfinite(value);
+    if (finite && (signed_values || value >= 0)) continue;
+    if (profile[i / image.channels] != 0) ++(finite ? counts.negative : counts.not_finite);
+    value = 0;
+  }
+}
+
+// Counts pixels with a profile whose light graphs cannot hold.
+void count_too_bright(const CapturedFrame& frame, SanitisedCounts& counts) {
+  for (size_t i = 0; i < frame.profile.size(); ++i) {
+    float brightest = 0;
+    for (const Image* light : {&frame.lighting, &frame.back_lighting})
+      for (size_t c = 0; c < 3 && frame.profile[i] != 0 && !light->values.empty(); ++c)
+        brightest = std::max(brightest, light->values[3 * i + c]);
+    if (brightest > most_light) ++counts.too_bright;
+    counts.brightest = std::max(counts.brightest, brightest > most_light ? brightest : 0);
+  }
+}
+
+} // namespace
+
+const std::vector<PictureKind>& picture_kinds() {
+  using Names = std::vector<ChannelNames>;
+  static const std::vector<PictureKind> kinds = {
+      {"lighting", &CapturedFrame::lighting, true, false, Names{{"R", "G", "B"}}},
+      {"depth", &CapturedFrame::depth, true, false, Names{{"Z"}, {"Y"}, {"R"}, {"*"}}},
+      {"albedo", &CapturedFrame::albedo, false, false, Names{{"R", "G", "B"}}},
+      {"normal", &CapturedFrame::normal, false, true, Names{{"X", "Y", "Z"}, {"R", "G", "B"}}},
+      {"velocity", &CapturedFrame::velocity, false, true, Names{{"X", "Y"}, {"R", "G"}}},
+      {"scatter_scale", &CapturedFrame::scatter_scale, false, false, Names{{"Y"}, {"R"}, {"*"}}},
+      {"specular", &CapturedFrame::specular, false, false, Names{{"R", "G", "B"}}},
+      {"thickness", &CapturedFrame::thickness, false, false, Names{{"Y"}, {"R"}, {"*"}}},
+      {"back_lighting", &CapturedFrame::back_lighting, false, false, Names{{"R", "G", "B"}}},
+  };
+  return kinds;
+}
+
+const std::vector<ChannelNames>& profile_channels() {
+  static const std::vector<ChannelNames> channels = {{"Y"}, {"R"}, {"*"}};
+  return channels;
+}
+
+void read_pictures(const fs::path& folder, const Document& document, CapturedFrame& frame,
+                   Diagnostics& diagnostics, FileRoots roots) {
+  std::vector<fs::path> readable(roots.begin(), roots.end());
+  readable.insert(readable.begin(), folder);
+  const fs::path profile_path = folder / "profile.exr";
+  const auto ids =
+      read_sized(profile_path, profile_channels(), document, frame.description, readable, diagnostics);
+  if (ids) {
+    take_profile_ids(*ids, profile_path, document, frame, diagnostics);
+    check_profiles_known(document, frame, diagnostics);
+  }
+  for (const PictureKind& kind : picture_kinds()) {
+    const fs::path path = folder / (std::string(kind.name) + ".exr");
+    std::error_code code;
+    if (!kind.required && !fs::exists(path, code)) continue;
+    auto image = read_sized(path, kind.channels, document, frame.description, readable, diagnostics);
+    if (!image || !ids) continue;
+    mend(*image, kind.signed_values, frame.profile, frame.sanitised);
+    frame.*kind.image = std::move(*image);
+  }
+  std::error_code code;
+  const bool thickness = fs::exists(folder / "thickness.exr", code);
+  if (thickness != fs::exists(folder / "back_lighting.exr", code))
+    diagnostics.add(
+        DiagnosticId::capture_picture, document.where(document.root()),
+        fmt::format("'thickness.exr' and 'back_lighting.exr' describe one light and come together; "
+                    "'{}' is missing",
+                    (folder / (thickness ? "back_lighting.exr" : "thickness.exr")).string()));
+  count_too_bright(frame, frame.sanitised);
+  const SanitisedCounts& counts = frame.sanitised;
+  if (counts.not_finite + counts.negative > 0)
+    diagnostics.add(
+        DiagnosticId::capture_sanitised, document.where(document.root()),
+        fmt::format("{} values of subsurface pixels were not finite and {} negative; they count as 0",
+                    counts.not_finite, counts.negative));
+  if (counts.too_bright > 0)
+    diagnostics.add(
+        DiagnosticId::capture_sanitised, document.where(document.root()),
+        fmt::format("light of {} subsurface pixels is above {}, at most {}; graphs clamp it to {}: scale the "
+                    "light down before it is captured (pre-exposure)",
+                    counts.too_bright, most_light, counts.brightest, most_light));
+}
+
+} // namespace dermis::tools

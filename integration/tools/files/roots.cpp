@@ -1,0 +1,47 @@
+#include "integration/tools/files/roots.hpp"
+
+#include "framegraph/text/file_roots.hpp"
+#include "framegraph/text/limits.hpp"
+#include "integration/tools/files/bytes.hpp"
+
+#include <fmt/format.h>
+#include <span>
+#include <system_error>
+
+namespace dermis::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+FileText open_file(const std::vector<fs::path>& roots, std::string_view name) {
+  FileText out;
+  std::string looked_in;
+  for (const fs::path& root : roots) {
+    const PlacedFile placed = place_file(root, name, std::span(&root, 1));
+    looked_in += fmt::format("{}'{}'", looked_in.empty() ? "" : ", ", root.empty() ? "." : root.string());
+    std::error_code code;
+    if (!fs::exists(placed.real, code)) continue;
+    out.name = placed.path.string();
+    if (!placed.problem.empty()) {
+      out.problem = placed.problem;
+      return out;
+    }
+    if (!fs::is_regular_file(placed.real, code)) continue;
+    const auto bytes = read_bytes(placed.real, limits::file_bytes, out.problem);
+    if (bytes) out.text.assign(bytes->begin(), bytes->end());
+    return out;
+  }
+  out.problem = looked_in.empty()
+                    ? std::string("no folder to read it from is declared; --root declares one")
+                    : fmt::format("there is no such file in {}; --root declares further folders", looked_in);
+  return out;
+}
+
+} // namespace
+
+OpenFile open_below(std::vector<fs::path> roots) {
+  return [roots = std::move(roots)](std::string_view name) { return open_file(roots, name); };
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,46 @@
+// Commands: counted, nothing else.
+#include "integration/tools/null_device/state.hpp"
+
+#include <iterator>
+
+namespace dermis {
+namespace {
+
+template <class... Arguments> VKAPI_ATTR void VKAPI_CALL count(VkCommandBuffer commands, Arguments...) {
+  ++state_of(commands).commands;
+}
+
+VKAPI_ATTR void VKAPI_CALL count_barrier(VkCommandBuffer commands, const VkDependencyInfo*) {
+  NullDeviceState& state = state_of(commands);
+  ++state.commands;
+  ++state.barriers;
+}
+
+template <class Function> NullEntry command(const char* name) {
+  const Function function = &count; // the arguments follow from the type
+  return entry(name, function);
+}
+
+} // namespace
+
+PFN_vkVoidFunction command_function(const char* name) {
+  static const NullEntry entries[] = {
+      entry("vkCmdPipelineBarrier2", &count_barrier),
+      command<PFN_vkCmdBindPipeline>("vkCmdBindPipeline"),
+      command<PFN_vkCmdBindDescriptorSets>("vkCmdBindDescriptorSets"),
+      command<PFN_vkCmdPushConstants>("vkCmdPushConstants"),
+      command<PFN_vkCmdDispatch>("vkCmdDispatch"),
+      command<PFN_vkCmdDispatchIndirect>("vkCmdDispatchIndirect"),
+      command<PFN_vkCmdFillBuffer>("vkCmdFillBuffer"),
+      command<PFN_vkCmdCopyBuffer>("vkCmdCopyBuffer"),
+      command<PFN_vkCmdCopyImage>("vkCmdCopyImage"),
+      command<PFN_vkCmdClearColorImage>("vkCmdClearColorImage"),
+      command<PFN_vkCmdResetQueryPool>("vkCmdResetQueryPool"),
+      command<PFN_vkCmdWriteTimestamp2>("vkCmdWriteTimestamp2"),
+      command<PFN_vkCmdBeginDebugUtilsLabelEXT>("vkCmdBeginDebugUtilsLabelEXT"),
+      command<PFN_vkCmdEndDebugUtilsLabelEXT>("vkCmdEndDebugUtilsLabelEXT"),
+  };
+  return find_entry(entries, std::size(entries), name);
+}
+
+} // namespace dermis

@@ -1,0 +1,220 @@
+// Filtered importance sampling. Its levels come from a pyramid_setup with `profiles` apart.
+
+#include "passes/common/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr Port afis_ports[] = {
+    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats},
+    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats},
+    port::level_port("level_1"),
+    port::level_port("level_2"),
+    port::level_port("level_3"),
+    port::level_port("level_4"),
+    port::level_port("level_5"),
+    port::level_port("level_6"),
+    port::level_port("level_7"),
+    port::level_port("level_8"),
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::tiles,
+    port::arguments,
+    port::scattered,
+};
+
+constexpr std::string_view sequence_options[] = {"continued", "hashed", "stratified"};
+constexpr std::string_view channels_options[] = {"widest", "mixture"};
+constexpr std::string_view inverse_options[] = {"polynomial", "exact", "approximate"};
+constexpr std::string_view weighting_options[] = {"sampler", "profile"};
+constexpr std::string_view surface_options[] = {"patch", "distance"};
+constexpr std::string_view direct_options[] = {"inscribed", "circumscribed", "none"};
+constexpr std::string_view estimator_options[] = {"self", "centred", "none"};
+constexpr std::string_view mips_options[] = {"trilinear", "whole", "none"};
+
+constexpr KindSetting afis_settings[] = {
+    {.name = "samples",
+     .type = SettingType::integer,
+     .default_value = integer_value(16),
+     .minimum = 1,
+     .maximum = 4096,
+     .options = {},
+     .unit = "samples a pixel",
+     .doc = "beyond the direct radius"},
+    {.name = "lod_bias",
+     .type = SettingType::real,
+     .default_value = {SettingType::real, 0, -1.0},
+     .minimum = -8,
+     .maximum = 4,
+     .options = {},
+     .unit = "levels",
+     .doc = "on the level whose texels have the area that a sample stands for"},
+    setting::choice(
+        "sequence", sequence_options,
+        "continued: R2 goes on from frame to frame; hashed: R2 begins anew in each; stratified: radii, "
+        "golden angle, both shifted by R2 from frame to frame"),
+    setting::choice(
+        "channels", channels_options,
+        "whose radii are drawn: the widest channel's or those of the mean of all, for Burley's profile"),
+    setting::choice(
+        "inverse", inverse_options,
+        "of the widest channel's distribution: polynomial, within .5 %; exact; approximate, c = 2.5715", 1),
+    setting::choice("weighting", weighting_options,
+                    "divide by the sampler's own density or by the profile's, as published"),
+    setting::choice(
+        "surface", surface_options,
+        "patch: the profile at the distance in space times the area of the patch; distance: without the "
+        "area"),
+    setting::choice("direct", direct_options,
+                    "radius of the pixel's own light: inscribed in the pixel, circumscribed, none"),
+    setting::choice(
+        "estimator", estimator_options,
+        "self: by the sum of weights; centred: what the weights lack or have too much is own light; none"),
+    setting::choice("mips", mips_options,
+                    "levels between two, rounded to one, or the pixel under the sample alone"),
+};
+
+constexpr Format replaced_formats[] = {Format::rgba16f}; // that a shader may load
+constexpr Port afis_tiles_ports[] = {
+    afis_ports[0],
+    afis_ports[1],
+    port::level_port("level_1"),
+    port::level_port("level_2"),
+    port::level_port("level_3"),
+    port::level_port("level_4"),
+    port::level_port("level_5"),
+    port::level_port("level_6"),
+    port::level_port("level_7"),
+    port::level_port("level_8"),
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::classes,
+    port::shares,
+    port::tiles,
+    port::arguments,
+    {"scattered", Usage::storage_image_update, false, "image2D",
+     "light of another technique, replaced in place", replaced_formats},
+};
+
+constexpr Format guide_formats[] = {Format::rgba16f};
+constexpr Format place_formats[] = {Format::r16f};
+constexpr std::string_view guide_doc =
+    "standard deviation of one frame's exposed luminance, mean number of samples, depth in metres with "
+    "split_half and else the moving mean of what is watched, profile id; 0 where nothing was written";
+constexpr std::string_view place_doc = "depth in metres; not with split_half";
+constexpr std::string_view control_doc =
+    "weight of the control, its standard deviation, means of light and control; with ocv";
+
+constexpr Port guided_ports[] = {
+    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats},
+    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats},
+    port::level_port("level_1"),
+    port::level_port("level_2"),
+    port::level_port("level_3"),
+    port::level_port("level_4"),
+    port::level_port("level_5"),
+    port::level_port("level_6"),
+    port::level_port("level_7"),
+    port::level_port("level_8"),
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::velocity,
+    {"guide", Usage::sampled_image, false, "texture2D", guide_doc, guide_formats},
+    {"place", Usage::sampled_image, true, "texture2D", place_doc, place_formats},
+    {"control", Usage::sampled_image, true, "texture2D", control_doc, port::light_formats},
+    port::tiles,
+    port::arguments,
+    port::scattered,
+    {"guide_out", Usage::storage_image_update, false, port::part_of_cleared, guide_doc, guide_formats},
+    {"place_out", Usage::storage_image_write, true, "image2D", place_doc, place_formats},
+    {"control_out", Usage::storage_image_write, true, "image2D", control_doc, port::light_formats},
+    port::sampling,
+};
+
+constexpr std::string_view guidance_options[] = {"split_half", "spvg", "ccv", "ocv"};
+constexpr KindSetting count_setting(std::string_view name, int64_t standard, std::string_view doc) {
+  return {.name = name,
+          .type = SettingType::integer,
+          .default_value = integer_value(standard),
+          .minimum = 2,
+          .maximum = 4096,
+          .options = {},
+          .unit = "samples a pixel",
+          .doc = doc};
+}
+
+constexpr KindSetting guided_settings[] = {
+    afis_settings[1],
+    afis_settings[2],
+    afis_settings[3],
+    afis_settings[4],
+    afis_settings[5],
+    afis_settings[6],
+    afis_settings[7],
+    afis_settings[8],
+    afis_settings[9],
+    setting::choice(
+        "guidance", guidance_options,
+        "what is watched: the difference of two half sequences; luminance (spvg); less that of the "
+        "pixel's own light (ccv); less as much of it as follows best (ocv)"),
+    count_setting("least", 8, "at least"),
+    count_setting("most", 64, "at most"),
+    setting::per_frame(setting::real("sigma2_target", 1e-4, 1e-12, 1e6, "",
+                                     "variance of a frame's exposed luminance that is aimed at")),
+    setting::per_frame(setting::real("kappa", 0.2, 0, 1, "", "how fast a change is followed")),
+    setting::per_frame(setting::real("eta", 0.2, 0.001, 1, "", "weight of a new frame in moving means")),
+    setting::per_frame(
+        setting::real("eta_cv", 0.005, 1e-7, 1, "", "weight of a new frame in the control's covariance")),
+    setting::per_frame(setting::real("eps_alpha", 1e-6, 1e-20, 1, "",
+                                     "prior of the control's weight, in exposed luminance squared")),
+    {.name = "full_precision",
+     .type = SettingType::boolean,
+     .default_value = {SettingType::boolean, 0, 0.0},
+     .minimum = 0,
+     .maximum = 0,
+     .options = {},
+     .unit = "",
+     .doc = "control_out has 32 bits a channel"},
+};
+
+constexpr HistoryWeight guided_mixes[] = {{"guide_out", "eta"}, {"control_out", "eta_cv"}};
+
+} // namespace
+
+const PassKind afis_tiles_kind{
+    .name = "subsurface.afis_tiles",
+    .shader = "afis/subsurface_afis_tiles",
+    .doc = "Filtered importance sampling where a tile was given samples: `samples` for its first step, twice "
+           "as many for each further one.",
+    .ports = afis_tiles_ports,
+    .settings = afis_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind guided_kind{
+    .name = "subsurface.guided",
+    .shader = "afis/subsurface_guided",
+    .doc = "Filtered importance sampling with as many samples as the spread of earlier frames asks for.",
+    .ports = guided_ports,
+    .settings = guided_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .mixes = guided_mixes,
+};
+
+const PassKind afis_kind{
+    .name = "subsurface.afis",
+    .shader = "afis/subsurface_afis",
+    .doc = "Filtered importance sampling: samples read the level of a masked chain that fits their density.",
+    .ports = afis_ports,
+    .settings = afis_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

@@ -1,0 +1,33 @@
+// Burley's profile, sampled.
+
+#include "passes/common/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+using port::burley_ports;
+constexpr KindSetting burley_settings[] = {
+    {.name = "samples",
+     .type = SettingType::integer,
+     .default_value = integer_value(32),
+     .minimum = 4,
+     .maximum = 4096,
+     .options = {},
+     .unit = "samples a pixel",
+     .doc = "stratified radii, golden angle; the error falls about as n^-0.7"},
+};
+
+} // namespace
+
+const PassKind burley_kind{
+    .name = "subsurface.burley",
+    .shader = "burley/subsurface_burley",
+    .doc = "Importance sampling of the profile at stratified radii, weighted by 3-D distance and patch area.",
+    .ports = burley_ports,
+    .settings = burley_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

@@ -1,0 +1,15 @@
+#include "passes/common/kernel_tables.hpp"
+
+namespace dermis::subsurface {
+
+TableUse table_use(const Graph& graph, const KindRegistry& kinds) {
+  return {uses_separable(graph, kinds), pyramid_use(graph, kinds)};
+}
+
+KernelTables make_kernel_tables(const TableUse& use, std::span<const NumberedProfile> profiles) {
+  const auto fitted = use.separable ? profiles : std::span<const NumberedProfile>();
+  return {use, make_profile_table(profiles, use.separable), make_separable_table(fitted),
+          make_sap_tables(use.pyramid, profiles), make_radial_table(profiles)};
+}
+
+} // namespace dermis::subsurface

@@ -1,0 +1,86 @@
+#include "passes/common/profiles/radial_table.hpp"
+
+#include "passes/common/profiles/burley_profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dermis::subsurface {
+
+namespace {
+
+struct Place {
+  size_t low;
+  float part; // 0 at `low`, 1 at the node above
+};
+
+Place place_at(float position) {
+  const float clamped = std::clamp(position, 0.0f, static_cast<float>(radial_nodes - 1));
+  const size_t low = std::min(static_cast<size_t>(clamped), size_t{radial_nodes} - 2);
+  return {low, clamped - static_cast<float>(low)};
+}
+
+float radius_position(float d_mm, float r) {
+  return (std::log2(std::max(r / d_mm, 1e-30f)) - static_cast<float>(radial_log2_r_first)) *
+         static_cast<float>(radial_nodes_per_octave);
+}
+
+float mix(float a, float b, float part) {
+  return a + part * (b - a);
+}
+
+} // namespace
+
+std::vector<RadialRow> make_radial_rows(const ProfileShape& shape, int widest) {
+  std::vector<RadialRow> rows(radial_rows_per_profile);
+  const ChannelShape& leader = shape[static_cast<size_t>(widest)];
+  for (uint32_t i = 0; i < radial_nodes; ++i) {
+    const double r = leader.d * std::exp2(radial_log2_r_first + i / radial_nodes_per_octave);
+    RadialRow &first = rows[i], &second = rows[radial_nodes + i];
+    for (size_t c = 0; c < 3; ++c) {
+      const double value = shape[c].d > 0 ? 2 * std::numbers::pi * shape_R(shape[c], r) : 0.0;
+      first[c] =
+          static_cast<float>(value > 0 ? std::max(std::log2(value), radial_least_log2) : radial_least_log2);
+      second[c] = static_cast<float>(shape_survival(shape[c], r));
+    }
+    const double root = i / radial_inverse_nodes_per_unit;
+    first[3] = static_cast<float>(shape_inverse_survival(leader, std::exp2(-root * root)));
+    second[3] = 0;
+  }
+  return rows;
+}
+
+std::array<float, 3> radial_falloff(std::span<const RadialRow> rows, float d_mm, float r) {
+  const Place at = place_at(radius_position(d_mm, r));
+  std::array<float, 3> result;
+  for (size_t c = 0; c < 3; ++c)
+    result[c] = std::exp2(mix(rows[at.low][c], rows[at.low + 1][c], at.part));
+  return result;
+}
+
+std::array<float, 3> radial_survival(std::span<const RadialRow> rows, float d_mm, float r) {
+  const float position = radius_position(d_mm, r);
+  const Place at = place_at(position);
+  std::array<float, 3> result;
+  for (size_t c = 0; c < 3; ++c) {
+    result[c] = mix(rows[radial_nodes + at.low][c], rows[radial_nodes + at.low + 1][c], at.part);
+    if (position < 0) // the kernel is flat here: energy grows with the square of the radius
+      result[c] = 1 - (1 - rows[radial_nodes][c]) *
+                          std::exp2(2 * position / static_cast<float>(radial_nodes_per_octave));
+  }
+  return result;
+}
+
+RadialSample radial_sample(std::span<const RadialRow> rows, float u) {
+  // u in (0, 1]; the root is kept from 0, where its derivative is infinite and the radius 0.
+  const float share = std::clamp(u, static_cast<float>(burley_min_survival), 1.0f);
+  const float root = std::sqrt(std::max(-std::log2(share), 1e-7f));
+  const Place at = place_at(root * static_cast<float>(radial_inverse_nodes_per_unit));
+  const float low = rows[at.low][3], high = rows[at.low + 1][3];
+  // r is linear in the root q = sqrt(-log2 u): dr/du = dr/dq / (2 q u ln 2).
+  const float slope = (high - low) * static_cast<float>(radial_inverse_nodes_per_unit);
+  return {mix(low, high, at.part), 2 * root * share * std::numbers::ln2_v<float> / slope};
+}
+
+} // namespace dermis::subsurface

@@ -1,0 +1,59 @@
+// Light over frames, for hosts without anti-aliasing of their own.
+
+#include "passes/common/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr Format past_formats[] = {Format::rgba16f};
+constexpr Format place_formats[] = {Format::rg16f};
+constexpr std::string_view past_doc =
+    "scattered light less what the nearest pixels explain, over the brightness around; "
+    "number of frames behind it";
+constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
+
+constexpr Port ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
+    port::albedo,
+    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light of this frame",
+     port::color_formats},
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::velocity,
+    {"past", Usage::sampled_image, false, "texture2D", past_doc, past_formats},
+    {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
+    port::tiles,
+    port::arguments,
+    {"accumulated", Usage::storage_image_write, false, "image2D", "scattered light over frames",
+     port::color_formats},
+    {"past_out", Usage::storage_image_write, false, "image2D", past_doc, past_formats},
+    {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
+};
+
+constexpr KindSetting settings[] = {
+    setting::per_frame(setting::real("weight", 0.1, 0.001, 1, "", "of a new frame, at least")),
+    setting::per_frame(setting::real(
+        "clip", 1.5, 0, 64, "standard deviations",
+        "of the 3x3 pixels around, that history may lie from their mean; 0: as far as it likes")),
+    setting::texturing,
+};
+
+constexpr HistoryWeight accumulate_mixes[] = {{"past_out", "weight"}};
+
+} // namespace
+
+const PassKind accumulate_kind{
+    .name = "subsurface.accumulate",
+    .shader = "common/subsurface_accumulate",
+    .doc = "Mixes scattered light with that of earlier frames, found again along surfaces.",
+    .ports = ports,
+    .settings = settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .mixes = accumulate_mixes,
+};
+
+} // namespace dermis::subsurface

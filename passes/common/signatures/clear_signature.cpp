@@ -1,0 +1,21 @@
+// Zeros for what is written in part afterwards.
+
+#include "passes/common/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+constexpr Port ports[] = {{"target", Usage::clear, false, "", "an image or buffer, whole", {}}};
+} // namespace
+
+const PassKind clear_kind{
+    .name = "clear",
+    .shader = "",
+    .doc = "Fills an image or buffer with zeros. No kernel.",
+    .ports = ports,
+    .settings = {},
+    .dispatch = DispatchShape::none,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

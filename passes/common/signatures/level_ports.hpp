@@ -1,0 +1,18 @@
+#pragma once
+// Ports for what the surface-aware pyramid keeps of a level, as other kinds read it.
+
+#include "passes/common/signatures/signatures.hpp"
+
+namespace dermis::subsurface::port {
+
+inline constexpr Format surface_formats[] = {Format::rgba32_uint};
+inline constexpr std::string_view level_image_doc = "as subsurface.sap_down writes it";
+
+constexpr Port level_light(std::string_view name) {
+  return {name, Usage::sampled_image, false, "texture2D", level_image_doc, light_formats};
+}
+constexpr Port level_surface(std::string_view name) {
+  return {name, Usage::sampled_image, false, "utexture2D", level_image_doc, surface_formats};
+}
+
+} // namespace dermis::subsurface::port

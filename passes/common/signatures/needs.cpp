@@ -1,0 +1,108 @@
+#include "passes/common/signatures/needs.hpp"
+
+#include "passes/common/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+namespace {
+
+constexpr uint32_t pixel = 1, tile = 8, cell = 32;                    // sides of squares
+constexpr uint32_t word = 4, range = 16, reservoir = 64, domain = 32; // bytes
+constexpr uint32_t dispatch = 16, levels = 9,
+                   level_heads = 1024; // VkDispatchIndirectCommand and one word; bytes
+
+constexpr PortNeed needs[] = {
+    // Buffers first: needs_of() gives them alone for steps of a pyramid.
+    {"classes", tile, word},
+    {"tiles", tile, word, word},
+    {"doubts", tile, word},
+    {"shares", tile, word},
+    {"before", tile, word},
+    {"reservoirs", pixel, reservoir},
+    {"reservoirs_before", pixel, reservoir},
+    {"merged", pixel, reservoir},
+    {"domains_before", pixel, domain},
+    {"domains", pixel, domain},
+    {"lights_before", 0, 0, 64},
+    {"lights_kept", 0, 0, 64},
+    {"vertices", 0, 0, 32}, // of the host's scene: an element
+    {"indices", 0, 0, word},
+    {"instances", 0, 0, 64},
+    {"lights", 0, 0, 64},
+    {"light_range", tile, range},
+    {"light_cells", cell, range},
+    {"level_tiles", tile, range,
+     level_heads}, // two entries a tile hold all levels: together they have a third more
+    {"arguments", 0, 0, dispatch},
+    {"copy_arguments", 0, 0, dispatch},
+    {"level_arguments", 0, 0, levels* dispatch},
+
+    {"lighting", pixel},
+    {"depth", pixel},
+    {"normal", pixel},
+    {"material", pixel},
+    {"albedo", pixel},
+    {"scatter_scale", pixel},
+    {"velocity", pixel},
+    {"importance", pixel},
+    {"thickness", pixel},
+    {"back_lighting", pixel},
+    {"lit", pixel},
+    {"light", pixel},
+    {"slope", pixel},
+    {"surface", pixel},
+    {"scattered", pixel},
+    {"unscattered", pixel},
+    {"blurred", pixel},
+    {"blended", pixel},
+    {"mended", pixel},
+    {"accumulated", pixel},
+    {"sampling", pixel},
+    {"skips", pixel},
+    {"guide", pixel},
+    {"guide_out", pixel},
+    {"control", pixel},
+    {"control_out", pixel},
+    {"place", pixel},
+    {"place_out", pixel},
+    {"ratio", pixel},
+    {"ratio_out", pixel},
+    {"past", pixel},
+    {"past_out", pixel},
+    {"level_0", pixel},
+    {"coarse_surface", 2},
+    {"coarse_scattered", 2},
+    {"second_coarse_surface", 2},
+    {"second_coarse_scattered", 2},
+    {"level_1", 2},
+    {"level_2", 4},
+    {"level_3", 8},
+    {"level_4", 16},
+    {"level_5", 32},
+    {"level_6", 64},
+    {"level_7", 128},
+    {"level_8", 256},
+    {"light_1", 2},
+    {"light_2", 4},
+    {"light_3", 8},
+    {"light_4", 16},
+    {"light_5", 32},
+    {"surface_1", 2},
+    {"surface_2", 4},
+    {"surface_3", 8},
+    {"surface_4", 16},
+    {"surface_5", 32},
+};
+constexpr size_t buffers = 22;
+static_assert(needs[buffers].port == "lighting");
+
+} // namespace
+
+std::span<const PortNeed> needs_of(std::string_view kind) {
+  if (kind == clear_kind.name) return {};
+  const bool step = kind == sap_halve_kind.name || kind == sap_down_kind.name || kind == sap_up_kind.name ||
+                    kind == pyramid_down_kind.name || kind == sap_down_layered_kind.name ||
+                    kind == sap_up_layered_kind.name;
+  return std::span(needs).first(step ? buffers : std::size(needs));
+}
+
+} // namespace dermis::subsurface

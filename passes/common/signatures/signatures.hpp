@@ -1,0 +1,169 @@
+#pragma once
+// One signature a kernel; kinds.cpp lists them. Split by what they serve: tiles, light in and out,
+// scattering.
+
+#include "framegraph/model/pass_kind.hpp"
+
+namespace dermis::subsurface {
+
+extern const PassKind classify_kind, flat_kind, tile_list_kind, skips_kind; // tile_signatures.cpp
+extern const PassKind setup_kind, combine_kind, light_kind, copy_kind, transmission_kind,
+    thin_parts_kind;                                           // light_signatures.cpp
+extern const PassKind burley_kind;                             // burley_signature.cpp
+extern const PassKind separable_kind;                          // separable_signature.cpp
+extern const PassKind fixed_kind;                              // papers/fixed_signature.cpp
+extern const PassKind afis_kind, guided_kind, afis_tiles_kind; // afis_signatures.cpp
+extern const PassKind pyramid_setup_kind, pyramid_down_kind;   // pyramid_signatures.cpp
+extern const PassKind pyramid_gather_kind;                     // papers/pyramid_gather_signature.cpp
+extern const PassKind sap_tiles_kind, sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind,
+    sap_down_layered_kind, sap_up_layered_kind, sap_gather_layered_kind, sap_halve_kind,
+    sap_gather_half_kind;                                         // sap_signatures.cpp
+extern const PassKind blend_kind, brightness_kind, residual_kind; // residual_signatures.cpp
+extern const PassKind doubt_kind, allot_kind, mend_kind;          // allot_signatures.cpp
+extern const PassKind contrast_kind;                              // papers/contrast_signature.cpp
+extern const PassKind probe_kind;                                 // probe_signature.cpp
+extern const PassKind accumulate_kind;                            // accumulate_signature.cpp
+extern const PassKind clear_kind;                                 // clear_signature.cpp
+
+extern const PassKind restir_initial_kind, restir_temporal_kind, restir_spatial_kind,
+    restir_resolve_kind; // restir_signatures.cpp
+
+// Ports that several kinds declare with the same meaning.
+namespace port {
+// What an image has to be for the channels that kernels read and write of it.
+inline constexpr Format color_formats[] = {Format::rgba16f, Format::rgba32f, Format::b10g11r11f,
+                                           Format::rgba8_unorm, Format::rgba8_srgb}; // three
+inline constexpr Format light_formats[] = {Format::rgba16f,
+                                           Format::rgba32f}; // four, areas above 1 among them
+inline constexpr Format way_formats[] = {Format::rg16f, Format::rg32f, Format::rgba16f,
+                                         Format::rgba32f}; // two, below 0 as well
+inline constexpr Port material{
+    "material", Usage::sampled_image, false, "utexture2D", "profile id per pixel, 0 = no subsurface", {}};
+inline constexpr Port depth{"depth",
+                            Usage::sampled_image,
+                            false,
+                            "texture2D",
+                            "device depth or view-space distance, as the frame says",
+                            {}};
+inline constexpr Port scatter_scale{"scatter_scale",
+                                    Usage::sampled_image,
+                                    true,
+                                    "texture2D",
+                                    "factor on d per pixel, 0 = diffuse; unbound = 1",
+                                    {}};
+inline constexpr Port albedo{
+    "albedo", Usage::sampled_image, true, "texture2D", "diffuse albedo, linear; unbound = 1", color_formats};
+inline constexpr Port tiles{"tiles",
+                            Usage::storage_buffer_read,
+                            false,
+                            "uint",
+                            "element 0 = number of tiles; then packed tiles: x in bits 0-14, y in bits "
+                            "15-29, bit 30 = all pixels have subsurface, bit 31 = copy only",
+                            {}};
+inline constexpr Port arguments{"arguments",
+                                Usage::indirect_arguments,
+                                false,
+                                "uint",
+                                "group counts x, y, z of an indirect dispatch over the tiles",
+                                {}};
+inline constexpr Port scattered{"scattered",
+                                Usage::storage_image_write,
+                                false,
+                                "image2D",
+                                "scattered light where there is subsurface, undefined elsewhere",
+                                color_formats};
+inline constexpr std::string_view level_doc =
+    "rgb light times mask, a = mask: the share of the texel with subsurface";
+// A level of the plain pyramid to read.
+constexpr Port level_port(std::string_view name) {
+  return {name, Usage::sampled_image, false, "texture2D", level_doc, light_formats};
+}
+inline constexpr Port velocity{
+    "velocity",
+    Usage::sampled_image,
+    true,
+    "texture2D",
+    "now - before: pixels to the right and down, jitter taken out; in a third channel view depth that the "
+    "camera does not explain, world units. Unbound: what is seen stands still",
+    way_formats};
+inline constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
+                              "uint",    "as subsurface.classify writes them", {}};
+inline constexpr Port shares{"shares",
+                             Usage::storage_buffer_read,
+                             false,
+                             "uint",
+                             "by tile of the render rectangle: steps of samples it was given, 0 to 3",
+                             {}};
+// Of an image that was cleared in the same frame and is written where there is subsurface: what was not
+// written reads 0 in the next frame.
+inline constexpr std::string_view part_of_cleared = "writeonly image2D";
+inline constexpr Port sampling{
+    "sampling",
+    Usage::storage_image_write,
+    true,
+    "image2D",
+    "for tools: samples taken in this frame, samples that history stands for or their mean "
+    "number, confidence or spread, 1 where history was not of this surface",
+    light_formats};
+inline constexpr Port light{
+    "light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats};
+inline constexpr Port slope{
+    "slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats};
+inline constexpr Port burley_ports[] = {
+    light,       slope,           port::material,  port::depth, port::scatter_scale,
+    port::tiles, port::arguments, port::scattered,
+};
+inline constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format::r32f};
+inline constexpr std::string_view doubts_doc =
+    "by tile of the render rectangle: how far off it is expected to be, 0 = not at all";
+} // namespace port
+
+constexpr SettingValue integer_value(int64_t value) {
+  return {SettingType::integer, value, 0.0};
+}
+constexpr SettingValue option_value(int64_t index) {
+  return {SettingType::enumeration, index, 0.0};
+}
+
+namespace setting {
+// One of `options`; options[standard] where a graph says nothing.
+constexpr KindSetting choice(std::string_view name, std::span<const std::string_view> options,
+                             std::string_view doc, int64_t standard = 0) {
+  return {.name = name,
+          .type = SettingType::enumeration,
+          .default_value = option_value(standard),
+          .minimum = 0,
+          .maximum = 0,
+          .options = options,
+          .unit = "",
+          .doc = doc};
+}
+
+constexpr KindSetting real(std::string_view name, double standard, double least, double greatest,
+                           std::string_view unit, std::string_view doc) {
+  return {.name = name,
+          .type = SettingType::real,
+          .default_value = {SettingType::real, 0, standard},
+          .minimum = least,
+          .maximum = greatest,
+          .options = {},
+          .unit = unit,
+          .doc = doc};
+}
+
+// A view may have its own value, and each frame another one.
+constexpr KindSetting per_frame(KindSetting setting) {
+  setting.per_frame = true;
+  return setting;
+}
+
+// Settings that several kinds declare with the same meaning.
+inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre", "demodulate"};
+inline constexpr KindSetting texturing =
+    choice("texturing", texturing_options,
+           "where albedo is applied: after scattering (keeps texture detail), "
+           "its square root on both sides, or before; demodulate: lighting already contains albedo, which "
+           "is divided out before scattering and multiplied back after it");
+} // namespace setting
+
+} // namespace dermis::subsurface

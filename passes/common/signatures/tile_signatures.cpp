@@ -1,0 +1,101 @@
+// Which 8x8 tiles hold subsurface, and the list of them that indirect dispatches run over.
+
+#include "passes/common/signatures/signatures.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr std::string_view light_range_doc =
+    "per tile: the least and the greatest light that can scatter, and the widest d (light_range.glsl)";
+
+constexpr std::string_view light_cells_doc = "the same of each 4x4 tiles, row by row";
+
+constexpr Port classify_ports[] = {
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    {"lighting", Usage::sampled_image, true, "texture2D",
+     "diffuse irradiance before albedo, linear; for light_range and light_cells", port::color_formats},
+    port::albedo,
+    {"classes",
+     Usage::storage_buffer_write,
+     false,
+     "uint",
+     "per tile of the render rectangle, row by row: 0 = no subsurface, 1 = scatters, 2 = below a pixel "
+     "(copy), 3 = flat in light (copy); 4 more where all 64 pixels have subsurface",
+     {}},
+    {"light_range", Usage::storage_buffer_write, true, "uvec4", light_range_doc, {}},
+    {"light_cells", Usage::storage_buffer_write, true, "uvec4", light_cells_doc, {}},
+};
+constexpr KindSetting classify_settings[] = {setting::texturing};
+
+constexpr Port flat_ports[] = {
+    {"light_range", Usage::storage_buffer_read, false, "uvec4", light_range_doc, {}},
+    {"light_cells", Usage::storage_buffer_read, false, "uvec4", light_cells_doc, {}},
+    {"classes", Usage::storage_buffer_update, false, "uint", "as subsurface.classify writes them", {}},
+};
+
+constexpr Port tile_list_ports[] = {
+    {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
+    {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
+    {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
+};
+
+constexpr Port skips_ports[] = {
+    {"classes",
+     Usage::storage_buffer_read,
+     false,
+     "uint",
+     "as subsurface.classify and subsurface.flat write them",
+     {}},
+    port::material,
+    {"skips", Usage::storage_image_write, true, "image2D",
+     "for tools: class of the pixel's tile, its profile id, 0, 1", port::light_formats},
+};
+
+} // namespace
+
+const PassKind classify_kind{
+    .name = "subsurface.classify",
+    .shader = "common/subsurface_classify",
+    .doc = "Classifies 8x8 tiles by material and projected scattering radius.",
+    .ports = classify_ports,
+    .settings = classify_settings,
+    .dispatch = DispatchShape::over_tile_blocks,
+    .side_effects = false,
+};
+
+const PassKind flat_kind{
+    .name = "subsurface.flat",
+    .shader = "common/subsurface_flat",
+    .doc = "Leaves tiles alone whose light is the same as far as light reaches.",
+    .ports = flat_ports,
+    .settings = {},
+    .dispatch = DispatchShape::over_tile_grid,
+    .side_effects = false,
+};
+
+const PassKind skips_kind{
+    .name = "subsurface.skips",
+    .shader = "common/subsurface_skips",
+    .doc = "Shows tools what each tile was left out as.",
+    .ports = skips_ports,
+    .settings = {},
+    .dispatch = DispatchShape::over_view,
+    .side_effects = false,
+};
+
+const PassKind tile_list_kind{
+    .name = "subsurface.tile_list",
+    .shader = "common/subsurface_tile_list",
+    .doc = "Compacts tile classes into a list in row order and the indirect arguments for it (a scan without "
+           "atomics: "
+           "the same classes give the same list).",
+    .ports = tile_list_ports,
+    .settings = {},
+    .dispatch = DispatchShape::single_group,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

@@ -1,0 +1,178 @@
+// What mends the surface-aware pyramid where it is unsure: samples of the surface around, read from the
+// pyramid's own levels.
+
+#include "passes/common/signatures/level_ports.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+using port::light_formats;
+
+constexpr Port sure_light{"scattered",
+                          Usage::sampled_image,
+                          false,
+                          "texture2D",
+                          "of the pyramid; rgb scattered light, a = confidence",
+                          light_formats};
+constexpr Port own_sure_light{sure_light.name,
+                              sure_light.usage,
+                              sure_light.optional,
+                              sure_light.glsl_type,
+                              sure_light.doc,
+                              sure_light.formats,
+                              true};
+constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
+                       "uint",    "as subsurface.classify writes them", {}};
+
+constexpr Port blend_ports[] = {
+    port::level_light("light"),
+    port::level_light("light_1"),
+    port::level_light("light_2"),
+    port::level_light("light_3"),
+    port::level_light("light_4"),
+    port::level_light("light_5"),
+    port::level_surface("surface"),
+    port::level_surface("surface_1"),
+    port::level_surface("surface_2"),
+    port::level_surface("surface_3"),
+    port::level_surface("surface_4"),
+    port::level_surface("surface_5"),
+    own_sure_light,
+    classes,
+    port::tiles,
+    port::arguments,
+    {"blended", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
+     light_formats},
+    port::sampling,
+};
+
+constexpr Format ratio_formats[] = {Format::rgba16f};
+constexpr Format place_formats[] = {Format::rgba16f};
+constexpr std::string_view ratio_doc =
+    "rgb running ratio of sampled light to the pyramid's, a = samples behind it";
+constexpr std::string_view place_doc = "view depth in metres, profile id, pattern of the light that the "
+                                       "ratio was learned in (a logarithm), mean "
+                                       "square of how far patterns stray; 0 where nothing was written";
+
+constexpr Format brightness_formats[] = {Format::rgba32f};
+constexpr std::string_view brightness_doc = "logarithm of how much brighter all that is seen is than what "
+                                            "was learned, odds that light of the learned "
+                                            "pattern is the learned light, tolerance of patterns";
+
+constexpr Port brightness_ports[] = {
+    port::level_surface("surface"),
+    sure_light,
+    port::velocity,
+    classes,
+    {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
+    {"brightness", Usage::storage_image_write, false, "image2D", brightness_doc, brightness_formats},
+};
+
+constexpr Port residual_ports[] = {
+    port::level_light("light"),
+    port::level_light("light_1"),
+    port::level_light("light_2"),
+    port::level_light("light_3"),
+    port::level_light("light_4"),
+    port::level_light("light_5"),
+    port::level_surface("surface"),
+    port::level_surface("surface_1"),
+    port::level_surface("surface_2"),
+    port::level_surface("surface_3"),
+    port::level_surface("surface_4"),
+    port::level_surface("surface_5"),
+    own_sure_light,
+    {"brightness", Usage::sampled_image, false, "texture2D", brightness_doc, brightness_formats},
+    port::velocity,
+    classes,
+    {"ratio", Usage::sampled_image, false, "texture2D", ratio_doc, ratio_formats},
+    {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
+    port::tiles,
+    port::arguments,
+    {"mended", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
+     light_formats},
+    {"ratio_out", Usage::storage_image_write, false, "image2D", ratio_doc, ratio_formats},
+    {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
+    port::sampling,
+};
+
+constexpr KindSetting samples{.name = "samples",
+                              .type = SettingType::integer,
+                              .default_value = integer_value(16),
+                              .minimum = 1,
+                              .maximum = 4096,
+                              .options = {},
+                              .unit = "samples a pixel",
+                              .doc = "beyond the direct radius, where confidence is low"};
+constexpr KindSetting lod_bias = setting::real(
+    "lod_bias", -1.5, -8, 4, "levels", "on the level whose texels have the area that a sample stands for");
+
+constexpr KindSetting brightness_settings[] = {
+    setting::per_frame(setting::real(
+        "tolerance", 0.06, 0.001, 100, "",
+        "change of the logarithm of a surface's light, beside that of all light, that is none, at least")),
+};
+
+constexpr KindSetting blend_settings[] = {
+    samples,
+    lod_bias,
+    setting::per_frame(setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel is sampled")),
+    setting::per_frame(setting::real("share", 0.5, 0, 1, "", "of the samples in the result")),
+};
+
+constexpr KindSetting residual_settings[] = {
+    samples,
+    lod_bias,
+    setting::per_frame(setting::real("below", 0.988, 0, 2, "", "confidence below which a pixel is sampled")),
+    setting::per_frame(setting::real("often_below", 0.85, 0, 2, "",
+                                     "confidence below which it is in one frame of four, not of sixteen")),
+    setting::per_frame(
+        setting::real("alpha", 0.2, 0.01, 1, "", "weight of what is new in the running ratio, at least")),
+    {.name = "eager",
+     .type = SettingType::integer,
+     .default_value = integer_value(6),
+     .minimum = 0,
+     .maximum = 64,
+     .options = {},
+     .unit = "times samples",
+     .doc = "a pixel with less history takes twice the samples in every frame"},
+};
+
+constexpr HistoryWeight residual_mixes[] = {{"ratio_out", "alpha", HistoryWeight::By::share, 16}};
+
+} // namespace
+
+const PassKind blend_kind{
+    .name = "subsurface.blend",
+    .shader = "papers/subsurface_blend",
+    .doc = "Blends the pyramid's light with samples where its confidence is low. No history.",
+    .ports = blend_ports,
+    .settings = blend_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind brightness_kind{
+    .name = "subsurface.brightness",
+    .shader = "papers/subsurface_brightness",
+    .doc = "Finds how bright all that is seen is, so that light that flashes can be told from another light.",
+    .ports = brightness_ports,
+    .settings = brightness_settings,
+    .dispatch = DispatchShape::single_group,
+    .side_effects = false,
+};
+
+const PassKind residual_kind{
+    .name = "subsurface.residual",
+    .shader = "papers/subsurface_residual",
+    .doc =
+        "Multiplies the pyramid's light by the running ratio of samples to it, where its confidence is low.",
+    .ports = residual_ports,
+    .settings = residual_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .mixes = residual_mixes,
+};
+
+} // namespace dermis::subsurface

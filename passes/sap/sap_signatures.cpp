@@ -1,0 +1,328 @@
+// The surface-aware pyramid: one kind a step, one pass a level. Level 0 is the view, level l has a texel
+// every 2^l pixels and a border of one texel, which takes what lies beyond the last pixels.
+
+#include "passes/common/signatures/level_ports.hpp"
+#include "passes/sap/sap_weights.hpp"
+
+namespace dermis::subsurface {
+
+namespace {
+
+// The first SapVariants.
+constexpr std::string_view variant_options[] = {"base", "smooth", "half"};
+
+constexpr std::string_view light_doc =
+    "rgb light, a = fourth root of the surface's area over its cross-section";
+constexpr std::string_view surface_doc =
+    "depth in mm (bits of a float); slope x, y (halves); factor on d, share of the texel's kernel that met "
+    "its own surface (halves); profile id in bits 0-7, 0 = nothing here, bit 8 = there is a second layer";
+constexpr std::string_view scattered_doc = "scattered light of this level and coarser ones (3 halves), "
+                                           "confidence (half), share of the kernel that met the "
+                                           "surface (3 halves), 0; in full storage light (bits of 3 floats), "
+                                           "the share and confidence (a byte each)";
+
+using port::light_formats;
+using port::surface_formats;
+
+constexpr KindSetting level_setting(double first, std::string_view doc, double last = sap_level_count - 1) {
+  return {.name = "level",
+          .type = SettingType::integer,
+          .default_value = integer_value(static_cast<int64_t>(first)),
+          .minimum = first,
+          .maximum = last,
+          .options = {},
+          .unit = "",
+          .doc = doc};
+}
+
+constexpr KindSetting variant =
+    setting::choice("variant", variant_options,
+                    "base: tent at levels 0 and 1; smooth: at every level, which hides the grid; half: at "
+                    "level 1, below subsurface.sap_gather_half",
+                    1);
+
+// With two layers at level 1 there is no other first level.
+constexpr KindSetting layered_variant =
+    setting::choice("variant", std::span(variant_options).first(2),
+                    "base: tent at levels 0 and 1; smooth: at every level, which hides the grid", 1);
+
+constexpr std::string_view storage_options[] = {"half", "full"};
+constexpr KindSetting storage =
+    setting::choice("storage", storage_options,
+                    "of light that is written: half floats, or floats, whose images then need 32 bits a "
+                    "channel; the same in all passes of a pyramid");
+
+constexpr Port level_tiles{
+    "level_tiles", Usage::storage_buffer_read, false, "uvec2", "as subsurface.sap_tiles writes them", {}};
+constexpr Port level_arguments{
+    "level_arguments", Usage::indirect_arguments, false, "uint", "as subsurface.sap_tiles writes them", {}};
+
+constexpr Port tiles_ports[] = {
+    {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
+    {"level_tiles",
+     Usage::storage_buffer_write,
+     false,
+     "uvec2",
+     "for each level the index of its first entry and their number, then the entries: tile x in bits 0-14, y "
+     "in bits "
+     "15-29, bit 30 = all pixels have subsurface, bit 31 = copy only; which of 3x3 tiles can hold surface, "
+     "in bits 0-8 those of the finer level "
+     "that the "
+     "tile reduces, in bits 9-17 those around it",
+     {}},
+    {"level_arguments",
+     Usage::storage_buffer_write,
+     false,
+     "uint",
+     "for each level the group counts x, y, z of an indirect dispatch over its tiles, and x times y",
+     {}},
+    {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
+    {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
+    {"copy_arguments",
+     Usage::storage_buffer_write,
+     true,
+     "uint",
+     "as arguments, of 0 groups where any tile scatters: then the pyramid copies the others, too. Bound, the "
+     "pyramid's "
+     "lists are empty where none does",
+     {}},
+};
+
+constexpr Port setup_ports[] = {
+    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
+     port::color_formats},
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::albedo,
+    level_tiles,
+    level_arguments,
+    {"light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
+    {"surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
+};
+constexpr KindSetting setup_settings[] = {setting::texturing, storage};
+
+constexpr Port halve_ports[] = {
+    setup_ports[0],
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::albedo,
+    level_tiles,
+    level_arguments,
+    {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
+    {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
+};
+constexpr KindSetting halve_settings[] = {level_setting(1, "that is written", 1), setting::texturing,
+                                          storage};
+
+constexpr Port down_ports[] = {
+    {"light", Usage::sampled_image, false, "texture2D", "of the finer level", light_formats},
+    {"surface", Usage::sampled_image, false, "utexture2D", "of the finer level", surface_formats},
+    level_tiles,
+    level_arguments,
+    {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
+    {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
+};
+constexpr KindSetting down_settings[] = {level_setting(1, "that is written"), storage};
+
+// Of levels whose texels can have a second surface: ports of that layer beside those of the first. Its images
+// hold something only where the first surface says so.
+constexpr std::string_view second_doc =
+    "the same of the second layer, what lies off the first; nothing where a texel has one";
+constexpr Port second_coarse_surface{
+    "second_coarse_surface", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats};
+constexpr Port second_coarse_scattered{
+    "second_coarse_scattered", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats};
+
+constexpr Port up_ports[] = {
+    {"light", Usage::sampled_image, false, "texture2D", "of this level", light_formats},
+    {"surface", Usage::sampled_image, false, "utexture2D", "of this level", surface_formats},
+    {"coarse_surface", Usage::sampled_image, true, "utexture2D", "of the coarser level; unbound at the last",
+     surface_formats},
+    {"coarse_scattered", Usage::sampled_image, true, "utexture2D",
+     "of the coarser level; unbound at the last", surface_formats},
+    second_coarse_surface,
+    second_coarse_scattered,
+    level_tiles,
+    level_arguments,
+    {"scattered", Usage::storage_image_write, false, "uimage2D", scattered_doc, surface_formats},
+};
+constexpr KindSetting up_settings[] = {level_setting(1, "that is written"), variant, storage};
+
+constexpr Port gather_ports[] = {
+    {"light", Usage::sampled_image, false, "texture2D", "of level 0", light_formats},
+    {"surface", Usage::sampled_image, false, "utexture2D", "of level 0", surface_formats},
+    {"coarse_surface", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
+    {"coarse_scattered", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
+    level_tiles,
+    level_arguments,
+    {"scattered", Usage::storage_image_write, false, "image2D",
+     "rgb scattered light where there is subsurface, undefined elsewhere; a = confidence", light_formats},
+};
+constexpr KindSetting gather_settings[] = {variant, storage};
+
+constexpr Port half_gather_ports[] = {
+    setup_ports[0],  port::material,  port::depth, port::scatter_scale, port::albedo,
+    gather_ports[2], gather_ports[3], level_tiles, level_arguments,     gather_ports[6],
+};
+
+constexpr KindSetting layered_gather_settings[] = {layered_variant, storage};
+
+constexpr Port layered_down_ports[] = {
+    down_ports[0],
+    down_ports[1],
+    {"second_light", Usage::sampled_image, true, "texture2D",
+     "of the second layer; unbound where the finer level has one", light_formats},
+    {"second_surface", Usage::sampled_image, true, "utexture2D",
+     "of the second layer; unbound where the finer level has one", surface_formats},
+    level_tiles,
+    level_arguments,
+    down_ports[4],
+    down_ports[5],
+    {"second_coarse_light", Usage::storage_image_write, false, "image2D", second_doc, light_formats},
+    {"second_coarse_surface", Usage::storage_image_write, false, "uimage2D", second_doc, surface_formats},
+};
+
+constexpr Port layered_up_ports[] = {
+    up_ports[0],
+    up_ports[1],
+    {"second_light", Usage::sampled_image, false, "texture2D", second_doc, light_formats},
+    {"second_surface", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
+    up_ports[2],
+    up_ports[3],
+    second_coarse_surface,
+    second_coarse_scattered,
+    level_tiles,
+    level_arguments,
+    up_ports[8],
+    {"second_scattered", Usage::storage_image_write, false, "uimage2D", second_doc, surface_formats},
+};
+
+constexpr Port layered_gather_ports[] = {
+    gather_ports[0],
+    gather_ports[1],
+    gather_ports[2],
+    gather_ports[3],
+    {"second_coarse_surface", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
+    {"second_coarse_scattered", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
+    level_tiles,
+    level_arguments,
+    gather_ports[6],
+};
+
+} // namespace
+
+const PassKind sap_tiles_kind{
+    .name = "subsurface.sap_tiles",
+    .shader = "sap/subsurface_sap_tiles",
+    .doc =
+        "Lists the tiles of every level of the surface-aware pyramid that can hold surface, and the indirect "
+        "arguments for them, in one pass and in row order.",
+    .ports = tiles_ports,
+    .settings = {},
+    .dispatch = DispatchShape::single_group,
+    .side_effects = false,
+};
+
+const PassKind sap_setup_kind{
+    .name = "subsurface.sap_setup",
+    .shader = "sap/subsurface_sap_setup",
+    .doc = "Level 0 of the surface-aware pyramid: light and surface of every pixel of listed tiles.",
+    .ports = setup_ports,
+    .settings = setup_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind sap_down_kind{
+    .name = "subsurface.sap_down",
+    .shader = "sap/subsurface_sap_down",
+    .doc = "Reduces one level of the pyramid along the surface; stops at depth steps and other profiles.",
+    .ports = down_ports,
+    .settings = down_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .arguments_entry = "level",
+};
+
+const PassKind sap_up_kind{
+    .name = "subsurface.sap_up",
+    .shader = "sap/subsurface_sap_up",
+    .doc = "Blends one level of the pyramid with what comes from the coarser ones; of two layers there a "
+           "texel takes "
+           "the one nearer to it.",
+    .ports = up_ports,
+    .settings = up_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .arguments_entry = "level",
+};
+
+const PassKind sap_gather_kind{
+    .name = "subsurface.sap_gather",
+    .shader = "sap/subsurface_sap_gather",
+    .doc = "Level 0 of the way up: the scattered light of every listed pixel.",
+    .ports = gather_ports,
+    .settings = gather_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind sap_halve_kind{
+    .name = "subsurface.sap_halve",
+    .shader = "sap/subsurface_sap_halve",
+    .doc = "Level 1 of the surface-aware pyramid straight from the view: 2x2 pixels of one surface a texel. "
+           "Takes the place of subsurface.sap_setup and the first subsurface.sap_down.",
+    .ports = halve_ports,
+    .settings = halve_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .arguments_entry = "level",
+};
+
+const PassKind sap_gather_half_kind{
+    .name = "subsurface.sap_gather_half",
+    .shader = "sap/subsurface_sap_gather_half",
+    .doc =
+        "As subsurface.sap_gather, above subsurface.sap_halve: a pixel's own light at full resolution, all "
+        "that comes from others at half of it.",
+    .ports = half_gather_ports,
+    .settings = setup_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+const PassKind sap_down_layered_kind{
+    .name = "subsurface.sap_down_layered",
+    .shader = "sap/subsurface_sap_down_layered",
+    .doc = "As subsurface.sap_down, with a second surface a texel: what lies off the first.",
+    .ports = layered_down_ports,
+    .settings = down_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .arguments_entry = "level",
+};
+
+const PassKind sap_up_layered_kind{
+    .name = "subsurface.sap_up_layered",
+    .shader = "sap/subsurface_sap_up_layered",
+    .doc = "As subsurface.sap_up, of both layers: each takes of another texel the layer nearer to it.",
+    .ports = layered_up_ports,
+    .settings = up_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+    .arguments_entry = "level",
+};
+
+const PassKind sap_gather_layered_kind{
+    .name = "subsurface.sap_gather_layered",
+    .shader = "sap/subsurface_sap_gather_layered",
+    .doc = "As subsurface.sap_gather, from two layers at level 1.",
+    .ports = layered_gather_ports,
+    .settings = layered_gather_settings,
+    .dispatch = DispatchShape::over_tiles,
+    .side_effects = false,
+};
+
+} // namespace dermis::subsurface

@@ -1,0 +1,265 @@
+#include "passes/sap/sap_weights.hpp"
+
+#include "passes/common/nnls.hpp"
+#include "passes/common/truth/planar.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// Where the fit looks: rings of frequencies (cycles a pixel) from far below the widest kernel to the corner
+// of the band, each at a few angles of the first octant.
+constexpr size_t ring_count = 72, angle_count = 5;
+constexpr double lowest_frequency = 1.0 / 4096, highest_frequency = 0.5;
+// Light on surfaces has a power spectrum near f^-2.5 (dead leaves, edges); rings are equal steps in log f,
+// whose area grows with f^2.
+constexpr double spectrum_exponent = -2.5;
+// Above this d the kernel's transfer function comes from the closed form: its spectrum times the pixel's
+// sinc, with the copies that sampling at pixel centres folds back.
+constexpr double closed_form_from_d = 3;
+constexpr int folded_copies = 4; // on each side; those left out add less than 1e-4
+// Holds the sum of the weights at 1 against a unit total weight of all frequencies.
+constexpr double sum_weight = 1e3;
+
+struct Frequency {
+  double x, y, weight; // weight of the squared error; all together 1
+};
+
+std::vector<Frequency> make_frequencies() {
+  std::vector<Frequency> list;
+  double total = 0;
+  for (size_t ring = 0; ring < ring_count; ++ring) {
+    const double f = lowest_frequency * std::pow(highest_frequency / lowest_frequency,
+                                                 (double(ring) + 0.5) / double(ring_count));
+    for (size_t angle = 0; angle < angle_count; ++angle) {
+      const double theta = 0.25 * pi * (double(angle) + 0.5) / double(angle_count);
+      list.push_back({f * std::cos(theta), f * std::sin(theta), std::pow(f, 2 + spectrum_exponent)});
+      total += list.back().weight;
+    }
+  }
+  for (Frequency& f : list)
+    f.weight /= total;
+  return list;
+}
+
+double both_axes(const Frequency& f, double spacing, int power) {
+  return std::pow(std::cos(pi * f.x * spacing) * std::cos(pi * f.y * spacing), power);
+}
+
+double sinc(double x) {
+  return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
+}
+
+// A level read through a cubic B-spline at all the places of the view's pixels: its spectrum sinc^4 of the
+// spacing, with the copies that sampling at pixels folds back.
+double spline_axis(double f, double spacing) {
+  double sum = 0;
+  for (int m = -folded_copies; m <= folded_copies; ++m)
+    sum += std::pow(sinc((f + m) * spacing), 4);
+  return sum;
+}
+
+SapWeights basis_at(const Frequency& f, SapVariant variant) {
+  const bool plain = variant == SapVariant::plain;
+  const bool half = variant == SapVariant::half;
+  SapWeights basis{1, plain ? spline_axis(f.x, 1) * spline_axis(f.y, 1) : half ? 0 : both_axes(f, 1, 2)};
+  double chain = 1;
+  for (uint32_t level = 1; level < sap_level_count; ++level) {
+    const double spacing = std::ldexp(1.0, static_cast<int>(level));
+    chain *= both_axes(f, spacing / 2, plain ? 3 : half && level == 1 ? 4 : 6);
+    double filter = 1;
+    if (plain)
+      filter = spline_axis(f.x, spacing) * spline_axis(f.y, spacing);
+    else if (level <= sap_last_tent(variant))
+      filter = both_axes(f, spacing, 2);
+    basis[level + 1] = chain * filter;
+  }
+  return basis;
+}
+
+// What the closed form asks at a frequency and those that fold back on it, of no shape.
+struct Folded {
+  static constexpr size_t copies = 2 * folded_copies + 1; // an axis
+  std::array<double, copies> sinc_x, sinc_y;
+  std::array<std::array<double, copies>, copies> k; // by y, x: radians a pixel
+};
+
+std::vector<Folded> fold(const std::vector<Frequency>& frequencies) {
+  std::vector<Folded> all(frequencies.size());
+  for (size_t i = 0; i < all.size(); ++i)
+    for (int n = -folded_copies; n <= folded_copies; ++n) {
+      const auto at = static_cast<size_t>(n + folded_copies);
+      const Frequency& f = frequencies[i];
+      all[i].sinc_x[at] = sinc(f.x + n);
+      all[i].sinc_y[at] = sinc(f.y + n);
+      for (int m = -folded_copies; m <= folded_copies; ++m)
+        all[i].k[at][static_cast<size_t>(m + folded_copies)] = 2 * pi * std::hypot(f.x + m, f.y + n);
+    }
+  return all;
+}
+
+// The truth's transfer function at all frequencies: of the summed pixel-integrated kernel, or of its closed
+// form.
+std::vector<double> target_of(const std::vector<Frequency>& frequencies, const std::vector<Folded>& folded,
+                              const ChannelShape& shape) {
+  std::vector<double> target;
+  if (shape.d >= closed_form_from_d) {
+    for (const Folded& f : folded) {
+      double sum = 0;
+      for (size_t n = 0; n < Folded::copies; ++n)
+        for (size_t m = 0; m < Folded::copies; ++m)
+          sum += shape_transfer(shape, f.k[n][m]) * f.sinc_x[m] * f.sinc_y[n];
+      target.push_back(sum);
+    }
+    return target;
+  }
+  const double radius = shape_reach(shape) + std::sqrt(0.5);
+  const auto reach = static_cast<size_t>(std::ceil(radius)) + 1;
+  std::vector<double> kernel((reach + 1) * (reach + 1));
+  double total = 0;
+  for (size_t y = 0; y <= reach; ++y)
+    for (size_t x = 0; x <= reach; ++x) {
+      const double copies = (x > 0 ? 2 : 1) * (y > 0 ? 2 : 1); // the other quadrants
+      total += kernel[y * (reach + 1) + x] =
+          copies * planar_weight(1, 1, static_cast<int64_t>(x), static_cast<int64_t>(y),
+                                 ProfileShape{shape, {}, {}}, radius)[0];
+    }
+  std::vector<double> wave(reach + 1);
+  for (const Frequency& f : frequencies) {
+    for (size_t x = 0; x <= reach; ++x)
+      wave[x] = std::cos(2 * pi * f.x * double(x));
+    double sum = 0;
+    for (size_t y = 0; y <= reach; ++y) {
+      double row = 0;
+      for (size_t x = 0; x <= reach; ++x)
+        row += kernel[y * (reach + 1) + x] * wave[x];
+      sum += row * std::cos(2 * pi * f.y * double(y));
+    }
+    target.push_back(sum / total);
+  }
+  return target;
+}
+
+// The least squares of a variant, of no shape.
+struct Problem {
+  SapVariant variant;
+  std::vector<SapWeights> basis = {}; // by frequency
+  NormalEquations<sap_weight_count> equations = {};
+  SapWeights ones = {}; // of the weights that there are
+};
+
+Problem make_problem(const std::vector<Frequency>& frequencies, SapVariant variant) {
+  Problem problem{variant};
+  for (const Frequency& f : frequencies) {
+    problem.basis.push_back(basis_at(f, variant));
+    problem.equations.add_row(problem.basis.back(), f.weight);
+  }
+  problem.ones.fill(1);
+  if (variant == SapVariant::half) problem.ones[1] = 0;
+  problem.equations.add_row(problem.ones, sum_weight);
+  return problem;
+}
+
+void solve_node(const Problem& problem, const std::vector<Frequency>& frequencies,
+                const std::vector<double>& target, double direct, SapNode& node) {
+  SapWeights right{};
+  for (size_t i = 0; i < frequencies.size(); ++i)
+    for (uint32_t j = 0; j < sap_weight_count; ++j)
+      right[j] += frequencies[i].weight * target[i] * problem.basis[i][j];
+  for (uint32_t j = 0; j < sap_weight_count; ++j)
+    right[j] += sum_weight * problem.ones[j];
+  node.weights = solve_non_negative(problem.equations, right);
+  double sum = 0;
+  for (const double w : node.weights)
+    sum += w;
+  for (double& w : node.weights)
+    w /= sum;
+  double squares = 0;
+  for (size_t i = 0; i < frequencies.size(); ++i) {
+    double error = -target[i];
+    for (uint32_t j = 0; j < sap_weight_count; ++j)
+      error += node.weights[j] * problem.basis[i][j];
+    squares += frequencies[i].weight * error * error;
+  }
+  node.residual = std::sqrt(squares);
+  for (double& w : node.weights)
+    w *= 1 - direct;
+  node.weights[0] += direct;
+}
+
+} // namespace
+
+SapFit fit_sap_weights(SapVariant variant) {
+  return fit_sap_weights(variant, burley_shape(1));
+}
+
+SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape) {
+  return fit_sap_weights(std::span(&variant, 1), shape).front();
+}
+
+std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const ChannelShape& shape) {
+  const std::vector<Frequency> frequencies = make_frequencies();
+  const std::vector<Folded> folded = fold(frequencies);
+  std::vector<Problem> problems;
+  std::vector<SapFit> fits;
+  for (const SapVariant variant : variants) {
+    problems.push_back(make_problem(frequencies, variant));
+    fits.push_back({.variant = variant, .nodes = {}});
+  }
+  for (uint32_t k = 0; k < sap_node_count; ++k) {
+    const double d_px = std::exp2(sap_log2_d_first + double(k) / sap_nodes_per_octave);
+    const std::vector<double> target = target_of(frequencies, folded, scaled(shape, d_px / shape.d));
+    for (size_t v = 0; v < fits.size(); ++v) {
+      fits[v].nodes[k].d_px = d_px;
+      solve_node(problems[v], frequencies, target, shape.direct, fits[v].nodes[k]);
+    }
+  }
+  return fits;
+}
+
+SapShares sap_shares(const SapWeights& weights) {
+  SapShares shares{.centre = weights[0], .tent = weights[1], .share = {}};
+  double rest = 0;
+  for (uint32_t level = sap_level_count - 1; level >= 1; --level) {
+    rest += weights[level + 1];
+    shares.share[level] = rest > 0 ? weights[level + 1] / rest : 1;
+  }
+  return shares;
+}
+
+std::vector<float> make_sap_table(const SapFit& fit) {
+  std::vector<float> table(size_t{sap_table_rows} * sap_node_count);
+  for (uint32_t k = 0; k < sap_node_count; ++k) {
+    const SapShares shares = sap_shares(fit.nodes[k].weights);
+    table[k] = static_cast<float>(shares.centre);
+    table[sap_node_count + k] = static_cast<float>(shares.tent);
+    for (uint32_t level = 1; level < sap_level_count; ++level)
+      table[(level + 1) * sap_node_count + k] = static_cast<float>(shares.share[level]);
+  }
+  return table;
+}
+
+template <class Real> Real sap_lookup(std::span<const float> table, uint32_t row, Real d_px) {
+  const float* values = &table[size_t{row} * sap_node_count];
+  const Real first = static_cast<Real>(std::exp2(sap_log2_d_first));
+  if (!(d_px >= first)) {
+    const Real share = std::max(Real(0), d_px) / first;
+    if (row == 0) return 1 - share * (1 - Real(values[0]));
+    return row == 1 ? share * Real(values[0]) : Real(values[0]);
+  }
+  const Real at = std::min((std::log2(d_px) - Real(sap_log2_d_first)) * Real(sap_nodes_per_octave),
+                           Real(sap_node_count - 1));
+  const auto k = std::min(static_cast<uint32_t>(at), sap_node_count - 2);
+  const Real t = at - Real(k);
+  return (1 - t) * Real(values[k]) + t * Real(values[k + 1]);
+}
+template float sap_lookup<float>(std::span<const float>, uint32_t, float);
+template double sap_lookup<double>(std::span<const float>, uint32_t, double);
+
+} // namespace dermis::subsurface

@@ -1,0 +1,91 @@
+// Filtered importance sampling: each sample stands for the area that its density leaves to it and reads the level of a
+// masked chain that has texels of that size. What lies within the direct radius is the pixel's own light. Include after
+// bindings with the ports and settings of subsurface.afis.
+#ifndef DERMIS_AFIS_GLSL
+#define DERMIS_AFIS_GLSL
+
+#include "common/radius.glsl"
+#include "common/sequence.glsl"
+#include "common/tap.glsl"
+#include "common/radial_draw.glsl"
+#include "afis/mixture.glsl"
+#include "afis/mips.glsl"
+
+bool draws_mixture(scatter_profile profile) {
+  return settings.channels == CHANNELS_MIXTURE && profile.row == no_radial_row;
+}
+
+radial_sample draw(scatter_profile profile, float survival) {
+  return draws_mixture(profile) ? mixture_sample(profile, survival) : radial_draw(profile, survival);
+}
+
+// A set of samples: `count` of the pixel's `all` in this frame, at a sequence's points from `first` on. Sets of one pixel
+// with other numbers are independent.
+struct sample_set {
+  uint number;
+  int count, all;
+  uint first;
+};
+
+// Offset of this pixel, frame and set, over 2^32.
+uvec2 sequence_offset(ivec2 pixel, sample_set set) {
+  uint frame_index = settings.sequence == SEQUENCE_HASHED ? frame.frame_index : 0u;
+  uvec2 offset = offset_from_hash(pcg3d16(uvec3(pixel, frame_index ^ (set.number << 31))).xy);
+  return settings.sequence == SEQUENCE_STRATIFIED ? r2_point(offset, frame.frame_index) : offset;
+}
+
+// Sample i: x = survival over that at the direct radius, y = angle over 2 pi.
+vec2 sequence_point(uvec2 offset, sample_set set, int i) {
+  if (settings.sequence == SEQUENCE_STRATIFIED) {
+    vec2 unit = unit_from_fixed(offset);
+    return vec2((float(i) + unit.x) / float(set.count), float(i) * (golden_angle / two_pi) + unit.y);
+  }
+  return unit_from_fixed(r2_point(offset, (settings.sequence == SEQUENCE_CONTINUED ? set.first : 0u) + uint(i)));
+}
+
+vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own, sample_set set) {
+  vec2 footprint = pixel_footprint(point.depth);
+  uint widest = profiles[min(point.id, 255u)].widest;
+
+  vec3 direct = vec3(0.0);
+  float beyond = 1.0;
+  if (settings.direct != DIRECT_NONE) {
+    float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y) : 0.5 * length(footprint);
+    vec3 survival = profile_survival(profile, r0);
+    beyond = draws_mixture(profile) ? dot(mixture_shares(profile), survival) : survival[widest];
+    r0 = draw(profile, beyond).r; // what the sampler leaves out is what is taken from the pixel's own light
+    direct = 1.0 - profile_survival(profile, settings.surface == SURFACE_PATCH ? r0 * sqrt(area) : r0);
+  }
+  // Pixels that a sample stands for: 1 / (samples * density on the view plane), that of the radius / (2 pi r).
+  float pixels_per_sample = two_pi * beyond / (float(set.all) * footprint.x * footprint.y);
+  uvec2 offset = sequence_offset(point.pixel, set);
+  float each = beyond / float(set.count);
+  vec3 sum = vec3(0.0), total = vec3(0.0);
+  for (int i = 0; i < set.count; ++i) {
+    vec2 unit = sequence_point(offset, set, i);
+    radial_sample drawn = draw(profile, unit.x * beyond);
+    vec2 at = vec2(point.pixel) + drawn.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi)) / footprint;
+    vec3 weight;
+    vec4 light;
+    if (!take_tap(point, profile, at, drawn, weight, light))
+      continue;
+    if (settings.surface == SURFACE_DISTANCE)
+      weight /= light.a;
+    if (settings.mips != MIPS_NONE) {
+      float lod = 0.5 * log2(max(pixels_per_sample * drawn.r / drawn.density, 1e-20)) + settings.lod_bias;
+      if (lod > 0.0)
+        light.rgb = filtered_light(at, lod, light.rgb);
+    }
+    sum += weight * light.rgb;
+    total += weight;
+  }
+  vec3 mass = direct + each * total, mean = direct * own + each * sum;
+  if (settings.estimator == ESTIMATOR_SELF)
+    mean = mix(own, mean / max(mass, vec3(1e-30)), greaterThan(mass, vec3(1e-30)));
+  else if (settings.estimator == ESTIMATOR_CENTRED)
+    mean += (1.0 - mass) * own;
+  mean = max(mix(own, mean, greaterThan(profile.d.rgb, vec3(0.0))), vec3(0.0));
+  return mix(mean, own, profile_direct(point.id));
+}
+
+#endif

@@ -1,0 +1,36 @@
+#version 460
+// Filtered importance sampling in the tiles that were given samples, in place of the light of another technique. No seams:
+// towards tiles that were given none the other technique's share rises to all.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "afis/subsurface_afis_tiles.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "common/half.glsl"
+#include "afis/afis.glsl"
+#include "common/tile_edges.glsl"
+
+const float ramp_px = 8.0; // all of a tile: what is replaced differs by more than what is blended
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  ivec2 texel = texel_of(pixel), tile = pixel >> 3;
+  uint id = texelFetch(material_image, texel, 0).r;
+  uint steps = shares_data[tile.y * frame.tiles.x + tile.x];
+  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  if (id == 0u || steps == 0u || depth <= 0.0)
+    return;
+  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  scatter_profile profile = find_profile(id, scale);
+  if (projected_d(profile.d.w, depth) < copy_below_d_px)
+    return;
+  vec4 light = texelFetch(light_image, texel, 0);
+  int count = settings.samples << (steps - 1u);
+  vec3 sampled = scatter(scatter_point(pixel, id, depth, view_position(vec2(pixel), depth)), profile, light.a, light.rgb,
+                         sample_set(0u, count, count, frame.frame_index * uint(count)));
+  vec4 other = imageLoad(scattered_image, texel);
+  imageStore(scattered_image, texel, vec4(round_to_half(mix(other.rgb, sampled, edge_weight(pixel, ramp_px))), other.a));
+}

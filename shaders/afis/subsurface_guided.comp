@@ -1,0 +1,175 @@
+#version 460
+// Filtered importance sampling with as many samples as the spread of what a pixel found before asks for.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "afis/subsurface_guided.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "common/half.glsl"
+#include "afis/afis.glsl"
+#include "afis/guidance.glsl"
+vec2 surface_before(ivec2 pixel);
+#include "common/reproject.glsl"
+
+const float mm_per_metre = 1000.0;
+const vec3 rec709 = vec3(0.2126, 0.7152, 0.0722);
+const float first_count = 16.0;  // samples where there is no history
+const uint frame_stride = 61u;   // points of the sequence from frame to frame, whatever a pixel takes of them
+
+bool splits() { return settings.guidance == GUIDANCE_SPLIT_HALF; }
+bool has_moments() { return settings.guidance == GUIDANCE_OCV; }
+
+vec4 guide_before(ivec2 pixel) { return texelFetch(guide_image, previous_texel(pixel), 0); }
+
+// The half sequences keep depth (metres) in the guide itself, the others beside it.
+vec2 surface_before(ivec2 pixel) {
+  vec2 kept = guide_before(pixel).ba;
+  float depth = splits() ? kept.r : texelFetch(place_image, previous_texel(pixel), 0).r;
+  return vec2(depth * mm_per_metre, kept.g);
+}
+
+struct guide_state {
+  float sd, mean_count, mean; // of one frame's exposed luminance; of samples; of what is watched
+  moving_covariance moments;
+  bool lost;
+};
+
+guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
+  guide_state state = guide_state(sqrt(settings.sigma2_target), first_count, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), true);
+  if (!(history_usable() && depth > 0.0))
+    return state;
+  previous_place place = has_velocity() && depth > 0.0
+                             ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+                             : place_before(vec2(pixel), depth);
+  history_taps taps = find_history(place, id, depth_tolerance(place.depth, rise));
+  if (taps.weight == vec4(0.0))
+    return state;
+  vec4 guide = vec4(0.0), control = vec4(0.0);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0) {
+      ivec2 at = taps.first + ivec2(i & 1, i >> 1);
+      guide += taps.weight[i] * guide_before(at);
+      if (has_moments())
+        control += taps.weight[i] * texelFetch(control_image, previous_texel(at), 0);
+    }
+  // The control is kept as weight, sd of g and both means: half floats hold these, not a covariance.
+  float variance_g = control.g * control.g;
+  return guide_state(guide.r, guide.g, guide.b, moving_covariance(control.b, control.a, control.r * variance_g, variance_g),
+                     false);
+}
+
+float exposed(vec3 light) { return min(dot(light, rec709) * frame.exposure, 1e4); }
+
+// By pixel of the tile: half the difference of its two halves, squared, times its samples; and its profile, 0 where
+// nothing was sampled.
+shared vec2 spreads[64];
+
+// The variance of one sample, which neighbours of a profile share: one pixel's difference alone says little of it.
+float pooled_spread(float id) {
+  vec2 sum = vec2(0.0);
+  for (uint i = 0u; i < 64u; ++i)
+    sum += spreads[i].y == id ? vec2(spreads[i].x, 1.0) : vec2(0.0);
+  return sum.x / sum.y;
+}
+
+struct guided_pixel {
+  ivec2 pixel;
+  vec3 light;
+  float depth;
+  uint id; // 0: nothing to sample
+  scatter_profile profile;
+  float alpha;
+};
+
+// Draws two halves of the samples and keeps the square of half their difference, times their number.
+float sample_halves(inout guided_pixel at, int count, uint first) {
+  scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
+  vec3 a = scatter(point, at.profile, at.alpha, at.light, sample_set(0u, count / 2, count, first));
+  vec3 b = scatter(point, at.profile, at.alpha, at.light, sample_set(1u, count / 2, count, first));
+  at.light = 0.5 * (a + b);
+  float half_way = 0.5 * (exposed(a) - exposed(b));
+  return half_way * half_way * float(count);
+}
+
+// Draws samples and follows the moments of what is watched (Algorithms 1 to 3).
+void sample_and_watch(inout guided_pixel at, inout guide_state state, int count, uint first) {
+  scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
+  float g = exposed(at.light);
+  at.light = scatter(point, at.profile, at.alpha, at.light, sample_set(0u, count, count, first));
+  float f = exposed(at.light);
+  if (state.lost)
+    state.moments = moving_covariance(f, g, 0.0, 0.0);
+  float weight = settings.guidance == GUIDANCE_SPVG ? 0.0 : has_moments() ? control_weight(state.moments) : 1.0;
+  float watched = f - weight * g;
+  moving_variance moments = moving_variance(state.lost ? watched : state.mean, state.sd * state.sd);
+  if (!state.lost)
+    moments = add_value(moments, watched, settings.eta);
+  state.mean = moments.mean;
+  state.sd = sqrt(moments.variance);
+  if (has_moments() && !state.lost)
+    state.moments = add_values(state.moments, f, g, settings.eta_cv);
+}
+
+void main() {
+  guided_pixel at;
+  bool copy_only;
+  bool listed = listed_pixel(at.pixel, copy_only);
+  ivec2 texel = ivec2(0);
+  at.id = 0u;
+  at.depth = 0.0;
+  at.light = vec3(0.0);
+  guide_state state = guide_state(0.0, 0.0, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), false);
+  int count = 0;
+  uint id = 0u;
+  if (listed) {
+    texel = texel_of(at.pixel);
+    id = texelFetch(material_image, texel, 0).r;
+    vec4 light = texelFetch(light_image, texel, 0);
+    at.light = light.rgb;
+    at.alpha = light.a;
+    at.depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    if (id != 0u && !copy_only && at.depth > 0.0) {
+      float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+      at.profile = find_profile(id, scale);
+      if (projected_d(at.profile.d.w, at.depth) >= copy_below_d_px)
+        at.id = id;
+    }
+  }
+  float spread = 0.0;
+  if (at.id != 0u) {
+    vec2 footprint = pixel_footprint(at.depth);
+    state = state_before(at.pixel, at.depth, at.id, length(texelFetch(slope_image, texel, 0).rg * footprint));
+    count = clamped_samples(wanted_samples(state.sd * state.sd, state.mean_count));
+    uint first = frame.frame_index * frame_stride;
+    if (splits()) {
+      count += count & 1;
+      spread = sample_halves(at, count, first);
+    } else {
+      sample_and_watch(at, state, count, first);
+    }
+  }
+  if (splits()) {
+    spreads[gl_LocalInvocationIndex] = vec2(spread, float(at.id));
+    barrier();
+    if (at.id != 0u && !state.lost)
+      state.sd = sqrt(mix(state.sd * state.sd, pooled_spread(float(at.id)) / float(count), settings.eta));
+  }
+  if (!listed)
+    return;
+  if (at.id != 0u)
+    state.mean_count = state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
+  imageStore(scattered_image, texel, vec4(round_to_half(at.light), 1.0));
+  float depth = at.depth / mm_per_metre;
+  imageStore(guide_out_image, texel,
+             round_to_half(vec4(state.sd, state.mean_count, splits() ? depth : state.mean, float(id))));
+  if (has_place_out())
+    imageStore(place_out_image, texel, vec4(round_to_half(depth), 0.0, 0.0, 0.0));
+  if (has_control_out()) {
+    float variance_g = state.moments.variance_g;
+    vec4 control = vec4(variance_g > 0.0 ? state.moments.covariance / variance_g : 1.0, sqrt(variance_g),
+                        state.moments.mean_f, state.moments.mean_g);
+    imageStore(control_out_image, texel, settings.full_precision != 0 ? control : round_to_half(control));
+  }
+  if (has_sampling())
+    imageStore(sampling_image, texel, vec4(float(count), state.mean_count, state.sd, state.lost ? 1.0 : 0.0));
+}

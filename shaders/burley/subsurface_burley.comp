@@ -1,0 +1,56 @@
+#version 460
+// Scattering by importance sampling: n stratified radii of the widest channel at the golden angle, each tap weighted
+// by the profile at its true distance and by the area of the patch it falls on; self-normalised.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "burley/subsurface_burley.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "common/radius.glsl"
+#include "common/half.glsl"
+#include "common/hash.glsl"
+#include "common/tap.glsl"
+
+const float least_weight = 1e-30; // less is what exponentials leave at their end, and says nothing
+
+vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
+  vec2 pixels_per_mm = 1.0 / pixel_footprint(point.depth);
+  vec3 random = unit_from_hash(pcg3d(uvec3(point.pixel, frame.frame_index)));
+  float angle = random.y * two_pi;
+  vec2 direction = vec2(cos(angle), sin(angle));
+  mat2 turn = mat2(cos(golden_angle), sin(golden_angle), -sin(golden_angle), cos(golden_angle));
+
+  vec3 sum = vec3(0.0), total = vec3(0.0);
+  for (int i = 0; i < settings.samples; ++i, direction = turn * direction) {
+    radial_sample drawn = profile_sample(profile, 1.0 - (float(i) + random.x) / float(settings.samples));
+    vec3 weight;
+    vec4 light;
+    if (!take_tap(point, profile, vec2(point.pixel) + direction * drawn.r * pixels_per_mm, drawn, weight, light))
+      continue;
+    sum += weight * light.rgb;
+    total += weight;
+  }
+  bvec3 scattered = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(least_weight))));
+  vec3 mean = mix(own, sum / max(total, vec3(least_weight)), scattered);
+  return mix(mean, own, profile_direct(point.id));
+}
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  ivec2 texel = texel_of(pixel);
+  uint id = texelFetch(material_image, texel, 0).r;
+  if (id == 0u)
+    return;
+  vec3 light = texelFetch(light_image, texel, 0).rgb;
+  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  if (!copy_only && depth > 0.0) {
+    float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+    scatter_profile profile = find_profile(id, scale);
+    if (projected_d(profile.d.w, depth) >= copy_below_d_px)
+      light = scatter(scatter_point(pixel, id, depth, view_position(vec2(pixel), depth)), profile, light);
+  }
+  imageStore(scattered_image, texel, vec4(round_to_half(light), 1.0));
+}

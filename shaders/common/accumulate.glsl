@@ -1,0 +1,52 @@
+// Mixes this frame's light with that of earlier frames. passes/common/accumulate.hpp mirrors these
+// functions under the same names.
+#ifndef DERMIS_ACCUMULATE_GLSL
+#define DERMIS_ACCUMULATE_GLSL
+
+#include "constants.glsl"
+
+// Cubic weights of the four texels around a place (Catmull & Rom 1974), `part` beyond the second; sum 1. The outer two
+// are negative: what bilinear weights blur from frame to frame stays sharp.
+vec4 catmull_rom(float part) {
+  float t = part, t2 = t * t, t3 = t2 * t;
+  return 0.5 * vec4(-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2);
+}
+
+// A value over frames, and the frames behind it.
+struct accumulated_light {
+  vec3 light;
+  float count;
+};
+
+// Variance clipping (Salvi 2016): history is drawn along the line to the neighbourhood's mean until it lies within
+// `reach` of its standard deviations, and counts for as much less as it was drawn.
+accumulated_light clip_to_neighbours(accumulated_light history, vec3 mean, vec3 deviation, float reach) {
+  vec3 way = abs(history.light - mean), room = reach * deviation;
+  float keep = 1.0;
+  for (int c = 0; c < 3; ++c)
+    if (way[c] > room[c])
+      keep = min(keep, room[c] / way[c]);
+  return accumulated_light(mix(mean, history.light, keep), history.count * keep);
+}
+
+// Weight of a new frame against `count` frames of history: all frames weigh the same until a frame weighs `least`.
+float frame_weight(float count, float least) { return max(1.0 / (count + 1.0), least); }
+
+accumulated_light add_frame(accumulated_light history, vec3 light, float least) {
+  return accumulated_light(mix(history.light, light, frame_weight(history.count, least)),
+                           min(history.count + 1.0, 1.0 / least));
+}
+
+// What history keeps of a pixel's scattered light: the part that the nearest pixels do not explain, over the brightness
+// around. The nearest pixels carry what is sharp, and are read anew in each frame; brightness follows lights that change.
+vec3 remainder_of(vec3 light, vec3 near, vec3 brightness) {
+  return (light - near) / max(brightness, vec3(accumulate_least_brightness));
+}
+bool can_be_kept(vec3 remainder) { return all(lessThanEqual(abs(remainder), vec3(accumulate_largest_remainder))); }
+
+// The light that a remainder stands for under this frame's light.
+vec3 light_of_remainder(vec3 remainder, vec3 near, vec3 brightness) {
+  return max(near + brightness * remainder, vec3(0.0));
+}
+
+#endif

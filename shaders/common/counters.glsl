@@ -1,0 +1,40 @@
+// What a frame tells the host: FrameCounters of passes/common/environment.hpp.
+#ifndef DERMIS_COUNTERS_GLSL
+#define DERMIS_COUNTERS_GLSL
+
+layout(std430, set = 1, binding = 6) buffer counter_block {
+  uint scattering_tiles;
+  uint copied_tiles;
+  uint log2_d_sum;
+  uint flat_tiles;
+  uint level_groups[9];
+  uint sampled_tiles[3];
+  uint sample_units;
+  uint wanted_units;
+  uint probe_count;
+  uint through_steps;
+  uvec2 probes[32];
+} counters;
+
+uint counter_steps(float d_px) {
+  float steps = (log2(d_px) + counter_log2_shift) * counter_log2_steps;
+  return uint(clamp(steps, 0.0, 32.0 * counter_log2_steps - 1.0));
+}
+
+// `steps`: the sum of counter_steps over the scattering tiles.
+void count_tiles(uint scattering, uint copied, uint steps) {
+  if (scattering != 0u) {
+    atomicAdd(counters.scattering_tiles, scattering);
+    atomicAdd(counters.log2_d_sum, steps);
+  }
+  if (copied != 0u)
+    atomicAdd(counters.copied_tiles, copied);
+}
+// What counted as scattering turned out to be flat in light.
+void recount_as_flat(float d_px) {
+  atomicAdd(counters.scattering_tiles, 0xffffffffu);
+  atomicAdd(counters.log2_d_sum, 0u - counter_steps(d_px));
+  atomicAdd(counters.flat_tiles, 1u);
+}
+
+#endif

@@ -1,0 +1,108 @@
+// Light around a group of 8x8 pixels, which shares what it reads: the scattered light that the nearest pixels explain,
+// and the mean brightness around. Include after bindings with `lighting`, `albedo`, `scattered`, `material`, `depth` and
+// the setting `texturing`.
+#ifndef DERMIS_NEAR_LIGHT_GLSL
+#define DERMIS_NEAR_LIGHT_GLSL
+
+#include "constants.glsl"
+#include "common/environment.glsl"
+#include "common/pixel_light.glsl"
+#include "common/profile.glsl"
+
+const int near_reach = 2;                // pixels to each side that explain scattered light
+const int near_brightness_reach = 3;     // pixels to each side whose mean is the brightness
+const int near_ring = 4;                 // pixels around the group: those above, and the ring of its neighbours
+const int near_side = 8 + 2 * near_ring; // of the shared square
+const int near_columns = 8 + 2;          // of the group and the ring of its neighbours
+const int near_texels = near_side * near_side;
+const float near_scattered_part = 0.5;   // of scattered light in the brightness: shadows near light stay above 0
+const float inverse_pi = 0.31830989;
+
+shared vec4 near_light[near_texels];      // rgb: light that can scatter; a: area of the patch over that of its pixel
+shared vec4 near_brightness[near_texels]; // rgb: light and a part of the scattered light; a: 1 where there is subsurface
+shared float near_depth[near_texels];     // mm; 0 where there is nothing
+shared uint near_profile[near_texels];    // 0 where there is no subsurface
+shared vec4 near_rows[near_columns * near_side]; // sums of near_brightness over rows of 2 * near_brightness_reach + 1
+
+int near_index(ivec2 local) { return (local.y + near_ring) * near_side + local.x + near_ring; }
+
+// The smaller change of depth to both sides along an axis, mm; 0 where no neighbour has the profile.
+float near_rise(int index, int step) {
+  float depth = near_depth[index], least = 1e30;
+  for (int side = -1; side <= 1; side += 2) {
+    int other = index + side * step;
+    if (near_profile[other] == near_profile[index] && near_depth[other] > 0.0)
+      least = min(least, abs(near_depth[other] - depth));
+  }
+  return least < 1e30 ? least : 0.0;
+}
+vec2 near_rise(int index) { return vec2(near_rise(index, 1), near_rise(index, near_side)); }
+
+// Reads what the group with first pixel `first` needs, once each. Every invocation of the group calls it.
+void share_near_light(ivec2 first) {
+  for (int i = int(gl_LocalInvocationIndex); i < near_texels; i += 64) {
+    ivec2 pixel = first + ivec2(i % near_side, i / near_side) - near_ring, texel = texel_of(pixel);
+    // Nothing is scattered beyond the bounds, so `scattered` is not written there.
+    uint id = inside_rect(pixel) && inside_bounds(pixel) ? texelFetch(material_image, texel, 0).r : 0u;
+    vec3 light = vec3(0.0), scattered = vec3(0.0);
+    float depth = 0.0;
+    if (id != 0u) {
+      light = pixel_light(texel);
+      scattered = texelFetch(scattered_image, texel, 0).rgb;
+      depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    }
+    near_profile[i] = id;
+    near_depth[i] = depth;
+    near_light[i] = vec4(light, 0.0);
+    near_brightness[i] = vec4(light + near_scattered_part * scattered, id != 0u ? 1.0 : 0.0);
+  }
+  barrier();
+  for (int i = int(gl_LocalInvocationIndex); i < near_texels; i += 64) {
+    ivec2 from_edge = min(ivec2(i % near_side, i / near_side), near_side - 1 - ivec2(i % near_side, i / near_side));
+    if (min(from_edge.x, from_edge.y) > 0 && near_depth[i] > 0.0) {
+      vec2 slope = near_rise(i) / max(pixel_footprint(near_depth[i]), vec2(1e-20));
+      near_light[i].a = min(sqrt(1.0 + dot(slope, slope)), 1.0 / min_patch_cosine);
+    }
+  }
+  for (int i = int(gl_LocalInvocationIndex); i < near_columns * near_side; i += 64) {
+    vec4 sum = vec4(0.0);
+    for (int k = -near_brightness_reach; k <= near_brightness_reach; ++k)
+      sum += near_brightness[(i / near_columns) * near_side + i % near_columns + near_ring - 1 + k];
+    near_rows[i] = sum;
+  }
+  barrier();
+}
+
+struct near_field {
+  vec3 light;      // scattered light, if the nearest pixels were all there is
+  vec3 brightness; // the mean around, in the same unit
+};
+
+// Of a pixel of the group or a neighbour of one. Weights are the profile at each pixel's distance times the area of its
+// patch; the pixel's own patch counts as a disc.
+near_field find_near_field(ivec2 local, scatter_profile profile, vec3 direct) {
+  int own = near_index(local);
+  float depth = near_depth[own];
+  vec2 footprint = pixel_footprint(depth);
+  float cross_section = footprint.x * footprint.y;
+  vec3 total = 1.0 - profile_survival(profile, sqrt(cross_section * near_light[own].a * inverse_pi));
+  vec3 sum = total * near_light[own].rgb;
+  for (int y = -near_reach; y <= near_reach; ++y)
+    for (int x = -near_reach; x <= near_reach; ++x) {
+      int other = near_index(local + ivec2(x, y));
+      if ((x == 0 && y == 0) || near_profile[other] != near_profile[own] || !(near_depth[other] > 0.0))
+        continue;
+      float r = length(vec3(vec2(x, y) * footprint, near_depth[other] - depth));
+      vec3 weight = profile_falloff(profile, r) * (0.5 * inverse_pi * cross_section * near_light[other].a);
+      sum += weight * near_light[other].rgb;
+      total += weight;
+    }
+  bvec3 scatters = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(1e-30))));
+  vec3 light = mix(near_light[own].rgb, sum / max(total, vec3(1e-30)), scatters);
+  vec4 around = vec4(0.0);
+  for (int k = -near_brightness_reach; k <= near_brightness_reach; ++k)
+    around += near_rows[(local.y + near_ring + k) * near_columns + local.x + 1];
+  return near_field(mix(light, near_light[own].rgb, direct), around.rgb / max(around.a, 1.0));
+}
+
+#endif

@@ -1,0 +1,55 @@
+// The surface patch behind a pixel, from depth differences; mirrors passes/common/truth/surface.cpp.
+#ifndef DERMIS_PATCH_GLSL
+#define DERMIS_PATCH_GLSL
+
+#include "constants.glsl"
+#include "common/environment.glsl"
+
+// Depths of a pixel's neighbours along both axes, mm; 0 where it is outside, of another profile or has none.
+struct patch_neighbours {
+  vec2 before, after; // x: along the row, y: along the column
+};
+
+// Tangent along an axis: towards the neighbour of the same profile that is nearer in depth; across the view where
+// there is none.
+vec3 patch_tangent(ivec2 pixel, ivec2 axis, float before, float after, float depth, vec3 position) {
+  bool backwards = before > 0.0 && (after <= 0.0 || abs(before - depth) < abs(after - depth));
+  float neighbour = backwards ? before : (after > 0.0 ? after : depth);
+  int side = backwards ? -1 : 1;
+  return float(side) * (view_position(vec2(pixel + side * axis), neighbour) - position);
+}
+
+struct surface_patch {
+  vec2 slope;  // d depth / d pixel, in footprints per pixel
+  float area;  // over the area of the pixel's cross-section: 1 / cos to the viewer, capped
+};
+
+surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
+  vec3 position = view_position(vec2(pixel), depth);
+  vec3 ray = is_perspective() ? position / depth : vec3(0.0, 0.0, -1.0);
+  vec3 viewer = -normalize(ray);
+  vec3 normal = cross(patch_tangent(pixel, ivec2(1, 0), around.before.x, around.after.x, depth, position),
+                      patch_tangent(pixel, ivec2(0, 1), around.before.y, around.after.y, depth, position));
+  float size = length(normal);
+  normal = size > 0.0 ? normal / size : viewer;
+  if (dot(normal, viewer) < 0.0)
+    normal = -normal;
+  float cosine = dot(normal, viewer);
+  if (cosine < min_patch_cosine) { // tilt towards the viewer until it meets the limit
+    vec3 across = normal - viewer * cosine;
+    float across_size = length(across);
+    normal = across_size > 0.0
+                 ? across * (sqrt(1.0 - min_patch_cosine * min_patch_cosine) / across_size) + viewer * min_patch_cosine
+                 : viewer;
+    cosine = max(dot(normal, viewer), min_patch_cosine);
+  }
+  surface_patch result;
+  // The plane dot(normal, P) = const, P = depth * (scale * pixel + offset, -1), differentiated by pixel; an
+  // orthographic ray has no depth in its x and y, which leaves the same quotient.
+  vec2 signs = sign(frame.ray_scale);
+  result.slope = is_perspective() ? -normal.xy * signs / dot(normal, ray) : normal.xy * signs / normal.z;
+  result.area = 1.0 / cosine;
+  return result;
+}
+
+#endif

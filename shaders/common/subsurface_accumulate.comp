@@ -1,0 +1,174 @@
+#version 460
+// Scattered light over frames, for hosts without anti-aliasing of their own. History keeps only what is left of scattered
+// light after the part that the nearest pixels explain, relative to the brightness around: what is noise is averaged,
+// and each frame's own sharp light is shown as it is.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "common/subsurface_accumulate.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "common/half.glsl"
+#include "common/radius.glsl"
+#include "common/near_light.glsl"
+#include "common/accumulate.glsl"
+vec2 surface_before(ivec2 pixel);
+#include "common/reproject.glsl"
+
+const float mm_per_metre = 1000.0;
+
+accumulated_light past_at(ivec2 pixel) {
+  vec4 kept = texelFetch(past_image, previous_texel(pixel), 0);
+  return accumulated_light(kept.rgb, kept.a);
+}
+
+vec2 surface_before(ivec2 pixel) {
+  vec2 kept = texelFetch(place_image, previous_texel(pixel), 0).rg;
+  return vec2(kept.r * mm_per_metre, kept.g);
+}
+
+bool is_surface(ivec2 pixel, uint id, float depth, float tolerance) {
+  vec2 surface = inside_previous(pixel) ? surface_before(pixel) : vec2(0.0);
+  return uint(surface.y) == id && abs(surface.x - depth) <= tolerance;
+}
+
+// Of the 4x4 texels around the place, if all of them show the surface; else false.
+bool sharp_history(previous_place place, uint id, float tolerance, out accumulated_light found) {
+  ivec2 first = ivec2(floor(place.pixel));
+  vec2 part = place.pixel - vec2(first);
+  vec4 across = catmull_rom(part.x), down = catmull_rom(part.y);
+  found = accumulated_light(vec3(0.0), 0.0);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) {
+      ivec2 pixel = first + ivec2(x, y) - 1;
+      float weight = across[x] * down[y];
+      if (weight == 0.0)
+        continue;
+      if (!is_surface(pixel, id, place.depth, tolerance))
+        return false;
+      accumulated_light one = past_at(pixel);
+      found.light += weight * one.light;
+      found.count += weight * one.count;
+    }
+  found.count = max(found.count, 0.0);
+  return true;
+}
+
+// count 0 where the surface was not to be seen.
+accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
+  accumulated_light found = accumulated_light(vec3(0.0), 0.0);
+  if (!(history_usable() && depth > 0.0))
+    return found;
+  previous_place place = has_velocity() && depth > 0.0
+                             ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+                             : place_before(vec2(pixel), depth);
+  float tolerance = depth_tolerance(place.depth, rise);
+  history_taps taps = find_history(place, id, tolerance);
+  if (taps.weight == vec4(0.0) || sharp_history(place, id, tolerance, found))
+    return found;
+  found = accumulated_light(vec3(0.0), 0.0);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0) {
+      accumulated_light one = past_at(taps.first + ivec2(i & 1, i >> 1));
+      found.light += taps.weight[i] * one.light;
+      found.count += taps.weight[i] * one.count;
+    }
+  return found;
+}
+
+// By pixel of the group and the ring of its neighbours: what history keeps of this frame's light.
+shared vec3 shared_remainders[near_columns * near_columns];
+int remainder_index(ivec2 local) { return (local.y + 1) * near_columns + local.x + 1; }
+
+near_field share_remainder(ivec2 first, ivec2 local) {
+  int index = near_index(local);
+  if (near_profile[index] == 0u || !(near_depth[index] > 0.0))
+    return near_field(vec3(0.0), vec3(0.0));
+  ivec2 texel = texel_of(first + local);
+  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  uint id = near_profile[index];
+  near_field near = find_near_field(local, find_profile(id, scale), profile_direct(id));
+  shared_remainders[remainder_index(local)] =
+      remainder_of(texelFetch(scattered_image, texel, 0).rgb, near.light, near.brightness);
+  return near;
+}
+
+// The i-th of the 36 pixels around the group.
+ivec2 ring_pixel(int i) {
+  return i < 10 ? ivec2(i - 1, -1) : i < 20 ? ivec2(i - 11, 8) : i < 28 ? ivec2(-1, i - 20) : ivec2(8, i - 28);
+}
+
+// Over the 3x3 pixels that have the profile.
+struct neighbourhood {
+  vec3 mean, deviation; // of remainders
+  vec3 least, largest;  // of scattered light
+};
+neighbourhood look_around(ivec2 first, ivec2 local, vec3 own_light) {
+  vec3 own = shared_remainders[remainder_index(local)], sum = vec3(0.0), squares = vec3(0.0);
+  float count = 0.0;
+  neighbourhood around = neighbourhood(own, vec3(0.0), own_light, own_light);
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      ivec2 other = local + ivec2(x, y);
+      int index = near_index(other);
+      if (near_profile[index] != near_profile[near_index(local)] || !(near_depth[index] > 0.0))
+        continue;
+      vec3 way = shared_remainders[remainder_index(other)] - own; // about its own, so that nothing cancels
+      vec3 light = texelFetch(scattered_image, texel_of(first + other), 0).rgb;
+      sum += way;
+      squares += way * way;
+      count += 1.0;
+      around.least = min(around.least, light);
+      around.largest = max(around.largest, light);
+    }
+  vec3 mean = sum / max(count, 1.0);
+  around.mean = own + mean;
+  around.deviation = sqrt(max(squares / max(count, 1.0) - mean * mean, vec3(0.0)));
+  return around;
+}
+
+struct shown_and_kept {
+  vec3 shown;
+  accumulated_light kept;
+};
+shown_and_kept with_history(accumulated_light history, vec3 light, near_field near, vec3 now, neighbourhood around) {
+  bvec3 lit = greaterThan(near.brightness, vec3(accumulate_least_brightness));
+  if (!any(lit)) // history waits until light comes back
+    return shown_and_kept(light, history);
+  now = mix(history.light, now, lit);
+  if (!can_be_kept(now))
+    return shown_and_kept(light, accumulated_light(vec3(0.0), 0.0));
+  if (!(history.count > 0.0))
+    return shown_and_kept(light, accumulated_light(now, 1.0));
+  history.light = clamp(history.light, vec3(-accumulate_largest_remainder), vec3(accumulate_largest_remainder));
+  if (settings.clip > 0.0)
+    history = clip_to_neighbours(history, mix(history.light, around.mean, lit), around.deviation, settings.clip);
+  accumulated_light sum = add_frame(history, now, settings.weight);
+  vec3 shown = mix(light, light_of_remainder(sum.light, near.light, near.brightness), lit);
+  return shown_and_kept(settings.clip > 0.0 ? clamp(shown, around.least, around.largest) : shown, sum);
+}
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  bool listed = listed_pixel(pixel, copy_only);
+  ivec2 local = ivec2(gl_LocalInvocationID.xy), first = pixel - local, texel = texel_of(pixel);
+  share_near_light(first);
+  near_field near = share_remainder(first, local);
+  if (gl_LocalInvocationIndex < 36u)
+    share_remainder(first, ring_pixel(int(gl_LocalInvocationIndex)));
+  barrier();
+  if (!listed)
+    return;
+  uint id = texelFetch(material_image, texel, 0).r;
+  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  vec3 light = texelFetch(scattered_image, texel, 0).rgb;
+  shown_and_kept now = shown_and_kept(light, accumulated_light(vec3(0.0), 0.0));
+  int own = near_index(local);
+  bool scatters = near_profile[own] != 0u && !copy_only && near_depth[own] > 0.0;
+  if (scatters)
+    now = with_history(history_of(pixel, depth, id, length(near_rise(own))), light, near,
+                       shared_remainders[remainder_index(local)], look_around(first, local, light));
+  imageStore(accumulated_image, texel, vec4(round_to_half(now.shown), 1.0));
+  imageStore(past_out_image, texel, round_to_half(vec4(now.kept.light, now.kept.count)));
+  imageStore(place_out_image, texel, round_to_half(vec4(depth / mm_per_metre, scatters ? float(id) : 0.0, 0.0, 0.0)));
+}

@@ -1,0 +1,37 @@
+#version 460
+// Scattered light back into the host's lighting, where there is subsurface.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "common/subsurface_combine.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "common/half.glsl"
+#include "common/sanitise.glsl"
+#include "common/texturing.glsl"
+
+void main() {
+  ivec2 pixel;
+  bool copy_only, full;
+  if (!listed_pixel(pixel, copy_only, full))
+    return;
+  ivec2 texel = texel_of(pixel);
+  bool subsurface = full;
+  if (!full)
+    subsurface = texelFetch(material_image, texel, 0).r != 0u;
+  if (!subsurface)
+    return;
+  vec3 albedo = vec3(1.0);
+  if (has_albedo() && (settings.result == RESULT_COLOR || settings.texturing != TEXTURING_POST))
+    albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
+  vec3 color = vec3(0.0);
+  bool copies = has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
+  if (copies) { // rounded as scattered light is
+    color = clean_light(texelFetch(unscattered_image, texel, 0).rgb);
+    color = round_to_half(clean_light(apply_albedo_before(settings.texturing, albedo, color)));
+  } else {
+    color = texelFetch(scattered_image, texel, 0).rgb;
+  }
+  if (settings.result == RESULT_COLOR)
+    color = apply_albedo_after(settings.texturing, albedo, color);
+  imageStore(lighting_image, texel, vec4(round_to_half(color), 1.0));
+}

@@ -1,0 +1,163 @@
+#version 460
+// How far off the picture is, by samples of it: a few tiles, drawn with known probabilities, in which the reference is
+// computed at four pixels each, one in each quarter. The tiles are cut into runs of 64; every n-th run gives one of its
+// tiles with subsurface, from a random start. What the host makes of it: passes/common/probe.hpp.
+// The reference is the truth of passes/common/truth/truth.hpp in fp32:
+//   L_c(p) = sum_q K_c a_q B_c(q) / sum_q K_c a_q
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "common/subsurface_probe.bindings.glsl"
+#include "common/environment.glsl"
+#include "constants.glsl"
+#include "common/counters.glsl"
+#include "common/half.glsl"
+#include "common/hash.glsl"
+#include "common/patch.glsl"
+#include "common/pixel_light.glsl"
+#include "common/profile.glsl"
+#include "common/radius.glsl"
+#include "common/sanitise.glsl"
+#include "common/tile_packing.glsl"
+
+const uint lanes = 64u;
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+
+const uint quarters = 4u;
+const int near_px = 4, near_points = 8; // within near_px pixels the kernel is averaged over 8x8 points of a patch
+// A midpoint sum over cells of side h, one corner of four of which lies on the pole of 1/r, lacks this times h of the
+// integral: the regularised sum over (i + 1/2, j + 1/2) of 1/r, -4 (sqrt 2 - 1) zeta(1/2) beta(1/2).
+const float pole_lack = 1.6155;
+const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
+
+shared uint listed[lanes];   // tiles of the run with subsurface, in order
+shared uint listed_count;
+shared vec3 sums[lanes], weights[lanes];
+
+// Depth of a pixel of the profile, mm; else 0.
+float depth_of(ivec2 pixel, uint id) {
+  if (!inside_rect(pixel) || !inside_bounds(pixel) || texelFetch(material_image, texel_of(pixel), 0).r != id)
+    return 0.0;
+  return view_depth(texelFetch(depth_image, texel_of(pixel), 0).r);
+}
+
+surface_patch patch_of(ivec2 pixel, uint id, float depth) {
+  return build_patch(pixel, depth,
+                     patch_neighbours(vec2(depth_of(pixel - ivec2(1, 0), id), depth_of(pixel - ivec2(0, 1), id)),
+                                      vec2(depth_of(pixel + ivec2(1, 0), id), depth_of(pixel + ivec2(0, 1), id))));
+}
+
+// Where the ray through a point `offset` pixels beside `pixel` meets the patch's plane.
+vec3 patch_point(ivec2 pixel, float depth, vec2 slope, vec2 offset) {
+  float there = max(depth + dot(slope, offset * pixel_footprint(depth)), 0.1 * depth);
+  return view_position(vec2(pixel) + offset, there);
+}
+
+// K_c of a patch `q` at distance from `p`: 2 pi times the profile's, averaged over points of the patch.
+vec3 kernel(scatter_profile profile, vec3 p, ivec2 pixel, ivec2 q, float depth, surface_patch surface) {
+  ivec2 apart = abs(q - pixel);
+  if (max(apart.x, apart.y) > near_px)
+    return profile_falloff(profile, max(length(patch_point(q, depth, surface.slope, vec2(0.0)) - p), 1e-6));
+  vec3 sum = vec3(0.0);
+  float step = 1.0 / float(near_points);
+  for (int i = 0; i < near_points * near_points; ++i) {
+    vec2 offset = (vec2(i % near_points, i / near_points) + 0.5) * step - 0.5;
+    sum += profile_falloff(profile, max(length(patch_point(q, depth, surface.slope, offset) - p), 1e-6));
+  }
+  sum *= step * step;
+  if (q == pixel) { // what the sum lacks at the pole
+    vec2 sides = pixel_footprint(depth);
+    float side = sqrt(sides.x * sides.y * surface.area), small = 1e-3 * profile.d.w;
+    sum += pole_lack * step / side * small * profile_falloff(profile, small);
+  }
+  return sum;
+}
+
+// The exposed luminance's squared error at a pixel, by all invocations together; x < 0: the pixel does not count.
+// `copied`: the pixel shows its own light.
+float squared_error(ivec2 pixel, uint lane, bool copied) {
+  ivec2 texel = texel_of(pixel);
+  bool inside = inside_rect(pixel) && inside_bounds(pixel);
+  uint id = inside ? texelFetch(material_image, texel, 0).r : 0u;
+  float depth = id != 0u ? depth_of(pixel, id) : 0.0;
+  float scale = has_scatter_scale() && inside ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  scatter_profile profile = find_profile(id, scale);
+  float reach = depth > 0.0 ? flat_reach_d * projected_d(profile.d.w, depth) : 0.0;
+  bool counts = depth > 0.0 && reach >= flat_reach_d * copy_below_d_px && reach <= float(probe_most_reach);
+  vec3 light = vec3(0.0), weight = vec3(0.0);
+  if (counts) {
+    vec3 p = view_position(vec2(pixel), depth);
+    int radius = int(ceil(reach)), side = 2 * radius + 1;
+    float reach_mm = flat_reach_d * profile.d.w;
+    for (int i = int(lane); i < side * side; i += int(lanes)) {
+      ivec2 q = pixel + ivec2(i % side, i / side) - radius;
+      float there = depth_of(q, id);
+      if (there <= 0.0 || distance(view_position(vec2(q), there), p) > reach_mm)
+        continue;
+      surface_patch surface = patch_of(q, id, there);
+      vec2 sides = pixel_footprint(there);
+      vec3 k = kernel(profile, p, pixel, q, there, surface) * (sides.x * sides.y * surface.area);
+      weight += k;
+      light += k * pixel_light(texel_of(q));
+    }
+  }
+  sums[lane] = light;
+  weights[lane] = weight;
+  barrier();
+  for (uint stride = lanes / 2u; stride > 0u; stride /= 2u) {
+    if (lane < stride) {
+      sums[lane] += sums[lane + stride];
+      weights[lane] += weights[lane + stride];
+    }
+    barrier();
+  }
+  if (!counts)
+    return -1.0;
+  vec3 own = pixel_light(texel), direct = profile_direct(id);
+  vec3 truth = mix(sums[0] / max(weights[0], vec3(1e-30)), own, direct);
+  truth = mix(own, truth, vec3(greaterThan(profile.d.rgb, vec3(0.0))));
+  vec3 shown = has_scattered() && !copied ? texelFetch(scattered_image, texel, 0).rgb : own;
+  float off = dot(shown - truth, luminance) * frame.exposure;
+  return off * off;
+}
+
+void main() {
+  uint lane = gl_LocalInvocationIndex, run = gl_WorkGroupID.x, runs = gl_NumWorkGroups.x;
+  float share = min(float(settings.tiles) / float(runs), 1.0); // of the runs: the probability that this one is drawn
+  float start = unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 0u))).x;
+  if (share < 1.0 && floor((float(run) + 1.0) * share + start) <= floor(float(run) * share + start))
+    return;
+  uint tile = run * lanes + lane;
+  listed[lane] = tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(classes_data[tile]) : class_none;
+  barrier();
+  if (lane == 0u) {
+    listed_count = 0u;
+    for (uint i = 0u; i < lanes; ++i)
+      if (listed[i] != class_none)
+        listed[listed_count++] = run * lanes + i;
+  }
+  barrier();
+  uint count = listed_count;
+  if (count == 0u)
+    return;
+  uvec3 drawn = pcg3d(uvec3(frame.frame_index, run, 1u));
+  uint chosen = listed[min(uint(unit_from_hash(drawn).x * float(count)), count - 1u)];
+  ivec2 first = 8 * ivec2(chosen % uint(frame.tiles.x), chosen / uint(frame.tiles.x));
+  float errors = 0.0, pixels = 0.0;
+  for (uint quarter = 0u; quarter < quarters; ++quarter) {
+    uvec3 place = pcg3d(uvec3(frame.frame_index, chosen, 2u + quarter));
+    ivec2 pixel = first + 4 * ivec2(quarter % 2u, quarter / 2u) + ivec2(place.xy >> 30);
+    float squared = squared_error(pixel, lane, class_of_tile(classes_data[chosen]) != class_scatter);
+    barrier();
+    if (squared >= 0.0) {
+      errors += squared;
+      pixels += 1.0;
+    }
+  }
+  if (lane != 0u)
+    return;
+  float stands_for = float(count) / share; // tiles
+  uint place = atomicAdd(counters.probe_count, 1u);
+  if (place < counters.probes.length()) {
+    counters.probes[place] = uvec2(floatBitsToUint(stands_for * errors), floatBitsToUint(stands_for * pixels));
+  }
+}

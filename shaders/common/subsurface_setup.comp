@@ -1,0 +1,36 @@
+#version 460
+// The light that can scatter, and the surface it lies on.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "common/subsurface_setup.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "common/half.glsl"
+#include "common/pixel_light.glsl"
+#include "common/shared_patch.glsl"
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  bool listed = listed_pixel(pixel, copy_only);
+  share_patches(pixel - ivec2(gl_LocalInvocationID.xy));
+  if (!listed)
+    return;
+  ivec2 texel = texel_of(pixel);
+  uint id = own_profile();
+  vec4 light = vec4(0.0);
+  vec2 slope = vec2(0.0);
+  if (id != 0u) {
+    light.rgb = pixel_light(texel);
+    float depth = own_depth();
+    light.a = 1.0;
+    if (depth > 0.0 && !copy_only) {
+      surface_patch surface = build_patch(pixel);
+      light.a = surface.area;
+      slope = surface.slope;
+    }
+  }
+  imageStore(light_image, texel, round_to_half(light));
+  if (has_slope())
+    imageStore(slope_image, texel, vec4(round_to_half(vec3(slope, 0.0)), 0.0));
+}

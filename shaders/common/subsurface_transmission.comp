@@ -1,0 +1,22 @@
+#version 460
+// Light that came through from the far side (slab.glsl), added to the light that will scatter.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "common/subsurface_transmission.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/half.glsl"
+#include "common/slab.glsl"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside_rect(pixel))
+    return;
+  ivec2 texel = texel_of(pixel);
+  vec4 light = texelFetch(lighting_image, texel, 0);
+  uint id = texelFetch(material_image, texel, 0).r;
+  if (id != 0u)
+    light.rgb = clean_light(light.rgb) + light_through_slab(texel, id);
+  imageStore(lit_image, texel, vec4(round_to_half(light.rgb), light.a));
+}

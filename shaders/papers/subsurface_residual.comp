@@ -1,0 +1,121 @@
+#version 460
+// Where the pyramid is unsure, its light is multiplied by the running ratio of samples to it. The ratio does not see how
+// bright the light is, so it does not lag behind light that flickers; light of another pattern it does see, and counts for
+// less there. A pixel samples in one frame of four or of sixteen, by how unsure it is and by its tile, or in each, twice as
+// many, while it has little history.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "papers/subsurface_residual.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "common/half.glsl"
+#include "sap/sap.glsl"
+bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) != class_none; }
+vec2 surface_before(ivec2 pixel);
+#include "common/reproject.glsl"
+#include "sap/sap_samples.glsl"
+#include "papers/residual.glsl"
+
+const float largest_kept = 8.0;  // of a sampled ratio
+const float largest_ratio = 4.0; // that light is multiplied by
+const float doubt = 16.0;        // samples that weigh as much as the pyramid
+const float stray_rate = 0.1;    // of the moving mean of what strays
+const float largest_stray = 0.3; // of a logarithm, that counts there
+const float caution = 0.5;       // of alpha, that is left where light came that may not stay
+const float memory = 1.9;        // samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha
+
+vec2 surface_before(ivec2 pixel) { return residual_surface_before(texelFetch(place_image, previous_texel(pixel), 0)); }
+
+// How much a ratio says about light whose pattern is `off` the one it was learned in: the odds that the light is the same
+// against those that it is another and looks alike. A pixel's pattern is its brightness less what all that is seen gained:
+// a flash leaves it alone; a shadow, or light from another side, does not.
+float trust(float off, float tolerance, float odds) {
+  float same = odds * exp(-off * off / (tolerance * tolerance));
+  return same / (1.0 + same);
+}
+
+history_taps taps_of(ivec2 pixel, sap_texel own) {
+  previous_place place = has_velocity() && own.depth > 0.0
+                             ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+                             : place_before(vec2(pixel), own.depth);
+  float rise = length(own.slope) * sap_footprint(own.depth);
+  return find_history(place, own.id, depth_tolerance(place.depth, rise));
+}
+
+// rgb = ratio, a = samples behind it.
+vec4 ratio_before(history_taps taps) {
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0)
+      sum += taps.weight[i] * texelFetch(ratio_image, previous_texel(taps.first + ivec2(i & 1, i >> 1)), 0);
+  return sum;
+}
+
+// Which of four or of sixteen frames it is the tile's turn: each 2x2 or 4x4 tiles take one each.
+bool is_turn(ivec2 tile, float confidence) {
+  if (confidence < settings.often_below)
+    return (uint(tile.x & 1) + 2u * uint(tile.y & 1)) == (frame.frame_index & 3u);
+  return (uint(tile.x & 3) + 4u * uint(tile.y & 3)) == (frame.frame_index & 15u);
+}
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  ivec2 texel = texel_of(pixel);
+  vec4 light = texelFetch(scattered_image, texel, 0);
+  sap_texel own = sap_unpack(texelFetch(surface_image, texel, 0));
+  vec4 ratio = vec4(1.0, 1.0, 1.0, 0.0);
+  int count = 0;
+  bool lost = false;
+  vec2 kept = vec2(never_lit, 0.0); // pattern that was learned, square of how far it strays
+  if (own.id != 0u && !copy_only) {
+    vec4 all = texelFetch(brightness_image, ivec2(0), 0); // brightness, odds that patterns agree, their tolerance
+    float pattern = brightness(light.rgb) - all.r, agreement = all.g / (1.0 + all.g);
+    bool lit = is_lit(light.rgb), turn = is_turn(pixel >> 3, light.a);
+    if (history_usable() && own.depth > 0.0) {
+      history_taps taps = taps_of(pixel, own);
+      lost = taps.weight == vec4(0.0);
+      if (!lost)
+        ratio = ratio_before(taps);
+      kept = pattern_before(taps);
+      // What history lies between texels blurs, and differs from what is seen anew at each edge.
+      bool resampled = !any(equal(taps.weight, vec4(1.0)));
+      float off = min(abs(pattern - kept.x), largest_stray);
+      if (lit)
+        kept.y = mix(kept.y, resampled ? off * off : 0.0, stray_rate * agreement);
+    }
+    if (!has_pattern(kept))
+      kept = vec2(lit ? pattern : never_lit, 0.0);
+    // Light that came at once may go at once: what was learned before it is kept a little longer.
+    float alpha = settings.alpha * mix(caution, 1.0, agreement);
+    bool first = ratio.a == 0.0;
+    float n = float(settings.samples);
+    if (light.a >= settings.below) {
+      ratio.a *= 1.0 - 0.25 * settings.alpha; // no ratio is learned here; patterns are, so that they can be compared
+      if (turn && lit)
+        kept.x = mix(kept.x, pattern, alpha);
+    } else if (any(greaterThan(light.rgb, vec3(least_light))) && // nor in the dark
+               (turn || ratio.a < float(settings.eager) * n)) {
+      count = ratio.a < float(settings.eager) * n ? 2 * settings.samples : settings.samples;
+      // Frames in which it is a tile's turn follow each other in the sequence; the others stand far from them.
+      uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
+      uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), index);
+      vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count, settings.lod_bias);
+      vec3 found = clamp(sampled / max(light.rgb, vec3(least_light)), vec3(0.0), vec3(largest_kept));
+      found = mix(vec3(1.0), found, greaterThan(light.rgb, vec3(least_light)));
+      float weight = max(alpha, float(count) / (ratio.a + float(count)));
+      ratio.rgb = mix(ratio.rgb, found, weight);
+      kept.x = mix(kept.x, pattern, weight);
+      ratio.a = min(ratio.a + float(count), memory * n / settings.alpha);
+    }
+    float trusted = first ? 1.0 : trust(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
+    light.rgb *= 1.0 + trusted * ratio.a / (ratio.a + doubt) * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
+  }
+  imageStore(mended_image, texel, round_to_half(light));
+  imageStore(ratio_out_image, texel, round_to_half(ratio));
+  imageStore(place_out_image, texel, round_to_half(vec4(own.depth / mm_per_metre, float(own.id), kept)));
+  if (has_sampling())
+    imageStore(sampling_image, texel, vec4(float(count), ratio.a, light.a, lost ? 1.0 : 0.0));
+}

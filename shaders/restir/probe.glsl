@@ -1,0 +1,141 @@
+// BSSRDF importance sampling by probe rays, its density and its inversion. tests/passes/restir/cpu/probe.cpp mirrors these
+// functions in fp64 under the same names and says what they mean.
+#ifndef DERMIS_RESTIR_PROBE_GLSL
+#define DERMIS_RESTIR_PROBE_GLSL
+
+#include "restir/domain.glsl"
+
+const vec3 probe_axis_share = vec3(0.5, 0.25, 0.25); // normal, tangents
+const uint most_probe_hits = 16u;
+const uint assumed_hits = 255u; // not traced: taken for that of whatever it is compared with
+
+struct probe_numbers {
+  uint axis, channel;
+  float survival; // 1 - probe_share u
+  float angle;    // of a full turn
+  float pick;     // which of the hits
+};
+struct probe_ray {
+  vec3 origin, direction; // unit length
+  float reach;            // how far the ray goes
+};
+struct probe_hit {
+  uint instance, primitive;
+  vec2 barycentrics; // of the second and third vertex
+  float distance;
+};
+struct probe_hits {
+  uint count;
+  probe_hit hit[most_probe_hits];
+};
+
+uint scattering_channels(vec3 d) { return uint(d.r > 0.0) + uint(d.g > 0.0) + uint(d.b > 0.0); }
+
+// Which of `count` > 0 hits.
+uint picked_hit(float pick, uint count) { return min(uint(max(pick, 0.0) * float(count)), count - 1u); }
+
+// From four uniform numbers: axis and channel, radius, angle, pick.
+probe_numbers draw_numbers(vec3 d, vec4 u) {
+  probe_numbers numbers;
+  numbers.axis = 0u;
+  numbers.channel = 0u;
+  float below = 0.0;
+  while (numbers.axis < 2u && u.x >= below + probe_axis_share[numbers.axis])
+    below += probe_axis_share[numbers.axis++];
+  uint skip = picked_hit((u.x - below) / probe_axis_share[numbers.axis], max(1u, scattering_channels(d)));
+  for (uint c = 0u; c < 3u; ++c)
+    if (d[c] > 0.0 && skip-- == 0u) {
+      numbers.channel = c;
+      break;
+    }
+  numbers.survival = 1.0 - probe_share * u.y;
+  numbers.angle = u.z;
+  numbers.pick = u.w;
+  return numbers;
+}
+
+// s of s^3 + 3 s = 4 u by Newton steps from the sampler's approximation: asinh loses digits in fp32.
+float burley_root(float u) {
+  float s = burley_sample_root(u);
+  for (int i = 0; i < 2; ++i)
+    s -= (s * (s * s + 3.0) - 4.0 * u) / (3.0 * (s * s + 1.0));
+  return s;
+}
+float burley_radius(float survival, float d) {
+  return max(0.0, -3.0 * d * log(burley_root(clamp(survival, burley_min_survival, 1.0))));
+}
+
+// The chord of the ball of the channel's reach through the point on the disc.
+probe_ray probe_of(scatter_domain domain, probe_numbers numbers) {
+  float d = domain.d[numbers.channel];
+  float r = burley_radius(numbers.survival, d);
+  float reach = reach_in_d * d, phi = 2.0 * restir_pi * numbers.angle;
+  float chord = sqrt(max(0.0, reach * reach - r * r));
+  vec3 axis = probe_axis(domain.normal, numbers.axis);
+  vec3 point = domain.position + r * cos(phi) * probe_axis(domain.normal, (numbers.axis + 1u) % 3u) +
+               r * sin(phi) * probe_axis(domain.normal, (numbers.axis + 2u) % 3u);
+  return probe_ray(point + chord * axis, -axis, 2.0 * chord);
+}
+
+vec2 on_probe_disc(scatter_domain domain, uint axis, vec3 offset) {
+  return vec2(dot(offset, probe_axis(domain.normal, (axis + 1u) % 3u)),
+              dot(offset, probe_axis(domain.normal, (axis + 2u) % 3u)));
+}
+
+// Density per area by one axis and channel, their probability included, the choice among hits not.
+float probe_technique_pdf(scatter_domain domain, uint axis, uint channel, vec3 position, vec3 normal) {
+  float d = domain.d[channel];
+  vec3 offset = position - domain.position;
+  if (!(d > 0.0) || !(length(offset) <= reach_in_d * d))
+    return 0.0;
+  float r = max(length(on_probe_disc(domain, axis, offset)), least_radius_in_d * d);
+  float cosine = abs(dot(normal, probe_axis(domain.normal, axis)));
+  return probe_axis_share[axis] / float(scattering_channels(domain.d)) * cosine * burley_R(r, d) / probe_share;
+}
+
+// Over all of them.
+float probe_pdf(scatter_domain domain, vec3 position, vec3 normal) {
+  float sum = 0.0;
+  for (uint axis = 0u; axis < 3u; ++axis)
+    for (uint channel = 0u; channel < 3u; ++channel)
+      sum += probe_technique_pdf(domain, axis, channel, position, normal);
+  return sum;
+}
+
+// Probabilistic inversion; false where no axis and channel can lead there. `pick` is left at 0.
+bool invert_point(scatter_domain domain, vec3 position, vec3 normal, float u, inout probe_numbers numbers) {
+  float left = u * probe_pdf(domain, position, normal);
+  bool found = false;
+  for (uint technique = 0u; technique < 9u; ++technique) {
+    float pdf = probe_technique_pdf(domain, technique / 3u, technique % 3u, position, normal);
+    if (!(pdf > 0.0))
+      continue;
+    numbers.axis = technique / 3u;
+    numbers.channel = technique % 3u;
+    found = true;
+    if (left < pdf)
+      break;
+    left -= pdf;
+  }
+  if (!found)
+    return false;
+  vec2 place = on_probe_disc(domain, numbers.axis, position - domain.position);
+  float d = domain.d[numbers.channel];
+  numbers.survival = clamp(1.0 - burley_cdf(length(place), d), 1.0 - probe_share, 1.0);
+  float turn = place == vec2(0.0) ? 0.0 : atan(place.y, place.x) / (2.0 * restir_pi);
+  numbers.angle = turn < 0.0 ? turn + 1.0 : turn;
+  numbers.pick = 0.0;
+  return true;
+}
+
+// The number that picks the hit on this primitive; false where the probe does not meet it.
+bool invert_pick(probe_hits hits, uint instance, uint primitive, float u, inout float pick) {
+  for (uint i = 0u; i < hits.count; ++i)
+    if (hits.hit[i].instance == instance && hits.hit[i].primitive == primitive) {
+      pick = (float(i) + u) / float(hits.count);
+      return true;
+    }
+  return false;
+}
+
+#endif

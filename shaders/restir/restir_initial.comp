@@ -1,0 +1,33 @@
+#version 460
+// Paths camera - x1 - x2 - light: x2 by a probe ray, one place on one light, one shadow ray; of several the kept one is
+// drawn by resampling.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_ray_query : require
+#include "restir/instances.glsl"
+#include "restir/lights.glsl"
+#include "restir/restir_initial.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+
+#include "restir/rays.glsl"
+#include "restir/reuse.glsl"
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  scatter_domain domain = domain_of(pixel);
+  random_state random = random_of(pixel, random_numbers_of_samples);
+  reservoir_stream stream = stream_begin();
+  float share = 1.0 / float(settings.samples); // MIS weight of equal techniques
+  for (int i = 0; i < settings.samples; ++i) {
+    reservoir drawn = draw_initial(domain, random);
+    float target = has_sample(drawn) ? target_of(domain, surface_of(drawn), drawn) : 0.0;
+    stream_add(stream, drawn, target, share * target * drawn.weight, share, random_unit(random));
+  }
+  packed_reservoir packed = pack_reservoir(stream_end(stream));
+  for (uint i = 0u; i < 4u; ++i)
+    reservoirs_data[4u * element_of(pixel) + i] = packed.words[i];
+}

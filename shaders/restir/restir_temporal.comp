@@ -1,0 +1,111 @@
+#version 460
+// Merges each pixel's path with the one that its surface had in the frame before, and keeps what the next frame has to
+// know: what each pixel fixes of its paths, and the lights.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_ray_query : require
+#define DERMIS_RESTIR_RELIGHT
+#include "restir/instances.glsl"
+#include "restir/lights.glsl"
+#include "restir/restir_temporal.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "restir/rays.glsl"
+#include "restir/reuse.glsl"
+vec2 surface_before(ivec2 pixel);
+#include "common/reproject.glsl"
+
+// Lights beyond those that are kept count as they are now.
+light_source previous_light_at(uint index) {
+  light_source light = light_at(index);
+  if (index < uint(lights_before_data.length())) // no choice by ?: of both, whose layouts differ
+    light = lights_before_data[index];
+  return light;
+}
+
+void keep_lights() {
+  if (gl_WorkGroupID.x + gl_WorkGroupID.y != 0u)
+    return;
+  for (uint i = gl_LocalInvocationIndex; i < uint(lights_kept_data.length()); i += 64u) {
+    light_source light = light_source(vec3(0.0), light_point, vec3(0.0), 0.0, vec3(0.0), 1.0, vec3(0.0), 1.0); // dark
+    if (i < light_count())
+      light = light_at(i);
+    lights_kept_data[i] = light;
+  }
+}
+
+uint element_before(ivec2 pixel) { return uint(pixel.y * frame.previous_rect.z + pixel.x); }
+
+scatter_domain domain_before(ivec2 pixel) {
+  packed_domain packed;
+  for (uint i = 0u; i < 2u; ++i)
+    packed.words[i] = domains_before_data[2u * element_before(pixel) + i];
+  return unpack_domain(packed);
+}
+
+vec2 surface_before(ivec2 pixel) {
+  scatter_domain domain = domain_before(pixel);
+  vec4 world = vec4(domain.position, 1.0);
+  vec4 view = vec4(dot(frame.view_from_world[0], world), dot(frame.view_from_world[1], world),
+                   dot(frame.view_from_world[2], world), 1.0);
+  return vec2(-dot(frame.previous_from_view[2], view), float(domain.medium));
+}
+
+// Change of the surface's depth over a pixel, mm.
+float rise_over_pixel(ivec2 pixel, float depth) {
+  vec3 normal = normalize(view_normal(texelFetch(normal_image, texel_of(pixel), 0).xyz));
+  vec3 way = is_perspective() ? normalize(view_position(vec2(pixel), depth)) : vec3(0.0, 0.0, -1.0);
+  float cosine = clamp(abs(dot(normal, way)), min_patch_cosine, 1.0);
+  vec2 footprint = pixel_footprint(depth);
+  return max(footprint.x, footprint.y) * sqrt(1.0 - cosine * cosine) / cosine;
+}
+
+// One of the texels around the place where the surface was, by their weights; false where it was not to be seen.
+bool find_past(ivec2 pixel, uint id, float u, out ivec2 past) {
+  past = ivec2(0);
+  if (!history_usable())
+    return false;
+  float depth = view_depth(texelFetch(depth_image, texel_of(pixel), 0).r);
+  previous_place place = has_velocity()
+                             ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+                             : place_before(vec2(pixel), depth);
+  history_taps taps = find_history(place, id, depth_tolerance(place.depth, rise_over_pixel(pixel, depth)));
+  bool found = false;
+  for (int i = 0; i < 4; ++i) {
+    if (!(taps.weight[i] > 0.0))
+      continue;
+    found = true;
+    past = taps.first + ivec2(i & 1, i >> 1);
+    if (u < taps.weight[i])
+      break;
+    u -= taps.weight[i];
+  }
+  return found;
+}
+
+void main() {
+  keep_lights();
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  uint element = element_of(pixel);
+  scatter_domain domain = domain_of(pixel);
+  packed_domain kept = pack_domain(domain);
+  for (uint i = 0u; i < 2u; ++i)
+    domains_data[2u * element + i] = kept.words[i];
+  packed_reservoir own, before;
+  for (uint i = 0u; i < 4u; ++i)
+    own.words[i] = reservoirs_data[4u * element + i];
+  random_state random = random_of(pixel, random_numbers_a_pass);
+  ivec2 past;
+  if (domain.medium != 0u && find_past(pixel, domain.medium, random_unit(random), past)) {
+    for (uint i = 0u; i < 4u; ++i)
+      before.words[i] = reservoirs_before_data[4u * element_before(past) + i];
+    reuse_settings reuse = reuse_settings(shift_of_stage(uint(settings.shift), stage_temporal), index_traced, settings.cap);
+    own = pack_reservoir(merge_temporal(reuse, domain, unpack_reservoir(own), domain_before(past), unpack_reservoir(before),
+                                        random));
+  }
+  for (uint i = 0u; i < 4u; ++i)
+    merged_data[4u * element + i] = own.words[i];
+}

@@ -1,0 +1,166 @@
+// Passes over reservoirs: a pixel's own sample, its history, its neighbours, its light. tests/passes/restir/cpu/reuse.cpp mirrors
+// these functions in fp64 under the same names and says what they mean.
+#ifndef DERMIS_RESTIR_REUSE_GLSL
+#define DERMIS_RESTIR_REUSE_GLSL
+
+#include "restir/shift.glsl"
+
+struct reuse_settings {
+  uint shift; // of this stage: shift_of_stage
+  uint index; // index_traced, index_drawn
+  float cap;  // confidence_cap
+};
+
+// One x2 by a probe, one place on one light, one shadow ray; confidence 1, without a sample too.
+reservoir draw_initial(scatter_domain domain, inout random_state random) {
+  reservoir none = no_reservoir(1.0), drawn = none;
+  float u[7];
+  for (int i = 0; i < 7; ++i)
+    u[i] = random_unit(random);
+  if (!(scattering_reach(domain.d) > 0.0) || light_count() == 0u)
+    return none;
+  drawn.numbers = draw_numbers(domain.d, vec4(u[0], u[1], u[2], u[3]));
+  probe_hits hits;
+  trace_probe(probe_of(domain, drawn.numbers), domain.medium, hits);
+  if (hits.count == 0u)
+    return none;
+  probe_hit hit = hits.hit[picked_hit(u[3], hits.count)];
+  surface_point x2 = surface_at(hit.instance, hit.primitive, hit.barycentrics);
+  drawn.instance = hit.instance;
+  drawn.primitive = hit.primitive;
+  drawn.barycentrics = hit.barycentrics;
+  drawn.hits = hits.count;
+  drawn.density = probe_pdf(domain, x2.position, x2.normal);
+  drawn.light = pick_light(u[4]);
+  drawn.place = light_place(u[5], u[6]);
+  light_source light = light_at(drawn.light);
+  drawn.irradiance = light_irradiance(light, drawn.place, x2.position, x2.normal, x2.shading);
+  drawn.weight = float(hits.count) / (drawn.density * light_density(light));
+  float target = luminance(scattered(domain, length(x2.position - domain.position), drawn.irradiance));
+  if (!(target > 0.0) || !visible(x2, light_target(light, drawn.place, x2.position)))
+    return none;
+  return sanitised(drawn);
+}
+
+// x / (x + y) for densities, 0 where both are.
+float restir_part(float x, float y) { return x > 0.0 ? x / (x + y) : 0.0; }
+
+// Two paths, each with the pixel that it is of and its target there, and their images in each other's. Loops over both,
+// as above: once is compiled once.
+struct exchange {
+  scatter_domain domain[2];
+  reservoir path[2];
+  float target[2];
+  shifted_path image[2]; // of path i in domain 1 - i
+};
+
+// `first`: the first path that has to be prepared; 0 or 1.
+void exchange_paths(reuse_settings settings, uint first, bool over_time, inout exchange both,
+                    inout random_state random) {
+  for (uint i = 0u; i < 2u; ++i) {
+    both.target[i] = 0.0;
+    both.image[i] = shifted_path(both.path[i], 0.0, 0.0);
+    if (!has_sample(both.path[i]))
+      continue;
+    surface_point x2 = surface_of(both.path[i]);
+    if (i >= first)
+      prepare(settings.shift, settings.index, both.domain[i], x2, both.path[i], random);
+    both.target[i] = target_of(both.domain[i], x2, both.path[i]);
+    both.image[i] =
+        shift_path(settings.shift, over_time && i == 0u, both.domain[i], both.domain[1u - i], x2, both.path[i]);
+  }
+}
+
+// Generalised balance heuristic over frame and history.
+reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservoir current,
+                         scatter_domain previous_domain, reservoir previous, inout random_state random) {
+  exchange both;
+  both.domain = scatter_domain[2](domain, previous_domain);
+  both.path = reservoir[2](sanitised(current), sanitised(previous));
+  both.path[1].confidence = min(both.path[1].confidence, settings.cap * both.path[0].confidence);
+  exchange_paths(settings, 0u, true, both, random);
+  reservoir own = both.path[0], history = both.path[1];
+  shifted_path back = both.image[0], here = both.image[1];
+  reservoir_stream stream = stream_begin();
+
+  float target = both.target[0];
+  float own_mis = restir_part(own.confidence * target, history.confidence * back.target * back.jacobian);
+  stream_add(stream, own, target, own_mis * target * own.weight, own.confidence, random_unit(random));
+
+  float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
+  float mis = restir_part(history.confidence * there, own.confidence * here.target);
+  stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian, history.confidence,
+             random_unit(random));
+  return stream_end(stream);
+}
+
+// Defensive pairwise MIS: spatial_begin, spatial_add for each neighbour, spatial_end.
+struct spatial_merge {
+  reservoir_stream stream;
+  reservoir own; // with its random numbers, where the shift replays
+  float own_target, own_mis;
+  float neighbours; // sum of their confidences
+};
+
+spatial_merge spatial_begin(reuse_settings settings, scatter_domain domain, reservoir own, float neighbours,
+                            inout random_state random) {
+  spatial_merge spatial;
+  spatial.stream = stream_begin();
+  spatial.own = sanitised(own);
+  spatial.neighbours = max(neighbours, 0.0);
+  spatial.own_target = 0.0;
+  if (has_sample(spatial.own)) {
+    surface_point x2 = surface_of(spatial.own);
+    prepare(settings.shift, settings.index, domain, x2, spatial.own, random);
+    spatial.own_target = target_of(domain, x2, spatial.own);
+  }
+  spatial.own_mis = restir_part(spatial.own.confidence, spatial.neighbours);
+  return spatial;
+}
+
+void spatial_add(reuse_settings settings, scatter_domain domain, inout spatial_merge spatial,
+                 scatter_domain neighbour_domain, reservoir neighbour, inout random_state random) {
+  exchange both;
+  both.domain = scatter_domain[2](domain, neighbour_domain);
+  both.path = reservoir[2](spatial.own, sanitised(neighbour));
+  exchange_paths(settings, 1u, false, both, random);
+  reservoir other = both.path[1];
+  shifted_path back = both.image[0], here = both.image[1];
+  float own_confidence = spatial.own.confidence;
+  float share = restir_part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
+  spatial.own_mis += share * restir_part(own_confidence * spatial.own_target,
+                                         spatial.neighbours * back.target * back.jacobian);
+  float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
+  float mis = share * restir_part(spatial.neighbours * there, own_confidence * here.target);
+  stream_add(spatial.stream, here.path, here.target, mis * here.target * other.weight * here.jacobian,
+             other.confidence, random_unit(random));
+}
+
+reservoir spatial_end(inout spatial_merge spatial, inout random_state random) {
+  stream_add(spatial.stream, spatial.own, spatial.own_target,
+             spatial.own_mis * spatial.own_target * spatial.own.weight, spatial.own.confidence, random_unit(random));
+  return stream_end(spatial.stream);
+}
+
+// The pixel's estimate: scattered diffuse light before albedo.
+vec3 resolve(scatter_domain domain, reservoir r) {
+  r = sanitised(r);
+  if (!has_sample(r))
+    return vec3(0.0);
+  return r.weight * contribution_of(domain, surface_of(r), r);
+}
+
+// How far neighbours are looked for, pixels; `footprint`: of a pixel across the view at x1, in d's unit.
+float search_radius(vec3 d, float footprint) {
+  float px = 2.0 * max(d.r, max(d.g, d.b)) / footprint;
+  return px >= 5.0 ? min(px, 30.0) : 5.0;
+}
+
+// From the pixel to a neighbour, uniform over the disc.
+ivec2 neighbour_offset(float radius, inout random_state random) {
+  float r = radius * sqrt(random_unit(random));
+  float angle = 2.0 * restir_pi * random_unit(random);
+  return ivec2(round(r * vec2(cos(angle), sin(angle))));
+}
+
+#endif

@@ -1,0 +1,70 @@
+// Surfaces of the host's scene, from its buffers; lengths are the host's units. Include after the bindings.
+#ifndef DERMIS_RESTIR_SURFACES_GLSL
+#define DERMIS_RESTIR_SURFACES_GLSL
+
+#include "common/environment.glsl"
+#include "common/profile.glsl"
+#include "restir/random.glsl"
+#include "restir/scene.glsl"
+#include "common/radius.glsl"
+#include "common/sanitise.glsl"
+
+vec3 world_position(ray_instance one, uint vertex) {
+  vec4 at = vec4(vertices_data[2u * (one.place.x + vertex)].xyz, 1.0);
+  return vec3(dot(one.world_from_object[0], at), dot(one.world_from_object[1], at), dot(one.world_from_object[2], at));
+}
+
+surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
+  ray_instance one = instances_data[instance];
+  vec3 share = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
+  vec3 p[3], normal = vec3(0.0);
+  for (uint i = 0u; i < 3u; ++i) {
+    uint vertex = indices_data[one.place.y + 3u * primitive + i];
+    p[i] = world_position(one, vertex);
+    normal += share[i] * vertices_data[2u * (one.place.x + vertex) + 1u].xyz;
+  }
+  vec3 geometric = normalize(cross(p[1] - p[0], p[2] - p[0]));
+  vec3 x = one.world_from_object[0].xyz, y = one.world_from_object[1].xyz, z = one.world_from_object[2].xyz;
+  vec3 shading = vec3(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal)); // cofactors
+  if (dot(x, cross(y, z)) < 0.0) { // a mirrored object is inside out
+    geometric = -geometric;
+    shading = -shading;
+  }
+  float square = dot(shading, shading);
+  return surface_point(share.x * p[0] + share.y * p[1] + share.z * p[2], geometric,
+                       square > 0.0 ? shading * inversesqrt(square) : geometric, one.place.z);
+}
+
+float mm_per_world_unit() { return length(frame.view_from_world[0].xyz); }
+
+vec3 world_direction(vec3 in_view) {
+  return (in_view.x * frame.view_from_world[0].xyz + in_view.y * frame.view_from_world[1].xyz +
+          in_view.z * frame.view_from_world[2].xyz) /
+         mm_per_world_unit();
+}
+
+// What the pixel fixes of its paths; d 0 where nothing scatters.
+scatter_domain domain_of(ivec2 pixel) {
+  ivec2 texel = texel_of(pixel);
+  uint id = texelFetch(material_image, texel, 0).r;
+  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  vec3 normal = view_normal(texelFetch(normal_image, texel, 0).xyz);
+  float square = dot(normal, normal);
+  if (id == 0u || !(depth > 0.0) || !(square > 0.0))
+    return scatter_domain(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0), 0u);
+  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  vec3 from_eye = view_position(vec2(pixel), depth) -
+                  vec3(frame.view_from_world[0].w, frame.view_from_world[1].w, frame.view_from_world[2].w);
+  return scatter_domain(world_direction(from_eye) / mm_per_world_unit(),
+                        normalize(world_direction(normal * inversesqrt(square))),
+                        find_profile(id, scale).d.rgb / mm_per_world_unit(), id);
+}
+
+// Of a pixel of the rectangle in buffers that have an element for each: row by row, however large the host's images are.
+uint element_of(ivec2 pixel) { return uint(pixel.y * frame.rect.z + pixel.x); }
+
+random_state random_of(ivec2 pixel, uint first) {
+  return random_state(uint(pixel.x) | uint(pixel.y) << 16, frame.frame_index, first);
+}
+
+#endif

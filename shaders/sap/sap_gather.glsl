@@ -1,0 +1,52 @@
+// The last step up: scattered light and confidence of a pixel. Include after bindings as sap_up.glsl says.
+#ifndef DERMIS_SAP_GATHER_GLSL
+#define DERMIS_SAP_GATHER_GLSL
+
+const int block_width = 4, block_height = 2, coarse_width = 4, coarse_height = 3;
+const ivec2 odd_first = ivec2(0);
+#include "sap/sap_up.glsl"
+
+const float least_share = 0.002; // below it the tent is not worth its time
+
+// Of the texel at hand, whose place has parity `odd`.
+vec4 gather(ivec2 odd, sap_texel own) {
+  vec3 light = near_light[near_centre].rgb;
+  vec3 d_px = sap_d_px(own) * inversesqrt(near_light[near_centre].a); // a tilted pixel keeps more of its own light
+  vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
+  sap_sum near = sap_sum(light, vec3(own.mass));
+  if (max(tent.r, max(tent.g, tent.b)) >= least_share)
+    near = sap_tent(0, own, 1);
+  float confidence;
+  sap_sum rest = sap_from_coarser(odd, 0, own, light, SAP_COARSE_LAYERS, confidence);
+  rest.mass *= max(1.0 - centre - tent, vec3(0.0));
+  uint widest = profiles[min(own.id, 255u)].widest;
+  confidence = mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
+  vec3 direct = profile_direct(own.id); // what never scatters needs no surface around
+  vec3 mean = sap_blend(max(centre - direct, vec3(0.0)) * own.mass, light, tent * near.mass, near.light, rest).light;
+  return vec4(mix(mean, light, direct), confidence);
+}
+
+// Of every pixel of the invocation's block.
+void gather_block() {
+  texel_block block;
+  if (!listed_block(0, block))
+    return;
+  read_ring(block, block.first, 0, !block.copy_only);
+  if (!block.copy_only)
+    read_coarser(block.first, 0);
+  [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
+    ivec2 pixel = block.first + ivec2(k % block_width, k / block_width);
+    if (!inside_rect(pixel))
+      continue;
+    take_near(k);
+    vec4 result = vec4(near_light[near_centre].rgb, 1.0);
+    sap_texel own = sap_unpack(near_surface[near_centre]);
+    if (!block.copy_only && own.id != 0u) {
+      take_corners(k);
+      result = gather(odd_of(k), own);
+    }
+    imageStore(scattered_image, texel_of(pixel), settings.storage == STORAGE_FULL ? result : round_to_half(result));
+  }
+}
+
+#endif

@@ -1,0 +1,23 @@
+// A pixel of the view as level 0 of the surface-aware pyramid has it. Include after bindings with `lighting`, `albedo`,
+// `scatter_scale` and the setting `texturing`.
+#ifndef DERMIS_SAP_PIXEL_GLSL
+#define DERMIS_SAP_PIXEL_GLSL
+
+#include "common/half.glsl"
+#include "common/patch.glsl"
+#include "common/pixel_light.glsl"
+#include "common/radius.glsl"
+#include "sap/sap.glsl"
+
+// The surface behind a pixel at a depth above 0, and the fourth root of its area over its cross-section.
+sap_texel sap_pixel_surface(ivec2 pixel, uint id, float depth, patch_neighbours around, out float area_root) {
+  surface_patch patch_here = build_patch(pixel, depth, around);
+  vec2 sides = pixel_footprint(depth);
+  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel_of(pixel), 0).r) : 1.0;
+  area_root = sqrt(sqrt(patch_here.area));
+  float reach = min(inversesqrt(area_root) * scale, largest_half);
+  return sap_texel(depth, round_to_half(vec3(patch_here.slope * sides / sap_footprint(depth), 0.0)).xy,
+                   round_to_half(reach), 1.0, id);
+}
+
+#endif

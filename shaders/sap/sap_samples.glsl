@@ -1,0 +1,110 @@
+// Importance samples of the surface around a pixel, read from the pyramid's own levels: a sample stands for an area and
+// reads the texel of that size under it, if that texel lies on the surface it met. Include after bindings with `light`,
+// `surface` (level 0), `light_1` .. `light_5` and `surface_1` .. `surface_5`, and after `near_written`.
+#ifndef DERMIS_SAP_SAMPLES_GLSL
+#define DERMIS_SAP_SAMPLES_GLSL
+
+#include "common/profile.glsl"
+#include "sap/sap.glsl"
+#include "common/sequence.glsl"
+
+const float golden_angle = 2.39996322972865332; // pi (3 - sqrt 5)
+const float two_pi = 6.28318530717958648;
+const int last_sample_level = 5; // 16 samples of a d of 20 px reach it within three d
+const float on_surface = 2.0;    // of a level's sigma: how far off its tangent plane a texel still stands for it
+
+uvec4 level_surface(int level, ivec2 at) {
+  switch (level) {
+  case 1: return texelFetch(surface_1_image, at, 0);
+  case 2: return texelFetch(surface_2_image, at, 0);
+  case 3: return texelFetch(surface_3_image, at, 0);
+  case 4: return texelFetch(surface_4_image, at, 0);
+  default: return texelFetch(surface_5_image, at, 0);
+  }
+}
+vec3 level_light(int level, ivec2 at) {
+  switch (level) {
+  case 1: return texelFetch(light_1_image, at, 0).rgb;
+  case 2: return texelFetch(light_2_image, at, 0).rgb;
+  case 3: return texelFetch(light_3_image, at, 0).rgb;
+  case 4: return texelFetch(light_4_image, at, 0).rgb;
+  default: return texelFetch(light_5_image, at, 0).rgb;
+  }
+}
+
+// Area of a pixel's patch over that of the pixel's cross-section: 1 / cos to the viewer, from the slope that level 0
+// keeps.
+float sap_area(sap_texel t, vec2 pixel) {
+  vec2 rise = t.slope * sap_footprint(t.depth); // mm a pixel
+  float zoom = is_perspective() ? t.depth : 1.0;
+  vec3 ray = mix(vec3(0.0, 0.0, -1.0), view_position(pixel, t.depth) / t.depth, bvec3(is_perspective()));
+  vec3 along_x = rise.x * ray + vec3(frame.ray_scale.x * zoom, 0.0, 0.0);
+  vec3 along_y = rise.y * ray + vec3(0.0, frame.ray_scale.y * zoom, 0.0);
+  float cross_section = abs(frame.ray_scale.x * frame.ray_scale.y) * zoom * zoom;
+  return clamp(length(cross(along_x, along_y)) * length(ray) / cross_section, 1.0, 1.0 / min_patch_cosine);
+}
+
+// Factor on d of the pixel's scatter_scale, out of its reach.
+float sap_scale(sap_texel t, float area) { return t.reach * sqrt(sqrt(sqrt(area))); }
+
+// Light around the sample's pixel at a level of detail.
+vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
+  int level = min(int(lod + 0.5), last_sample_level);
+  if (level > 0) {
+    ivec2 texel = ivec2(floor((at + 0.5) * exp2(-float(level))));
+    if (sap_inside(texel, level)) {
+      ivec2 address = sap_address(texel, level);
+      sap_texel mean = sap_unpack(level_surface(level, address));
+      vec2 offset = (vec2(texel) + 0.5) * float(1 << level) - 0.5 - vec2(q);
+      float off = abs(mean.depth - tap.depth - sap_rise(tap.depth, tap.slope, offset));
+      if (mean.id == tap.id && off < on_surface * sap_sigma * float(1 << level) * sap_footprint(tap.depth))
+        return level_light(level, address);
+    }
+  }
+  return texelFetch(light_image, texel_of(q), 0).rgb;
+}
+
+// Mean of `count` samples, self-normalised; what lies within the direct radius is the pixel's own light. Radii are
+// stratified, at the golden angle, both shifted by `offset` (over 2^32).
+vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int count, float lod_bias) {
+  float area = sap_area(own, vec2(pixel));
+  scatter_profile profile = find_profile(own.id, sap_scale(own, area));
+  uint widest = profiles[min(own.id, 255u)].widest;
+  vec2 footprint = pixel_footprint(own.depth);
+  vec3 position = view_position(vec2(pixel), own.depth);
+
+  float r0 = 0.5 * min(footprint.x, footprint.y);
+  float beyond = profile_survival(profile, r0)[widest];
+  r0 = profile_sample(profile, beyond).r; // what the sampler leaves out is what is taken from the pixel's own light
+  vec3 direct = 1.0 - profile_survival(profile, r0 * sqrt(area));
+
+  float pixels_per_sample = two_pi * beyond / (float(count) * footprint.x * footprint.y);
+  float each = beyond / float(count);
+  vec2 shift = unit_from_fixed(offset);
+  vec3 sum = direct * light, mass = direct;
+  for (int i = 0; i < count; ++i) {
+    radial_sample drawn = profile_sample(profile, (float(i) + shift.x) / float(count) * beyond);
+    float angle = float(i) * golden_angle + shift.y * two_pi;
+    vec2 at = vec2(pixel) + drawn.r * vec2(cos(angle), sin(angle)) / footprint;
+    ivec2 q = ivec2(round(clamp(at, vec2(-1.0), vec2(frame.rect.zw))));
+    if (!inside_rect(q) || !near_written(q))
+      continue;
+    sap_texel tap = sap_unpack(texelFetch(surface_image, texel_of(q), 0));
+    if (tap.id != own.id)
+      continue;
+    // The sample's own point on the patch, not the patch's centre: the truth averages over the patch.
+    float depth = tap.depth + sap_rise(tap.depth, tap.slope, at - vec2(q));
+    float distance_3d = max(length(view_position(at, depth) - position), 1e-12);
+    float zoom = is_perspective() ? tap.depth / own.depth : 1.0;
+    vec3 weight = profile_falloff(profile, distance_3d) *
+                  (each * drawn.r / drawn.density * sap_area(tap, vec2(q)) * zoom * zoom);
+    float lod = 0.5 * log2(max(pixels_per_sample * drawn.r / drawn.density, 1e-20)) + lod_bias;
+    sum += weight * sample_light(q, at, tap, lod);
+    mass += weight;
+  }
+  vec3 mean = mix(light, sum / max(mass, vec3(1e-30)), greaterThan(mass, vec3(1e-30)));
+  mean = mix(light, mean, greaterThan(profile.d.rgb, vec3(0.0)));
+  return mix(mean, light, profile_direct(own.id));
+}
+
+#endif

@@ -1,0 +1,43 @@
+// Running over the listed 8x8 tiles of a level of the surface-aware pyramid, one block of texels an invocation: a block
+// reads what its texels share once, without shared memory, which the software driver reads slowly.
+// Include after bindings with `level_tiles`, and after `block_width` and `block_height`.
+#ifndef DERMIS_SAP_TILES_GLSL
+#define DERMIS_SAP_TILES_GLSL
+
+#include "sap/sap_lists.glsl"
+
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+
+const int blocks_across = 8 / block_width;
+const int blocks_per_tile = blocks_across * (8 / block_height);
+
+struct texel_block {
+  ivec2 first;   // its first texel's address, counted from the level's corner: from its border on
+  ivec2 tile;
+  bool copy_only; // level 0: no pixel of the tile scatters further than itself
+  uint children; // which of the 3x3 tiles of the finer level that its own tile reduces were written
+  uint around;   // which of the 3x3 tiles around its own were
+};
+
+// False where the list ends.
+bool listed_block(int level, out texel_block block) {
+  uint group = gl_WorkGroupID.y * tile_groups_per_row + gl_WorkGroupID.x;
+  uint index = group * uint(64 / blocks_per_tile) + gl_LocalInvocationIndex / uint(blocks_per_tile);
+  uvec2 list = level_tiles_data[level];
+  block = texel_block(ivec2(0), ivec2(0), false, 0u, 0u);
+  if (index >= list.y)
+    return false;
+  uvec2 entry = level_tiles_data[list.x + index];
+  int part = int(gl_LocalInvocationIndex) % blocks_per_tile;
+  block.tile = ivec2(entry.x & 0x7fffu, (entry.x >> 15) & 0x7fffu);
+  block.first = 8 * block.tile + ivec2(part % blocks_across * block_width, part / blocks_across * block_height);
+  block.copy_only = (entry.x & tile_copy_bit) != 0u;
+  block.children = entry.y & 0x1ffu;
+  block.around = entry.y >> 9;
+  return true;
+}
+
+// Whether the tile at an offset of 0 to 2 from the first of the 3x3 that a mask speaks of was written.
+bool tile_written(uint mask, ivec2 offset) { return (mask >> uint(3 * offset.y + offset.x) & 1u) != 0u; }
+
+#endif

@@ -1,0 +1,74 @@
+#version 460
+// One level down, with a second layer where one surface is not all there is. Parents are computed by fours that share their
+// children first; those with a child off their surface, or one that has two layers itself, again one by one, from both.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "sap/subsurface_sap_down_layered.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/half.glsl"
+#define SAP_SECOND
+#include "sap/sap_down.glsl"
+
+// Both layers of the children of the parent at a place.
+void read_children(texel_block block, ivec2 parent, int finer) {
+  [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
+    ivec2 at = 2 * parent - 1 + ivec2(c % children_across, c / children_across);
+    bool needed = child_written(block, at, finer);
+    uvec4 bits = needed ? texelFetch(surface_image, sap_address(at, finer), 0) : uvec4(0u);
+    children[c] = sap_unpack(bits);
+    child_light[c] = needed ? texelFetch(light_image, sap_address(at, finer), 0) : vec4(0.0);
+    needed = needed && sap_has_second(bits) && has_second_surface() && has_second_light();
+    int second = children_a_layer + c;
+    children[second] = sap_unpack(needed ? texelFetch(second_surface_image, sap_address(at, finer), 0) : uvec4(0u));
+    child_light[second] = needed ? texelFetch(second_light_image, sap_address(at, finer), 0) : vec4(0.0);
+  }
+}
+
+void main() {
+  int level = settings.level, finer = level - 1;
+  texel_block block;
+  if (!listed_block(level, block))
+    return;
+  ivec2 first = block.first - 1;
+  float spacing = float(1 << finer);
+  read_block(block, first, finer);
+  uint layered = 0u; // bit k: parent k has more than one layer to look at
+  [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
+    ivec2 at = first + ivec2(k % block_width, k / block_width);
+    if (!sap_inside(at, level))
+      continue;
+    bool more = take_children(k);
+    begin_parent(1);
+    vec4 light;
+    uvec4 bits;
+    reduce(spacing, 1, light, bits);
+    layered |= more || remains(1) ? 1u << k : 0u;
+    imageStore(coarse_light_image, sap_address(at, level), stored(light));
+    imageStore(coarse_surface_image, sap_address(at, level), bits);
+  }
+  // Loops that test at their end: some drivers run all of a loop's body before they see that nobody is in it.
+  if (layered != 0u)
+    do {
+      int k = findLSB(layered);
+      ivec2 at = first + ivec2(k % block_width, k / block_width);
+      read_children(block, at, finer);
+      begin_parent(most_layers);
+      uvec4 first_bits = uvec4(0u);
+      int layer = 0, layers = layered != 0u ? most_layers : 1;
+      [[dont_unroll]] do {
+        vec4 light;
+        uvec4 bits;
+        reduce(spacing, most_layers, light, bits);
+        if (layer == 0) {
+          first_bits = bits;
+          imageStore(coarse_light_image, sap_address(at, level), stored(light));
+        } else if (bits.w != 0u) {
+          first_bits.w |= sap_second_bit;
+          imageStore(second_coarse_light_image, sap_address(at, level), stored(light));
+          imageStore(second_coarse_surface_image, sap_address(at, level), bits);
+        }
+      } while (++layer < layers);
+      imageStore(coarse_surface_image, sap_address(at, level), first_bits);
+      layered &= layered - 1u;
+    } while (layered != 0u);
+}

@@ -1,0 +1,11 @@
+#version 460
+// The last step up: scattered light of every listed pixel.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "sap/subsurface_sap_gather.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/half.glsl"
+#include "common/radius.glsl"
+#include "sap/sap_gather.glsl"
+
+void main() { gather_block(); }

@@ -1,0 +1,462 @@
+#include "integration/examples/demo_engine/model/load_model.hpp"
+#include "integration/examples/demo_engine/model/load_texture.hpp"
+#include "tests/support/test_folder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <span>
+#include <string_view>
+
+namespace demo {
+namespace {
+
+using testing::HasSubstr;
+
+struct ModelFile : ::testing::Test {
+  std::string write(const std::string& name, const std::string& bytes) const {
+    const std::string path = (folder / name).string();
+    std::ofstream(path, std::ios::binary) << bytes;
+    return path;
+  }
+  // One triangle; `indices` and `accessor` exchange pieces of the file.
+  std::string triangle(const std::string& indices = "[0, 1, 2]", const std::string& accessor = "",
+                       const std::string& nodes = R"([{ "mesh": 0 }])") const {
+    const float positions[] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
+    std::string buffer(reinterpret_cast<const char*>(positions), sizeof(positions));
+    for (const char digit : indices)
+      if (digit >= '0' && digit <= '9') buffer += std::string(1, static_cast<char>(digit - '0')) + '\0';
+    write("triangle.bin", buffer);
+    return write("triangle.gltf", R"({ "asset": { "version": "2.0", "copyright": "by nobody" },
+      "buffers": [{ "uri": "triangle.bin", "byteLength": )" +
+                                      std::to_string(buffer.size()) + R"( }],
+      "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": 36, "byteLength": 6 }],
+      "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" )" +
+                                      accessor + R"( },
+        { "bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR" }],
+      "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+      "nodes": )" + nodes + R"(, "scenes": [{ "nodes": [0] }], "scene": 0 })");
+  }
+
+  static Error refused(const ModelOptions& options) {
+    auto model = load_model(options);
+    if (model) {
+      ADD_FAILURE() << "the model was accepted";
+      return {};
+    }
+    return model.error();
+  }
+  static ModelOptions only(const std::string& mesh) {
+    ModelOptions options;
+    options.mesh = mesh;
+    return options;
+  }
+
+  const dermis::test::TestFolder folder;
+};
+
+TEST_F(ModelFile, ATriangleIsScaledToItsHeightAroundItsMiddle) {
+  ModelOptions options = only(triangle());
+  options.height_metres = 0.5;
+  const auto model = load_model(options);
+  ASSERT_TRUE(model) << model.error().text;
+  const Bounds bounds = bounds_of(model->mesh);
+  EXPECT_NEAR(bounds.high.y, 0.25f, 1e-6f);
+  EXPECT_NEAR(bounds.low.y, -0.25f, 1e-6f);
+  EXPECT_NEAR(bounds.high.x, 0.125f, 1e-6f);
+  EXPECT_NEAR(model->mesh.vertices[0].normal.z, 1.0f, 1e-6f); // made where the file has none
+  EXPECT_THAT(model->credits, testing::ElementsAre("by nobody"));
+}
+
+TEST_F(ModelFile, WhatIsNoGltfIsCalledSo) {
+  const Error error = refused(only(write("cat.glb", "\x89PNG and so on")));
+  EXPECT_EQ(error.kind, ErrorKind::input);
+  EXPECT_THAT(error.text, HasSubstr("cat.glb"));
+  EXPECT_THAT(error.text, HasSubstr("not a glTF file"));
+  EXPECT_THAT(refused(only(write("empty.glb", ""))).text, HasSubstr("not a glTF file"));
+  EXPECT_THAT(refused(only(write("short.glb", "glTF\x02"))).text, HasSubstr("damaged"));
+  EXPECT_THAT(refused(only(write("bad.gltf", "{ \"asset\": "))).text, HasSubstr("damaged"));
+  EXPECT_THAT(refused(only((folder / "absent.glb").string())).text, HasSubstr("no such file"));
+  EXPECT_THAT(refused(only(folder.path().string())).text, HasSubstr("not a regular file"));
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string exchanged(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  if (at == std::string::npos) {
+    ADD_FAILURE() << "the file has no " << from;
+    return text;
+  }
+  return text.replace(at, from.size(), to);
+}
+
+TEST_F(ModelFile, OtherVersionsAreRefusedByName) {
+  const std::string whole = text_of(triangle());
+  const auto with_asset = [&](const std::string& asset) {
+    return only(write("version.gltf", exchanged(whole, R"("version": "2.0")", asset)));
+  };
+  EXPECT_THAT(refused(with_asset(R"("version": "1.0")")).text, HasSubstr("asset.version is '1.0'"));
+  EXPECT_THAT(refused(with_asset(R"("version": "3.0")")).text, HasSubstr("asset.version is '3.0'"));
+  EXPECT_THAT(refused(with_asset(R"("version": "20.0")")).text, HasSubstr("asset.version is '20.0'"));
+  EXPECT_THAT(refused(with_asset(R"("version": 2.0)")).text, HasSubstr("asset.version is no text"));
+  EXPECT_THAT(refused(with_asset(R"("generator": "a")")).text, HasSubstr("asset.version is missing"));
+  EXPECT_THAT(refused(with_asset(R"("version": "3.1", "minVersion": "3.0")")).text, HasSubstr("3.1"));
+  EXPECT_THAT(refused(with_asset(R"("version": "2.1", "minVersion": "3.0")")).text,
+              HasSubstr("asset.minVersion is '3.0'"));
+  EXPECT_TRUE(load_model(with_asset(R"("version": "2.1", "minVersion": "2.0")")));
+}
+
+TEST_F(ModelFile, RequiredExtensionsAreRefusedByName) {
+  const std::string whole = text_of(triangle());
+  const auto with = [&](const std::string& more) {
+    return only(write("required.gltf", exchanged(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
+  };
+  EXPECT_THAT(refused(with(R"("extensionsRequired": ["KHR_texture_basisu", "ACME_spheres"])")).text,
+              testing::AllOf(HasSubstr("'KHR_texture_basisu'"), HasSubstr("'ACME_spheres'")));
+  EXPECT_TRUE(load_model(with(R"("extensionsUsed": ["ACME_spheres"])")));
+}
+
+// A model out of floats and the text after its buffers, accessors of which take three floats an element one
+// after another; the first is of positions.
+struct Pieces {
+  std::vector<float> floats;
+  uint32_t vertices = 4;
+  std::string primitives = R"([{ "attributes": { "POSITION": 0 } }])";
+  std::string nodes = R"([{ "mesh": 0 }])";
+};
+
+Mesh mesh_of(const ModelFile& test, const Pieces& pieces) {
+  const std::string size = std::to_string(pieces.floats.size() * sizeof(float));
+  test.write("pieces.bin",
+             {reinterpret_cast<const char*>(pieces.floats.data()), pieces.floats.size() * sizeof(float)});
+  std::string accessors;
+  for (size_t at = 0; at + 3 * pieces.vertices <= pieces.floats.size(); at += 3 * pieces.vertices)
+    accessors +=
+        (at == 0 ? "" : ",") +
+        (R"({ "bufferView": 0, "componentType": 5126, "type": "VEC3", "byteOffset": )" +
+         std::to_string(at * sizeof(float)) + R"(, "count": )" + std::to_string(pieces.vertices) + "}");
+  const auto model = load_model(ModelFile::only(test.write(
+      "pieces.gltf", R"({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "pieces.bin", "byteLength": )" +
+                         size + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" + size +
+                         R"( }], "accessors": [)" + accessors + R"(], "meshes": [{ "primitives": )" +
+                         pieces.primitives + R"( }], "nodes": )" + pieces.nodes +
+                         R"(, "scenes": [{ "nodes": [0] }] })")));
+  if (model) return model->mesh;
+  ADD_FAILURE() << model.error().text;
+  return {};
+}
+
+TEST_F(ModelFile, StripsAndFansAreTriangles) {
+  Pieces pieces;
+  pieces.floats = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+  pieces.primitives = R"([{ "attributes": { "POSITION": 0 }, "mode": 5 }])";
+  EXPECT_THAT(mesh_of(*this, pieces).indices, testing::ElementsAre(0, 1, 2, 1, 3, 2));
+  pieces.floats = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  pieces.primitives = R"([{ "attributes": { "POSITION": 0 }, "mode": 6 }])";
+  const Mesh fan = mesh_of(*this, pieces);
+  EXPECT_THAT(fan.indices, testing::ElementsAre(1, 2, 0, 2, 3, 0));
+  for (const Vertex& vertex : fan.vertices)
+    EXPECT_NEAR(vertex.normal.z, 1.0f, 1e-6f);
+}
+
+// How far the faces look where the normals do, at worst: 1 for a flat mesh.
+float facing(const Mesh& mesh) {
+  float worst = 1.0f;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const Vertex &a = mesh.vertices[mesh.indices[i]], &b = mesh.vertices[mesh.indices[i + 1]],
+                 &c = mesh.vertices[mesh.indices[i + 2]];
+    const glm::vec3 face = glm::normalize(glm::cross(b.position - a.position, c.position - a.position));
+    for (const Vertex* vertex : {&a, &b, &c})
+      worst = std::min(worst, glm::dot(face, vertex->normal));
+  }
+  return worst;
+}
+
+TEST_F(ModelFile, MirroredNodesFaceWhereTheyDidBefore) {
+  Pieces pieces;
+  pieces.floats = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  for (const char* attributes : {R"("POSITION": 0)", R"("POSITION": 0, "NORMAL": 1)"})
+    for (const char* scale : {"[1, 1, 1]", "[-1, 1, 1]", "[1, -2, 1]", "[-1, -1, 1]"}) {
+      pieces.primitives = std::string(R"([{ "mode": 5, "attributes": { )") + attributes + "} }]";
+      pieces.nodes = std::string(R"([{ "mesh": 0, "scale": )") + scale + "}]";
+      const Mesh mesh = mesh_of(*this, pieces);
+      EXPECT_GT(facing(mesh), 0.99f) << attributes << scale;
+      EXPECT_NEAR(mesh.vertices[0].normal.z, 1.0f, 1e-6f) << attributes << scale;
+    }
+  // A mirror in the parent and one in the child are none.
+  pieces.nodes = R"([{ "children": [1], "scale": [-1, 1, 1] }, { "mesh": 0, "scale": [-1, 1, 1] }])";
+  EXPECT_GT(facing(mesh_of(*this, pieces)), 0.99f);
+}
+
+TEST_F(ModelFile, MirroredTangentsKeepTheirBitangent) {
+  const float rows[] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 1,
+                        0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
+  write("triangle.bin", {reinterpret_cast<const char*>(rows), sizeof(rows)});
+  for (const bool mirrored : {false, true}) {
+    const std::string scale = mirrored ? "-1" : "1";
+    const auto model = load_model(
+        only(write("tangents.gltf", R"({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "triangle.bin",
+        "byteLength": 120 }], "bufferViews": [{ "buffer": 0, "byteLength": 120 }], "accessors": [
+        { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
+        { "bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3" },
+        { "bufferView": 0, "byteOffset": 72, "componentType": 5126, "count": 3, "type": "VEC4" }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1, "TANGENT": 2 } }] }],
+        "nodes": [{ "mesh": 0, "scale": [)" +
+                                        scale + R"(, 1, 1] }], "scenes": [{ "nodes": [0] }] })")));
+    ASSERT_TRUE(model) << model.error().text;
+    const Vertex& vertex = model->mesh.vertices[0];
+    EXPECT_EQ(vertex.tangent.x, mirrored ? -1.0f : 1.0f);
+    const glm::vec3 bitangent = vertex.tangent.w * glm::cross(vertex.normal, glm::vec3(vertex.tangent));
+    EXPECT_NEAR(bitangent.y, 1.0f, 1e-6f) << mirrored;
+  }
+}
+
+TEST_F(ModelFile, OnePrimitiveWithoutNormalsChangesNoOther) {
+  Pieces pieces;
+  const float s = 0.6f, c = 0.8f; // normals that no face has
+  pieces.floats = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, s, 0, c, s, 0, c, s, 0, c, s, 0, c};
+  pieces.primitives = R"([{ "mode": 5, "attributes": { "POSITION": 0, "NORMAL": 1 } },
+                          { "mode": 5, "attributes": { "POSITION": 0 } }])";
+  const Mesh mesh = mesh_of(*this, pieces);
+  ASSERT_EQ(mesh.vertices.size(), 8u);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(mesh.vertices[i].normal.x, s, 1e-6f);
+    EXPECT_NEAR(mesh.vertices[i + 4].normal.z, 1.0f, 1e-6f);
+  }
+}
+
+TEST_F(ModelFile, SkinnedMeshesAreRefusedByName) {
+  const std::string path =
+      triangle("[0, 1, 2]", "", R"([{ "mesh": 0, "skin": 0, "name": "torso" }, { "name": "joint" }])");
+  const std::string whole =
+      exchanged(text_of(path), R"("scene": 0)", R"("scene": 0, "skins": [{ "joints": [1] }])");
+  EXPECT_THAT(refused(only(write("skin.gltf", whole))).text,
+              testing::AllOf(HasSubstr("node 0 'torso'"), HasSubstr("skin")));
+}
+
+TEST_F(ModelFile, IndicesBeyondTheVerticesAreRefused) {
+  EXPECT_THAT(refused(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
+}
+
+TEST_F(ModelFile, AccessorsBeyondTheirBufferAreRefused) {
+  EXPECT_THAT(refused(only(triangle("[0, 1, 2]", R"(, "byteOffset": 8)"))).text, HasSubstr("beyond the end"));
+  EXPECT_THAT(refused(only(triangle("[0, 1, 2]", R"(, "byteOffset": 18446744073709551600)"))).kind,
+              ErrorKind::input);
+}
+
+TEST_F(ModelFile, NodesInACircleAreRefused) {
+  EXPECT_THAT(refused(only(triangle("[0, 1, 2]", "", R"([{ "children": [1] }, { "children": [0] }])"))).text,
+              HasSubstr("circle"));
+}
+
+TEST_F(ModelFile, ASceneWithoutTrianglesIsRefused) {
+  EXPECT_THAT(refused(only(triangle("[0, 1, 2]", "", R"([{ "name": "lamp" }])"))).text,
+              HasSubstr("no triangles"));
+}
+
+TEST_F(ModelFile, MapsThatAreNoImagesAreNamed) {
+  ModelOptions options = only(triangle());
+  options.albedo = write("albedo.png", "no image at all");
+  EXPECT_THAT(refused(options).text, HasSubstr("albedo.png"));
+}
+
+TEST_F(ModelFile, AHeightIsAPositiveLength) {
+  ModelOptions options = only(triangle());
+  for (const double height : {-1.0, std::nan(""), 1e9}) {
+    options.height_metres = height;
+    EXPECT_EQ(refused(options).kind, ErrorKind::usage) << height;
+  }
+}
+
+// A triangle whose buffer is called otherwise, in a folder with a secret beside it.
+std::string with_buffer(std::string text, const std::string& uri) {
+  const size_t at = text.find("triangle.bin");
+  return text.replace(at, 12, uri);
+}
+
+TEST_F(ModelFile, WhatAFileNamesIsReadInItsFolderAlone) {
+  const std::string path = triangle();
+  std::ifstream stream(path, std::ios::binary);
+  const std::string whole((std::istreambuf_iterator<char>(stream)), {});
+  std::filesystem::create_directories(folder / "models");
+  std::filesystem::create_symlink(folder.path(), folder / "models" / "link");
+  std::filesystem::copy_file(folder / "triangle.bin", folder / "models" / "here.bin");
+  const std::string absolute = (folder / "triangle.bin").string();
+  for (const std::string& outside :
+       {std::string("../triangle.bin"), absolute, std::string("link/triangle.bin"),
+        std::string("%2e%2e/triangle.bin"), std::string("../not_there.bin")}) {
+    const std::string model = write("models/a.gltf", with_buffer(whole, outside));
+    EXPECT_THAT(refused(only(model)).text, HasSubstr("leads out of what may be read")) << outside;
+    EXPECT_THAT(refused(only(model)).text, HasSubstr("--root")) << outside;
+  }
+  const auto declared = load_model(only(write("models/a.gltf", with_buffer(whole, "../triangle.bin"))),
+                                   {folder.path().string()});
+  EXPECT_TRUE(declared) << declared.error().text;
+  const auto inside = load_model(only(write("models/b.gltf", with_buffer(whole, "here.bin"))));
+  EXPECT_TRUE(inside) << inside.error().text;
+  // Not in the working folder either, where tinygltf would look.
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  EXPECT_THAT(refused(only(write("models/c.gltf", whole))).text, HasSubstr("triangle.bin"));
+  std::filesystem::current_path(before);
+  EXPECT_THAT(refused(only(write("models/d.gltf", with_buffer(whole, std::string(5000, 'a'))))).text,
+              HasSubstr("too long"));
+}
+
+TEST_F(ModelFile, NamesAreReadAsTheyAreWritten) {
+  const std::string whole = text_of(triangle());
+  const std::string buffer = text_of((folder / "triangle.bin").string());
+  for (const auto& [uri, name] : {std::pair<std::string, std::string>{"a%20b.bin", "a b.bin"},
+                                  {"a b.bin", "a b.bin"},
+                                  {"\xc3\xb6.bin", "\xc3\xb6.bin"},
+                                  {"\\u00f6.bin", "\xc3\xb6.bin"},
+                                  {"%C3%B6.bin", "\xc3\xb6.bin"},
+                                  {"a+b.bin", "a+b.bin"},
+                                  {"a%2Bb.bin", "a+b.bin"}}) {
+    write(name, buffer);
+    const auto model = load_model(only(write("names.gltf", with_buffer(whole, uri))));
+    EXPECT_TRUE(model) << uri << ": " << model.error().text;
+    std::filesystem::remove(folder / name); // so that no other name finds it
+  }
+}
+
+// A binary glTF of this JSON and chunk; `more`: what the chunk says it has beyond.
+std::string binary(std::string json, const std::string& chunk, uint32_t more = 0) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto word = [](uint64_t value) {
+    const auto narrow = static_cast<uint32_t>(value);
+    return std::string(reinterpret_cast<const char*>(&narrow), 4);
+  };
+  return "glTF" + word(2) + word(28 + json.size() + chunk.size()) + word(json.size()) + "JSON" + json +
+         word(chunk.size() + more) + std::string("BIN\0", 4) + chunk;
+}
+
+TEST_F(ModelFile, PicturesBeyondTheEndOfTheirBufferAreNotRead) {
+  const std::string begin = R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 48 }],
+      "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": )";
+  const std::string end =
+      R"( }], "images": [{ "bufferView": 1, "mimeType": "image/png" }], "textures": [{ "source": 0 }],
+      "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+      "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+      "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
+      "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }], "scene": 0 })";
+  const float positions[12] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
+  const std::string chunk(reinterpret_cast<const char*>(positions), sizeof(positions));
+  for (const char* view : {R"(36, "byteLength": 100000)", R"(100000, "byteLength": 12)",
+                           R"(36, "byteLength": 18446744073709551615)", R"(36, "byteLength": 4294967295)"}) {
+    const auto model = load_model(only(write("view.glb", binary(begin + view + end, chunk))));
+    if (!model) continue; // refused is well, too
+    ASSERT_EQ(model->warnings.size(), 1u) << view;
+    EXPECT_THAT(model->warnings[0], HasSubstr("not an image"));
+  }
+}
+
+TEST_F(ModelFile, PicturesThatAreMissingAreNamed) {
+  const std::string whole =
+      exchanged(text_of(triangle()), R"("indices": 1)", R"("indices": 1, "material": 0)");
+  const auto warnings = [&](const std::string& texture, const std::string& uri) {
+    const auto model = load_model(
+        only(write("picture.gltf",
+                   exchanged(whole, R"("scene": 0)", R"("scene": 0, "images": [{ "uri": ")" + uri + R"(" }],
+          "textures": [{ )" + texture + R"( }], "materials": [{ "pbrMetallicRoughness":
+          { "baseColorTexture": { "index": 0 } } }])"))));
+    EXPECT_TRUE(model) << model.error().text;
+    return model ? model->warnings : std::vector<std::string>{};
+  };
+  EXPECT_THAT(warnings(R"("source": 0)", "not%20there.png"),
+              testing::ElementsAre(testing::AllOf(HasSubstr("'not%20there.png'"), HasSubstr("not there,"))));
+  write("text+1.png", "no picture");
+  EXPECT_THAT(warnings(R"("source": 0)", "text+1.png"),
+              testing::ElementsAre(testing::AllOf(HasSubstr("'text"), HasSubstr("not an image"))));
+  EXPECT_THAT(warnings(R"("extensions": { "KHR_texture_basisu": { "source": 0 } })", "text+1.png"),
+              testing::ElementsAre(HasSubstr("KHR_texture_basisu")));
+}
+
+TEST_F(ModelFile, ChunksBeyondTheEndOfTheFileAreRefused) {
+  const std::string json = R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 16 }] })";
+  EXPECT_THAT(refused(only(write("chunk.glb", binary(json, "12345678", 8)))).text,
+              HasSubstr("second chunk reaches beyond its end"));
+}
+
+TEST_F(ModelFile, DeepNestingIsRefusedBeforeItIsFollowed) {
+  const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
+  EXPECT_THAT(
+      refused(only(write("deep.gltf", R"({ "asset": { "version": "2.0" }, "extras": )" + deep + "}"))).text,
+      HasSubstr("nested deeper than 64"));
+}
+
+TEST_F(ModelFile, WhateverIsDamagedIsRefusedOrRead) {
+  std::ifstream stream(triangle(), std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(stream)), {});
+  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
+  std::string json = text;
+  json.replace(json.find(R"("uri": "triangle.bin", )"), 23, "");
+  const std::string glb = binary(json, std::string(reinterpret_cast<const char*>(positions), 36) +
+                                           std::string("\0\0\1\0\2\0\0\0", 8));
+  ASSERT_TRUE(load_model(only(write("whole.glb", glb))));
+  std::mt19937 random(20);
+  uint32_t read = 0;
+  constexpr int tries = 4000; // of each; 7 s with the address sanitizer
+  for (const std::string& whole : {text, glb})
+    for (int i = 0; i < tries; ++i) {
+      std::string damaged = whole;
+      for (uint32_t changes = 1 + random() % 3; changes > 0; --changes) {
+        const size_t at = random() % damaged.size();
+        const char* digits = "0123456789-{}[],\"e";
+        if (random() % 2 == 0)
+          damaged[at] = digits[random() % 18];
+        else if (random() % 2 == 0)
+          damaged[at] = static_cast<char>(random());
+        else
+          damaged.insert(at, std::string(1 + random() % 12, '9'));
+      }
+      const auto model = load_model(only(write("damaged.gltf", damaged)));
+      if (model)
+        ++read;
+      else
+        EXPECT_EQ(model.error().kind, ErrorKind::input);
+    }
+  EXPECT_GT(read, 100u); // else the law says little
+}
+
+TEST(Texture, FormatsThatAreNotAskedForAreNotParsed) {
+  for (const char* other : {"GIF89a\1\1", "8BPS", "P6 1 1 255\n123", "#?RADIANCE\n"}) {
+    const std::string_view bytes(other);
+    const auto texture = decode_texture("a", std::as_bytes(std::span(bytes)));
+    ASSERT_FALSE(texture) << other;
+    EXPECT_THAT(texture.error().text, HasSubstr("PNG, JPEG, TGA, BMP"));
+  }
+}
+
+TEST_F(ModelFile, EveryTruncationOfAFileIsRefusedOrRead) {
+  const std::string path = triangle();
+  std::ifstream stream(path, std::ios::binary);
+  const std::string whole((std::istreambuf_iterator<char>(stream)), {});
+  for (size_t size = 0; size < whole.size(); size += 7) {
+    const auto model = load_model(only(write("cut.gltf", whole.substr(0, size))));
+    if (!model) {
+      EXPECT_EQ(model.error().kind, ErrorKind::input);
+    }
+  }
+}
+
+TEST(Texture, RowsAreTurnedUpsideDown) {
+  Texture texture{1, 3, std::vector<std::byte>(12)};
+  for (int i = 0; i < 12; ++i)
+    texture.texels[static_cast<size_t>(i)] = std::byte(i);
+  flip_rows(texture);
+  EXPECT_EQ(texture.texels[0], std::byte{8});
+  EXPECT_EQ(texture.texels[4], std::byte{4});
+  EXPECT_EQ(texture.texels[11], std::byte{3});
+}
+
+} // namespace
+} // namespace demo

@@ -1,0 +1,39 @@
+#pragma once
+// What a rendering hands over, of renderings that must succeed without a word from the validation layer.
+#include "integration/examples/demo_engine/engine.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace demo {
+
+struct Rendering {
+  std::vector<FrameOutputs> frames; // empty: the test has failed
+  std::vector<std::string> warnings;
+};
+
+inline Rendering rendered(const RenderOptions& options, Stage* stage = nullptr) {
+  Rendering out;
+  RenderCallbacks callbacks;
+  callbacks.on_start = [&](const RenderInfo& info) {
+    out.warnings = info.warnings;
+    return success();
+  };
+  callbacks.on_frame = [&](const FrameOutputs& frame) {
+    out.frames.push_back(frame);
+    return success();
+  };
+  const auto summary = render(options, callbacks, stage);
+  if (!summary) {
+    ADD_FAILURE() << summary.error().text;
+    return {};
+  }
+  EXPECT_THAT(summary->validation_messages, testing::IsEmpty());
+  EXPECT_EQ(out.frames.size(), options.frames);
+  return out;
+}
+
+} // namespace demo

@@ -1,0 +1,256 @@
+// Paths that frames and pixels share, on a device: without bias, without ghosts, without what was before a
+// cut. Periods of a sequence are restarts: each has a history and random numbers of its own. The truth is the
+// graph's own paths without reuse, many of them, which rays_test.cpp holds against a sampler of another kind.
+#include "tests/framegraph/test_tier.hpp"
+#include "tests/integration/examples/demo_engine/moving_sheet.hpp"
+#include "tests/integration/examples/demo_engine/ray_queries.hpp"
+#include "tests/passes/restir/statistics.hpp"
+#include "tests/support/test_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+namespace demo {
+namespace {
+
+using dermis::restir::testing::Mean;
+using dermis::restir::testing::mean_of;
+
+constexpr size_t least_pixels = 20; // of a region
+constexpr double confidence_cap = 20;
+
+uint32_t tier(uint32_t quick, uint32_t full) {
+  return static_cast<uint32_t>(dermis::testing::seeds_of_tier(quick, full));
+}
+
+const uint32_t side = tier(32, 64); // pixels of a picture
+
+std::vector<std::string> shifts() { // of tests that judge a frame after something changed
+  if (tier(0, 1) != 0) return {"delayed", "reconnection", "hybrid", "sequential"};
+  return {"reconnection"}; // whose paths keep the light that they had, but for what restir.temporal does
+}
+
+struct Way { // that paths are reused
+  std::string reuse, shift;
+};
+
+struct ReuseWithRayQueries : WithRayQueries {
+  void SetUp() override {
+    WithRayQueries::SetUp();
+    if (IsSkipped()) return;
+    std::filesystem::copy_file(source + "/configs/profiles/skin.json", folder / "skin.json");
+  }
+  std::vector<FrameOutputs> frames_of(const Motion& motion, const Way& way, uint32_t periods,
+                                      uint32_t samples = 1) const {
+    const uint32_t frames = periods * motion.period;
+    const std::string path = (folder / "scene.json").string();
+    std::ofstream(path) << moving_sheet(motion, frames, "skin.json");
+    return rendered(by_rays(path, side, frames,
+                            {{"reuse", "\"" + way.reuse + "\""},
+                             {"shift", "\"" + way.shift + "\""},
+                             {"samples", std::to_string(samples)}}))
+        .frames;
+  }
+
+  const dermis::test::TestFolder folder;
+};
+
+// Of a frame's pixels with subsurface: all, and those of each quarter of the picture.
+std::vector<std::vector<size_t>> regions_of(const FrameOutputs& frame) {
+  std::vector<std::vector<size_t>> regions(5);
+  for (size_t i = 0; i < frame.inputs.profile.texels.size(); ++i) {
+    if (frame.inputs.profile.texels[i] == 0) continue;
+    regions[0].push_back(i);
+    regions[1 + (i % side < side / 2 ? 0 : 1) + (i / side < side / 2 ? 0 : 2)].push_back(i);
+  }
+  return regions;
+}
+
+double mean_over(const FloatImage& light, const std::vector<size_t>& pixels) {
+  double sum = 0;
+  for (const size_t pixel : pixels)
+    sum += luminance(light, pixel);
+  return pixels.empty() ? 0 : sum / double(pixels.size());
+}
+
+// Light of each region in the judged frames of a period, by period.
+std::vector<std::vector<double>> lights_of(const std::vector<FrameOutputs>& frames, const Motion& motion,
+                                           uint32_t judged_from, uint32_t judged_to) {
+  std::vector<std::vector<double>> values(5);
+  for (size_t first = 0; first < frames.size(); first += motion.period) {
+    std::vector<double> sums(5);
+    for (uint32_t phase = judged_from; phase < judged_to; ++phase) {
+      const auto regions = regions_of(frames[phase]); // the same in each period
+      for (size_t r = 0; r < 5; ++r)
+        if (regions[r].size() >= least_pixels)
+          sums[r] += mean_over(frames[first + phase].scattered, regions[r]);
+    }
+    for (size_t r = 0; r < 5; ++r)
+      values[r].push_back(sums[r] / (judged_to - judged_from));
+  }
+  return values;
+}
+
+struct Judged {
+  double worst = 0, largest = 0, spread = 0; // in sigma; relative; relative sigma of the whole picture
+};
+Judged judge(const std::vector<std::vector<double>>& found, const std::vector<std::vector<double>>& truth) {
+  Judged judged;
+  for (size_t r = 0; r < found.size(); ++r) {
+    const Mean one = mean_of(found[r]), other = mean_of(truth[r]);
+    if (!(other.mean > 0)) continue;
+    judged.worst = std::max(judged.worst, std::abs(deviation(one, other)));
+    judged.largest = std::max(judged.largest, std::abs(one.mean / other.mean - 1));
+    if (r == 0) judged.spread = std::hypot(one.sigma, other.sigma) / other.mean;
+  }
+  return judged;
+}
+
+double square_of(const FrameOutputs& frame, const std::vector<double>& truth) {
+  double sum = 0;
+  for (size_t i = 0; i < truth.size(); ++i)
+    sum += std::pow(luminance(frame.scattered, i) - truth[i], 2);
+  return sum / double(regions_of(frame)[0].size());
+}
+
+Motion walking_camera() {
+  Motion motion;
+  motion.camera = [](uint32_t phase) { return glm::dvec3(0.002 * phase - 0.006, 0.0003 * phase, 0.3); };
+  return motion;
+}
+
+constexpr uint32_t truth_periods = 10, truth_samples = 64;
+const Way alone = {"none", "reconnection"};
+
+// 3 sigma over all tests, and sigma small enough to see something.
+void expect_no_bias(const std::vector<std::vector<double>>& found,
+                    const std::vector<std::vector<double>>& truth, int tests, const std::string& name) {
+  const Judged judged = judge(found, truth);
+  std::printf("%-32s %.2f sigma, %.2f %% off, 1 sigma is %.2f %%\n", name.c_str(), judged.worst,
+              100 * judged.largest, 100 * judged.spread);
+  EXPECT_LT(judged.worst,
+            dermis::restir::testing::three_sigma_limit(static_cast<int>(truth_periods) - 1, tests))
+      << name;
+  EXPECT_LT(judged.spread, 0.06) << name;
+}
+
+TEST_F(ReuseWithRayQueries, HasNoBiasWithAnyShiftUnderAMovingCamera) {
+  const Motion motion = walking_camera();
+  const auto truth_frames = frames_of(motion, alone, truth_periods, truth_samples);
+  ASSERT_EQ(truth_frames.size(), truth_periods * motion.period);
+  const auto truth = lights_of(truth_frames, motion, 0, motion.period);
+  std::vector<double> last(size_t{side} * side); // the truth of the last frame of a period
+  for (size_t first = 0; first < truth_frames.size(); first += motion.period)
+    for (size_t i = 0; i < last.size(); ++i)
+      last[i] += luminance(truth_frames[first + motion.period - 1].scattered, i) / truth_periods;
+
+  std::vector<Way> ways = {alone};
+  for (const char* shift : {"reconnection", "delayed", "hybrid", "sequential"})
+    for (const char* reuse : {"temporal", "spatial", "spatiotemporal"})
+      if (tier(0, 1) != 0 || reuse == std::string("spatiotemporal") || shift == std::string("delayed"))
+        ways.push_back({reuse, shift});
+  const uint32_t periods = tier(10, 40);
+  double error_alone = 0;
+  for (const Way& way : ways) {
+    const auto frames = frames_of(motion, way, periods);
+    ASSERT_EQ(frames.size(), periods * motion.period);
+    expect_no_bias(lights_of(frames, motion, 0, motion.period), truth, static_cast<int>(5 * ways.size()),
+                   way.shift + " " + way.reuse);
+    double error = 0;
+    for (size_t first = 0; first < frames.size(); first += motion.period)
+      error += square_of(frames[first + motion.period - 1], last) / periods;
+    if (way.reuse == "none") error_alone = error;
+    std::printf("  mse of the last frame %.3g, %.2f of that alone\n", error, error / error_alone);
+    EXPECT_TRUE(way.reuse != "spatiotemporal" || error < error_alone) << way.shift;
+  }
+}
+
+// The random numbers are those of the frame: with nothing behind it a frame is the one without a history.
+TEST_F(ReuseWithRayQueries, BeginsAnewAfterACutBitForBit) {
+  Motion motion = walking_camera();
+  motion.period = 4;
+  for (const std::string& shift : shifts()) {
+    const auto over_time = frames_of(motion, {"spatiotemporal", shift}, 2);
+    const auto within = frames_of(motion, {"spatial", shift}, 2);
+    ASSERT_EQ(over_time.size(), 8u);
+    ASSERT_EQ(within.size(), 8u);
+    EXPECT_TRUE(over_time[4].cut);
+    for (const size_t first : {size_t{0}, size_t{4}})
+      EXPECT_EQ(over_time[first].scattered.texels, within[first].scattered.texels)
+          << shift << ", frame " << first;
+    EXPECT_NE(over_time[3].scattered.texels, within[3].scattered.texels) << shift;
+  }
+}
+
+TEST_F(ReuseWithRayQueries, ShowsNothingOfLightsThatWentOut) {
+  Motion motion;
+  motion.period = 8;
+  motion.intensity = [](uint32_t phase) { return phase < 6 ? 0.03 : 0.0; };
+  for (const std::string& shift : shifts()) {
+    const auto frames = frames_of(motion, {"spatiotemporal", shift}, 1);
+    ASSERT_EQ(frames.size(), 8u);
+    EXPECT_GT(mean_over(frames[5].scattered, regions_of(frames[5])[0]), 0.01);
+    for (const size_t frame : {size_t{6}, size_t{7}})
+      EXPECT_EQ(mean_over(frames[frame].scattered, regions_of(frames[frame])[0]), 0)
+          << shift << ", frame " << frame;
+  }
+}
+
+TEST_F(ReuseWithRayQueries, FollowsALightThatJumpsInTheFirstFrame) {
+  Motion motion;
+  motion.light = [](uint32_t phase) {
+    return phase < 5 ? glm::dvec3(0.02, 0.03, -0.15) : glm::dvec3(-0.06, -0.05, -0.09);
+  };
+  const auto truth = lights_of(frames_of(motion, alone, truth_periods, truth_samples), motion, 5, 6);
+  for (const std::string& shift : shifts())
+    expect_no_bias(lights_of(frames_of(motion, {"temporal", shift}, tier(20, 96)), motion, 5, 6), truth, 20,
+                   "light jumps, " + shift);
+}
+
+TEST_F(ReuseWithRayQueries, HasNoBiasWhereAnObjectMoves) {
+  Motion motion;
+  motion.lobe = [](uint32_t phase) { return glm::dvec3(-0.022 + 0.003 * phase, -0.012, 0.012); };
+  const auto truth =
+      lights_of(frames_of(motion, alone, truth_periods, truth_samples), motion, 0, motion.period);
+  for (const std::string& shift : shifts())
+    expect_no_bias(
+        lights_of(frames_of(motion, {"spatiotemporal", shift}, tier(10, 40)), motion, 0, motion.period),
+        truth, 20, "object moves, " + shift);
+}
+
+// What stood before the light is seen to be gone by new paths alone; history, which knew none, counts for at
+// most confidence_cap of them, and fewer with each frame.
+TEST_F(ReuseWithRayQueries, ForgetsAShadowAsFastAsTheCapAllows) {
+  constexpr uint32_t shaded = 30, lit = 50;
+  Motion motion;
+  motion.period = shaded + lit;
+  motion.shield = [](uint32_t phase) { return glm::dvec3(0, phase < shaded ? 0 : 5, -0.05); };
+  Motion bare;
+  bare.period = 1;
+  const auto truth = frames_of(bare, alone, truth_periods, truth_samples);
+  for (const std::string& shift : shifts()) {
+    const auto frames = frames_of(motion, {"temporal", shift}, 1);
+    ASSERT_EQ(frames.size(), shaded + lit);
+    const auto region = regions_of(frames[0])[2]; // right of the lobe
+    std::vector<double> lights;
+    for (const FrameOutputs& frame : truth)
+      lights.push_back(mean_over(frame.scattered, region));
+    const double whole = mean_of(lights).mean;
+    EXPECT_LT(mean_over(frames[shaded - 1].scattered, region), 0.2 * whole) << "it is shaded";
+    double sum = 0;
+    constexpr uint32_t last = 10; // frames that are averaged, against the noise
+    for (uint32_t f = lit - last; f < lit; ++f)
+      sum += mean_over(frames[shaded + f].scattered, region) / last;
+    const double left = std::pow(confidence_cap / (confidence_cap + 1), lit - last);
+    std::printf("%s: %.3f of the light is back, the cap lets %.3f be missing\n", shift.c_str(), sum / whole,
+                left);
+    EXPECT_GT(sum / whole, 1 - left - 0.1) << shift;
+    EXPECT_LT(sum / whole, 1.1) << shift;
+  }
+}
+
+} // namespace
+} // namespace demo

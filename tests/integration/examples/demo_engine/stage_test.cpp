@@ -1,0 +1,120 @@
+// Frames that a stage keeps are those that are rendered without one, bit for bit.
+#include "tests/integration/examples/demo_engine/rendering.hpp"
+#include "tests/support/shipped_graphs.hpp"
+#include "tests/support/test_folder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace demo {
+namespace {
+
+// A ball of skin before a wall: a camera and a shadow that move, and a cut within five frames.
+struct KeptStage : ::testing::Test {
+  RenderOptions moving(const std::string& graph, const std::string& intensity = "0.8") const {
+    RenderOptions options;
+    options.scene = (folder / ("scene_" + intensity + ".json")).string();
+    std::ofstream(options.scene)
+        << R"({ "dermis_scene": 1, "name": "small", "sky": [0.1, 0.1, 0.1], "cuts": [0.3],
+      "frames_per_second": 10,
+      "profiles": [ { "name": "skin", "file": ")" DERMIS_SOURCE_DIR R"(/configs/profiles/skin.json" } ],
+      "camera": { "position": { "keys": [[0, -0.2, 0, 1], [1, 0.2, 0, 1]] }, "target": [0, 0, 0], "vertical_fov": 20 },
+      "lights": [ { "type": "spot", "position": { "keys": [[0, -0.5, 0.5, 0.8], [1, 0.5, 0.5, 0.8]] },
+                    "target": [0, 0, 0], "intensity": )"
+        << intensity << R"( } ],
+      "objects": [ { "shape": "sphere", "scale": [0.1, 0.1, 0.1], "profile": "skin", "albedo": [0.7, 0.45, 0.35] },
+                   { "shape": "plane", "position": [0, 0, -0.3], "rotation": [90, 0, 0] } ] })";
+    options.graph = DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph);
+    options.roots = {DERMIS_SOURCE_DIR "/configs"};
+    options.width = 70;
+    options.height = 45;
+    options.frames = 5;
+    options.validation = true;
+    return options;
+  }
+
+  const dermis::test::TestFolder folder;
+};
+
+void expect_same(const std::vector<FrameOutputs>& a, const std::vector<FrameOutputs>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    const GraphInputs &x = a[i].inputs, &y = b[i].inputs;
+    for (const auto& part : {&GraphInputs::lighting, &GraphInputs::depth, &GraphInputs::normal,
+                             &GraphInputs::albedo, &GraphInputs::profile, &GraphInputs::velocity,
+                             &GraphInputs::specular, &GraphInputs::thickness, &GraphInputs::back_lighting})
+      EXPECT_EQ((x.*part).texels, (y.*part).texels) << "frame " << i;
+    EXPECT_EQ(a[i].scattered.texels, b[i].scattered.texels) << "frame " << i;
+    EXPECT_EQ(a[i].color.texels, b[i].color.texels) << "frame " << i;
+    EXPECT_EQ(a[i].camera.previous_clip_from_view, b[i].camera.previous_clip_from_view) << "frame " << i;
+    EXPECT_EQ(a[i].cut, b[i].cut) << "frame " << i;
+  }
+}
+
+size_t drawn(const std::vector<FrameOutputs>& frames) {
+  return static_cast<size_t>(std::count_if(
+      frames.begin(), frames.end(), [](const FrameOutputs& frame) { return !frame.host_times.empty(); }));
+}
+
+TEST_F(KeptStage, BringsBackFramesBitForBit) {
+  const RenderOptions options = moving("sap");
+  const StageHandle stage = make_stage();
+  const auto alone = rendered(options).frames;
+  const auto first = rendered(options, stage.get()).frames;
+  const auto second = rendered(options, stage.get()).frames;
+  EXPECT_EQ(drawn(alone), 5u);
+  EXPECT_EQ(drawn(first), 5u);
+  EXPECT_EQ(drawn(second), 0u);
+  expect_same(alone, first);
+  expect_same(alone, second);
+}
+
+TEST_F(KeptStage, TakesAnotherGraphForFramesThatItKeeps) {
+  const StageHandle stage = make_stage();
+  ASSERT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
+  const RenderOptions options = moving("burley");
+  expect_same(rendered(options).frames, rendered(options, stage.get()).frames);
+}
+
+TEST_F(KeptStage, IsMadeAnewForAnotherPictureOrScene) {
+  const StageHandle stage = make_stage();
+  RenderOptions options = moving("sap");
+  ASSERT_EQ(rendered(options, stage.get()).frames.size(), 5u);
+  options.width = 33;
+  expect_same(rendered(options).frames, rendered(options, stage.get()).frames);
+  options.scene = moving("sap", "0.4").scene;
+  const auto frames = rendered(options, stage.get()).frames;
+  EXPECT_EQ(drawn(frames), 5u);
+  expect_same(rendered(options).frames, frames);
+}
+
+TEST_F(KeptStage, AfterAMistakeItServesTheNextCall) {
+  const StageHandle stage = make_stage();
+  RenderOptions options = moving("sap");
+  options.scene = "no/such/scene.json";
+  const auto refused = render(options, {}, stage.get());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::input);
+  EXPECT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
+}
+
+TEST_F(KeptStage, FramesWhosePicturesNobodyWantsComeWithoutThem) {
+  RenderOptions options = moving("sap");
+  options.pictures_of = [](uint32_t frame) { return frame == 3; };
+  options.inputs_of = [](uint32_t frame) { return frame == 1; };
+  const auto frames = rendered(options).frames;
+  const auto all = rendered(moving("sap")).frames;
+  ASSERT_EQ(frames.size(), 5u);
+  ASSERT_EQ(all.size(), 5u);
+  for (uint32_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(frames[i].inputs.depth.texels.empty(), i != 1) << i;
+    EXPECT_EQ(frames[i].scattered.texels.empty(), i != 3) << i;
+    EXPECT_EQ(frames[i].color.texels.empty(), i != 3) << i;
+  }
+  EXPECT_EQ(frames[1].inputs.lighting.texels, all[1].inputs.lighting.texels);
+  EXPECT_EQ(frames[3].color.texels, all[3].color.texels);
+}
+
+} // namespace
+} // namespace demo

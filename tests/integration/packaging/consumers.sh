@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Installs the build to a folder of its own, moves it, and lets tiny hosts find the library in four ways: plain compiler,
+# pkg-config, find_package (shared and static) and add_subdirectory. Each one runs a graph.
+# usage: consumers.sh BUILD_DIR SOURCE_DIR [--subdirectory]: with the option only that, since it builds the library anew
+set -euo pipefail
+build=$1
+source=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+run() { # a host
+  echo "== $(basename "$1")"
+  "$@" "$source/configs/graphs/burley.json" "$source/configs/profiles/skin.json"
+}
+
+if [[ ${3:-} == --subdirectory ]]; then
+  cmake -G Ninja -S "$source/tests/integration/packaging/subdirectory" -B "$scratch/build" -DDERMIS="$source" -DCMAKE_BUILD_TYPE=Release \
+    ${DERMIS_LAUNCHER:+-DCMAKE_CXX_COMPILER_LAUNCHER="$DERMIS_LAUNCHER"} >/dev/null
+  cmake --build "$scratch/build" >/dev/null
+  run "$scratch/build/host_dermis"
+  run "$scratch/build/host_dermis_static"
+  exit
+fi
+
+cmake --install "$build" --prefix "$scratch/first" >/dev/null
+mv "$scratch/first" "$scratch/moved" # nothing may hold on to where it was
+prefix=$scratch/moved
+lib=$(dirname "$(find "$prefix" -name libdermis.so)")
+export LD_LIBRARY_PATH=$lib
+
+flags=(-std=c99 -Wall -Wextra -Werror -I"$source/integration/examples" "$source/integration/examples/minimal.c")
+cc "${flags[@]}" -I"$prefix/include" -o "$scratch/host_cc" -L"$lib" -ldermis -lvulkan
+run "$scratch/host_cc"
+
+if command -v pkg-config >/dev/null; then
+  export PKG_CONFIG_PATH=$lib/pkgconfig
+  # shellcheck disable=SC2046
+  cc "${flags[@]}" -o "$scratch/host_pkg_config" $(pkg-config --cflags --libs dermis) -lvulkan
+  run "$scratch/host_pkg_config"
+else
+  echo "== pkg-config: skipped, not installed"
+fi
+
+for languages in C "C;CXX"; do # a project of C alone has to find the run time of C++, too
+  cmake -G Ninja -S "$source/tests/integration/packaging/find_package" -B "$scratch/build_${languages/;/_}" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DLANGUAGES="$languages" -DEXAMPLES="$source/integration/examples" -DCMAKE_BUILD_TYPE=Release >/dev/null
+  cmake --build "$scratch/build_${languages/;/_}" >/dev/null
+  run "$scratch/build_${languages/;/_}/host_dermis"
+  run "$scratch/build_${languages/;/_}/host_dermis_static"
+done
+
+# The lines that README.md gives, as they stand but for the folders.
+if command -v pkg-config >/dev/null; then
+  sed -n '/^```console$/,/^```$/s/^\$ //p' "$source/README.md" | grep -v '^cmake --build' |
+    sed -e "s#\$PWD/out#out#g" -e "s#out/#$scratch/readme/#g" -e "s#build/release#$build#g" >"$scratch/lines"
+  [[ $(wc -l <"$scratch/lines") -eq 4 ]] || { echo "README.md has other lines than this test knows"; exit 1; }
+  echo "== README.md"
+  (cd "$source" && unset LD_LIBRARY_PATH && set -x && . "$scratch/lines") | grep -E '^scatter +[0-9.]+ ms$'
+fi
+
+# Every document and example is installed, and so is what documents link to of them.
+documents=$(dirname "$(find "$prefix/share/doc" -name LICENSE)")
+for file in "$source"/docs/*.md "$source"/integration/examples/*.[ch] "$source"/integration/examples/*.comp; do
+  [[ -f $documents/${file#"$source/"} ]] || { echo "${file#"$source/"} is not installed"; exit 1; }
+done
+(cd "$documents/docs" && grep -oh '](\(\.\./integration/examples/\|[a-z_]*\.md\)[^)#]*' ./*.md | sed 's/^](//' | sort -u |
+  while read -r link; do [[ -e $link ]] || { echo "an installed document links to $link, which is not there"; exit 1; }; done)
+
+# What is installed works alone: the command finds its library, and graphs validate.
+unset LD_LIBRARY_PATH
+"$prefix/bin/dermis" validate "$prefix/share/dermis/graphs/sap.json"
+# Scenes, profiles and graphs that stand for themselves are found where they were installed, from any folder.
+(cd "$scratch" && "$prefix/bin/dermis" report-bug "$prefix/share/dermis/graphs/sap.json" --size 32x18 --count 1 --out bug &&
+  "$prefix/bin/dermis" sheet --graphs sap --profiles skin --size 32x18 --out sheet.png &&
+  "$prefix/bin/dermis" bench stability --techniques burley --cases light_nan --quick --quiet)
+
+# A host that links the static library sees the interface and nothing else.
+others=$(nm -g --defined-only "$lib/libdermis.a" | awk 'NF == 3 { print $3 }' | grep -v '^dermis_' || true)
+[[ -z $others ]] || { echo "libdermis.a exports more than dermis_*:"; echo "$others" | head; exit 1; }
+readelf -d "$lib/libdermis.so" | grep -q 'SONAME.*libdermis\.so\.0\]' || { echo "the SONAME is not libdermis.so.0"; exit 1; }

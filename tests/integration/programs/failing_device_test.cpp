@@ -1,0 +1,117 @@
+// A device that refuses: whichever object or allocation it is, the call says so, what ran before runs on and
+// nothing is left behind.
+
+#include "integration/tools/command/bench/record/counted_host.hpp"
+#include "tests/framegraph/test_tier.hpp"
+#include "tests/integration/abi/sources.hpp"
+#include "tests/support/shipped_graphs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+namespace dermis::test {
+namespace {
+
+constexpr uint64_t most_creations = 2000; // of one call; a graph of twenty passes makes about 200
+constexpr uint32_t frames_in_flight = 2;
+
+std::string text_of(const std::string& path) {
+  std::ifstream stream(path);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+struct FailingDevice : ::testing::TestWithParam<const char*> {
+  tools::CountedInput input(uint32_t width, uint32_t height) const {
+    const std::string graph = dermis::shipped::graph_file(GetParam());
+    const std::string profile = "configs/profiles/skin.json";
+    return {graph, text_of(graph), profile, text_of(profile), width, height};
+  }
+  // From one failing creation to the next: a graph that is made anew fits its kernel tables at each try.
+  static uint64_t step() {
+    return std::string_view(GetParam()) == "burley" ? 1 : dermis::testing::seeds_of_tier(16, 1);
+  }
+};
+
+// Calls `change` with its first creation failing, then its second, until none fails.
+void fail_each_creation(tools::CountedHost& host, const std::function<dermis_result()>& change) {
+  uint64_t failures = 0;
+  for (uint64_t nth = 1; nth < most_creations; ++nth) {
+    const uint64_t alive = host.device().alive(), bytes = host.device().memory_bytes();
+    host.device().fail_creation(nth, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+    const dermis_result result = change();
+    host.device().fail_creation(0, VK_SUCCESS);
+    if (result == DERMIS_OK) break;
+    ++failures;
+    EXPECT_EQ(result, DERMIS_ERROR_DEVICE_MEMORY) << "creation " << nth;
+    EXPECT_EQ(host.device().alive(), alive) << "creation " << nth;
+    EXPECT_EQ(host.device().memory_bytes(), bytes) << "creation " << nth;
+    EXPECT_EQ(host.record_frame(), DERMIS_OK) << "creation " << nth;
+  }
+  EXPECT_GT(failures, 10u);
+  EXPECT_LT(failures, most_creations - 2);
+}
+
+TEST_P(FailingDevice, AGraphThatCannotBeMadeLeavesNothing) {
+  uint64_t nth = 1;
+  for (; nth < most_creations; nth += step()) {
+    tools::CountedHost host;
+    host.device().fail_creation(nth, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+    const std::string problem = host.open(input(64, 48));
+    if (problem.empty()) break;
+    EXPECT_NE(problem.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos) << problem;
+    EXPECT_EQ(host.device().alive(), 0u) << "creation " << nth << ": " << problem;
+    EXPECT_EQ(host.device().memory_bytes(), 0u) << "creation " << nth;
+  }
+  EXPECT_GT(nth, 10u);
+  EXPECT_LT(nth, most_creations);
+}
+
+TEST_P(FailingDevice, AFailedResizeLeavesTheGraphAsItWas) {
+  tools::CountedHost host;
+  ASSERT_EQ(host.open(input(64, 48)), "");
+  ASSERT_EQ(host.record_frame(), DERMIS_OK);
+  uint32_t calls = 0; // the size changes each time: a resize to the same size does nothing
+  fail_each_creation(host, [&] { return dermis_graph_resize(host.graph(), 48 + ++calls % 2, 48, nullptr); });
+}
+
+TEST_P(FailingDevice, AFailedReloadLeavesTheGraphAsItWas) {
+  tools::CountedHost host;
+  const tools::CountedInput given = input(64, 48);
+  ASSERT_EQ(host.open(given), "");
+  ASSERT_EQ(host.record_frame(), DERMIS_OK);
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = given.name.c_str();
+  source.text = given.graph.data();
+  source.length = given.graph.size();
+  fail_each_creation(host, [&] { return abi_test::reload_text(host.graph(), source); });
+}
+
+TEST_P(FailingDevice, WhatAReloadReplacesIsGoneOnceItsFramesAreDone) {
+  tools::CountedHost host;
+  const tools::CountedInput given = input(64, 48);
+  ASSERT_EQ(host.open(given), "");
+  ASSERT_EQ(host.record_frame(), DERMIS_OK);
+  const uint64_t alive = host.device().alive(), bytes = host.device().memory_bytes();
+  dermis_source source = DERMIS_SOURCE_INIT;
+  source.name = given.name.c_str();
+  source.text = given.graph.data();
+  source.length = given.graph.size();
+  for (uint32_t round = 0; round < 5; ++round) {
+    ASSERT_EQ(abi_test::reload_text(host.graph(), source), DERMIS_OK);
+    for (uint32_t frame = 0; frame <= frames_in_flight; ++frame)
+      ASSERT_EQ(host.record_frame(), DERMIS_OK);
+    EXPECT_EQ(host.device().alive(), alive);
+    EXPECT_EQ(host.device().memory_bytes(), bytes);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ShippedGraphs, FailingDevice, ::testing::Values("burley", "separable", "sap"),
+                         [](const auto& one) { return std::string(one.param); });
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,267 @@
+// Kernels from text while a graph runs: what is as it was stays as it was, what changed is seen, what is
+// broken is told with its place and changes nothing.
+
+#include "integration/abi/shaders/compiler.hpp"
+#include "passes/common/kernels.hpp"
+#include "tests/integration/abi/dermis_fixture.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace dermis::abi_test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr const char* combine = "common/subsurface_combine.comp"; // of burley.json
+constexpr const char* store = "vec4(round_to_half(color), 1.0)";
+
+// The files of shaders/, some with another text.
+struct Folder {
+  std::map<std::string, std::string> changed;
+  bool rest = true; // false: there is nothing but `changed`
+  std::set<std::string> asked;
+  std::map<std::string, std::string> delivered; // as long as the call lasts
+
+  std::string change(const std::string& name, const std::string& from, const std::string& to) {
+    std::string text = read_text("shaders/" + name);
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return changed[name] = at == std::string::npos ? text : text.replace(at, from.size(), to);
+  }
+};
+
+uint32_t DERMIS_CALL open_in(void* user, const char* name, dermis_source* source) {
+  auto& folder = *static_cast<Folder*>(user);
+  folder.asked.insert(name);
+  const auto changed = folder.changed.find(name);
+  std::string& text = folder.delivered[name];
+  text = changed != folder.changed.end() ? changed->second
+         : folder.rest                   ? read_text(std::string("shaders/") + name)
+                                         : "";
+  if (text.empty()) return 0;
+  const auto kept = folder.delivered.find(name);
+  *source = source_of(kept->second, kept->first.c_str());
+  return 1;
+}
+
+std::pair<uint32_t, uint32_t> place_in(const std::string& text, const std::string& what) { // line, column
+  const size_t at = text.find(what);
+  return {
+      static_cast<uint32_t>(std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(at), '\n') + 1),
+      static_cast<uint32_t>(at - text.rfind('\n', at))};
+}
+
+struct Shaders : DermisTest {
+  Folder folder;
+
+  void SetUp() override {
+    if (abi::shader_compiler().empty()) GTEST_SKIP() << "built without glslang (package glslang-dev)";
+    DermisTest::SetUp();
+  }
+  dermis_graph make() {
+    const dermis_graph graph = make_graph();
+    make_images(graph);
+    return graph;
+  }
+  // One more frame of the first frame's light.
+  std::vector<float> light(dermis_graph graph) {
+    fill("lighting", [](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.0f; });
+    const auto bound = bindings(graph);
+    dermis_frame one = frame(bound);
+    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    return texels("lighting");
+  }
+  dermis_result reload(dermis_graph graph, Said* said = nullptr) {
+    dermis_report report = nullptr;
+    const dermis_result result = dermis_graph_reload_shaders(graph, open_in, &folder, &report);
+    if (said != nullptr)
+      *said = take(report);
+    else
+      dermis_report_destroy(report);
+    return result;
+  }
+  // The samples of a frame hang on its number: what follows is compared with a graph that was left alone.
+  void expect_as_ever(dermis_graph graph) {
+    const uint64_t before = last_frame;
+    const auto now = light(graph);
+    last_frame = before;
+    const dermis_graph untouched = make_graph();
+    EXPECT_EQ(now, light(untouched));
+  }
+};
+
+TEST(ShaderCompiler, MakesOfUnchangedTextTheWordsOfTheBuild) {
+  if (abi::shader_compiler().empty()) GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  std::vector<std::string> names;
+  for (const Kernel& kernel : embedded_kernels())
+    names.emplace_back(kernel.shader);
+  const OpenFile open = [](std::string_view name) {
+    return FileText{std::string(name), read_text("shaders/" + std::string(name)), ""};
+  };
+  std::vector<std::vector<uint32_t>> spirv;
+  Diagnostics diagnostics;
+  ASSERT_TRUE(abi::compile_shaders(names, open, spirv, diagnostics));
+  ASSERT_EQ(spirv.size(), names.size());
+  EXPECT_GT(names.size(), 25u);
+  for (size_t i = 0; i < names.size(); ++i)
+    EXPECT_TRUE(std::ranges::equal(spirv[i], find_kernel(names[i]))) << names[i];
+}
+
+TEST_F(Shaders, OfUnchangedTextGiveTheSameLight) {
+  const dermis_graph graph = make();
+  light(graph);
+  ASSERT_EQ(reload(graph), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(folder.asked, AllOf(Contains(combine), Contains("common/environment.glsl")));
+  EXPECT_THAT(folder.asked, Each(Not(HasSubstr("bindings")))) << "those are the library's";
+  expect_as_ever(graph);
+}
+
+TEST_F(Shaders, ThatChangedAreSeenInTheNextFrameAndUntilTheLibrarysAreAskedBack) {
+  const dermis_graph graph = make();
+  const auto whole = light(graph);
+  folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
+  ASSERT_EQ(reload(graph), DERMIS_OK) << dermis_last_error();
+  const uint64_t number = last_frame;
+  const auto halved = light(graph);
+  ASSERT_EQ(dermis_graph_resize(graph, 64, 64, nullptr), DERMIS_OK);
+  last_frame = number + 1;
+  const auto resized = light(graph);
+  ASSERT_EQ(dermis_graph_reload_shaders(graph, nullptr, nullptr, nullptr), DERMIS_OK);
+  last_frame = number;
+  const dermis_graph untouched = make_graph();
+  const auto expected = light(untouched);
+  double sum = 0, sum_resized = 0, sum_expected = 0;
+  for (size_t i = 0; i < expected.size(); ++i) {
+    if (i % 4 == 3) continue;
+    // Halving is exact above the smallest half floats (2^-24 apart).
+    EXPECT_NEAR(halved[i], expected[i] / 2, 6e-8) << i;
+    sum += halved[i];
+    sum_resized += resized[i];
+    sum_expected += expected[i];
+  }
+  EXPECT_NEAR(sum / sum_expected, 0.5, 1e-4);
+  EXPECT_NEAR(sum_resized / sum_expected, 0.5, 0.01) << "also in a program that was built after it";
+  last_frame = number + 2;
+  expect_as_ever(graph);
+}
+
+TEST_F(Shaders, OfTwoGraphsOfAContextAreEachItsOwn) {
+  const dermis_graph one = make(), other = make_graph();
+  folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
+  ASSERT_EQ(reload(one), DERMIS_OK) << dermis_last_error();
+  folder.change(combine, store, "vec4(round_to_half(color * 0.25), 1.0)");
+  ASSERT_EQ(reload(other), DERMIS_OK) << dermis_last_error();
+  const uint64_t number = last_frame;
+  const auto halved = light(one);
+  last_frame = number;
+  const auto quartered = light(other);
+  double sum = 0;
+  for (size_t i = 0; i < halved.size(); ++i) {
+    if (i % 4 == 3) continue;
+    EXPECT_NEAR(quartered[i], halved[i] / 2, 6e-8) << i; // exact but for the smallest half floats
+    sum += halved[i];
+  }
+  EXPECT_GT(sum, 0);
+}
+
+TEST_F(Shaders, ThatAreBrokenAreToldWithTheirPlaceAndNothingChanges) {
+  const dermis_graph graph = make();
+  light(graph);
+  const std::string text = folder.change(combine, store, "vec4(round_to_half(colour), 1.0)");
+  Said said;
+  EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
+  EXPECT_THAT(said.names, ElementsAre("shader_error")) << said.all;
+  EXPECT_THAT(said.places, ElementsAre(place_in(text, "colour")));
+  EXPECT_THAT(said.all, AllOf(HasSubstr(std::string(combine) + ":"), HasSubstr("'colour'"), HasSubstr("^")));
+  EXPECT_THAT(dermis_last_error(), HasSubstr(combine));
+  expect_as_ever(graph);
+  folder.changed.clear(); // the next good text is taken
+  EXPECT_EQ(reload(graph), DERMIS_OK);
+}
+
+TEST_F(Shaders, TellAnErrorOfAnIncludedFileOnceAndErrorsOfAllKernels) {
+  const dermis_graph graph = make();
+  const std::string text = folder.change("common/half.glsl", "\nfloat ", "\nflote ");
+  folder.change("common/subsurface_tile_list.comp", "void main() {", "void main() { nothing;");
+  Said said;
+  EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
+  EXPECT_EQ(std::ranges::count(said.names, "shader_error"), 2) << said.all;
+  EXPECT_THAT(said.places, Contains(place_in(text, "flote "))) << said.all;
+  EXPECT_THAT(said.all,
+              AllOf(HasSubstr("common/half.glsl:"), HasSubstr("common/subsurface_tile_list.comp:")));
+  expect_as_ever(graph);
+}
+
+TEST_F(Shaders, OpenNothingOutsideOfTheirFolder) {
+  const dermis_graph graph = make();
+  for (const char* include : {"\"../secret.glsl\"", "\"/etc/passwd\"", "\"a/../../b.glsl\"",
+                              "\"C:\\\\b.glsl\"", "\"./half.glsl\"", "<half.glsl>", "\"not_there.glsl\""}) {
+    folder.asked.clear();
+    const std::string text =
+        folder.change(combine, "#include \"common/half.glsl\"", std::string("#include ") + include);
+    Said said;
+    EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER) << include;
+    ASSERT_THAT(said.names, ElementsAre("shader_error")) << said.all;
+    EXPECT_EQ(said.places[0].first, place_in(text, include).first) << said.all;
+    const bool named = std::string(include) == "\"not_there.glsl\"";
+    for (const std::string& name : folder.asked)
+      EXPECT_TRUE(name.starts_with("common/") || name.starts_with("burley/") ||
+                  (named && name == "not_there.glsl"))
+          << name;
+    EXPECT_EQ(folder.asked.contains("not_there.glsl"), named);
+    EXPECT_FALSE(folder.asked.contains("./half.glsl"));
+  }
+  expect_as_ever(graph);
+}
+
+TEST_F(Shaders, ThatIncludeThemselvesWithoutEndAreRefused) {
+  const dermis_graph graph = make();
+  folder.changed["common/half.glsl"] = "#include \"common/half.glsl\"\n";
+  Said said;
+  EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
+  EXPECT_THAT(said.all, HasSubstr("more than 16 files include each other"));
+  folder.changed["common/half.glsl"] = "";
+  for (int i = 0; i < 300; ++i)
+    folder.changed["common/half.glsl"] += "#include \"empty.glsl\"\n";
+  folder.changed["empty.glsl"] = "\n";
+  EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
+  EXPECT_THAT(said.all, HasSubstr("more than 256 files are included"));
+  expect_as_ever(graph);
+}
+
+TEST_F(Shaders, ThatDoNotFitTheSignatureOfTheirKindAreRefused) {
+  const dermis_graph graph = make();
+  folder.change(combine, "void main() {",
+                "layout(set = 0, binding = 30) buffer stranger { float data[]; } other;\n"
+                "void main() { other.data[0] = 1.0;");
+  Said said;
+  EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
+  EXPECT_THAT(said.names, Contains("kernel_mismatch")) << said.all;
+  expect_as_ever(graph);
+}
+
+TEST_F(Shaders, OfWhichNoneIsThereAreAMistakeAndOthersStayTheLibrarys) {
+  const dermis_graph graph = make();
+  folder.rest = false;
+  Said said;
+  EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
+  EXPECT_THAT(said.all, HasSubstr("none of the graph's kernels")) << said.all;
+  // A kernel that needs no file of the folder, alone: a kernel without effect.
+  folder.changed[combine] = "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
+                            "#include \"common/subsurface_combine.bindings.glsl\"\n"
+                            "layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}\n";
+  ASSERT_EQ(reload(graph, &said), DERMIS_OK) << said.all;
+  const auto untouched = light(graph);
+  for (uint32_t x = 0; x < 64; ++x)
+    EXPECT_EQ(untouched[size_t{x} * 4], x < 32 ? 1.0f : 0.0f);
+}
+
+} // namespace
+} // namespace dermis::abi_test

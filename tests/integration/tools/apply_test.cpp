@@ -1,0 +1,238 @@
+// apply and reference on captures made by hand: what comes out, and what is said of wrong ones.
+
+#include "tests/integration/tools/capture_builder.hpp"
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include "integration/tools/files/exr.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class Captures : public CommandTest {
+protected:
+  Outcome apply(const std::vector<std::string>& more = {}, const RunOptions& options = {}) const {
+    std::vector<std::string> words{"apply",         "--graph", burley,     "--frames",
+                                   path("capture"), "--out",   path("out")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words, options);
+  }
+  Outcome reference(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"reference", "--frames", path("capture"), "--out", path("out")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  // The only file of that name below `out`.
+  tools::Image picture(const std::string& name) const {
+    for (const std::string& file : files("out")) {
+      if (std::filesystem::path(file).filename() != name) continue;
+      const std::vector<tools::ChannelNames> names{{"R", "G", "B"}, {"Y"}};
+      std::string problem;
+      const auto image = tools::read_exr(path("out/" + file), names, problem);
+      EXPECT_TRUE(image.has_value()) << problem;
+      return image.value_or(tools::Image{});
+    }
+    ADD_FAILURE() << "no " << name;
+    return {};
+  }
+};
+
+TEST_F(Captures, EvenLightStaysAsItIs) {
+  write_plane(path("capture"));
+  const Outcome outcome = apply();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("scatter"), HasSubstr("ms")));
+  // 0.5 is exact in fp16 and so is its mean with any weights; what remains is the division of two sums in
+  // fp32.
+  for (const float value : picture("scattered.exr").values)
+    EXPECT_NEAR(value, 0.5f, 1e-3f);
+  for (const float value : picture("combined.exr").values)
+    EXPECT_NEAR(value, 0.5f, 1e-3f);
+}
+
+TEST_F(Captures, TheValidationLayerHasNothingToSay) {
+  write_plane(path("capture/frame_0000"));
+  Plane other;
+  other.width = 48; // another size: the graph is resized, its histories with it
+  write_plane(path("capture/frame_0001"), other);
+  RunOptions options;
+  options.environment = validation_environment();
+  for (const char* graph :
+       {burley, "configs/graphs/separable.json", "configs/graphs/papers/sap_residual.json",
+        "configs/graphs/papers/afis_guided.json"}) {
+    const Outcome outcome = run({"apply", "--graph", graph, "--frames", path("capture"), "--out", path("out"),
+                                 "--json", "--repeat", "3"},
+                                options);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(is_json(outcome.out)) << outcome.out; // a message of the layer would stand beside it
+  }
+}
+
+TEST_F(Captures, WithoutScatteringTheLightComesBackBitForBit) {
+  Plane plane;
+  plane.profiles = R"([{ "id": 1, "dmfp_mm": [0, 0, 0], "albedo": [1, 1, 1] }])";
+  plane.light = tools::Image::sized(plane.width, plane.height, 3);
+  for (size_t i = 0; i < plane.light.values.size(); ++i)
+    plane.light.values[i] = std::sin(static_cast<float>(i)) + 1.1f;
+  write_plane(path("capture"), plane);
+  const Outcome outcome = apply();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(picture("scattered.exr").values, plane.light.values);
+  // Colour goes back to the host through half floats: 11 significant bits, rounded to nearest.
+  const tools::Image combined = picture("combined.exr");
+  for (size_t i = 0; i < combined.values.size(); ++i)
+    EXPECT_NEAR(combined.values[i], plane.light.values[i], plane.light.values[i] * 0x1p-11f);
+}
+
+TEST_F(Captures, TheReferenceOfEvenLightIsThatLight) {
+  write_plane(path("capture"));
+  const Outcome outcome = reference();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const float value : picture("reference.exr").values)
+    EXPECT_NEAR(value, 0.5f, 1e-6f);
+}
+
+TEST_F(Captures, WhatWasAppliedIsComparedWithItsReferenceFrameByFrame) {
+  Plane plane;
+  plane.light = filled(plane.width, plane.height, 3, 0.25f);
+  for (uint32_t y = 0; y < plane.height; ++y) // an edge, which scatters
+    for (uint32_t x = 0; x < plane.width / 2; ++x)
+      plane.light.at(x, y, 0) = plane.light.at(x, y, 1) = plane.light.at(x, y, 2) = 1.0f;
+  write_plane(path("capture/frame_0000"), plane);
+  write_plane(path("capture/frame_0001"), plane);
+  ASSERT_EQ(apply({"--set", "samples=512"}).exit_code, 0);
+  for (const std::string subset : {"0", "100"}) {
+    ASSERT_EQ(
+        run({"reference", "--frames", path("capture"), "--out", path("truth" + subset), "--subset", subset})
+            .exit_code,
+        0);
+    const Outcome outcome = run({"compare", path("out"), path("truth" + subset), "--least-psnr", "35"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("frame_0000/scattered.exr"), HasSubstr("\nall "),
+                                   HasSubstr(subset == "0" ? "1024" : "100")));
+  }
+  std::filesystem::remove_all(path("out/frame_0001"));
+  EXPECT_THAT(run({"compare", path("out"), path("truth0")}).err, HasSubstr("frame_0001"));
+}
+
+TEST_F(Captures, ASubsetComesWithAMaskOfItsPixels) {
+  write_plane(path("capture"));
+  const Outcome outcome = reference({"--subset", "100"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const tools::Image mask = picture("mask.exr");
+  EXPECT_EQ(std::count(mask.values.begin(), mask.values.end(), 1.0f), 100);
+}
+
+TEST_F(Captures, ValuesThatAreNotFiniteAreTakenAsZeroCountedAndReported) {
+  Plane plane;
+  plane.light = filled(plane.width, plane.height, 3, 0.5f);
+  plane.light.values[7] = std::numeric_limits<float>::quiet_NaN();
+  plane.light.values[70] = std::numeric_limits<float>::infinity();
+  write_plane(path("capture"), plane);
+  const Outcome outcome = apply();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("2 values of subsurface pixels were not finite"));
+  for (const float value : picture("scattered.exr").values)
+    EXPECT_TRUE(std::isfinite(value));
+  EXPECT_THAT(apply({"--json"}).out, HasSubstr("\"sanitised_values\": 2"));
+}
+
+TEST_F(Captures, WhatIsTooBrightWithoutAProfileEndsAtTheBrightestFloat) {
+  constexpr float most = std::numeric_limits<float>::max();
+  Plane plane;
+  plane.light = filled(plane.width, plane.height, 3, most);
+  plane.profile = filled(plane.width, plane.height, 1, 0);
+  write_plane(path("capture"), plane);
+  write_channel(path("capture"), "albedo", filled(plane.width, plane.height, 3, 65504));
+  write_channel(path("capture"), "specular", filled(plane.width, plane.height, 3, most));
+  const Outcome outcome = apply();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const float value : picture("combined.exr").values)
+    EXPECT_EQ(value, most);
+}
+
+// What is not rendered is not written by any pass: whatever the device's memory held must not come out.
+TEST_F(Captures, OutsideOfTheRenderRectangleLightIsAsItCame) {
+  Plane plane;
+  plane.light = filled(plane.width, plane.height, 3, 0.25f);
+  write_plane(path("capture"), plane);
+  write_channel(path("capture"), "albedo", filled(plane.width, plane.height, 3, 0.5f));
+  std::string text = read("capture/frame.json");
+  const std::string whole = "[0, 0, 32, 32]";
+  text.replace(text.find(whole), whole.size(), "[3, 5, 17, 11]");
+  write("capture/frame.json", text);
+  const Outcome outcome = apply();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const float value : picture("scattered.exr").values)
+    EXPECT_NEAR(value, 0.25f, 1e-3f);
+  for (const float value : picture("combined.exr").values)
+    EXPECT_NEAR(value, 0.125f, 1e-3f);
+}
+
+TEST_F(Captures, AnImageOfAnotherSizeIsNamedAndNothingIsWritten) {
+  write_plane(path("capture"));
+  write_channel(path("capture"), "depth", filled(31, 32, 1, 1.0f));
+  const Outcome outcome = apply();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("depth.exr"), HasSubstr("31"), HasSubstr("32")));
+  EXPECT_THAT(files("out"), IsEmpty());
+}
+
+TEST_F(Captures, AProfileThatIsNotThereIsNamed) {
+  Plane plane;
+  plane.profiles = R"([{ "id": 1, "file": "skinn" }])";
+  write_plane(path("capture"), plane);
+  for (const Outcome& outcome : {apply(), reference()}) {
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("frame.json:"), HasSubstr("skinn")));
+  }
+  EXPECT_THAT(files("out"), IsEmpty());
+}
+
+TEST_F(Captures, AFolderWithoutFramesIsRefused) {
+  std::filesystem::create_directories(path("capture"));
+  const Outcome outcome = apply();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("capture"));
+}
+
+TEST_F(Captures, AnOutputFolderThatCannotBeMadeIsAnEnvironmentError) {
+  write_plane(path("capture"));
+  write("out", "a file, not a folder");
+  for (const Outcome& outcome : {apply(), reference()}) {
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_THAT(outcome.err, HasSubstr("output folder"));
+  }
+}
+
+TEST_F(Captures, WithoutAVulkanDriverTheEnvironmentIsToBlameAndNothingIsWritten) {
+  write_plane(path("capture"));
+  RunOptions options;
+  options.environment = {"VK_ICD_FILENAMES=/nonexistent.json", "VK_DRIVER_FILES=/nonexistent.json"};
+  const Outcome outcome = apply({}, options);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("Vulkan"));
+  EXPECT_THAT(files("out"), IsEmpty());
+}
+
+TEST_F(Captures, TheAnswerForProgramsIsOneJsonDocument) {
+  write_plane(path("capture"));
+  const Outcome good = apply({"--json", "--repeat", "2"});
+  EXPECT_EQ(good.exit_code, 0);
+  EXPECT_TRUE(is_json(good.out)) << good.out;
+  EXPECT_THAT(good.out, AllOf(HasSubstr("\"ok\": true"), HasSubstr("\"device_ms\"")));
+  const Outcome bad =
+      run({"apply", "--graph", burley, "--frames", path("none"), "--out", path("out"), "--json"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_TRUE(is_json(bad.out)) << bad.out;
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,100 @@
+// dermis bench all: an index of suites, and a run that goes on where another one stopped.
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class BenchAll : public CommandTest {};
+
+TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
+  const std::vector<std::string> arguments = {"bench", "all", "--out", path("out"), "--suites", "record"};
+  const Outcome first = run(arguments);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
+  const std::string index = read("out/index.html");
+  EXPECT_THAT(index, HasSubstr("<a href='record.html'>"));
+  EXPECT_THAT(index, HasSubstr("dermis bench record --json record.json --html record.html"));
+  EXPECT_THAT(index, HasSubstr("not measured")); // the other suites
+  EXPECT_THAT(index, HasSubstr("<dt>processor"));
+  EXPECT_THAT(read("out/record.html"), HasSubstr("chain of 100"));
+
+  const auto written = std::filesystem::last_write_time(path("out/record.json"));
+  const Outcome second = run(arguments);
+  EXPECT_EQ(second.exit_code, 0);
+  EXPECT_THAT(second.out, HasSubstr("record is there from an earlier run"));
+  EXPECT_EQ(std::filesystem::last_write_time(path("out/record.json")), written);
+
+  // A suite whose page is gone is measured again, and so is one that was made by another line.
+  std::filesystem::remove(path("out/record.html"));
+  EXPECT_THAT(run(arguments).out, Not(HasSubstr("is there from an earlier run")));
+  nlohmann::json state = nlohmann::json::parse(read("out/index.json"));
+  state["suites"][0]["line"] = "dermis bench record --graphs elsewhere";
+  std::ofstream(path("out/index.json")) << state;
+  EXPECT_THAT(run(arguments).out, Not(HasSubstr("is there from an earlier run")));
+}
+
+TEST_F(BenchAll, ASuiteThatFailsIsToldFromOneWhoseRowsMissAndLeavesNoOldPage) {
+  const std::vector<std::string> arguments = {"bench",    "all",    "--out",  path("out"),
+                                              "--suites", "record", "--again"};
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  std::filesystem::remove(path("out/record.html"));
+  write("out/record.html/x", ""); // a folder has its name: the page cannot be written
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("failed"));
+  EXPECT_THAT(read("out/index.html"), HasSubstr("<td class=t>failed"));
+}
+
+TEST_F(BenchAll, ARunThatWasStoppedGoesOnAndAQuickOneIsNotTakenForAWholeOne) {
+  std::vector<std::string> arguments = {"bench",          "all",       "--quick",
+                                        "--out",          path("out"), "--suites",
+                                        "record,compile", "--cache",   path("cache")};
+  RunOptions stopped;
+  stopped.interrupt_after = path("out/index.html"); // which is there after the first suite
+  EXPECT_EQ(run(arguments, stopped).exit_code, 130);
+  EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
+
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("1 of 2: record is there from an earlier run"));
+  EXPECT_THAT(read("out/index.html"), HasSubstr("dermis bench compile --quick --json"));
+  EXPECT_THAT(read("out/compile.html"), HasSubstr("the figures say nothing"));
+  // Every row that the whole suite has, to graphs of 10,000 passes.
+  const nlohmann::json rows = nlohmann::json::parse(read("out/compile.json"))["rows"];
+  EXPECT_EQ(rows.size(), 50u);
+  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row["passes"] == 10000; }),
+            11);
+
+  nlohmann::json state = nlohmann::json::parse(read("out/index.json"));
+  ASSERT_EQ(state["suites"][1]["line"],
+            "dermis bench compile --quick --json compile.json --html compile.html");
+  state["suites"][1]["line"] =
+      "dermis bench compile --json compile.json --html compile.html"; // of a whole run
+  std::ofstream(path("out/index.json")) << state;
+  EXPECT_THAT(run(arguments).out, Not(HasSubstr("compile is there")));
+}
+
+TEST_F(BenchAll, ASuiteThatIsNotThereIsAUsageErrorWithASuggestion) {
+  const Outcome outcome = run({"bench", "all", "--out", path("out"), "--suites", "recrod"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'record'?"));
+  EXPECT_THAT(files(), ::testing::IsEmpty());
+}
+
+TEST_F(BenchAll, AnIndexThatIsNoneOfOursIsNotBelieved) {
+  write("out/index.json",
+        R"({ "suites": [ { "suite": 1, "line": [], "exit_code": "x", "seconds": null } ] })");
+  EXPECT_EQ(run({"bench", "all", "--out", path("out"), "--suites", "record"}).exit_code, 0);
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,118 @@
+// dermis bench error-time: rows, files and messages, on scenes small enough for tests.
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace {
+
+using namespace dermis::test;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class BenchErrorTime : public CommandTest {
+protected:
+  std::string bench_file(const std::string& technique) const {
+    return write("bench.json", R"({
+      "dermis_benchmark": 1, "repetitions": 2, "warm_up": 1, "subset": 64, "skin": "configs/profiles/skin.json",
+      "baseline": { "technique": "separable", "setting": "taps=11" },
+      "self": { "setting": "samples", "samples": 64, "scenes": ["edge/close"] },
+      "scenes": [ { "scene": "edge", "framing": "close", "d_px": [1, 2] },
+                  { "scene": "head", "framing": "natural", "file": "configs/scenes/head_study.json", "model": true },
+                  { "scene": "texture_plane", "framing": "varying", "d_px": [2] } ],
+      "techniques": [ )" + technique +
+                                   R"(
+        { "technique": "burley", "setting": "n=8", "graph": "configs/graphs/burley.json", "set": { "samples": 8 },
+          "heat_map": true },
+        { "technique": "separable", "setting": "taps=11", "graph": "configs/graphs/separable.json", "set": { "taps": "11" } } ] })");
+  }
+  std::vector<std::string> arguments(const std::string& file) const {
+    return {
+        "bench",       "error-time", "--file",         file,    "--size",        "48x32",  "--cache",
+        path("cache"), "--json",     path("out.json"), "--csv", path("out.csv"), "--html", path("out.html")};
+  }
+  static std::string read(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+};
+
+TEST_F(BenchErrorTime, WritesARowForEachSceneAndTechniqueInAllFormats) {
+  const std::string missing =
+      R"({ "technique": "unheard_of", "setting": "", "graph": "configs/graphs/none.json" },)";
+  const Outcome outcome = run(arguments(bench_file(missing)));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("there is no graph 'configs/graphs/none.json'"));
+  EXPECT_THAT(outcome.out, HasSubstr("no model was given (--head FOLDER)"));
+  const std::string json = read(path("out.json"));
+  EXPECT_TRUE(is_json(json));
+  for (const char* key : {"scene", "d_px", "framing", "technique", "setting", "device_ms", "sampling_ms",
+                          "mean_spp", "reads_per_pixel", "rmse", "psnr_db", "max_error", "p99_error",
+                          "psnr_db_sdr8", "psnr_db_self", "transient_bytes", "dispatches", "on_pareto_front"})
+    EXPECT_THAT(json, HasSubstr(std::string("\"") + key + "\": ")) << key;
+  const std::string csv = read(path("out.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 2);
+  EXPECT_THAT(read(path("out.html")), HasSubstr("</html>"));
+  EXPECT_THAT(files("cache"), ::testing::SizeIs(3));
+}
+
+TEST_F(BenchErrorTime, FindsTheSameErrorsAgainFromTheCacheAndWithoutIt) {
+  const auto errors = [&] { // everything but times
+    std::istringstream rows(read(path("out.csv")));
+    std::string all;
+    for (std::string row; std::getline(rows, row);) {
+      std::istringstream cells(row);
+      std::string cell;
+      for (int i = 0; std::getline(cells, cell, ','); ++i)
+        if (i < 5 || (i > 10 && i < 22)) all += cell + ' ';
+    }
+    return all;
+  };
+  const std::string file = bench_file("");
+  ASSERT_EQ(run(arguments(file)).exit_code, 0);
+  const std::string first = errors();
+  ASSERT_EQ(run(arguments(file)).exit_code, 0);
+  EXPECT_EQ(errors(), first);
+  for (const std::string& name : files("cache"))
+    write("cache/" + name, "damaged");
+  ASSERT_EQ(run(arguments(file)).exit_code, 0);
+  EXPECT_EQ(errors(), first);
+}
+
+TEST_F(BenchErrorTime, SaysWhatIsWrongWithItsFile) {
+  const std::string file = write("bad.json", R"({ "dermis_benchmark": 1, "repetitions": 0,
+  "scenes": [ { "scene": "nowhere", "framing": "close", "d_px": [1] } ] })");
+  const Outcome outcome = run({"bench", "error-time", "--file", file});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("bad.json:1:"));
+  EXPECT_THAT(outcome.err, HasSubstr("'nowhere' is no generated scene"));
+  EXPECT_THAT(outcome.err, HasSubstr("repetitions"));
+}
+
+TEST_F(BenchErrorTime, SaysThatNothingIsLeftToMeasure) {
+  const std::string file = bench_file("");
+  EXPECT_EQ(run({"bench", "error-time", "--file", file, "--scenes", "nowhere"}).exit_code, 2);
+  EXPECT_EQ(run({"bench", "error-time", "--file", file, "--techniques", "none"}).exit_code, 2);
+  EXPECT_EQ(run({"bench", "error-time", "--size", "0x3"}).exit_code, 2);
+}
+
+TEST_F(BenchErrorTime, TheShippedFileIsReadable) {
+  const Outcome outcome = run({"bench", "error-time", "--scenes", "edge", "--techniques", "burley", "--size",
+                               "16x16", "--csv", "-", "--cache", "", "--study"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::StartsWith("scene,d_px,framing"));
+}
+
+TEST_F(BenchErrorTime, AGraphOrSettingThatCannotBeUsedEndsItWithAReason) {
+  const std::string wrong = R"({ "technique": "wrong", "setting": "", "graph": "configs/graphs/burley.json",
+                                 "set": { "sample": 8 } },)";
+  const Outcome outcome = run({"bench", "error-time", "--file", bench_file(wrong), "--size", "32x32"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("configs/graphs/burley.json"));
+  EXPECT_THAT(outcome.err, HasSubstr("sample"));
+}
+
+} // namespace

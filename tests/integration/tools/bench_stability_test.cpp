@@ -1,0 +1,91 @@
+// dermis bench stability: rows, exit code, and that it sees what is broken.
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <map>
+#include <set>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::HasSubstr;
+class BenchStability : public CommandTest {};
+
+TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
+  const std::string rows = path("rows.json"), page = path("rows.html");
+  const Outcome outcome = run({"bench", "stability", "--techniques", "formula,sap,burley", "--cases",
+                               "light_nan,glare_in_the_dark,history_poisoned,size_1x7,velocity_nan,xi_1,"
+                               "guidance_updates_at_1",
+                               "--updates", "20000", "--json", rows, "--html", page});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
+  // Four cases of two settings of sap and two of burley, and a fifth of the one that keeps a history; two
+  // formulas.
+  EXPECT_EQ(document["rows"].size(), 4u * 4u + 1u + 2u);
+  for (const auto& row : document["rows"]) {
+    EXPECT_TRUE(row["holds"]) << row;
+    EXPECT_EQ(row["nonfinite_pixels"], 0) << row;
+    EXPECT_EQ(row["negative_pixels"], 0) << row;
+    EXPECT_LE(row["max_abs_error"], row["bound"]) << row;
+    EXPECT_EQ(row["recovered_after_frames"].is_null(), row["case"] != "history_poisoned") << row;
+  }
+  EXPECT_THAT(outcome.out, HasSubstr("0 of 19 rows do not hold"));
+}
+
+TEST_F(BenchStability, LeadsHistoryAstrayWhereARatioIsNotOne) {
+  const std::string rows = path("rows.json");
+  const Outcome outcome = run({"bench", "stability", "--techniques", "sap_residual", "--cases",
+                               "red_comes,velocity_in_stripes,velocity_of_depth_in_stripes", "--updates",
+                               "1000", "--json", rows});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
+  ASSERT_EQ(document["rows"].size(), 3u);
+  for (const auto& row : document["rows"]) {
+    if (row["case"] == "red_comes")
+      EXPECT_GT(row["max_abs_error"], 1.0) << "a wrong ratio was learned: " << row;
+    else
+      EXPECT_EQ(row["max_abs_error"], 0.0) << row;
+  }
+}
+
+// Light over frames has a history by its overlay alone; only guided samples are asked how many they are.
+TEST_F(BenchStability, AsksATechniqueWhatItHas) {
+  const std::string techniques = write("techniques.json", R"({ "dermis_benchmark": 1, "techniques": [
+    { "technique": "burley", "setting": "alone", "graph": "configs/graphs/burley.json" },
+    { "technique": "burley", "setting": "accumulated", "graph": "configs/graphs/burley.json",
+      "overlays": ["configs/overlays/accumulate.json"] },
+    { "technique": "afis_guided", "setting": "ccv", "graph": "configs/graphs/papers/afis_guided.json",
+      "set": { "guidance": "ccv" } } ] })");
+  const std::string rows = path("rows.json");
+  const Outcome outcome = run({"bench", "stability", "--file", techniques, "--cases",
+                               "velocity_nan,samples_in_a_tile,samples_under_exposure_x16,"
+                               "depth_reversed_infinite_far,size_changes_every_frame,d_0_of_blue,"
+                               "anything_anywhere,anything_under_even_light",
+                               "--json", rows});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
+  std::map<std::string, std::set<std::string>> asked;
+  for (const auto& row : document["rows"]) {
+    EXPECT_TRUE(row["holds"]) << row;
+    asked[row["technique"]].insert(row["case"]);
+  }
+  std::set<std::string> of_all{"depth_reversed_infinite_far", "size_changes_every_frame", "d_0_of_blue",
+                               "anything_anywhere", "anything_under_even_light"};
+  EXPECT_EQ(asked["burley alone"], of_all);
+  of_all.insert("velocity_nan");
+  EXPECT_EQ(asked["burley accumulated"], of_all);
+  of_all.merge(std::set<std::string>{"samples_in_a_tile", "samples_under_exposure_x16"});
+  EXPECT_EQ(asked["afis_guided ccv"], of_all);
+}
+
+TEST_F(BenchStability, RefusesNamesThatNothingHas) {
+  const Outcome outcome =
+      run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no case and technique has these names"));
+}
+
+} // namespace
+} // namespace dermis::test

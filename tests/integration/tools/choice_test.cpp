@@ -1,0 +1,157 @@
+// Choices by budget on the command line: render, calibrate, bench budget.
+#include "tests/framegraph/test_tier.hpp"
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace dermis::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+constexpr const char* graph = "configs/graphs/skin.json";
+constexpr const char* scene = "configs/scenes/bust.json";
+
+struct Choice : CommandTest {};
+
+TEST_F(Choice, OfEachFrameIsToldWithWhatWasExpectedAndMeasured) {
+  const Outcome outcome =
+      run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "4", "--subset", "0", "--budget",
+           "1000", "--meter", "--out", path("out"), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json answer = json::parse(outcome.out);
+  ASSERT_EQ(answer["choices"].size(), 4u);
+  for (const json& frame : answer["choices"]) {
+    // A second is enough for the least error: samples for all, until tiles were counted and none was in
+    // doubt.
+    EXPECT_THAT(frame["technique"].get<std::string>(), ::testing::AnyOf("hybrid smooth", "sap base"));
+    EXPECT_EQ(frame["budget_ms"], 1000);
+    EXPECT_GT(frame["measured_ms"], 0);
+    EXPECT_GT(frame["metered_ms"], 0);
+    EXPECT_EQ(frame["view_tiles"], 8 * 5);
+    EXPECT_GT(frame["scattering_tiles"], 0);
+  }
+}
+
+TEST_F(Choice, IsASentenceForPeople) {
+  const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2",
+                               "--subset", "0", "--budget", "0.001", "--meter", "--out", path("out")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("frame 1: technique=off"));
+  EXPECT_THAT(outcome.out, HasSubstr("budget 0.00; RMSE"));
+  EXPECT_THAT(outcome.out, HasSubstr("(nothing fits: the fastest); next better technique="));
+}
+
+TEST_F(Choice, CalibrateWritesWhatValidateAcceptsAndRenderTakes) {
+  const std::string file = path("calibration.json");
+  const std::string overlay = write("few.json", techniques_alone);
+  const Outcome made =
+      run({"calibrate", graph, "--overlay", overlay, "--size", "64x36", "--frames", "2", "--out", file});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("costs on"));
+  const Outcome checked = run({"validate", file});
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("calibration, no problems"));
+  const Outcome used = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset",
+                            "0", "--calibration", file, "--budget", "5", "--out", path("out")});
+  EXPECT_EQ(used.exit_code, 0) << used.err;
+}
+
+TEST_F(Choice, ACalibrationThatIsNoneIsRefusedWithItsPlace) {
+  const std::string file =
+      write("calibration.json", "{ \"dermis_calibration\": 1,\n \"devise\": \"d\", \"costs\": [] }");
+  const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1",
+                               "--subset", "0", "--calibration", file, "--out", path("out")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("2:2"));
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'device'?"));
+}
+
+TEST_F(Choice, ExplainTellsOfAFrame) {
+  const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid.json", "--frame", "--size", "64x36",
+                               "--budget", "1000", "--meter"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("frame 5: "));
+  EXPECT_THAT(outcome.out, HasSubstr("ms predicted")); // d is .2 px: no tile is in doubt at this size
+  EXPECT_THAT(outcome.out, HasSubstr("budget 1000.00"));
+  EXPECT_EQ(run({"explain", graph, "--budget", "2"}).exit_code, 2); // of which frame?
+}
+
+TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
+  constexpr const char* residual = "configs/graphs/papers/sap_residual.json";
+  const Outcome text = run({"explain", residual, "--frame", "--size", "64x36"});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, ::testing::ContainsRegex("\nratio +6 frames +valid since its first frame\n"));
+  const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", residual, "--size", "64x36",
+                               "--frames", "3", "--subset", "0", "--out", path("out"), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  uint32_t age = 0;
+  const json answer = json::parse(outcome.out);
+  for (const json& frame : answer["choices"]) {
+    const json& histories = frame["histories"];
+    ASSERT_EQ(histories.size(), 2u);
+    for (const json& one : histories) {
+      EXPECT_THAT(one["name"].get<std::string>(), ::testing::AnyOf("ratio", "place"));
+      EXPECT_EQ(one["valid"], true);
+      EXPECT_EQ(one["age"], age + 1);
+      EXPECT_EQ(one["why"], "valid since its first frame");
+    }
+    ++age;
+  }
+  const Outcome without = run({"explain", "configs/graphs/sap.json", "--frame", "--size", "64x36"});
+  EXPECT_THAT(without.out, ::testing::Not(HasSubstr("valid since")));
+}
+
+TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {
+  const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid_afis_separable.json", "--frame",
+                               "--size", "64x36", "--set", "taps=11", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json frame = json::parse(outcome.out)[0];
+  const json& classes = frame["tile_classes"];
+  ASSERT_EQ(classes.size(), 4u);
+  double sum = frame["reads_beside"].get<double>();
+  uint64_t tiles = 0;
+  for (const json& one : classes) {
+    sum += 64 * one["tiles"].get<double>() * one["reads_per_pixel"].get<double>();
+    tiles += one["tiles"].get<uint64_t>();
+  }
+  EXPECT_NEAR(frame["reads"].get<double>(), sum, 1e-6 * sum); // T'(n) = sum of w S(m) + O(n)
+  EXPECT_EQ(tiles, frame["scattering_tiles"].get<uint64_t>());
+  const double each = frame["reads_per_sample"];
+  for (size_t k = 2; k < 4; ++k) { // S(m) grows by M(d) a sample
+    const double more =
+        classes[k]["reads_per_pixel"].get<double>() - classes[k - 1]["reads_per_pixel"].get<double>();
+    EXPECT_NEAR(more, each * (classes[k]["samples"].get<double>() - classes[k - 1]["samples"].get<double>()),
+                1e-3);
+  }
+  EXPECT_EQ(classes[1]["samples"], 16);
+}
+
+TEST_F(Choice, BenchSkipGivesARowForEachCase) {
+  DERMIS_IN_FULL_TIER(); // BenchAll runs it, too
+  const std::string file = path("skip.json");
+  const Outcome outcome = run({"bench", "skip", "--size", "48x27", "--repetitions", "1", "--json", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("no_material"));
+}
+
+TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndShare) {
+  DERMIS_IN_FULL_TIER(); // BudgetJudge judges without a device
+  const std::string file = path("budget.json");
+  const Outcome outcome = run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
+                               "--repetitions", "1", "--cache", "", "--json", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+TEST_F(Choice, BenchBudgetNamesScenesItCannotMeasureBeforeItMeasuresOthers) {
+  const Outcome missing = run({"bench", "budget", "--scenes", "flashing,no_such_scene"});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("there is no scene 'no_such_scene'"));
+  const Outcome head = run({"bench", "budget", "--scenes", "flashing,head"});
+  EXPECT_EQ(head.exit_code, 2);
+  EXPECT_THAT(head.err, HasSubstr("scene head: no model was given (--head FOLDER)"));
+}
+
+} // namespace
+} // namespace dermis::test

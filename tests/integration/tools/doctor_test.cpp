@@ -1,0 +1,47 @@
+// dermis doctor: what a newcomer runs first when nothing works.
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::HasSubstr;
+class DoctorVerb : public CommandTest {};
+
+TEST_F(DoctorVerb, NamesTheDeviceAndEverythingThatIsAskedOfIt) {
+  const Outcome text = run({"doctor"});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  for (const char* what : {"Vulkan loader", "shaders at run time", "synchronization2", "maintenance4",
+                           "timestamps", "render and apply use this one"})
+    EXPECT_THAT(text.out, HasSubstr(what));
+  EXPECT_LE(std::count(text.out.begin(), text.out.end(), '\n'), 40) << "one screen, also with two devices";
+}
+
+TEST_F(DoctorVerb, AnswersPrograms) {
+  const Outcome answer = run({"doctor", "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const nlohmann::json document = nlohmann::json::parse(answer.out);
+  EXPECT_TRUE(document["ok"]);
+  size_t used = 0;
+  for (const auto& device : document["devices"]) {
+    used += device["used"].get<bool>() ? 1 : 0;
+    for (const auto& item : device["items"])
+      EXPECT_THAT(item["state"].get<std::string>(), ::testing::AnyOf("ok", "missing", "degraded"));
+  }
+  EXPECT_EQ(used, 1u);
+}
+
+TEST_F(DoctorVerb, SaysWhatToInstallWhereThereIsNoDriver) {
+  RunOptions without;
+  without.environment = {"VK_DRIVER_FILES=/nowhere.json", "VK_ICD_FILENAMES=/nowhere.json"};
+  const Outcome text = run({"doctor"}, without);
+  EXPECT_EQ(text.exit_code, 3);
+  EXPECT_THAT(text.err, HasSubstr("mesa-vulkan-drivers"));
+  EXPECT_THAT(text.out, ::testing::AllOf(HasSubstr("ok       Dermis"), HasSubstr("missing  Vulkan device")));
+}
+
+} // namespace
+} // namespace dermis::test

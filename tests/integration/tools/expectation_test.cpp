@@ -1,0 +1,206 @@
+// dermis test: graphs are held to their expectation files; what changed is shown, and restated when asked.
+
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+struct Expectations : CommandTest {
+  // burley.json as shipped, in this test's folder, with these expectations beside it.
+  std::string beside_burley(const std::string& expectations) const {
+    write("burley.json", text_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json"));
+    return write("burley.expect.json", expectations);
+  }
+};
+
+constexpr const char* two_facts = R"({ "dermis_expect": 1, "cases": [
+  // what the smallest host gets
+  { "case": "least", "size": [64, 64], "unbound": ["albedo", "scatter_scale", "scattered_light"],
+    "expect": { "passes": ["classify", "list", "setup", "scatter", "combine"], "history_bytes": 0 } } ] }
+)";
+
+TEST_F(Expectations, EveryShippedGraphHasSomeAndMeetsThem) {
+  size_t graphs = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(DERMIS_SOURCE_DIR "/configs/graphs")) {
+    const std::string name = entry.path().string();
+    if (!name.ends_with(".json") || name.ends_with(".expect.json")) continue;
+    ++graphs;
+    EXPECT_TRUE(std::filesystem::exists(name.substr(0, name.size() - 5) + ".expect.json")) << name;
+  }
+  EXPECT_GE(graphs, 2u);
+  const Outcome outcome = run({"test", "configs/"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("configs/graphs/burley.expect.json: 6 cases as expected"));
+  const Outcome graphs_alone = run({"test", "configs/graphs"});
+  EXPECT_EQ(graphs_alone.exit_code, 0) << "overlays stand beside the folder of graphs\n" << graphs_alone.err;
+}
+
+TEST_F(Expectations, OnlyWhatIsStatedIsHeld) {
+  beside_burley(two_facts);
+  const Outcome outcome = run({"test", path("")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("burley.expect.json: 1 case as expected"));
+}
+
+TEST_F(Expectations, ADifferenceIsShownLineByLine) {
+  std::string wrong = two_facts;
+  wrong.replace(wrong.find("\"scatter\", "), 11, "\"sharpen\", ");
+  const std::string file = beside_burley(wrong);
+  const Outcome outcome = run({"test", file});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr(file + ": case 'least'"), HasSubstr("-     \"sharpen\""),
+                    HasSubstr("+     \"scatter\""), HasSubstr("      \"setup\""), HasSubstr("--update")));
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_EQ(text_of(file), wrong);
+}
+
+TEST_F(Expectations, UpdateChangesTheFactsAndNothingElse) {
+  std::string wrong = two_facts;
+  wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
+  const std::string file = beside_burley(wrong);
+  EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
+  const std::string after = text_of(file);
+  EXPECT_THAT(after, AllOf(HasSubstr("// what the smallest host gets"), HasSubstr("\"history_bytes\": 0"),
+                           HasSubstr("\"size\": [64, 64]"), Not(HasSubstr("barriers"))));
+  EXPECT_EQ(run({"test", file}).exit_code, 0);
+  EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
+  EXPECT_EQ(text_of(file), after);
+}
+
+TEST_F(Expectations, UpdateStatesEverythingOfACaseThatStatesNothing) {
+  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
+  { "case": "new" },
+  { "case": "too_large", "device": { "max_image_dimension": 16 } } ] })");
+  const Outcome before = run({"test", file});
+  EXPECT_EQ(before.exit_code, 1);
+  EXPECT_THAT(before.err, HasSubstr("case 'new': the case has no \"expect\""));
+  const Outcome update = run({"test", file, "--update"});
+  EXPECT_EQ(update.exit_code, 0) << update.err;
+  EXPECT_THAT(text_of(file), AllOf(HasSubstr("\"transient_bytes\""), HasSubstr("\"diagnostics\"")));
+  EXPECT_EQ(run({"test", file}).exit_code, 0) << text_of(file);
+}
+
+TEST_F(Expectations, MessagesThatNobodyStatedAreShown) {
+  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
+  { "case": "small", "device": { "max_image_dimension": 16 }, "expect": {} } ] })");
+  const Outcome outcome = run({"test", file});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("+   \"diagnostics\": ["), HasSubstr("error[D03")));
+}
+
+TEST_F(Expectations, AGraphThatCannotBeReadHasMessagesOnly) {
+  const std::string file = write("bad.expect.json", R"({ "dermis_expect": 1, "cases": [
+  { "case": "syntax", "expect": { "diagnostics": ["D0101"] } } ] })");
+  write("bad.json", "{ \"dermis\": 1,\n \"name\": }");
+  EXPECT_EQ(run({"test", file}).exit_code, 0);
+}
+
+TEST_F(Expectations, WhatTheGraphDoesNotHaveIsNamed) {
+  const auto says = [&](const std::string& inputs, const std::string& message) {
+    const std::string file = beside_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " +
+                                           inputs + ", \"expect\": {} } ] }");
+    for (const char* flag : {"--quiet", "--update"}) {
+      const Outcome outcome = run({"test", file, flag});
+      EXPECT_EQ(outcome.exit_code, 1) << inputs;
+      EXPECT_THAT(outcome.err, HasSubstr(message));
+    }
+  };
+  says(R"("set": { "sample": 8 })", "no setting 'sample'; did you mean 'samples'?");
+  says(R"("set": { "samples": 1 })", "1 is outside 4 .. 4096");
+  says(R"("unbound": ["depth"])", "'depth' is not optional");
+  says(R"("host_formats": { "light_in": "rgba32f" })", "no resource 'light_in'");
+}
+
+TEST_F(Expectations, ErrorsInTheFileAreLocated) {
+  const auto says = [&](const std::string& text, const std::string& message) {
+    const std::string file = beside_burley(text);
+    const Outcome outcome = run({"test", file});
+    EXPECT_EQ(outcome.exit_code, 1) << text;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(file + ":"), HasSubstr(message)));
+  };
+  says(R"({ "dermis_expect": 2, "cases": [] })", ":1:20: error[D0110");
+  says(R"({ "dermis_expect": 1, "cases": [] })", "D01");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "expects": {} } ] })", "did you mean 'expect'?");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "device": { "lacks": ["rays"] } } ] })",
+       "there is no feature 'rays'");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a" }, { "case": "a" } ] })",
+       "two cases are called 'a'");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "size": [0, 4] } ] })", "D0106");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "set": { "samples": [] } } ] })", "D0112");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "host_formats": { "lighting": "rgb" } } ] })",
+       "there is no format 'rgb'");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "expect": { "passes": [1] } } ] })", "D0104");
+}
+
+TEST_F(Expectations, NothingToCompareIsNoSuccess) {
+  EXPECT_EQ(run({"test", path("")}).exit_code, 1);
+  EXPECT_EQ(run({"test", path("none.expect.json")}).exit_code, 1);
+  EXPECT_EQ(run({"test", "configs/graphs/burley.json"}).exit_code, 1);
+  EXPECT_EQ(run({"test"}).exit_code, 2);
+  const std::string lonely =
+      write("lonely.expect.json", R"({ "dermis_expect": 1, "cases": [ { "case": "a" } ] })");
+  const Outcome outcome = run({"test", lonely, "--update"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("there is no graph"));
+}
+
+TEST_F(Expectations, ResultsAreWrittenForBuildServersAndPrograms) {
+  std::string wrong = two_facts;
+  wrong.replace(wrong.find("\"least\""), 7, "\"a<b & c\"");
+  wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
+  const std::string file = beside_burley(wrong);
+  const Outcome outcome = run({"test", file, "configs", "--junit", path("results.xml"), "--json"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
+  EXPECT_THAT(outcome.out, StartsWith("{\n  \"ok\": false,"));
+  EXPECT_THAT(text_of(path("results.xml")),
+              AllOf(StartsWith("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites"),
+                    HasSubstr("failures=\"1\""), HasSubstr("name=\"a&lt;b &amp; c\""),
+                    HasSubstr("&quot;history_bytes&quot;: 5"), HasSubstr("burley.expect.json")));
+  const Outcome unwritable = run({"test", "configs", "--junit", path("no/such/results.xml")});
+  EXPECT_EQ(unwritable.exit_code, 3);
+}
+
+TEST_F(Expectations, OverlaysOfACaseComeFromDeclaredFoldersOnly) {
+  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
+  { "case": "changed", "overlays": ["changes/less.json"], "unbound": ["scattered_light"],
+    "expect": { "passes": ["classify", "list", "setup", "scatter"] } } ] })");
+  std::filesystem::create_directories(path("other/changes"));
+  const std::string overlay = R"({ "dermis_overlay": 1, "edits": [ { "remove": "/passes/combine" },
+    { "set": "/passes/scatter/write/scattered", "to": "lighting" } ] })";
+  write("other/changes/less.json", overlay);
+  const Outcome nowhere = run({"test", file});
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_THAT(nowhere.err, AllOf(HasSubstr("overlay 'changes/less.json': there is no such file in"),
+                                 HasSubstr("--root declares further folders")));
+  const Outcome declared = run({"test", file, "--root", path("other")});
+  EXPECT_THAT(declared.err, Not(HasSubstr("no such file")));
+  std::filesystem::create_directories(path("changes"));
+  std::filesystem::create_symlink(path("other/changes/less.json"), path("changes/less.json"));
+  EXPECT_EQ(run({"test", file}).exit_code, declared.exit_code) << "a link inside of the folder";
+  std::filesystem::remove(path("changes/less.json"));
+  std::filesystem::create_symlink(DERMIS_SOURCE_DIR "/configs/overlays/full_precision.json",
+                                  path("changes/less.json"));
+  const Outcome outside = run({"test", file});
+  EXPECT_EQ(outside.exit_code, 1);
+  EXPECT_THAT(outside.err, HasSubstr("leads out of"));
+  const std::string escaping =
+      beside_burley(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "overlays": ["../x.json"] } ] })");
+  EXPECT_THAT(run({"test", escaping}).err, AllOf(HasSubstr(escaping + ":1:"), HasSubstr("D0115")));
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,165 @@
+// capture, report-bug and render --trace: what they write is what other verbs and programs take.
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+namespace dermis::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+class Keep : public CommandTest {};
+
+TEST_F(Keep, ACapturedSceneIsValidAndCanBeApplied) {
+  const Outcome outcome = run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size",
+                               "48x27", "--frames", "2", "--first", "3"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(run({"validate", path("capture")}).exit_code, 0);
+  const Outcome applied = run(
+      {"apply", "--graph", "configs/graphs/burley.json", "--frames", path("capture"), "--out", path("out")});
+  EXPECT_EQ(applied.exit_code, 0) << applied.err;
+  EXPECT_THAT(files("out"), Contains("frame_0001/scattered.exr"));
+}
+
+TEST_F(Keep, ACaptureIsWhatRenderingWithAGraphCaptures) {
+  ASSERT_EQ(
+      run({"capture", "configs/scenes/bust.json", "--out", path("a"), "--size", "48x27", "--frames", "1"})
+          .exit_code,
+      0);
+  ASSERT_EQ(run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/burley.json", "--capture",
+                 path("b"), "--out", path("out"), "--size", "48x27", "--frames", "1", "--subset", "0"})
+                .exit_code,
+            0);
+  ASSERT_EQ(files("a"), files("b"));
+  for (const std::string& file : files("a"))
+    EXPECT_EQ(read("a/" + file), read("b/" + file)) << file; // folders read as nothing
+}
+
+TEST_F(Keep, ABugReportIsCompleteAndItsLineShowsTheSame) {
+  const Outcome outcome =
+      run({"report-bug", "configs/graphs/burley.json", "--overlay", "configs/overlays/full_precision.json",
+           "--set", "samples=8", "--size", "48x27", "--count", "1", "--out", path("bug"), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* file : {"burley.json", "overlays/0_full_precision.json", "settings.json", "plan.json",
+                           "graph.plan", "device.json", "README.txt", "capture/frame_0000/frame.json"})
+    EXPECT_THAT(files("bug"), Contains(file));
+  EXPECT_EQ(json::parse(read("bug/settings.json"))["samples"], 8);
+  EXPECT_TRUE(json::parse(read("bug/plan.json")).contains("reasons"));
+  EXPECT_TRUE(json::parse(read("bug/device.json")).contains("ok"));
+  EXPECT_EQ(run({"plan", "verify", path("bug/graph.plan")}).exit_code, 0);
+
+  const std::string replay = json::parse(outcome.out)["replay"];
+  EXPECT_EQ(replay, "dermis apply --graph burley.json --frames capture --out replay --overlay "
+                    "overlays/0_full_precision.json --set samples=8");
+  EXPECT_THAT(read("bug/README.txt"), HasSubstr(replay));
+  // The same line, from where the tests run.
+  const Outcome again =
+      run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"), "--out",
+           path("replay"), "--overlay", path("bug/overlays/0_full_precision.json"), "--set", "samples=8"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(files("replay"), Contains("frame_0000/combined.exr"));
+}
+
+TEST_F(Keep, ABugReportTakesTheLastFrameOfAnEnginesCaptureAndFilesThatAGraphIncludes) {
+  ASSERT_EQ(run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size", "32x18",
+                 "--frames", "2"})
+                .exit_code,
+            0);
+  write("graphs/parts/back.json", R"({ "dermis_fragment": 1, "passes": [
+    { "pass": "combine", "kind": "subsurface.combine", "read": { "scattered": "light", "material": "material",
+      "tiles": "tiles", "arguments": "arguments" }, "write": { "lighting": "lighting" } } ] })");
+  const std::string graph = write("graphs/main.json", R"({ "dermis": 1, "name": "main",
+    "imports": { "lighting": { "format": "rgba16f", "size": "view" }, "depth": { "format": "depth", "size": "view" },
+      "material": { "format": "r8_uint", "size": "view" } },
+    "resources": { "classes": { "buffer": { "stride": 4, "count": "view/8" } },
+      "tiles": { "buffer": { "stride": 4, "count": "view/8", "extra": 1 } },
+      "arguments": { "buffer": { "stride": 4, "count": [4, 1] } }, "light": { "format": "rgba16f", "size": "view" } },
+    "passes": [
+      { "pass": "classify", "kind": "subsurface.classify", "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" } },
+      { "pass": "list", "kind": "subsurface.tile_list", "read": { "classes": "classes" }, "write": { "tiles": "tiles", "arguments": "arguments" } },
+      { "pass": "setup", "kind": "subsurface.setup", "read": { "lighting": "lighting", "material": "material", "depth": "depth",
+        "tiles": "tiles", "arguments": "arguments" }, "write": { "light": "light" } },
+      { "include": "parts/back.json" } ],
+    "exports": ["lighting"] })");
+  const Outcome outcome =
+      run({"report-bug", graph, "--frames", path("capture"), "--size", "32x18", "--out", path("bug")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(files("bug"), Contains("parts/back.json"));
+  EXPECT_THAT(files("bug/capture"), ::testing::Not(Contains("frame_0001")));
+  EXPECT_EQ(run({"validate", path("bug/main.json"), path("bug/capture")}).exit_code, 0);
+}
+
+TEST_F(Keep, ABugReportMayBeOneArchive) {
+  const Outcome outcome = run({"report-bug", "configs/graphs/burley.json", "--size", "32x18", "--count", "1",
+                               "--out", path("bug.tar.gz")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(files(), ::testing::ElementsAre("bug.tar.gz"));
+  const Outcome there = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")});
+  EXPECT_EQ(there.exit_code, 3);
+  EXPECT_THAT(there.err, HasSubstr("is there: choose another name"));
+  const Outcome zip = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.zip")});
+  EXPECT_EQ(zip.exit_code, 2);
+  EXPECT_THAT(zip.err, HasSubstr(".tar.gz or .tgz"));
+  ASSERT_EQ(std::system(("tar -xzf " + path("bug.tar.gz") + " -C " + path(".")).c_str()), 0);
+  const Outcome again = run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
+                             "--out", path("replay")});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+}
+
+TEST_F(Keep, ABugReportNeitherWritesOverAFolderNorLeavesHalfOfOne) {
+  write("full/file", "x");
+  EXPECT_EQ(run({"report-bug", "configs/graphs/burley.json", "--out", path("full")}).exit_code, 3);
+  EXPECT_EQ(
+      run({"report-bug", "configs/graphs/burley.json", "--scene", path("none.json"), "--out", path("bug")})
+          .exit_code,
+      1);
+  EXPECT_THAT(files(), ::testing::ElementsAre("full", "full/file"));
+}
+
+TEST_F(Keep, ATraceHasEveryPassOfEveryFrameAndNestsPerfectly) {
+  const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/skin.json",
+                               "--size", "48x27", "--frames", "3", "--subset", "0", "--budget", "1000",
+                               "--out", path("out"), "--trace", path("trace.json"), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json passes = json::parse(outcome.out)["passes"];
+  const json trace = json::parse(read("trace.json"));
+  std::map<std::string, int> seen;
+  std::map<int, std::vector<std::pair<double, double>>> tracks;
+  int counters = 0, choices = 0;
+  for (const json& event : trace.at("traceEvents")) {
+    const std::string phase = event.at("ph");
+    counters += phase == "C";
+    choices += phase == "i";
+    if (phase != "X") continue;
+    EXPECT_GE(event.at("dur").get<double>(), 0.0);
+    tracks[event.at("tid")].emplace_back(event.at("ts"), event.at("dur"));
+    ++seen[event.at("name")];
+  }
+  for (const json& pass : passes)
+    EXPECT_EQ(seen[pass.at("pass")], 3) << pass;
+  for (const char* phase :
+       {"record scene", "run scene", "read inputs", "record graph", "run graph", "read pictures"})
+    EXPECT_EQ(seen[phase], 3) << phase;
+  EXPECT_EQ(seen["frame 2"], 1);
+  EXPECT_EQ(counters, 6);
+  EXPECT_GE(choices, 1);
+  // Each span of a track ends before the next begins, or holds it whole: microseconds, to rounding.
+  for (auto& [track, spans] : tracks) {
+    std::vector<double> ends;
+    for (const auto& [begin, duration] : spans) {
+      while (!ends.empty() && ends.back() <= begin + 1e-6)
+        ends.pop_back();
+      EXPECT_TRUE(ends.empty() || begin + duration <= ends.back() + 1e-6) << "track " << track;
+      ends.push_back(begin + duration);
+    }
+  }
+}
+
+} // namespace
+} // namespace dermis::test

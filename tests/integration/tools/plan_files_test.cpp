@@ -1,0 +1,179 @@
+// dermis plan: what is saved can be verified alone and compared with what the graph gives now.
+
+#include "framegraph/serial/plan_file.hpp"
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <fstream>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+using PlanFiles = CommandTest;
+
+std::string contents(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST_F(PlanFiles, HelpOfEveryVerbShowsAnExample) {
+  for (const std::string verb : {"diff", "save", "verify"}) {
+    const Outcome outcome = run({"plan", verb, "--help"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("Example:\n  dermis plan " + verb));
+  }
+  EXPECT_EQ(run({"plan"}).exit_code, 2);
+}
+
+TEST_F(PlanFiles, TheSameGraphIsSavedAsTheSameBytesAndVerifiesAlone) {
+  for (const char* file : {"a.plan", "b.plan"}) {
+    const Outcome outcome = run({"plan", "save", burley, "--size", "640x360", "--out", path(file)});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("passes"));
+  }
+  EXPECT_EQ(contents(path("a.plan")), contents(path("b.plan")));
+  EXPECT_THAT(files(), ::testing::ElementsAre("a.plan", "b.plan"));
+  const Outcome verified = run({"plan", "verify", path("a.plan")});
+  EXPECT_EQ(verified.exit_code, 0) << verified.err;
+  EXPECT_THAT(verified.out, HasSubstr("no hazard"));
+  const Outcome json = run({"plan", "save", burley, "--json", "--out", path("c.plan")});
+  EXPECT_TRUE(is_json(json.out)) << json.out;
+  EXPECT_THAT(json.out, HasSubstr("\"sha256\""));
+  EXPECT_EQ(run({"plan", "save", path("a.plan"), "--out", path("d.plan")}).exit_code, 2);
+  EXPECT_EQ(run({"plan", "save", burley}).exit_code, 2) << "no --out";
+  EXPECT_EQ(run({"plan", "save", burley, "--out", path("no/such/folder/a.plan")}).exit_code, 3);
+}
+
+TEST_F(PlanFiles, PassesDeclaredAsyncGetAQueueWhereItIsAskedFor) {
+  const std::string graph = write("two.json", R"({ "dermis": 1, "name": "two",
+  "imports": { "light": { "format": "rgba16f", "size": "view" } },
+  "resources": { "a": { "format": "rgba16f", "size": "view" }, "b": { "format": "rgba16f", "size": "view/2" },
+    "out": { "format": "rgba16f", "size": "view/4" } },
+  "passes": [
+    { "pass": "first", "kind": "subsurface.pyramid_down", "read": { "fine": "light" }, "write": { "coarse": "a" } },
+    { "pass": "aside", "kind": "subsurface.pyramid_down", "queue": "async", "read": { "fine": "a" }, "write": { "coarse": "b" } },
+    { "pass": "last", "kind": "subsurface.pyramid_down", "read": { "fine": "b" }, "write": { "coarse": "out" } } ],
+  "exports": ["out"] })");
+  const Outcome one = run({"explain", graph}), two = run({"explain", graph, "--two-queues"});
+  EXPECT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_THAT(one.out, Not(HasSubstr("async queue")));
+  EXPECT_THAT(two.out, AllOf(HasSubstr("aside (subsurface.pyramid_down) on the async queue"),
+                             HasSubstr("the main queue reaches point 1"),
+                             HasSubstr("waits for point 1 of the async queue")));
+  ASSERT_EQ(run({"plan", "save", graph, "--two-queues", "--out", path("two.plan")}).exit_code, 0);
+  EXPECT_THAT(run({"plan", "verify", path("two.plan")}).out, HasSubstr("no hazard"));
+  EXPECT_THAT(run({"plan", "diff", path("two.plan"), graph}).out, HasSubstr("single queue"));
+}
+
+TEST_F(PlanFiles, ADamagedPlanIsRefusedWithTheByte) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const std::string whole = contents(path("a.plan"));
+  const std::string cut = write("cut.plan", whole.substr(0, whole.size() - 9));
+  const Outcome outcome = run({"plan", "verify", cut});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("cut.plan"), HasSubstr("D0321 plan_file"), HasSubstr("byte "),
+                                 HasSubstr("the file ends inside of")));
+  EXPECT_EQ(run({"plan", "diff", cut, burley}).exit_code, 1);
+  EXPECT_THAT(run({"plan", "verify", burley}).err, HasSubstr("a saved plan begins with DERMPLAN"));
+  EXPECT_THAT(run({"plan", "verify", path("none.plan")}).err, HasSubstr("does not exist"));
+  EXPECT_TRUE(is_json(run({"plan", "verify", cut, "--json"}).out));
+}
+
+// The stages that the first barrier waits for are set to none: its bytes are found by what differs.
+TEST_F(PlanFiles, APlanWithAHazardIsRefusedWithTheNamesOfPassAndResource) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const std::string whole = contents(path("a.plan"));
+  // Every barrier from compute to compute has these 16 bytes: source and destination stages.
+  const std::string stages("\0\x08\0\0\0\0\0\0\0\x08\0\0\0\0\0\0", 16);
+  const size_t at = whole.find(stages);
+  ASSERT_NE(at, std::string::npos);
+  std::string bad = whole;
+  bad[at + 1] = '\0';
+  const Outcome outcome = run({"plan", "verify", write("bad.plan", bad)});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0322 plan_refused"), HasSubstr("is '")));
+}
+
+// Seventeen images of a million parts together, which no graph can have.
+TEST_F(PlanFiles, APlanThatTakesTooLongIsNotVerified) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  Diagnostics diagnostics;
+  std::optional<SavedPlan> saved = read_plan("a.plan", contents(path("a.plan")), diagnostics);
+  ASSERT_TRUE(saved);
+  Plan& plan = saved->plan;
+  for (uint32_t i = 0; i < 17; ++i) {
+    PlanResource image;
+    image.mips = 31;
+    image.layers = 2048;
+    image.first_instance = static_cast<uint32_t>(plan.placements.size());
+    const auto resource = static_cast<uint32_t>(plan.resources.size());
+    plan.placements.push_back({resource, static_cast<uint32_t>(plan.heaps.size()), 0, 64, 64});
+    plan.heaps.push_back({0xffffffffu, 64, 64});
+    plan.resources.push_back(image);
+    saved->names.resources.push_back("image");
+    for (uint16_t layer = 0; layer < 2048; ++layer) {
+      ++plan.final_barrier_count;
+      PlanBarrier& barrier = plan.barriers.emplace_back();
+      barrier.resource = resource;
+      barrier.range = {static_cast<uint16_t>(layer % 31), 1, layer, 1};
+    }
+  }
+  const std::string file = write("large.plan", write_plan(*saved));
+  const Outcome outcome = run({"plan", "verify", file});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0327 plan_not_verified"), HasSubstr("the plan is not verified"),
+                                 Not(HasSubstr("defect")), Not(HasSubstr("report"))));
+  EXPECT_THAT(outcome.out, IsEmpty());
+}
+
+TEST_F(PlanFiles, AGraphDoesNotDifferFromItsSavedPlan) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const Outcome same = run({"plan", "diff", path("a.plan"), burley, "--exit-code"});
+  EXPECT_EQ(same.exit_code, 0) << same.out;
+  EXPECT_THAT(same.out, AllOf(HasSubstr("the plans are the same"), Not(HasSubstr("barriers\n"))));
+}
+
+TEST_F(PlanFiles, TwoGraphsDifferByThePassesThatEachHasAlone) {
+  const Outcome diff = run({"plan", "diff", burley, "configs/graphs/separable.json"});
+  EXPECT_EQ(diff.exit_code, 0) << "differences are no failure unless asked for";
+  EXPECT_THAT(diff.out, AllOf(HasSubstr("the plans differ"), HasSubstr("- scatter: subsurface.burley"),
+                              HasSubstr("+ "), HasSubstr("subsurface.separable"), HasSubstr("totals")));
+  EXPECT_EQ(run({"plan", "diff", burley, "configs/graphs/separable.json", "--exit-code"}).exit_code, 1);
+  const Outcome json = run({"plan", "diff", burley, "configs/graphs/separable.json", "--json"});
+  EXPECT_TRUE(is_json(json.out)) << json.out;
+  EXPECT_THAT(json.out, HasSubstr("\"same\": false"));
+  EXPECT_THAT(json.err, IsEmpty());
+}
+
+TEST_F(PlanFiles, OneGraphIsComparedUnderTwoSetsOfOptions) {
+  const Outcome size = run({"plan", "diff", burley, "--b-size", "960x540"});
+  EXPECT_EQ(size.exit_code, 0) << size.err;
+  EXPECT_THAT(size.out, AllOf(HasSubstr("~ view: 1920x1080 -> 960x540"), HasSubstr("transients ")));
+  const Outcome set = run({"plan", "diff", burley, "--set", "samples=16", "--b-set", "samples=8"});
+  EXPECT_THAT(set.out, HasSubstr("~ samples: 16 -> 8"));
+  const Outcome overlay =
+      run({"plan", "diff", burley, "--b-overlay", "configs/overlays/full_precision.json", "--exit-code"});
+  EXPECT_EQ(overlay.exit_code, 1) << overlay.err;
+  EXPECT_THAT(overlay.out, HasSubstr("rgba32f"));
+  const Outcome slot = run({"plan", "diff", burley, "--b-unbound", "scatter_scale", "--exit-code"});
+  EXPECT_EQ(slot.exit_code, 1) << slot.err;
+  EXPECT_THAT(slot.out, HasSubstr("unbound slots: none -> scatter_scale"));
+}
+
+TEST_F(PlanFiles, WhatCannotBeComparedIsAUsageError) {
+  EXPECT_THAT(run({"plan", "diff", burley}).err, HasSubstr("name two plans"));
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const Outcome saved = run({"plan", "diff", burley, path("a.plan"), "--b-set", "samples=8"});
+  EXPECT_EQ(saved.exit_code, 2);
+  EXPECT_THAT(saved.err, HasSubstr("is a saved plan"));
+  const Outcome unknown = run({"plan", "diff", burley, "--b-set", "sample=8"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'samples'?"));
+}
+
+} // namespace
+} // namespace dermis::test

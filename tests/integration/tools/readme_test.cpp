@@ -1,0 +1,146 @@
+// README.md and docs: what they show is run, compiled, and there.
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace dermis::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path repository = DERMIS_SOURCE_DIR;
+
+// What stands between ```language and ```, in order.
+std::vector<std::string> blocks(const std::string& text, const std::string& language) {
+  std::vector<std::string> found;
+  const std::string opening = "```" + language + "\n";
+  for (size_t at = text.find(opening); at != std::string::npos; at = text.find(opening, at)) {
+    at += opening.size();
+    const size_t end = text.find("```", at);
+    found.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return found;
+}
+
+std::vector<std::string> words(const std::string& line) {
+  std::istringstream in(line);
+  std::vector<std::string> all;
+  for (std::string word; in >> word;)
+    all.push_back(word);
+  return all;
+}
+
+class Readme : public CommandTest {
+protected:
+  const std::string text = text_of(repository / "README.md");
+
+  // A line that a reader would type, on a small picture and into this test's folder.
+  void expect_runs(const std::string& line) {
+    std::vector<std::string> arguments = words(line.substr(0, line.find(" #")));
+    ASSERT_GT(arguments.size(), 1u) << line;
+    arguments.erase(arguments.begin()); // the program
+    for (size_t i = 0; i + 1 < arguments.size(); ++i) {
+      if (arguments[i] == "--size") arguments[i + 1] = "64x36";
+      if (arguments[i] == "--frames") arguments[i + 1] = "1";
+      if (arguments[i] == "--out") arguments[i + 1] = path("out");
+    }
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << line << "\n" << outcome.err;
+  }
+};
+
+TEST_F(Readme, TheGraphInFiveMinutesRuns) {
+  const auto shown = blocks(text, "jsonc");
+  ASSERT_EQ(shown.size(), 1u);
+  const std::string graph = write("shown.json", shown[0]);
+  const Outcome valid = run({"validate", graph});
+  EXPECT_EQ(valid.exit_code, 0) << valid.err;
+  const Outcome rendered = run({"render", "configs/scenes/bust.json", "--graph", graph, "--size", "64x36",
+                                "--frames", "1", "--out", path("out")});
+  EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
+  EXPECT_THAT(shown[0], ::testing::HasSubstr("\"albedo\": \"albedo\"")) << "it would render white plaster";
+}
+
+TEST_F(Readme, EveryLineForTheShellRuns) {
+  size_t lines = 0;
+  for (const std::string& block : blocks(text, "sh")) {
+    std::istringstream in(block);
+    for (std::string line; std::getline(in, line);) {
+      if (line.starts_with("./")) {
+        EXPECT_TRUE(fs::exists(repository / words(line)[0])) << line;
+        continue;
+      }
+      ASSERT_TRUE(line.starts_with("build/release/dermis ")) << line;
+      expect_runs(line);
+      ++lines;
+    }
+  }
+  EXPECT_GE(lines, 2u);
+}
+
+TEST_F(Readme, EveryCommandInsideOfALineRuns) {
+  const std::regex command("`(dermis [a-z][^`]* --[^`]*)`");
+  size_t commands = 0;
+  for (std::sregex_iterator at(text.begin(), text.end(), command), end; at != end; ++at) {
+    const std::string line = (*at)[1];
+    if (line.find("...") != std::string::npos) continue; // shortened
+    expect_runs(line);
+    ++commands;
+  }
+  EXPECT_GE(commands, 2u);
+}
+
+TEST_F(Readme, TheToolsPageKnowsEveryVerb) {
+  const std::string tools = text_of(repository / "docs/tools.md");
+  const std::string help = run({"--help"}).out;
+  const std::regex verb("\n  ([a-z][a-z-]+) ");
+  size_t verbs = 0;
+  for (std::sregex_iterator at(help.begin(), help.end(), verb), end; at != end; ++at) {
+    const std::string name = (*at)[1];
+    EXPECT_TRUE(std::regex_search(tools, std::regex("`" + name + "[ `]"))) << name;
+    ++verbs;
+  }
+  EXPECT_GE(verbs, 18u) << help;
+}
+
+TEST_F(Readme, TheShortLinesInCCompile) {
+  auto shown = blocks(text, "c");
+  ASSERT_EQ(shown.size(), 2u);
+  std::string source =
+      "#include <dermis/dermis.h>\n"
+      "dermis_context context; dermis_graph graph; dermis_report report; dermis_choice choice;\n"
+      "dermis_slot slots[8]; uint32_t count; uint64_t completed_frame_index;\n"
+      "void create(void); void choose(void);\n";
+  source += "void create(void) {\n" + shown[0] + "}\nvoid choose(void) {\n" + shown[1] + "}\n";
+  const std::string file = write("shown.c", source);
+  const std::string line = std::string(DERMIS_C_COMPILER) + " -std=c99 -fsyntax-only -Wno-unused-result -I " +
+                           (repository / "integration/include").string() + " " + file;
+  EXPECT_EQ(std::system(line.c_str()), 0) << source;
+}
+
+// Links to files of the repository, out of README.md and every page of docs.
+TEST_F(Readme, EveryLinkLeadsToAFile) {
+  std::vector<fs::path> pages = {repository / "README.md", repository / "CHANGELOG.md",
+                                 repository / "CONTRIBUTING.md"};
+  for (const auto& entry : fs::directory_iterator(repository / "docs"))
+    if (entry.path().extension() == ".md") pages.push_back(entry.path());
+  const std::regex link("\\]\\(([^)#:\\s]+)(#[^)]*)?\\)");
+  size_t links = 0;
+  for (const fs::path& page : pages) {
+    const std::string contents = text_of(page);
+    for (std::sregex_iterator at(contents.begin(), contents.end(), link), end; at != end; ++at) {
+      EXPECT_TRUE(fs::exists(page.parent_path() / (*at)[1].str())) << page << ": " << (*at)[1];
+      ++links;
+    }
+  }
+  EXPECT_GT(links, 50u);
+}
+
+} // namespace
+} // namespace dermis::test

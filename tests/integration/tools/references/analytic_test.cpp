@@ -1,0 +1,51 @@
+#include "integration/tools/references/analytic.hpp"
+
+#include "passes/common/profiles/burley_profile.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dermis::subsurface {
+namespace {
+
+TEST(Analytic, EdgeHasItsTabulatedValues) {
+  const double x[] = {.1, .25, .5, 1, 2, 4, 8};
+  const double expected[] = {.563178, .621756, .689769, .776990, .870563, .947619, .989248};
+  for (int i = 0; i < 7; ++i) {
+    EXPECT_NEAR(burley_edge(3 * x[i], 3), expected[i], 6e-7);
+    EXPECT_NEAR(burley_edge(-3 * x[i], 3), 1 - expected[i], 6e-7);
+  }
+  EXPECT_EQ(burley_edge(0, 1), 0.5);
+}
+
+TEST(Analytic, BesselIntegralEndsAtHalfPi) {
+  EXPECT_NEAR(bessel_k0_integral(60), 1.5707963267948966, 1e-9);
+}
+
+TEST(Analytic, TransferFunctionHasItsTabulatedValues) {
+  const double k[] = {.1, .5, 1, 2, 5};
+  const double expected[] = {.967129, .639632, .413948, .235103, .098918};
+  for (int i = 0; i < 5; ++i)
+    EXPECT_NEAR(burley_mtf(k[i] / 7, 7), expected[i], 6e-7);
+}
+
+TEST(Analytic, DiscIsTheCdfAtItsCentreAndContinuousAtItsRim) {
+  EXPECT_NEAR(burley_disc(0, 2.5, 1.3), burley_cdf(2.5, 1.3), 1e-12);
+  EXPECT_EQ(burley_disc_centre(2.5, 1.3), burley_cdf(2.5, 1.3));
+  EXPECT_NEAR(burley_disc(2.5 - 1e-7, 2.5, 1.3), burley_disc(2.5 + 1e-7, 2.5, 1.3), 1e-4);
+  EXPECT_LT(burley_disc(3, 2.5, 1.3), burley_disc(2, 2.5, 1.3));
+}
+
+TEST(Analytic, AHugeDiscsRimIsAnEdge) {
+  // Curvature of radius 1e4 d moves the edge by about x^2 / 2e4.
+  EXPECT_NEAR(burley_disc(1e4 - 1, 1e4, 1), burley_edge(1, 1), 5e-4);
+  EXPECT_NEAR(burley_disc(1e4 + 1, 1e4, 1), burley_edge(-1, 1), 5e-4);
+}
+
+TEST(Analytic, GaussianLightHasItsTabulatedValues) {
+  EXPECT_NEAR(burley_gaussian_centre(.5, 1), .247374, 6e-7);
+  EXPECT_NEAR(burley_gaussian_centre(2, 1), .605886, 6e-7);
+  EXPECT_NEAR(burley_gaussian_centre(1e4, 1), 1, 1e-6); // wide light: the furnace
+}
+
+} // namespace
+} // namespace dermis::subsurface

@@ -1,0 +1,88 @@
+#include "integration/tools/references/image_reads.hpp"
+
+#include "passes/common/environment.hpp"
+#include "passes/common/kinds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace dermis::subsurface {
+namespace {
+
+const KindRegistry& kinds() {
+  static const KindRegistry registry = make_kinds();
+  return registry;
+}
+
+// All ports bound, settings at their defaults but for one.
+ImageReads reads_of(std::string_view kind_name, std::string_view setting = "", int64_t value = 0,
+                    PerChannel d_px = {4, 2, 1}) {
+  static const std::vector<float> tables = make_sap_tables({true, true}, {});
+  const PassKind& kind = kinds()[kinds().find(kind_name)];
+  std::vector<SettingValue> settings;
+  for (const KindSetting& one : kind.settings) {
+    settings.push_back(one.default_value);
+    if (one.name == setting) settings.back().integer = value;
+  }
+  const auto reads = image_reads(kind, {settings, std::vector<bool>(kind.ports.size(), true), d_px, tables});
+  EXPECT_TRUE(reads.has_value()) << kind_name;
+  return reads.value_or(ImageReads{});
+}
+
+TEST(ImageReads, AreKnownOfEveryKindThatSamplesAnImage) {
+  const std::vector<std::string_view> known = kinds_with_known_reads();
+  for (uint32_t i = 0; i < kinds().size(); ++i) {
+    const PassKind& kind = kinds()[KindId{i}];
+    const bool samples = std::any_of(kind.ports.begin(), kind.ports.end(),
+                                     [](const Port& port) { return port.usage == Usage::sampled_image; });
+    EXPECT_TRUE(!samples || std::count(known.begin(), known.end(), kind.name) == 1)
+        << "count the reads of " << kind.name << " in integration/tools/references/image_reads.cpp";
+  }
+  for (const std::string_view name : known)
+    EXPECT_TRUE(kinds().find(name).valid()) << name;
+}
+
+TEST(ImageReads, AreNoneWhereNoImageIsSampledAndSomeWhereOneIs) {
+  for (const std::string_view name : kinds_with_known_reads()) {
+    const PassKind& kind = kinds()[kinds().find(name)];
+    const bool samples = std::any_of(kind.ports.begin(), kind.ports.end(),
+                                     [](const Port& port) { return port.usage == Usage::sampled_image; });
+    EXPECT_EQ(reads_of(name).per_invocation > 0, samples) << name;
+  }
+}
+
+TEST(ImageReads, OfSamplersGrowByFourASample) {
+  const ImageReads few = reads_of("subsurface.burley", "samples", 8),
+                   many = reads_of("subsurface.burley", "samples", 64);
+  EXPECT_EQ(many.per_invocation - few.per_invocation, 56 * 4);
+  EXPECT_EQ(few.samples, 8);
+}
+
+TEST(ImageReads, OfFilteredSamplesAreTwoMoreASampleBetweenLevelsAndOneAtWholeLevels) {
+  const double none = reads_of("subsurface.afis", "mips", 2).per_invocation;
+  EXPECT_EQ(reads_of("subsurface.afis", "mips", 0).per_invocation - none, 2 * 16);
+  EXPECT_EQ(reads_of("subsurface.afis", "mips", 1).per_invocation - none, 16);
+}
+
+TEST(ImageReads, OfThePyramidsFirstTentEndWhereItHasNoShare) {
+  // Where the profile is a thousandth of a pixel wide, only the pixel itself counts.
+  EXPECT_LT(reads_of("subsurface.sap_gather", "", 0, {1e-3, 1e-3, 1e-3}).per_invocation,
+            reads_of("subsurface.sap_gather", "", 0, {1, 1, 1}).per_invocation);
+}
+
+TEST(ImageReads, OfThePlainPyramidAreFourForEachLevelThatCounts) {
+  const double wide = reads_of("subsurface.pyramid_gather", "", 0, {8, 8, 8}).per_invocation;
+  const double narrow = reads_of("subsurface.pyramid_gather", "", 0, {0.1, 0.1, 0.1}).per_invocation;
+  EXPECT_LT(narrow, wide);
+  EXPECT_LE(wide, 4 + 9 * 4);
+}
+
+TEST(ImageReads, OfAKindThatNobodyCountedAreNotGuessed) {
+  PassKind kind = kinds()[KindId{0}];
+  kind.name = "subsurface.unheard_of";
+  EXPECT_FALSE(image_reads(kind, {}).has_value());
+}
+
+} // namespace
+} // namespace dermis::subsurface

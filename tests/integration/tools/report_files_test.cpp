@@ -1,0 +1,119 @@
+// Reports of benches: what every format keeps, and the figures in them.
+#include "integration/tools/command/bench/report/html.hpp"
+#include "integration/tools/command/bench/report/pareto.hpp"
+#include "integration/tools/command/bench/report/report.hpp"
+#include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/command/run/truth_run.hpp"
+#include "integration/tools/files/capture_truth.hpp"
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace dermis::tools {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Report small_report() {
+  Report report;
+  report.bench = "test";
+  report.title = "Title <&>";
+  report.facts = {{"command", "dermis \"x\""}};
+  report.table.columns = {{"name", "name"}, {"value", "value"}, {"best", "best"}};
+  report.table.rows = {{std::string("a,b \"c\""), 0.1, true}, {std::string("plain"), ReportValue(), false}};
+  report.plots = {{"plot", "x", "y", {{"series", {{1, 2, "point", true}, {10, 1, "other", true}}}}}};
+  report.pictures = {{"maps", "words", {{"one", 2, 1, {0, 0, 0, 255, 255, 255}}}}};
+  return report;
+}
+
+TEST(ReportFiles, JsonIsOneDocumentWithNullForWhatWasNotMeasured) {
+  const std::string text = report_as_json(small_report());
+  EXPECT_TRUE(test::is_json(text));
+  EXPECT_THAT(text, HasSubstr(R"({ "name": "a,b \"c\"", "value": 0.1, "best": true })"));
+  EXPECT_THAT(text, HasSubstr(R"("value": null)"));
+}
+
+TEST(ReportFiles, CsvQuotesWhatWouldBreakIt) {
+  EXPECT_EQ(report_as_csv(small_report()),
+            "name,value,best\r\n\"a,b \"\"c\"\"\",0.1,true\r\nplain,,false\r\n");
+}
+
+TEST(ReportFiles, HtmlEscapesTextAndLoadsNothingFromElsewhere) {
+  const std::string page = report_as_html(small_report());
+  EXPECT_THAT(page, HasSubstr("<h1>Title &lt;&amp;&gt;</h1>"));
+  EXPECT_THAT(page, HasSubstr("dermis &quot;x&quot;"));
+  EXPECT_THAT(page, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
+  EXPECT_THAT(page, HasSubstr("prefers-color-scheme:dark"));
+  for (const char* loaded : {"http:", "https:", "<link", "src='/", "@import"})
+    EXPECT_THAT(page, Not(HasSubstr(loaded)));
+}
+
+TEST(ReportFiles, BaselinesAreGreyAndOwnTechniquesAreNot) {
+  for (const char* own : {"sap", "sap_residual", "hybrid", "restir"})
+    EXPECT_FALSE(is_baseline(own)) << own;
+  for (const char* other : {"fixed", "separable", "afis", "pyramid", "burley"})
+    EXPECT_TRUE(is_baseline(other)) << other;
+  Report report = small_report();
+  EXPECT_THAT(report_as_html(report), Not(HasSubstr("s0 base")));
+  report.plots[0].series[0].baseline = true;
+  EXPECT_THAT(report_as_html(report), HasSubstr("<g class='s0 base b0'>"));
+}
+
+TEST(ReportFiles, PlotsHaveTheTitleOfTheBenchOrThatOfTimeAgainstError) {
+  Report report = small_report();
+  EXPECT_THAT(report_as_html(report), HasSubstr("<h2>Time against error</h2><p>Filled points"));
+  report.plots_title = "Over passes";
+  report.plots_text = "Point at a graph.";
+  EXPECT_THAT(report_as_html(report), HasSubstr("<h2>Over passes</h2><p>Point at a graph.</p>"));
+}
+
+TEST(ReportFiles, Base64IsThatOfTheStandard) { // RFC 4648, section 10
+  const auto coded = [](std::string_view text) {
+    return base64({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  };
+  EXPECT_EQ(coded(""), "");
+  EXPECT_EQ(coded("f"), "Zg==");
+  EXPECT_EQ(coded("fo"), "Zm8=");
+  EXPECT_EQ(coded("foo"), "Zm9v");
+  EXPECT_EQ(coded("foobar"), "Zm9vYmFy");
+}
+
+TEST(Pareto, WhatIsBeatenInBothIsNotOnTheFront) {
+  const std::vector<bool> front = pareto_front({{1, 5}, {2, 3}, {2, 4}, {3, 3}, {4, 1}, {4, 1}});
+  EXPECT_EQ(front, (std::vector<bool>{true, true, false, false, true, true})); // equals stand side by side
+}
+
+subsurface::Profile skin() {
+  subsurface::Profile profile;
+  profile.name = "skin";
+  profile.dmfp_mm = {3.673, 1.367, 0.6827};
+  profile.albedo = {0.44, 0.22, 0.13};
+  subsurface::derive(profile);
+  return profile;
+}
+
+TEST(GeneratedScenes, ShowTheWidestChannelAtTheAskedD) {
+  for (const char* scene : {"edge", "disc", "bumps", "sphere", "depth_step", "texture_plane"}) {
+    ASSERT_TRUE(is_generated(scene));
+    for (const double d_px : {1.0, 4.0}) {
+      const CapturedFrame frame = generate_scene(scene, "close", 64, 48, d_px, skin());
+      EXPECT_NEAR(median_d_px(make_truth_frame(frame).input()), d_px, 1e-6) << scene;
+      for (const float light : frame.lighting.values)
+        ASSERT_TRUE(std::isfinite(light) && light >= 0 && light <= 1.001f) << scene;
+    }
+  }
+  EXPECT_FALSE(is_generated("bust"));
+}
+
+TEST(GeneratedScenes, VaryingPlaneFallsToAnEighthOfItsD) {
+  const CapturedFrame frame = generate_scene("texture_plane", "varying", 64, 8, 16, skin());
+  EXPECT_FLOAT_EQ(frame.scatter_scale.values.front(), 1.0f);
+  EXPECT_FLOAT_EQ(frame.scatter_scale.values.back(), 0.125f);
+}
+
+} // namespace
+} // namespace dermis::tools

@@ -1,0 +1,67 @@
+// sheet: one picture of techniques times materials.
+
+#include "integration/tools/files/png.hpp"
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <algorithm>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Sheet : public CommandTest {
+protected:
+  Outcome sheet(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"sheet", "--out", path("sheet.png"), "--size", "48x27"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+};
+
+TEST_F(Sheet, HasARowWithoutAGraphAndOneForEachAndAColumnForEachMaterial) {
+  const Outcome outcome =
+      sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "skin,configs/profiles/milk.json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("none, sap"), HasSubstr("skin, milk")));
+  std::string problem;
+  const auto picture = tools::read_png(path("sheet.png"), problem);
+  ASSERT_TRUE(picture) << problem;
+  ASSERT_EQ(picture->width, 48u * 2 + 4);
+  ASSERT_EQ(picture->height, 27u * 2 + 4);
+  const auto tile = [&](uint32_t row, uint32_t column) {
+    std::vector<float> values;
+    for (uint32_t y = 0; y < 27; ++y)
+      for (uint32_t x = 0; x < 3 * 48; ++x)
+        values.push_back(picture->values[3 * (size_t{row * 31 + y} * picture->width + column * 52) + x]);
+    return values;
+  };
+  EXPECT_EQ(tile(0, 0), tile(0, 1)); // without a graph, the material does not matter
+  EXPECT_NE(tile(1, 0), tile(0, 0));
+  EXPECT_NE(tile(1, 0), tile(1, 1));
+}
+
+TEST_F(Sheet, TheAnswerForProgramsIsOneJsonDocument) {
+  const Outcome outcome =
+      sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "configs/profiles/skin.json", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("\"rows\""), HasSubstr("\"columns\"")));
+}
+
+TEST_F(Sheet, AMissingProfileIsNamed) {
+  const Outcome outcome = sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "nowhere.json"});
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("nowhere.json"));
+}
+
+TEST_F(Sheet, TooManyPixelsAreAMistakeOfUsage) {
+  const Outcome outcome = run({"sheet", "--out", path("sheet.png"), "--size", "8192x16"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--size"));
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,66 @@
+// dermis graph --html, as far as it needs no browser; tests/integration/tools/viewer opens the page.
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class View : public CommandTest {
+protected:
+  // Skips where the command says that it was built without the page.
+  void SetUp() override {
+    const Outcome outcome =
+        run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--quiet"});
+    if (outcome.exit_code == 3 && outcome.err.find("this program has no viewer") != std::string::npos)
+      GTEST_SKIP() << outcome.err;
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    std::filesystem::remove(path("view.html"));
+  }
+};
+
+size_t count(const std::string& text, std::string_view what) {
+  size_t found = 0;
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
+    ++found;
+  return found;
+}
+
+TEST_F(View, NothingThatAFileSaysEndsAnElement) {
+  const std::string plain = run({"graph", "configs/graphs/burley.json", "--html", "-"}).out;
+  const std::string graph =
+      write("hostile.json",
+            R"({ "dermis": 1, "name": "hostile", "note": "</script><script>hurt_the_reader()</script>",
+    "imports": { "light": { "format": "rgba16f", "size": "view", "note": "</script>" } }, "passes": [], "exports": [] })");
+  const Outcome hostile = run({"graph", graph, "--html", "-"});
+  ASSERT_EQ(hostile.exit_code, 0) << hostile.err;
+  EXPECT_EQ(count(hostile.out, "</script"), count(plain, "</script"));
+  EXPECT_EQ(count(hostile.out, "hurt_the_reader"), 0u);
+}
+
+TEST_F(View, AReportThatIsNoneIsRefusedWithItsPlaceAndNoPageIsWritten) {
+  const std::string report = write("report.json", "{\n  \"passes\": [ { \"pass\": \"classify\" } ] }");
+  const Outcome outcome =
+      run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame", report});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("report.json:2:13: error[D0104 wrong_type]"));
+  EXPECT_THAT(files(), ::testing::ElementsAre("report.json"));
+}
+
+TEST_F(View, AGraphWithErrorsHasNoPage) {
+  const std::string graph = write("broken.json", R"({ "dermis": 1, "name": "broken", "passes": 3 })");
+  EXPECT_EQ(run({"graph", graph, "--html", path("view.html")}).exit_code, 1);
+  EXPECT_THAT(files(), ::testing::ElementsAre("broken.json"));
+}
+
+TEST_F(View, AFrameWithoutAPageIsAUsageError) {
+  EXPECT_EQ(run({"graph", "configs/graphs/burley.json", "--frame", "report.json"}).exit_code, 2);
+  EXPECT_EQ(run({"graph", "configs/graphs/burley.json", "--html", "a.html", "--json"}).exit_code, 2);
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,126 @@
+// dermis watch: a change of a file is answered with what it did to plan and error.
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <thread>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace std::chrono_literals;
+
+class Watch : public CommandTest {
+protected:
+  std::string copy(const std::string& from, const std::string& to) const {
+    std::ifstream file(from, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return write(to, text.str());
+  }
+  std::vector<std::string> arguments(const std::string& graph, const std::string& rounds) const {
+    return {"watch",    "configs/scenes/bust.json",
+            "--graph",  graph,
+            "--size",   "48x27",
+            "--frames", "1",
+            "--subset", "16",
+            "--rounds", rounds,
+            "--out",    path("out")};
+  }
+  // Does `work` once the first rendering is there.
+  std::thread after_the_first(std::function<void()> work) const {
+    return std::thread([picture = path("out/color_0000.exr"), work = std::move(work)] {
+      for (int i = 0; i < 600 && !std::filesystem::exists(picture); ++i)
+        std::this_thread::sleep_for(100ms);
+      std::this_thread::sleep_for(500ms); // files' times tell changes apart
+      work();
+    });
+  }
+};
+
+TEST_F(Watch, SaysWhatAChangedGraphDoesToThePlanAndTheError) {
+  const std::string graph = copy("configs/graphs/burley.json", "graph.json");
+  std::thread editor = after_the_first([&] { copy("configs/graphs/separable.json", "graph.json"); });
+  const Outcome outcome = run(arguments(graph, "2"));
+  editor.join();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("graph.json changed"));
+  EXPECT_THAT(outcome.out, HasSubstr("horizontal")); // a pass that burley does not have
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
+}
+
+TEST_F(Watch, GoesOnBehindAFileWithErrors) {
+  const std::string graph = copy("configs/graphs/burley.json", "graph.json");
+  std::thread editor = after_the_first([&] {
+    write("graph.json", "{ \"dermis\": 1, ");
+    std::this_thread::sleep_for(1500ms);
+    copy("configs/graphs/burley.json", "graph.json");
+  });
+  const Outcome outcome = run(arguments(graph, "3"));
+  editor.join();
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("graph.json:1:"));
+  EXPECT_THAT(outcome.out, HasSubstr("plan: the same"));
+}
+
+TEST_F(Watch, TellsByItsExitCodeWhetherTheLastRoundRendered) {
+  write("graph.json", "{ \"dermis\": 1, ");
+  EXPECT_EQ(run(arguments(path("graph.json"), "1")).exit_code, 1);
+}
+
+TEST_F(Watch, AShaderThatChangesIsBuiltByTheGivenLine) {
+  write("shaders/kernel.comp", "before");
+  std::thread editor = after_the_first([&] { write("shaders/kernel.comp", "behind it"); });
+  std::vector<std::string> words = arguments("configs/graphs/burley.json", "2");
+  words.insert(words.end(),
+               {"--shaders", path("shaders"), "--build", "echo built > '" + path("built") + "'"});
+  const Outcome outcome = run(words);
+  editor.join();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(path("built")));
+  EXPECT_THAT(outcome.out, HasSubstr("kernel.comp changed"));
+}
+
+// Rendered anew with the text of the folder: a broken one is told with its place, a good one is seen.
+TEST_F(Watch, AShaderThatChangesIsRenderedWith) {
+  const Outcome has = run({"doctor", "--json"});
+  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
+    GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  std::filesystem::create_directories(path("."));
+  std::filesystem::copy("shaders", path("shaders"), std::filesystem::copy_options::recursive);
+  const std::string kernel = "shaders/common/subsurface_combine.comp", store = "round_to_half(color)";
+  const auto change = [&](const std::string& to) {
+    std::ifstream file(kernel, std::ios::binary);
+    std::ostringstream read;
+    read << file.rdbuf();
+    std::string text = read.str();
+    text.replace(text.find(store), store.size(), to);
+    write(kernel, text);
+  };
+  std::thread editor = after_the_first([&] {
+    change("round_to_half(colour)");
+    std::this_thread::sleep_for(3s);
+    change("round_to_half(0.5 * color)");
+  });
+  std::vector<std::string> words = arguments("configs/graphs/burley.json", "3");
+  words.insert(words.end(), {"--shaders", path("shaders")});
+  const Outcome outcome = run(words);
+  editor.join();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("common/subsurface_combine.comp changed"));
+  EXPECT_THAT(outcome.err, ::testing::ContainsRegex(
+                               "common/subsurface_combine.comp:[0-9]+:[0-9]+: error.D0615 shader_error"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
+}
+
+TEST_F(Watch, CtrlCEndsIt) {
+  RunOptions options;
+  options.interrupt_after = path("out/color_0000.exr");
+  EXPECT_EQ(run(arguments("configs/graphs/burley.json", "0"), options).exit_code, 130);
+}
+
+} // namespace
+} // namespace dermis::test

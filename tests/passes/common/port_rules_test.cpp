@@ -1,0 +1,205 @@
+// What the library's kinds ask of what stands at their ports, beside its size: channels, and one of several
+// ports.
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/model/read_graph.hpp"
+#include "passes/common/kinds.hpp"
+#include "tests/framegraph/text_support.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::testing;
+using Id = DiagnosticId;
+
+struct PortRules : ::testing::Test {
+  KindRegistry kinds = subsurface::make_kinds();
+  Diagnostics diagnostics;
+  std::string text;
+  std::optional<Graph> graph;
+
+  void SetUp() override {
+    std::ifstream in(DERMIS_SOURCE_DIR "/configs/graphs/burley.json");
+    text.assign(std::istreambuf_iterator<char>(in), {});
+    ASSERT_FALSE(text.empty());
+  }
+
+  // The only occurrence of `from`.
+  void replace(std::string_view from, std::string_view to) {
+    const size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    ASSERT_EQ(text.find(from, at + 1), std::string::npos) << from << " is ambiguous";
+    text.replace(at, from.size(), to);
+  }
+
+  void read() {
+    const auto document = parse_document("graph.json", text, diagnostics);
+    ASSERT_TRUE(document) << all_messages(diagnostics);
+    graph = read_graph(*document, kinds, diagnostics);
+  }
+
+  bool compiles(std::string_view unbound = "") {
+    const DeviceProfile device = generic_profile();
+    CompileInput input;
+    input.graph = &*graph;
+    input.kinds = &kinds;
+    input.device = &device;
+    input.view_width = 640;
+    input.view_height = 360;
+    for (const ResourceDeclaration& resource : graph->resources)
+      input.bound.push_back(!resource.optional || resource.name != unbound);
+    return compile(input, diagnostics).has_value();
+  }
+
+  // The only diagnostic, at the beginning of the only occurrence of `at`.
+  void expect(Id id, std::string_view at, const std::vector<std::string>& words) const {
+    const size_t found = text.find(at);
+    ASSERT_NE(found, std::string::npos) << at;
+    ASSERT_EQ(text.find(at, found + 1), std::string::npos) << at << " is ambiguous";
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(found), '\n');
+    const size_t column = found - (text.rfind('\n', found) + 1) + 1;
+    expect_only(diagnostics, id, static_cast<uint32_t>(line), static_cast<uint32_t>(column), words);
+  }
+};
+
+TEST_F(PortRules, LightWithoutAllOfItsChannelsIsRefused) {
+  replace(R"("light": { "format": "rgba16f")", R"("light": { "format": "r16f")");
+  read();
+  EXPECT_FALSE(graph);
+  expect(Id::format_mismatch, R"("light", "slope": "slope" },
+      "set")",
+         {"port 'light' of pass 'setup' works with 'rgba16f' or 'rgba32f'; 'light' declares 'r16f'",
+          "port 'light' of pass 'scatter'"});
+}
+
+TEST_F(PortRules, SlopesHaveTwoChannels) {
+  replace(R"("slope": { "format": "rg16f")", R"("slope": { "format": "r32f")");
+  read();
+  EXPECT_FALSE(graph);
+  expect(Id::format_mismatch, R"("slope" },
+      "set")",
+         {"port 'slope' of pass 'setup' works with 'rg16f'"});
+}
+
+// Of a list the first that every port can work with is taken.
+TEST_F(PortRules, AFormatWithTooFewChannelsIsPassedOver) {
+  replace(R"("scattered": { "format": "rgba16f")", R"("scattered": { "format": ["r16f", "rgba16f"])");
+  read();
+  ASSERT_TRUE(graph) << all_messages(diagnostics);
+  EXPECT_TRUE(compiles()) << all_messages(diagnostics);
+}
+
+// The host may bind any of them, the second as well as the first.
+TEST_F(PortRules, EachFormatOfAnImportFitsEveryPort) {
+  for (const char* formats : {R"(["r8_unorm", "r8_uint"])", R"(["r8_uint", "r8_unorm"])"}) {
+    SetUp();
+    diagnostics = {};
+    const size_t from = text.find(R"("format": ["r8_uint")");
+    const size_t to = from == std::string::npos ? from : text.find(']', from);
+    ASSERT_NE(to, std::string::npos);
+    text.replace(from, to + 1 - from, std::string("\"format\": ") + formats);
+    read();
+    EXPECT_FALSE(graph);
+    ASSERT_EQ(diagnostics.list.size(), 1u) << all_messages(diagnostics);
+    EXPECT_EQ(diagnostics.list[0].id, Id::format_mismatch);
+    EXPECT_NE(diagnostics.list[0].text.find("'r8_unorm'"), std::string::npos);
+  }
+}
+
+// A port of one channel, or of an integer, takes any such format; every other one names what it takes.
+TEST_F(PortRules, EveryPortOfSeveralChannelsNamesItsFormats) {
+  const std::set<std::string_view> of_one_channel{"depth", "scatter_scale", "thickness"};
+  for (uint32_t i = 0; i < kinds.size(); ++i)
+    for (const Port& port : kinds[KindId{i}].ports) {
+      if (!usage_info(port.usage).image || port.usage == Usage::clear || port.glsl_type.front() == 'u')
+        continue;
+      EXPECT_EQ(port.formats.empty(), of_one_channel.contains(port.name))
+          << kinds[KindId{i}].name << "." << port.name;
+    }
+}
+
+std::string shader_text(const std::string& name) {
+  std::ifstream in(DERMIS_SOURCE_DIR "/shaders/" + name);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Number of places where a shader names the image; `own`: and reads there the invocation's texel.
+size_t count_reads(const std::string& shader, const std::string& image, bool own) {
+  const std::string wanted = own ? "texelFetch(" + image + ", texel, 0)" : "(" + image + ",";
+  size_t count = 0;
+  for (size_t at = shader.find(wanted); at != std::string::npos; at = shader.find(wanted, at + 1))
+    ++count;
+  return count;
+}
+
+TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
+  size_t ports = 0;
+  for (uint32_t i = 0; i < kinds.size(); ++i) {
+    const PassKind& kind = kinds[KindId{i}];
+    const std::string shader =
+        shader_text(std::string(kind.shader) + ".comp") + shader_text("common/pixel_light.glsl");
+    for (const Port& port : kind.ports) {
+      if (!port.own_texels) continue;
+      const std::string image = std::string(port.name) + "_image";
+      EXPECT_GT(count_reads(shader, image, true), 0u) << kind.name << "." << port.name;
+      EXPECT_EQ(count_reads(shader, image, true), count_reads(shader, image, false))
+          << kind.name << "." << port.name;
+      EXPECT_NE(shader.find("ivec2 texel = texel_of(pixel);"), std::string::npos) << kind.name;
+      for (const Port& written : kind.ports) {
+        if (written.usage != Usage::storage_image_write) continue;
+        EXPECT_NE(shader.find("imageStore(" + std::string(written.name) + "_image, texel, "),
+                  std::string::npos)
+            << kind.name << "." << written.name;
+      }
+      ++ports;
+    }
+  }
+  EXPECT_EQ(ports, 8u);
+}
+
+TEST_F(PortRules, LightGoesBackToTheHostFromSomewhere) {
+  replace(R"("read": { "scattered": "scattered", "material": "material", "albedo": "albedo",
+                "tiles")",
+          R"("read": { "material": "material", "albedo": "albedo",
+                "tiles")");
+  read();
+  EXPECT_FALSE(graph);
+  expect(Id::missing_port, R"("combine", "kind")",
+         {"pass 'combine'", "one of its ports 'scattered' or 'unscattered' under \"read\""});
+}
+
+TEST_F(PortRules, LightThatIsOnlyCopiedIsEnough) {
+  replace(R"("read": { "scattered": "scattered", "material": "material", "albedo": "albedo",
+                "tiles")",
+          R"("read": { "unscattered": "lighting", "material": "material", "albedo": "albedo",
+                "tiles")");
+  read();
+  ASSERT_TRUE(graph) << all_messages(diagnostics);
+  EXPECT_TRUE(compiles()) << all_messages(diagnostics);
+}
+
+// The file binds both ports, but with these settings nothing stands behind either: told once.
+TEST_F(PortRules, APlanWithNothingBehindAllOfSuchPortsIsRefused) {
+  replace(R"("samples": { "int": 32)", R"("on": { "bool": false }, "samples": { "int": 32)");
+  replace(R"("kind": "subsurface.burley",)", R"("kind": "subsurface.burley", "when": "on",)");
+  replace(R"("scattered": "scattered", "material": "material", "albedo": "albedo",
+                "tiles")",
+          R"("scattered": "scattered", "unscattered": "behind", "material": "material", "albedo": "albedo",
+                "tiles")");
+  replace(R"("scatter_scale": { "format")",
+          R"("behind": { "format": "rgba16f", "size": "view", "optional": true },
+    "scatter_scale": { "format")");
+  read();
+  ASSERT_TRUE(graph) << all_messages(diagnostics);
+  EXPECT_TRUE(compiles()) << all_messages(diagnostics);
+  EXPECT_FALSE(compiles("behind"));
+  expect(Id::read_before_write, R"("scattered", "unscattered")",
+         {"pass 'combine', port 'scattered' reads 'scattered'", "'scatter' writes it and is off"});
+}
+
+} // namespace

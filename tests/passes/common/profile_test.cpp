@@ -1,0 +1,128 @@
+#include "passes/common/environment.hpp"
+#include "passes/common/profiles/profile.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::subsurface;
+
+std::optional<Profile> parsed(const std::string& text, Diagnostics& diagnostics) {
+  const auto document = parse_document("test.json", text, diagnostics);
+  return document ? read_profile(*document, diagnostics) : std::nullopt;
+}
+
+TEST(Profile, ShapeParameterIsDmfpOverScalingOfTheProfilesAlbedo) {
+  Diagnostics diagnostics;
+  const auto profile = parsed(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [3.67, 1.37, 0.68],
+                                "albedo": [0.33, 0.8, 1.0], "source": "test"})",
+                              diagnostics);
+  ASSERT_TRUE(profile) << format_as_json(diagnostics);
+  EXPECT_NEAR(profile->d_mm[0], 3.67 / 3.5, 1e-12);      // s(.33) = 3.5
+  EXPECT_NEAR(profile->d_mm[1], 1.37 / 8.3796841, 1e-6); // s(.8) = 3.5 + 100 * .47^4
+  EXPECT_NEAR(profile->d_mm[2], 0.68 / 23.651121, 1e-6); // s(1) = 3.5 + 100 * .67^4
+}
+
+TEST(Profile, TheWidestChannelIsChosenByShapeParameterNotByMeanFreePath) {
+  Diagnostics diagnostics;
+  const auto profile = parsed(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [5, 4, 1],
+                                "albedo": [1, 0.33, 0.33], "source": "test"})",
+                              diagnostics);
+  ASSERT_TRUE(profile);
+  EXPECT_EQ(profile->widest, 1); // d = 5/23.65, 4/3.5, 1/3.5
+}
+
+TEST(Profile, AMeanFreePathOfZeroMeansNoScattering) {
+  Diagnostics diagnostics;
+  const auto profile = parsed(
+      R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [0, 0, 0], "albedo": [1, 1, 1], "source": "t"})",
+      diagnostics);
+  ASSERT_TRUE(profile);
+  for (const double d : profile->d_mm)
+    EXPECT_EQ(d, 0.0);
+}
+
+TEST(Profile, NegativePathsAlbedosAboveOneAndMisspelledKeysAreRefusedWithTheirPlace) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(
+      parsed("{\"dermis_profile\": 1, \"name\": \"p\",\n \"dmfp_mm\": [-1, 0, 0],\n \"albedo\": [0, 2, 0],\n"
+             " \"sorce\": \"t\"}",
+             diagnostics));
+  ASSERT_EQ(diagnostics.count(Severity::error), 3u) << format_as_json(diagnostics);
+  EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::out_of_range);
+  EXPECT_EQ(diagnostics.list[0].where.line, 2u);
+  EXPECT_EQ(diagnostics.list[0].where.pointer, "/dmfp_mm/0");
+  EXPECT_EQ(diagnostics.list[1].where.pointer, "/albedo/1");
+  EXPECT_EQ(diagnostics.list[2].id, DiagnosticId::unknown_key); // stands for the missing key as well
+  EXPECT_NE(diagnostics.list[2].suggestion.find("source"), std::string::npos);
+}
+
+TEST(Profile, EveryShippedProfileReadsAndNamesItsSource) {
+  int seen = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/profiles")) {
+    Diagnostics diagnostics;
+    const auto document = read_document(entry.path().string(), diagnostics);
+    ASSERT_TRUE(document) << entry.path();
+    const auto profile = read_profile(*document, diagnostics);
+    ASSERT_TRUE(profile) << format_as_json(diagnostics);
+    EXPECT_EQ(profile->name, entry.path().stem().string());
+    EXPECT_FALSE(profile->source.empty());
+    ++seen;
+  }
+  EXPECT_GE(seen, 5);
+}
+
+TEST(Profile, HumanSkinHasTheShapeParametersOfItsMeasurement) {
+  Diagnostics diagnostics;
+  const auto document = read_document(DERMIS_SOURCE_DIR "/configs/profiles/skin.json", diagnostics);
+  const auto profile = read_profile(*document, diagnostics);
+  ASSERT_TRUE(profile);
+  EXPECT_NEAR(profile->d_mm[0], 1.05, 0.01); // 3.67 mm / 3.515
+  EXPECT_NEAR(profile->d_mm[1], 0.39, 0.005);
+  EXPECT_NEAR(profile->d_mm[2], 0.19, 0.005);
+}
+
+TEST(Environment, UndeclaredProfilesLetLightPass) {
+  NumberedProfile skin{7, {}};
+  skin.profile.dmfp_mm = {3.5, 1, 1};
+  skin.profile.albedo = {0.33, 0.33, 0.33};
+  derive(skin.profile);
+  const auto table = make_profile_table(std::span(&skin, 1), false);
+  ASSERT_EQ(table.size(), profile_capacity);
+  EXPECT_EQ(table[0].d_max_mm, 0.0f);
+  EXPECT_FLOAT_EQ(table[7].d_max_mm, 1.0f);
+  EXPECT_EQ(table[8].d_max_mm, 0.0f);
+}
+
+TEST(Environment, FrameConstantsRebuildTheViewPositionOfAProjectedPoint) {
+  // 90 degrees, 4:2 view, reversed infinite depth, units of 10 m.
+  FrameInput input;
+  input.rect_width = 4;
+  input.rect_height = 2;
+  input.metres_per_unit = 10;
+  input.camera.clip_from_view = {0.5, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0};
+  FrameConstants constants{};
+  ASSERT_TRUE(fill_frame_constants(input, constants));
+  EXPECT_EQ(constants.tiles[0], 1);
+  EXPECT_EQ(constants.flags, 1u | 4u);
+  // View point (1, .5, -2) units: ndc = (.25, -.25), depth value .1 / 2; pixel = (ndc + 1) / 2 * size - 1/2.
+  const float pixel[2] = {2.0f, 0.25f};
+  const float value = 0.05f;
+  const float depth = (constants.depth_decode[0] * value + constants.depth_decode[1]) /
+                      (constants.depth_decode[2] * value + constants.depth_decode[3]);
+  EXPECT_NEAR(depth, 20000.0f, 0.1f); // 2 units = 20 m
+  EXPECT_NEAR((constants.ray_scale[0] * pixel[0] + constants.ray_offset[0]) * depth, 10000.0f, 0.1f);
+  EXPECT_NEAR((constants.ray_scale[1] * pixel[1] + constants.ray_offset[1]) * depth, 5000.0f, 0.1f);
+}
+
+TEST(Environment, AMatrixThatIsNoProjectionIsRefused) {
+  FrameInput input;
+  input.rect_width = input.rect_height = 8;
+  FrameConstants constants{};
+  EXPECT_FALSE(fill_frame_constants(input, constants));
+}
+
+} // namespace

@@ -1,0 +1,151 @@
+// Every shipped graph, with what a host may leave unbound: the plan is proven, no part of it can be taken
+// away, and it computes what the graph means. With DERMIS_TESTS_FULL every combination of optional slots is
+// bound, 2048 of restir; without it, of graphs with more than five such slots, all of up to two that are
+// bound and of up to two that are not.
+
+#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/hazard_oracle.hpp"
+#include "tests/framegraph/plan_mutations.hpp"
+#include "tests/framegraph/second_opinion.hpp"
+#include "tests/framegraph/test_tier.hpp"
+
+#include "framegraph/compile/compile.hpp"
+#include "framegraph/model/read_graph.hpp"
+#include "framegraph/verify/verify.hpp"
+#include "passes/common/kinds.hpp"
+#include "tests/support/shipped_graphs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+#include <functional>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::testing;
+
+constexpr uint32_t frames = 5;
+constexpr size_t few_slots = 5, few_bound = 2;
+
+// Is this combination, a bit for each of `slots` slots, one of those that this run tries?
+bool tried(uint32_t unbound, size_t slots) {
+  const auto missing = static_cast<size_t>(std::popcount(unbound));
+  return slots <= few_slots || missing <= few_bound || slots - missing <= few_bound ||
+         seeds_of_tier(0, 1) == 1;
+}
+
+struct ShippedPlans : ::testing::Test {
+  KindRegistry kinds = subsurface::make_kinds();
+  DeviceProfile device = generic_profile();
+
+  static std::vector<std::string> files() {
+    std::vector<std::string> out;
+    for (const std::string& file : dermis::shipped::graph_files())
+      out.push_back(DERMIS_SOURCE_DIR "/" + file);
+    return out;
+  }
+
+  enum class Bound { all, some, none }; // of the optional slots
+  using Visit = std::function<void(const Graph&, const CompiledPlan&, Bound)>;
+
+  void for_each_plan(const Visit& visit) {
+    const std::vector<std::string> all = files();
+    ASSERT_GE(all.size(), 2u);
+    for (const std::string& name : all) {
+      SCOPED_TRACE(name);
+      Diagnostics diagnostics;
+      const auto document = read_document(name, diagnostics);
+      ASSERT_TRUE(document);
+      const auto graph = read_graph(*document, kinds, diagnostics);
+      ASSERT_TRUE(graph);
+      std::vector<size_t> optional;
+      for (size_t r = 0; r < graph->resources.size(); ++r)
+        if (graph->resources[r].optional) optional.push_back(r);
+      for (uint32_t unbound = 0; unbound < 1u << optional.size(); ++unbound) {
+        if (!tried(unbound, optional.size())) continue;
+        SCOPED_TRACE(unbound);
+        CompileInput input;
+        input.graph = &*graph;
+        input.kinds = &kinds;
+        input.device = &device;
+        input.view_width = 640;
+        input.view_height = 360;
+        input.bound.assign(graph->resources.size(), true);
+        for (size_t i = 0; i < optional.size(); ++i)
+          input.bound[optional[i]] = (unbound >> i & 1u) == 0;
+        const auto compiled = compile(input, diagnostics);
+        ASSERT_TRUE(compiled) << format_as_json(diagnostics);
+        const bool none = unbound + 1 == 1u << optional.size();
+        visit(*graph, *compiled, unbound == 0 ? Bound::all : none ? Bound::none : Bound::some);
+      }
+    }
+  }
+};
+
+TEST_F(ShippedPlans, AreAcceptedByVerifierAndOracle) {
+  for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
+    EXPECT_EQ(verify(compiled.plan).objections, std::vector<std::string>{});
+    EXPECT_EQ(first_hazard(compiled.plan), "");
+  });
+}
+
+// Buffers that take over the memory of one resource at once wait for it with a barrier each: any of them
+// does.
+bool takes_over_memory(const Plan& plan, uint32_t barrier) {
+  const PlanBarrier& one = plan.barriers[barrier];
+  return one.why == PlanBarrier::Why::alias && one.source_access == 0 && one.old_layout == one.new_layout;
+}
+
+// The plan without any of the barriers that take over memory in the batch of `barrier`.
+Plan without_batch_mates(const Plan& plan, uint32_t barrier) {
+  Plan out = plan;
+  for (const PlanPass& pass : plan.passes)
+    for (uint32_t b = pass.first_barrier + pass.barrier_count; b-- > pass.first_barrier;)
+      if (barrier >= pass.first_barrier && barrier < pass.first_barrier + pass.barrier_count &&
+          takes_over_memory(plan, b))
+        out = without_barrier(out, b);
+  return out;
+}
+
+TEST_F(ShippedPlans, HaveNoBarrierThatCanBeDropped) {
+  for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
+    for (uint32_t b = 0; b < compiled.plan.barriers.size(); ++b) {
+      if (!verify(without_barrier(compiled.plan, b)).objections.empty()) continue;
+      EXPECT_TRUE(takes_over_memory(compiled.plan, b)) << "barrier " << b;
+      EXPECT_FALSE(verify(without_batch_mates(compiled.plan, b)).objections.empty()) << "barrier " << b;
+    }
+  });
+}
+
+TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
+  Tally tally;
+  for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
+    // The oracle is slow: the widest plan of each graph, and the narrowest in the full tier.
+    if (bound != Bound::all && (bound == Bound::some || seeds_of_tier(0, 1) == 0)) return;
+    for (const auto for_each_mutant :
+         {for_each_weaker_mask, for_each_shifted_placement, for_each_flipped_slot, for_each_swap,
+          for_each_moved_barrier, for_each_lost_own_texels})
+      for_each_mutant(compiled.plan, [&](const Plan& mutant, const std::string& what) {
+        if (!HasFatalFailure()) expect_same_verdict(mutant, what, tally);
+      });
+  });
+  EXPECT_GT(tally.refused * 10, tally.tried * 8);
+}
+
+TEST_F(ShippedPlans, ComputeWhatTheGraphMeansInAnyOrderThatTheBarriersAllow) {
+  for_each_plan([&](const Graph& graph, const CompiledPlan& compiled, Bound bound) {
+    const Interpretation recorded = interpret(compiled.plan, {frames, 1, 1, 0});
+    if (bound == Bound::all) {
+      EXPECT_TRUE(agrees(recorded, graph_truth(graph, kinds, frames, 1)));
+    }
+    for (uint64_t seed = 1; seed <= seeds_of_tier(8, 20); ++seed) {
+      EXPECT_EQ(interpret(compiled.plan, {frames, 1, seed, seed}), recorded);
+      EXPECT_EQ(interpret(without_aliasing(compiled.plan), {frames, 1, seed, seed}), recorded);
+    }
+  });
+}
+
+} // namespace

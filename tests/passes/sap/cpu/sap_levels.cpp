@@ -1,0 +1,194 @@
+#include "tests/passes/sap/cpu/sap_levels.hpp"
+
+#include "passes/common/truth/parallel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::subsurface {
+
+namespace {
+
+constexpr double hysteresis = 1.02;    // the first of equals stays the seed
+constexpr double nearest_share = 0.25; // a plane is not extrapolated nearer than this share of its depth
+constexpr size_t children_a_layer = 16, no_child = 2 * children_a_layer;
+constexpr size_t central[8] = {5, 6, 9, 10, 21, 22, 25, 26}; // of the first layer, of the second
+// What has less left is no seed of the second layer: it lies on the first one's surface, bent.
+constexpr double least_seed_part = 0.9;
+
+template <class Real> Real binomial(size_t child) {
+  child %= children_a_layer;
+  return Real(child % 4 % 3 == 0 ? .125 : .375) * Real(child / 4 % 3 == 0 ? .125 : .375);
+}
+
+// The 4x4 children of a parent, of both layers, and where they lie.
+template <class Real> struct Children {
+  std::array<const SapTexel<Real>*, no_child> texels{}; // null: nothing there
+  std::array<Real, no_child> left{};                    // what no layer of the parent has taken yet
+  Real spacing = 1;
+
+  bool may_seed(size_t child) const { return texels[child] && left[child] >= Real(least_seed_part); }
+  Real x(size_t child) const { return (Real(child % 4) - Real(1.5)) * spacing; }
+  Real y(size_t child) const { return (Real(child % children_a_layer / 4) - Real(1.5)) * spacing; }
+};
+
+template <class Real>
+SapTexel<Real> plane_at_parent(const SapPyramid<Real>& pyramid, const Children<Real>& children,
+                               size_t child) {
+  SapTexel<Real> plane = *children.texels[child];
+  const Real rise = pyramid.rise(plane, children.x(child), children.y(child));
+  plane.depth = std::max(plane.depth - rise, Real(nearest_share) * plane.depth);
+  return plane;
+}
+
+// The child whose plane most of the central ones support; without a central one, the weightiest outer one;
+// no_child: none at all.
+template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children) {
+  size_t best = no_child;
+  Real most = 0;
+  for (const size_t a : central) {
+    if (!children.may_seed(a)) continue;
+    const SapTexel<Real> plane = plane_at_parent(pyramid, children, a);
+    const Real per_metre = 1 / (Real(sap_sigma) * children.spacing * pyramid.footprint(plane.depth));
+    Real support = 0;
+    for (const size_t b : central) {
+      const SapTexel<Real>* child = children.texels[b];
+      if (!children.may_seed(b) || child->id != plane.id) continue;
+      const Real step = child->depth - plane.depth;
+      const Real off = sap_nearer(step - pyramid.rise(plane, children.x(b), children.y(b)), step);
+      support += sap_falloff(off * per_metre, sap_depth_width);
+    }
+    if (best == no_child || support > Real(hysteresis) * most) {
+      best = a;
+      most = support;
+    }
+  }
+  if (best != no_child) return best;
+  for (size_t a = 0; a < no_child; ++a) {
+    const Real weight = children.may_seed(a) ? binomial<Real>(a) * children.texels[a]->mass : Real(0);
+    if (weight > Real(hysteresis) * most) {
+      best = a;
+      most = weight;
+    }
+  }
+  return best;
+}
+
+// One layer of a parent; what it takes of the children is gone from what they have left.
+template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children) {
+  const size_t seed = find_seed(pyramid, children);
+  if (seed == no_child) return {};
+  const SapTexel<Real> plane = plane_at_parent(pyramid, children, seed);
+  const Real per_sigma = 1 / (Real(sap_sigma) * children.spacing);
+  const Real per_metre = per_sigma / pyramid.footprint(plane.depth);
+  SapTexel<Real> sum;
+  Real all_weight = 0, total = 0, flat = 0;
+  for (size_t k = 0; k < no_child; ++k) {
+    const Real x = children.x(k), y = children.y(k);
+    const Real tilt = plane.slope(x, y) * per_sigma;
+    if (k < children_a_layer) all_weight += binomial<Real>(k) * sap_falloff(tilt, sap_tilt_width_down);
+    const SapTexel<Real>* child = children.texels[k];
+    if (!child || child->id != plane.id) continue;
+    const Real step = (child->depth - plane.depth) * per_metre;
+    const Real off = sap_nearer(step - pyramid.rise(plane, x, y) * per_metre, step);
+    const Real narrowing = sap_falloff(sap_nearer(tilt, step), sap_tilt_width_down);
+    const Real kept = sap_falloff(off, sap_depth_width);
+    const Real flat_weight = binomial<Real>(k) * kept * children.left[k] * child->mass;
+    children.left[k] *= 1 - kept;
+    const Real weight = flat_weight * narrowing * child->area;
+    sum.mass += flat_weight * narrowing;
+    total += weight;
+    flat += flat_weight;
+    for (size_t c = 0; c < 3; ++c)
+      sum.light[c] += weight * child->light[c];
+    sum.depth += flat_weight * (child->depth - pyramid.rise(*child, x, y));
+    sum.slope_x += flat_weight * child->slope_x;
+    sum.slope_y += flat_weight * child->slope_y;
+    sum.reach += flat_weight * child->reach;
+  }
+  if (!(total > Real(sap_negligible))) return {};
+  SapTexel<Real> parent{.depth = std::max(sum.depth / flat, Real(nearest_share) * plane.depth),
+                        .slope_x = sum.slope_x / flat,
+                        .slope_y = sum.slope_y / flat,
+                        .reach = sum.reach / flat,
+                        .mass = std::min(Real(1), sum.mass / all_weight),
+                        .area = total / sum.mass,
+                        .light = {},
+                        .id = plane.id};
+  for (size_t c = 0; c < 3; ++c)
+    parent.light[c] = sum.light[c] / total;
+  return parent;
+}
+
+template <class Real> SapTexel<Real> first_texel(const TruthInput& input, const Patch& patch, size_t i) {
+  const double x = double(i % input.width), y = double(i / input.width);
+  const Vector3 ray = input.rays.perspective ? pixel_ray(input.rays, x, y) : Vector3{0, 0, -1};
+  const double cosine = -dot(patch.normal, ray) / length(ray);
+  // The plane dot(normal, P) = const, differentiated by pixel, as in shaders/common/patch.glsl.
+  const double turn = input.rays.perspective ? -1 / dot(patch.normal, ray) : 1 / patch.normal[2];
+  const double mean = std::sqrt(std::abs(input.rays.scale_x * input.rays.scale_y));
+  const double scale = input.scatter_scale.empty() ? 1.0 : double(std::max(0.0f, input.scatter_scale[i]));
+  return {.depth = Real(input.depth[i]),
+          .slope_x = Real(patch.normal[0] * turn * input.rays.scale_x / mean),
+          .slope_y = Real(patch.normal[1] * turn * input.rays.scale_y / mean),
+          .reach = Real(std::pow(cosine, sap_reach_power) * scale),
+          .mass = 1,
+          .area = Real(std::pow(cosine, -sap_area_power)),
+          .light = {Real(input.light[3 * i]), Real(input.light[3 * i + 1]), Real(input.light[3 * i + 2])},
+          .id = input.profile[i]};
+}
+
+} // namespace
+
+template <class Real>
+SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t first_layered, unsigned threads) {
+  SapPyramid<Real> pyramid{.side_x = Real(std::abs(input.rays.scale_x)),
+                           .side_y = Real(std::abs(input.rays.scale_y)),
+                           .perspective = input.rays.perspective};
+  const Surface surface =
+      build_surface(input.width, input.height, input.rays, input.depth, input.profile, threads);
+  SapLevel<Real> level{.width = static_cast<int>(input.width), .height = static_cast<int>(input.height)};
+  level.layers[0].resize(surface.patches.size());
+  parallel_for(level.layers[0].size(), 4096, threads, [&](size_t i) {
+    if (surface.patches[i].area > 0 && input.profile[i] < input.d_m.size())
+      level.layers[0][i] = first_texel<Real>(input, surface.patches[i], i);
+  });
+  pyramid.levels.push_back(std::move(level));
+  while (pyramid.levels.size() < sap_level_count) {
+    const SapLevel<Real>& fine = pyramid.levels.back();
+    SapLevel<Real> coarse{.width = (fine.width + 1) / 2,
+                          .height = (fine.height + 1) / 2,
+                          .border = 1,
+                          .spacing = 2 * fine.spacing};
+    const size_t layers = pyramid.levels.size() < first_layered ? 1 : 2;
+    for (size_t layer = 0; layer < layers; ++layer)
+      coarse.layers[layer].resize(coarse.index(coarse.width, coarse.height) + 1);
+    parallel_for(static_cast<size_t>(coarse.height + 2), 4, threads, [&](size_t row) {
+      const int y = static_cast<int>(row) - 1;
+      for (int x = -1; x <= coarse.width; ++x) {
+        Children<Real> children{.texels = {}, .left = {}, .spacing = fine.spacing};
+        for (size_t k = 0; k < no_child; ++k) {
+          const std::vector<SapTexel<Real>>& texels = fine.layers[k / children_a_layer];
+          if (texels.empty()) continue;
+          const int place = static_cast<int>(k % children_a_layer);
+          const int cx = 2 * x - 1 + place % 4, cy = 2 * y - 1 + place / 4;
+          if (cx < -fine.border || cy < -fine.border || cx >= fine.width + fine.border ||
+              cy >= fine.height + fine.border)
+            continue;
+          const SapTexel<Real>& child = texels[fine.index(cx, cy)];
+          if (child.id == 0) continue;
+          children.texels[k] = &child;
+          children.left[k] = 1;
+        }
+        for (size_t layer = 0; layer < layers; ++layer)
+          coarse.layers[layer][coarse.index(x, y)] = reduce(pyramid, children);
+      }
+    });
+    pyramid.levels.push_back(std::move(coarse));
+  }
+  return pyramid;
+}
+template SapPyramid<float> build_sap_pyramid<float>(const TruthInput&, uint32_t, unsigned);
+template SapPyramid<double> build_sap_pyramid<double>(const TruthInput&, uint32_t, unsigned);
+
+} // namespace dermis::subsurface

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# The device tests on other drivers than the system's: the Mesa of Debian's backports (fetch_driver.sh), SwiftShader where
+# chromium-common brings it, and those that DERMIS_DRIVERS names (manifests, separated by ':'). Prints a table of drivers
+# and suites. Golden frames, and light of random graphs, are held against those of the system's driver. Tests that a
+# driver does not pass are listed in known/DRIVER with the reason and left out; any other failure fails. Exit code 77:
+# there is no other driver.
+# usage: run_on_drivers.sh [BUILD [SUITE...]]; BUILD: build/release; SUITE: "integration_abi" for test_integration_abi and so on,
+# "laws:2/8" for the second eighth of its tests
+set -euo pipefail
+cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
+
+build=${1:-build/release}
+shift || true
+suites=("$@")
+[[ $# -gt 0 ]] || suites=(framegraph_vulkan shaders passes_device integration_abi integration_embedding
+  integration_examples_demo_engine laws:{1..8}/8)
+for suite in "${suites[@]}"; do
+  program=$build/tests/test_${suite%%:*}
+  [[ -x $program ]] || { echo "run_on_drivers.sh: there is no suite '$suite': $program is not built" >&2; exit 2; }
+  [[ $suite =~ ^[a-z_]+(:[1-9][0-9]*/[1-9][0-9]*)?$ ]] ||
+    { echo "run_on_drivers.sh: '$suite' is no suite, nor a part of one such as 'laws:2/8'" >&2; exit 2; }
+done
+seconds=1800       # a suite, or a part of one
+memory=$((8 << 20)) # KiB that a suite may take: a driver gone astray must not take the machine with it
+swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
+
+drivers=()
+fetched=$(tests/scripts/fetch_driver.sh) && drivers+=("$(readlink -f "$fetched")") # tests change the folder
+[[ -e $swiftshader ]] && drivers+=("$swiftshader") || echo "SwiftShader: skipped, chromium-common is not installed" >&2
+named=${DERMIS_DRIVERS:-}
+for manifest in ${named//:/ }; do
+  [[ -e $manifest ]] && drivers+=("$manifest") || echo "$manifest: skipped, there is no such file" >&2
+done
+if [[ ${#drivers[@]} -eq 0 ]]; then
+  echo "other drivers: skipped, there is none"
+  exit 77
+fi
+
+pictures=$build/drivers_pictures
+mkdir -p "$pictures"
+DERMIS_PICTURES=$pictures DERMIS_PICTURES_KEEP=1 "$build/tests/test_passes_device" \
+  --gtest_filter='*OfAnotherDriver*' >"$pictures/log" 2>&1 ||
+  { echo "pictures of the system's driver failed; the log: $pictures/log"; exit 1; }
+
+failed=0
+for manifest in "${drivers[@]}"; do
+  name=$(basename "$manifest" .json)
+  name=${name#vk_}
+  name=${name%_icd}
+  known=tests/scripts/known/$name
+  left_out=$(grep -v '^#' "$known" 2>/dev/null | grep . | awk '{ print $1 }' | paste -sd: || true)
+  for suite in "${suites[@]}"; do
+    program=$build/tests/test_${suite%%:*}
+    log=$build/drivers_${name}_$(tr ':/' '__' <<<"$suite").log
+    begin=$SECONDS
+    rc=0
+    (
+      ulimit -v $memory
+      if [[ $suite == *:* ]]; then
+        part=${suite#*:}
+        export GTEST_TOTAL_SHARDS=${part#*/} GTEST_SHARD_INDEX=$((${part%/*} - 1))
+      fi
+      VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest DERMIS_PICTURES=$pictures timeout $seconds \
+        "$program" --gtest_filter="-$left_out"
+    ) >"$log" 2>&1 || rc=$?
+    of_suite=0 # tests that are left out
+    if [[ -n $left_out ]]; then
+      of_suite=$("$program" --gtest_list_tests --gtest_filter="$left_out" | grep -c '^  ' || true)
+    fi
+    printf '%-14s %-24s %4s passed, %2s failed, %2s skipped, %3s known, %4s s%s\n' "$name" "$suite" \
+      "$(grep -c '^\[       OK \]' "$log" || true)" "$(grep -c '^\[  FAILED  \].* (.* ms)$' "$log" || true)" \
+      "$(grep -c '^\[  SKIPPED \].* (.* ms)$' "$log" || true)" "$of_suite" "$((SECONDS - begin))" \
+      "$([[ $rc -eq 0 ]] || echo "; ended with $rc; the log: $log")"
+    [[ $rc -eq 0 ]] || failed=1
+  done
+  grep -h '^pictures' "$build/drivers_${name}_passes_device.log" 2>/dev/null | cut -f 3- || true
+done
+exit $failed

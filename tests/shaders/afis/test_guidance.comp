@@ -1,0 +1,41 @@
+#version 460
+// Answers case x with the functions of guidance.glsl, one row a question:
+//   row 0  wanted_samples, clamped_samples of that, clamped_samples of the number asked, control_weight
+//   row 1  add_value: mean, variance
+//   row 2  add_values: means of f and g, covariance, variance of g
+// A case is four rows of the table of questions; see guidance_kernel_test.cpp.
+#extension GL_GOOGLE_include_directive : require
+#include "common/environment.glsl"
+struct guidance_settings {
+  float sigma2_target, kappa, eta, eps_alpha;
+  int least, most;
+};
+guidance_settings settings;
+#include "afis/guidance.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 0, rgba32f) uniform writeonly image2D target;
+layout(push_constant) uniform push_block { uint port_mask; };
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, frame.rect.zw)))
+    return;
+  vec4 set = separable_rows[4 * pixel.x], asked = separable_rows[4 * pixel.x + 1];
+  vec4 kept = separable_rows[4 * pixel.x + 2], found = separable_rows[4 * pixel.x + 3];
+  settings = guidance_settings(set.x, set.y, set.z, set.w, int(asked.x), int(asked.y));
+  moving_covariance moments = moving_covariance(kept.x, kept.y, kept.z, kept.w);
+  vec4 answer = vec4(0.0);
+  if (pixel.y == 0) {
+    float wanted = wanted_samples(asked.z, asked.w);
+    answer = vec4(wanted, clamped_samples(wanted), clamped_samples(found.w), control_weight(moments));
+  }
+  if (pixel.y == 1) {
+    moving_variance now = add_value(moving_variance(kept.x, kept.w), found.x, found.z);
+    answer.xy = vec2(now.mean, now.variance);
+  }
+  if (pixel.y == 2) {
+    moving_covariance now = add_values(moments, found.x, found.y, found.z);
+    answer = vec4(now.mean_f, now.mean_g, now.covariance, now.variance_g);
+  }
+  imageStore(target, pixel, answer);
+}

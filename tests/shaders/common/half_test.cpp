@@ -1,0 +1,42 @@
+// What kernels round to halves before they store it, whatever the driver's own stores do.
+#include "tests/shaders/common/kernel_fixture.hpp"
+
+#include "test_half.spv.h"
+
+#include <bit>
+#include <cmath>
+
+namespace dermis {
+namespace {
+
+constexpr uint32_t width = 512, height = 1024; // 2^19 heads of floats
+constexpr uint32_t tails[] = {0, 0xfff, 0x1000, 0x1001};
+
+// Nearest half, ties to even, in fp64: no step of it rounds but the one that has to.
+double nearest_half(float x) {
+  const double bounded = std::fmin(std::fmax(double(x), -65504.0), 65504.0);
+  const double step = std::ldexp(1.0, std::max(std::ilogb(bounded), -14) - 10);
+  return std::fmin(std::fmax(std::nearbyint(bounded / step) * step, -65504.0), 65504.0);
+}
+
+class HalfKernel : public testing::KernelTest {};
+
+TEST_F(HalfKernel, RoundsEveryFloatToTheNearestHalfAndTiesToEven) {
+  const std::vector<float> answers = answers_of({"test_half", test_half_spirv}, width, height);
+  ASSERT_EQ(answers.size(), size_t{4} * width * height);
+  size_t judged = 0, wrong = 0;
+  for (uint32_t head = 0; head < width * height; ++head)
+    for (size_t c = 0; c < 4; ++c) {
+      const float asked = std::bit_cast<float>(head << 13 | tails[c]);
+      if (std::isnan(asked)) continue;
+      ++judged;
+      const double wanted = asked == 0 ? 0 : nearest_half(asked);
+      if (double(answers[4 * size_t{head} + c]) == wanted) continue;
+      if (++wrong <= 5) ADD_FAILURE() << asked << ": " << answers[4 * size_t{head} + c] << ", not " << wanted;
+    }
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(judged, 4u * 512 * 1024 - 2 * 4 * 1024 + 2) << "all but NaN";
+}
+
+} // namespace
+} // namespace dermis

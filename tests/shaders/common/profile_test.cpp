@@ -1,0 +1,93 @@
+// The profiles as kernels evaluate them on a device, against the fp64 shapes that truths are made of.
+#include "passes/common/environment.hpp"
+#include "passes/common/profiles/profile.hpp"
+#include "tests/shaders/common/kernel_fixture.hpp"
+
+#include "test_profile.spv.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace dermis::subsurface {
+namespace {
+
+constexpr uint32_t width = 208, rows = 3;                               // of each profile
+constexpr const char* files[] = {"skin", "skin_dipole", "skin_artist"}; // in configs/profiles
+constexpr uint32_t height = rows * uint32_t(std::size(files));
+
+// Where test_profile.comp looks.
+double radius_in_d(uint32_t x) {
+  return std::exp2(x / 16.0 - 8);
+}
+double survival_asked(uint32_t x) {
+  return std::exp2(-(x / 16.0));
+}
+
+class ProfileKernel : public dermis::testing::KernelTest {
+protected:
+  void SetUp() override {
+    KernelTest::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    for (uint32_t i = 0; i < std::size(files); ++i) {
+      Diagnostics diagnostics;
+      const auto document = read_document(
+          DERMIS_SOURCE_DIR "/configs/profiles/" + std::string(files[i]) + ".json", diagnostics);
+      ASSERT_TRUE(document) << files[i];
+      const auto profile = read_profile(*document, diagnostics);
+      ASSERT_TRUE(profile) << files[i];
+      profiles.push_back({i + 1, *profile});
+    }
+    const std::vector<ProfileEntry> entries = make_profile_table(profiles, false);
+    const std::vector<RadialRow> radial = make_radial_table(profiles);
+    values = answers_of({"test_profile", test_profile_spirv}, width, height,
+                        {std::as_bytes(std::span(entries)), std::as_bytes(std::span(radial))});
+  }
+
+  double at(size_t profile, uint32_t row, uint32_t x, size_t channel) const {
+    return double(values[4 * ((profile * rows + row) * width + x) + channel]);
+  }
+
+  std::vector<NumberedProfile> profiles;
+  std::vector<float> values;
+};
+
+TEST_F(ProfileKernel, DensityAndDistributionAreThoseOfTheShapes) {
+  ASSERT_FALSE(values.empty());
+  for (size_t i = 0; i < profiles.size(); ++i) {
+    const Profile& profile = profiles[i].profile;
+    const double d = profile.d_mm[static_cast<size_t>(profile.widest)];
+    for (uint32_t x = 0; x < width; ++x)
+      for (size_t c = 0; c < 3; ++c) {
+        const double r = radius_in_d(x) * d, R = at(i, 0, x, c) / (2 * std::numbers::pi);
+        const double truth = shape_R(profile.shape_mm[c], r), most = shape_R(profile.shape_mm[c], d / 256);
+        // Tables are linear in log R over 1/24 octave; far out what is left of the largest value counts.
+        EXPECT_NEAR(R, truth, 4e-3 * truth + 1e-9 * most)
+            << files[i] << " R at " << r << " mm, channel " << c;
+        EXPECT_NEAR(2 * std::numbers::pi * r * R, shape_pdf(profile.shape_mm[c], r),
+                    4e-3 * shape_pdf(profile.shape_mm[c], r) + 1e-8 / d)
+            << files[i] << " pdf at " << r << " mm, channel " << c;
+        EXPECT_NEAR(1 - at(i, 1, x, c), shape_cdf(profile.shape_mm[c], r), 2e-4)
+            << files[i] << " cdf at " << r << " mm, channel " << c;
+      }
+  }
+}
+
+TEST_F(ProfileKernel, InversesUndoTheDistribution) {
+  ASSERT_FALSE(values.empty());
+  for (size_t i = 0; i < profiles.size(); ++i) {
+    const Profile& profile = profiles[i].profile;
+    const ChannelShape& shape = profile.shape_mm[static_cast<size_t>(profile.widest)];
+    const bool burley =
+        i == 0; // a polynomial within .52 %, and exact weights; tables within a thousandth of d
+    for (uint32_t x = 1; x < width; ++x) {
+      const double r = at(i, 2, x, 0), truth = shape_inverse_survival(shape, survival_asked(x));
+      EXPECT_NEAR(r, truth, (burley ? 5.2e-3 * truth : 0) + 1e-3 * shape.d)
+          << files[i] << " " << survival_asked(x);
+      // The density is the sampler's own: within some percent of the profile's.
+      EXPECT_NEAR(at(i, 2, x, 1) / shape_pdf(shape, r), 1, 0.05) << files[i] << " " << survival_asked(x);
+    }
+  }
+}
+
+} // namespace
+} // namespace dermis::subsurface

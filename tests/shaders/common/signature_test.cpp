@@ -1,0 +1,51 @@
+// The kernels that ship follow the signatures that descriptor layouts and push constants are made of.
+#include "framegraph/vulkan/shader/signature_check.hpp"
+#include "passes/common/environment.hpp"
+#include "passes/common/kernels.hpp"
+#include "passes/common/kinds.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dermis::subsurface {
+namespace {
+
+TEST(Kernels, EveryKernelFitsItsSignatureAndTheEnvironment) {
+  using vulkan::EnvironmentType;
+  constexpr uint64_t any = 1u << 16; // the separable table ends in an array that is as long as the buffer
+  const vulkan::EnvironmentBinding environment[] = {
+      {EnvironmentType::uniform_buffer, sizeof(FrameConstants), {}},
+      {EnvironmentType::storage_buffer, profile_capacity * sizeof(ProfileEntry), {}},
+      {EnvironmentType::storage_buffer, any, {}},
+      {EnvironmentType::linear_sampler, 0, {}},
+      {EnvironmentType::storage_buffer, any, {}},
+      {EnvironmentType::storage_buffer, any, {}},
+      {EnvironmentType::counters, sizeof(FrameCounters), {}},
+  };
+  const KindRegistry kinds = make_kinds();
+  ASSERT_GT(kinds.size(), 0u);
+  for (uint32_t i = 0; i < kinds.size(); ++i) {
+    const PassKind& kind = kinds[KindId{i}];
+    if (kind.shader.empty()) continue;
+    std::string error;
+    const auto reflection = vulkan::reflect(find_kernel(kind.shader), error);
+    ASSERT_TRUE(reflection) << kind.shader << ": " << error;
+    for (const std::string& line : vulkan::check_signature(kind, environment, *reflection))
+      ADD_FAILURE() << line;
+  }
+}
+
+TEST(Kernels, TheFrameConstantsOfCppAndGlslHaveOneSize) {
+  for (const Kernel& kernel : embedded_kernels()) {
+    std::string error;
+    const auto reflection = vulkan::reflect(kernel.spirv, error);
+    ASSERT_TRUE(reflection) << kernel.shader << ": " << error;
+    for (const auto& binding : reflection->bindings) {
+      if (binding.set == 1 && binding.binding == static_cast<uint32_t>(EnvironmentSlot::frame)) {
+        EXPECT_EQ(binding.bytes, sizeof(FrameConstants)) << kernel.shader;
+      }
+    }
+  }
+}
+
+} // namespace
+} // namespace dermis::subsurface

@@ -1,0 +1,44 @@
+#version 460
+// Answers case x with the functions of reproject.glsl, one row a question:
+//   row 0  place_before of a point that stands still: pixel, depth; history_usable
+//   row 1  place_before of a point with a velocity: pixel, depth; depth_tolerance
+//   row 2  find_history: the first texel, the number of taps that count
+//   row 3  find_history: the weights
+// A case is three rows of the table of questions, after which come depth and profile of the texels of the frame before; see
+// reproject_test.cpp in this folder.
+#extension GL_GOOGLE_include_directive : require
+#include "common/environment.glsl"
+vec2 surface_before(ivec2 pixel);
+#include "common/reproject.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 0, rgba32f) uniform writeonly image2D target;
+layout(push_constant) uniform push_block { uint port_mask; };
+
+const int rows_of_case = 3, texels_across = 16;
+
+vec2 surface_before(ivec2 pixel) {
+  ivec2 texel = previous_texel(pixel);
+  return separable_rows[rows_of_case * imageSize(target).x + texels_across * texel.y + texel.x].xy;
+}
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(at, imageSize(target))))
+    return;
+  vec4 seen = separable_rows[rows_of_case * at.x]; // pixel, depth, rise
+  vec4 moved = separable_rows[rows_of_case * at.x + 1]; // velocity, profile
+  vec4 asked = separable_rows[rows_of_case * at.x + 2]; // place, depth, tolerance
+  history_taps taps = find_history(previous_place(asked.xy, asked.z), uint(moved.w), asked.w);
+  vec4 answer = taps.weight;
+  if (at.y == 0) {
+    previous_place place = place_before(seen.xy, seen.z);
+    answer = vec4(place.pixel, place.depth, float(history_usable()));
+  }
+  if (at.y == 1) {
+    previous_place place = place_before(seen.xy, seen.z, moved.xyz);
+    answer = vec4(place.pixel, place.depth, depth_tolerance(seen.z, seen.w));
+  }
+  if (at.y == 2)
+    answer = vec4(vec2(taps.first), dot(vec4(greaterThan(taps.weight, vec4(0.0))), vec4(1.0)), 0.0);
+  imageStore(target, at, answer);
+}
