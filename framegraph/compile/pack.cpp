@@ -1,15 +1,12 @@
 // The phase that gives every instance a heap and a place in it.
 
 #include "framegraph/compile/phases.hpp"
+#include "framegraph/model/align_up.hpp"
 
 #include <algorithm>
 
 namespace dermis {
 namespace {
-
-uint64_t align_up(uint64_t value, uint64_t alignment) {
-  return (value + alignment - 1) / alignment * alignment;
-}
 
 // Heaps hold instances that are all persistent or all not, and that some memory type suits.
 uint32_t group_of(CompileContext& c, bool persistent, uint32_t type_bits) {

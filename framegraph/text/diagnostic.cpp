@@ -10,10 +10,8 @@ namespace dermis {
 
 namespace {
 
-constexpr Severity note = Severity::note, warning = Severity::warning, error = Severity::error;
-
 // 'D', then the number with at least four digits; the numbers are literals of three digits.
-#define DERMIS_DIAGNOSTIC(id, name, severity, hint) {DiagnosticId::name, "D0" #id, #name, severity, hint},
+#define DERMIS_DIAGNOSTIC(id, name, severity, hint) {DiagnosticId::name, "D0" #id, #name, Severity::severity, hint},
 constexpr DiagnosticInfo infos[] = {
 #include "framegraph/text/diagnostics.def"
 };
@@ -26,8 +24,6 @@ constexpr bool sorted() {
   return true;
 }
 static_assert(sorted(), "diagnostics.def is kept sorted by number, each number once");
-// All severities are named here although the list may not use each of them.
-static_assert(note < warning && warning < error);
 
 } // namespace
 

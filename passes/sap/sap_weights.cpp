@@ -1,6 +1,7 @@
 #include "passes/sap/sap_weights.hpp"
 
 #include "passes/common/nnls.hpp"
+#include "passes/common/sinc.hpp"
 #include "passes/common/truth/planar.hpp"
 
 #include <algorithm>
@@ -11,12 +12,12 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Where the fit looks: rings of frequencies (cycles a pixel) from far below the widest kernel to the corner
 // of the band, each at a few angles of the first octant.
 constexpr size_t ring_count = 72, angle_count = 5;
-constexpr double lowest_frequency = 1.0 / 4096, highest_frequency = 0.5;
+constexpr double sap_min_frequency = 1.0 / 4096, sap_max_frequency = 0.5;
 // Light on surfaces has a power spectrum near f^-2.5 (dead leaves, edges); rings are equal steps in log f,
 // whose area grows with f^2.
 constexpr double spectrum_exponent = -2.5;
@@ -35,7 +36,7 @@ std::vector<Frequency> make_frequencies() {
   std::vector<Frequency> list;
   double total = 0;
   for (size_t ring = 0; ring < ring_count; ++ring) {
-    const double f = lowest_frequency * std::pow(highest_frequency / lowest_frequency,
+    const double f = sap_min_frequency * std::pow(sap_max_frequency / sap_min_frequency,
                                                  (double(ring) + 0.5) / double(ring_count));
     for (size_t angle = 0; angle < angle_count; ++angle) {
       const double theta = 0.25 * pi * (double(angle) + 0.5) / double(angle_count);
@@ -50,10 +51,6 @@ std::vector<Frequency> make_frequencies() {
 
 double both_axes(const Frequency& f, double spacing, int power) {
   return std::pow(std::cos(pi * f.x * spacing) * std::cos(pi * f.y * spacing), power);
-}
-
-double sinc(double x) {
-  return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
 }
 
 // A level read through a cubic B-spline at all the places of the view's pixels: its spectrum sinc^4 of the

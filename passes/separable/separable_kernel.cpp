@@ -1,6 +1,7 @@
 #include "passes/separable/separable_kernel.hpp"
 
 #include "passes/common/nnls.hpp"
+#include "passes/common/sinc.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,25 +11,21 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr size_t unknowns = separable_max_side + 2; // taps at 0 and at each side, then the delta
 
 // Frequencies of the fit: log-spaced radii from wavelengths of some hundred d to the pixel grid's corner,
 // over the first quadrant. A pair (fx, fy) stands for its area of the log-polar grid.
-constexpr double lowest_frequency = 1.0 / 2048;
-constexpr double highest_frequency = 0.70710678;
+constexpr double separable_min_frequency = 1.0 / 2048;
+constexpr double separable_max_frequency = 0.70710678;
 constexpr int radii = 30;
 constexpr int angles = 5;
 // Power spectrum of natural images: amplitude 1/f, power f^-2 per unit area (Field 1987); on a log-polar grid
 // the area grows as f^2, which leaves equal weights.
 
-struct Frequency {
+struct FitFrequency {
   double x, y, weight, target = 0; // target: transfer of the truth's kernel
 };
-
-double sinc(double x) {
-  return x == 0 ? 1.0 : std::sin(pi * x) / (pi * x);
-}
 
 // What the transfer of the pixel's kernel asks at a frequency and those that alias with it, of no shape.
 struct Aliases {
@@ -66,14 +63,14 @@ double transfer_of(const ChannelShape& shape, const Aliases& aliases) {
 
 // The frequencies of every fit, and what they alias with.
 struct Grid {
-  std::vector<Frequency> frequencies;
+  std::vector<FitFrequency> frequencies;
   std::vector<Aliases> aliases;
 };
 
 Grid make_grid() {
   Grid grid;
   for (int i = 0; i < radii; ++i) {
-    const double f = lowest_frequency * std::pow(highest_frequency / lowest_frequency, (i + 0.5) / radii);
+    const double f = separable_min_frequency * std::pow(separable_max_frequency / separable_min_frequency, (i + 0.5) / radii);
     for (int j = 0; j < angles; ++j) {
       const double angle = (j + 0.5) / angles * pi / 2;
       const double fx = f * std::cos(angle), fy = f * std::sin(angle);
@@ -85,8 +82,8 @@ Grid make_grid() {
   return grid;
 }
 
-std::vector<Frequency> with_targets(const Grid& grid, const ChannelShape& shape) {
-  std::vector<Frequency> all = grid.frequencies;
+std::vector<FitFrequency> with_targets(const Grid& grid, const ChannelShape& shape) {
+  std::vector<FitFrequency> all = grid.frequencies;
   for (size_t i = 0; i < all.size(); ++i)
     all[i].target = transfer_of(shape, grid.aliases[i]);
   return all;
@@ -120,14 +117,14 @@ struct Sample {
   Row x, y;
 };
 
-std::vector<Sample> make_samples(const std::vector<Frequency>& frequencies, std::span<const double> offsets) {
+std::vector<Sample> make_samples(const std::vector<FitFrequency>& frequencies, std::span<const double> offsets) {
   std::vector<Sample> samples;
-  for (const Frequency& f : frequencies)
+  for (const FitFrequency& f : frequencies)
     samples.push_back({axis_row(offsets, f.x), axis_row(offsets, f.y)});
   return samples;
 }
 
-SeparableFit fit_to(const std::vector<Frequency>& frequencies, const std::vector<Sample>& samples,
+SeparableFit fit_to(const std::vector<FitFrequency>& frequencies, const std::vector<Sample>& samples,
                     double d_px, std::span<const double> offsets) {
   SeparableFit fit;
   const size_t taps = offsets.size() + 1;
@@ -179,7 +176,7 @@ SeparableFit fit_to(const std::vector<Frequency>& frequencies, const std::vector
 
   double error = 0, signal = 0;
   for (size_t i = 0; i < samples.size(); ++i) {
-    const Frequency& f = frequencies[i];
+    const FitFrequency& f = frequencies[i];
     const double model =
         fit.centre + (1 - fit.centre) * dot(samples[i].x, fit.weights) * dot(samples[i].y, fit.weights);
     error += f.weight * (model - f.target) * (model - f.target);
@@ -236,7 +233,7 @@ std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape) {
   for (uint32_t node = 0; node < separable_nodes; ++node) {
     const double d_px = std::exp2(separable_first_log2_d + node * separable_log2_d_step);
     std::array<ChannelShape, 3> channels;
-    std::array<std::vector<Frequency>, 3> frequencies;
+    std::array<std::vector<FitFrequency>, 3> frequencies;
     for (size_t c = 0; c < 3; ++c) {
       channels[c] = scaled(shape[c], widest > 0 ? d_px / widest : 0.0);
       if (channels[c].d > 0) frequencies[c] = with_targets(grid, channels[c]);

@@ -4,8 +4,8 @@
 # and suites. Golden frames, and light of random graphs, are held against those of the system's driver. Tests that a
 # driver does not pass are listed in known/DRIVER with the reason and left out; any other failure fails. Exit code 77:
 # there is no other driver.
-# usage: run_on_drivers.sh [BUILD [SUITE...]]; BUILD: build/release; SUITE: "integration_abi" for test_integration_abi and so on,
-# "laws:2/8" for the second eighth of its tests
+# usage: run_on_drivers.sh [BUILD [SUITE...]]; BUILD: build/release; SUITE: "integration_abi" for test_integration_abi and
+# so on, "laws:2/8" for the second eighth of the tests of test_laws. Without SUITE: the suites that use a device, except laws.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
@@ -13,7 +13,7 @@ build=${1:-build/release}
 shift || true
 suites=("$@")
 [[ $# -gt 0 ]] || suites=(framegraph_vulkan shaders passes_device integration_abi integration_embedding
-  integration_examples_demo_engine laws:{1..8}/8)
+  integration_examples_demo_engine)
 for suite in "${suites[@]}"; do
   program=$build/tests/test_${suite%%:*}
   [[ -x $program ]] || { echo "run_on_drivers.sh: there is no suite '$suite': $program is not built" >&2; exit 2; }

@@ -5,11 +5,9 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkAccessFlags2 shader_write =
     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-constexpr VkAccessFlags2 all_memory = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
 bool foreign(const Device& device, uint32_t queue_family) {
   return queue_family != VK_QUEUE_FAMILY_IGNORED && queue_family != device.queue_family;

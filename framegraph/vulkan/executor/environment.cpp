@@ -1,5 +1,6 @@
 // Descriptor set 1: a host-visible buffer with frame constants and counters of every frame in flight, the
 // shared tables, and a linear sampler.
+#include "framegraph/model/align_up.hpp"
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/shader/signature_check.hpp"
@@ -10,10 +11,6 @@
 
 namespace dermis::vulkan {
 namespace {
-
-constexpr uint64_t align_up(uint64_t value, uint64_t alignment) {
-  return (value + alignment - 1) / alignment * alignment;
-}
 
 Error check_bindings(const Device& device, std::span<const EnvironmentBinding> bindings) {
   const VkPhysicalDeviceLimits& limits = device.properties.limits;

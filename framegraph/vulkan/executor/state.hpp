@@ -12,6 +12,9 @@
 namespace dermis::vulkan {
 
 inline constexpr uint32_t no_index = 0xffffffffu;
+inline constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+inline constexpr VkAccessFlags2 all_memory =
+    VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 inline constexpr uint64_t indirect_entry_bytes = 16; // group counts x, y, z and one more word
 
 struct HeapMemory { // of a plan heap

@@ -1,4 +1,5 @@
 // What makes and unmakes objects, binds and maps memory.
+#include "framegraph/model/align_up.hpp"
 #include "integration/tools/null_device/state.hpp"
 
 #include <iterator>
@@ -9,10 +10,6 @@ namespace {
 constexpr uint64_t image_alignment = 65536, buffer_alignment = 256; // bytes, as desktop devices ask
 constexpr uint32_t all_memory_types = 1;
 constexpr uint64_t largest_texel = 16; // bytes: four 32-bit channels
-
-constexpr uint64_t align_up(uint64_t value, uint64_t alignment) {
-  return (value + alignment - 1) / alignment * alignment;
-}
 
 // An upper bound: the texel is taken as the largest one, a chain of mips as a third more.
 VkMemoryRequirements needs_of(const VkImageCreateInfo& info) {

@@ -15,9 +15,9 @@
 namespace dermis::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr uint32_t side = 64;
 constexpr double radius = 0.1, distance = 0.5, near_plane = 0.1, tangent = 0.25; // metres; of half the view

@@ -23,7 +23,7 @@ bool usable(Format format) {
   return std::find(known.begin(), known.end(), format) != known.end();
 }
 
-bool is_slot(const ResourceDeclaration& resource) {
+bool is_bound_by_host(const ResourceDeclaration& resource) {
   return resource.origin == Origin::imported || resource.exported;
 }
 
@@ -84,10 +84,10 @@ Show random_show(uint64_t seed, const Graph& graph) {
   for (const ResourceDeclaration& resource : graph.resources) {
     const bool transmission = resource.name == "thickness" || resource.name == "back_lighting"; // needs them
     const bool left_out =
-        is_slot(resource) && resource.optional && !all && !transmission && random.below(100) < 30;
+        is_bound_by_host(resource) && resource.optional && !all && !transmission && random.below(100) < 30;
     show.bound.push_back(!left_out);
     show.formats.push_back(Format::undefined);
-    if (const auto formats = usable_formats(resource); is_slot(resource) && !formats.empty())
+    if (const auto formats = usable_formats(resource); is_bound_by_host(resource) && !formats.empty())
       show.formats.back() = formats[random.below(formats.size())];
   }
   abi_test::Surface surface = abi_test::draw_surface(random);
@@ -122,9 +122,9 @@ Show golden_show(const Graph& graph) {
   show.height = golden_height;
   for (const ResourceDeclaration& resource : graph.resources) {
     const bool light = resource.name == "lighting" || resource.name == "scattered_light";
-    show.bound.push_back(!is_slot(resource) || resource.origin == Origin::imported || light);
+    show.bound.push_back(!is_bound_by_host(resource) || resource.origin == Origin::imported || light);
     const auto formats = usable_formats(resource);
-    show.formats.push_back(is_slot(resource) && !formats.empty() ? formats.front() : Format::undefined);
+    show.formats.push_back(is_bound_by_host(resource) && !formats.empty() ? formats.front() : Format::undefined);
   }
   SplitMix64 random{1};
   std::map<std::string, std::vector<float>> others; // the same in all frames

@@ -7,8 +7,6 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-constexpr VkAccessFlags2 all_memory = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
 struct CopyScope { // of the commands that copy
   VkPipelineStageFlags2 stages;

@@ -16,13 +16,13 @@ constexpr ImageState destination = {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
 
 // One behind the other in a frame's buffer, each at a multiple of the largest texel.
-struct Part {
+struct KeptPart {
   Target target;
   VkBufferImageCopy region;
 };
 
 struct Layout {
-  std::vector<Part> parts;
+  std::vector<KeptPart> parts;
   uint64_t bytes = 0;
 };
 
@@ -59,7 +59,7 @@ Result<> keep_frame(KeptFrames& kept, const Renderer& renderer, uint32_t frame) 
                               VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, false);
   if (!buffer) return buffer.error();
   const auto done = run_commands(host, [&](VkCommandBuffer commands) {
-    for (const Part& part : layout.parts) {
+    for (const KeptPart& part : layout.parts) {
       const Image& image = renderer[part.target];
       transition(host, commands, image, resting, source);
       host.vk.vkCmdCopyImageToBuffer(commands, image.image, source.layout, buffer->buffer, 1, &part.region);
@@ -77,7 +77,7 @@ Result<> keep_frame(KeptFrames& kept, const Renderer& renderer, uint32_t frame) 
 void record_kept(const KeptFrames& kept, const Renderer& renderer, VkCommandBuffer commands, uint32_t frame) {
   const VulkanHost& host = *renderer.host;
   const VkBuffer buffer = kept.frames.at(frame).buffer;
-  for (const Part& part : layout_of(renderer).parts) {
+  for (const KeptPart& part : layout_of(renderer).parts) {
     const Image& image = renderer[part.target];
     transition(host, commands, image, resting, destination);
     host.vk.vkCmdCopyBufferToImage(commands, buffer, image.image, destination.layout, 1, &part.region);

@@ -4,6 +4,7 @@
 #include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/reference.hpp"
 #include "integration/tools/command/bench/report/heat_map.hpp"
+#include "integration/tools/command/bench/selection.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/run/truth_run.hpp"
 #include "integration/tools/files/capture_truth.hpp"
@@ -19,10 +20,6 @@
 
 namespace dermis::tools {
 namespace {
-
-demo::Error stopped() {
-  return {demo::ErrorKind::environment, "stopped"};
-}
 
 // All scenes share one list of profiles, so that a technique's tables and pipelines are made once.
 void adopt_profiles(ErrorTimeBench& bench, CapturedFrame& frame) {
@@ -42,10 +39,6 @@ void adopt_profiles(ErrorTimeBench& bench, CapturedFrame& frame) {
   for (uint8_t& id : frame.profile)
     id = renumbered[id];
   frame.description.profiles = own;
-}
-
-bool asked_for(const std::vector<std::string>& only, const std::string& name) {
-  return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
 }
 
 // Why a scene is left out; "" when it is not.
@@ -68,7 +61,7 @@ demo::Result<> add_subjects(ErrorTimeBench& bench) {
   for (const SceneRequest& scene : bench.file.scenes) {
     if (interrupted()) return stopped();
     progress.update(done++);
-    if (!asked_for(bench.options.scenes, scene.scene)) continue;
+    if (!is_selected(bench.options.scenes, scene.scene)) continue;
     if (const std::string reason = why_not(bench, scene); !reason.empty()) {
       bench.notes.push_back(fmt::format("scene {} {}: {}", scene.scene, scene.framing, reason));
       continue;
@@ -95,7 +88,7 @@ demo::Result<> add_techniques(ErrorTimeBench& bench) {
   bench.sap_tables = subsurface::make_sap_tables({true, true}, {});
   for (const TechniqueRequest& request : bench.file.techniques) {
     const std::string name = fmt::format("{} {}", request.technique, request.setting);
-    if (!asked_for(bench.options.techniques, request.technique)) continue;
+    if (!is_selected(bench.options.techniques, request.technique)) continue;
     if (!std::filesystem::exists(request.graph)) {
       bench.notes.push_back(fmt::format("technique {}: there is no graph '{}'", name, request.graph));
       continue;

@@ -23,7 +23,7 @@ Spread spread_of(std::vector<double> values) {
   return {at(0.5), at(0.1), at(0.9)};
 }
 
-std::vector<ReportColumn> columns() {
+std::vector<ReportColumn> error_time_columns() {
   return {{"scene", "scene"},
           {"d_px", "d, px"},
           {"framing", "framing"},
@@ -57,7 +57,7 @@ std::vector<ReportColumn> columns() {
 }
 
 void fill_table(const ErrorTimeBench& bench, Report& report) {
-  report.table.columns = columns();
+  report.table.columns = error_time_columns();
   const size_t count = bench.techniques.size();
   for (size_t first = 0; first < bench.measured.size(); first += count) {
     std::vector<Cost> costs;

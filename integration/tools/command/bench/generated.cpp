@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace dermis::tools {
 namespace {
 
 constexpr double view_distance = 1.0; // metres, as plane_frame has it
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr uint32_t sub_samples = 4; // a side, where light has edges inside of pixels
 
 float hashed(uint32_t x, uint32_t y) { // deterministic, in [0, 1)

@@ -53,14 +53,15 @@ std::optional<std::string> text_of(const std::string& file, std::string& problem
   return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
-// All graphs of a folder, by name; nullopt with errors in `diagnostics`.
+// All graphs below a folder, by name; nullopt with errors in `diagnostics`.
 std::optional<std::vector<NamedGraph>> graphs_in(const std::string& folder, Diagnostics& diagnostics) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored))
     if (entry.path().extension() == ".json" && entry.path().stem().extension() != ".expect")
       files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  std::sort(files.begin(), files.end(),
+            [](const auto& a, const auto& b) { return a.filename() < b.filename(); });
   std::vector<NamedGraph> graphs;
   for (const std::filesystem::path& file : files) {
     std::optional<LoadedGraph> loaded = load_graph(file.string(), {}, diagnostics);

@@ -50,7 +50,7 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths, std::
   return out;
 }
 
-struct Run {
+struct TestRun {
   TestSuite suite;
   Diagnostics diagnostics; // of the expectation file itself
   std::string text;        // of the file, rewritten
@@ -113,8 +113,8 @@ std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase
   return loaded;
 }
 
-Run run_file(const std::string& path, const TestOptions& options, const std::vector<std::string>& roots) {
-  Run run;
+TestRun run_file(const std::string& path, const TestOptions& options, const std::vector<std::string>& roots) {
+  TestRun run;
   run.suite.name = path;
   const std::optional<Document> document = read_document(path, run.diagnostics);
   if (!document) return run;
@@ -144,15 +144,15 @@ Run run_file(const std::string& path, const TestOptions& options, const std::vec
   return run;
 }
 
-bool good(const Run& run) {
+bool good(const TestRun& run) {
   return !run.diagnostics.has_errors() && std::all_of(run.suite.results.begin(), run.suite.results.end(),
                                                       [](const TestResult& one) { return one.ok; });
 }
 
-std::string answer_json(const std::vector<Run>& runs, bool all_good) {
+std::string answer_json(const std::vector<TestRun>& runs, bool all_good) {
   JsonWriter answer;
   answer.open_object().member("ok", all_good).key("files").open_array();
-  for (const Run& run : runs) {
+  for (const TestRun& run : runs) {
     answer.open_object().member("file", run.suite.name).member("ok", good(run));
     answer.member("updated", static_cast<uint64_t>(run.updated)).key("cases").open_array();
     for (const TestResult& one : run.suite.results)
@@ -168,7 +168,7 @@ std::string answer_json(const std::vector<Run>& runs, bool all_good) {
   return std::move(answer).finish();
 }
 
-void tell(const Session& session, const Run& run) {
+void tell(const Session& session, const TestRun& run) {
   print_diagnostics(session, run.diagnostics);
   if (session.json) return;
   for (const TestResult& one : run.suite.results)
@@ -182,9 +182,9 @@ void tell(const Session& session, const Run& run) {
 }
 
 // Also a file that could not be read is a result, so that a build server shows it.
-std::vector<TestSuite> suites_of(const std::vector<Run>& runs) {
+std::vector<TestSuite> suites_of(const std::vector<TestRun>& runs) {
   std::vector<TestSuite> suites;
-  for (const Run& run : runs) {
+  for (const TestRun& run : runs) {
     suites.push_back(run.suite);
     if (run.diagnostics.has_errors())
       suites.back().results.push_back({"(the file itself)", false, "the expectations cannot be read",
@@ -203,7 +203,7 @@ ExitCode test(const Session& session, const TestOptions& options) {
   std::error_code ignored;
   for (const std::string& path : options.paths)
     if (files::is_directory(path, ignored)) roots.push_back(path);
-  std::vector<Run> runs;
+  std::vector<TestRun> runs;
   for (const std::string& path : paths) {
     runs.push_back(run_file(path, options, roots));
     if (runs.back().rewritten) problem = deliver_text(path, runs.back().text);
@@ -212,7 +212,7 @@ ExitCode test(const Session& session, const TestOptions& options) {
   }
   if (!options.junit.empty()) problem = deliver_text(options.junit, junit_xml(suites_of(runs)));
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
-  const auto bad = std::count_if(runs.begin(), runs.end(), [](const Run& run) { return !good(run); });
+  const auto bad = std::count_if(runs.begin(), runs.end(), [](const TestRun& run) { return !good(run); });
   if (session.json) {
     print(answer_json(runs, bad == 0));
     return bad == 0 ? ExitCode::ok : ExitCode::problems;

@@ -22,7 +22,7 @@
 namespace dermis::tools {
 namespace {
 
-struct Run {
+struct ApplyRun {
   const Session& session;
   const ApplyOptions& options;
   const LoadedGraph& loaded;
@@ -37,7 +37,7 @@ struct Run {
 
 // A frame that has other images or profiles than the one before needs a graph of its own; history starts
 // anew. One of another size goes on with what the graph keeps over that.
-demo::Result<> prepare(Run& run, const CapturedFrame& frame, const SlotChoice& slots) {
+demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoice& slots) {
   DeviceGraphRequest request;
   request.graph_name = run.options.graph;
   request.graph_text = run.graph_text;
@@ -112,7 +112,7 @@ demo::Result<> write_frame(const CapturedFrame& frame, const std::string& name, 
   return write("scattered.exr", scattered_light(frame, scattered.take()));
 }
 
-demo::Result<> apply_frame(Run& run, const CapturedFrame& frame, const std::string& name, OutputFolder& out) {
+demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std::string& name, OutputFolder& out) {
   const SlotChoice slots = choose_slots(run.loaded.graph, frame);
   if (!slots.problem.empty()) return demo::Error{demo::ErrorKind::input, slots.problem};
   if (auto ready = prepare(run, frame, slots); !ready) return ready;
@@ -128,7 +128,7 @@ demo::Result<> apply_frame(Run& run, const CapturedFrame& frame, const std::stri
   return write_frame(frame, name, *run.device, out);
 }
 
-ExitCode report(const Run& run, const CapturedSequence& sequence, const Diagnostics& surfaces) {
+ExitCode report(const ApplyRun& run, const CapturedSequence& sequence, const Diagnostics& surfaces) {
   if (!run.times.empty())
     say(run.session, format_times(run.times, run.all_runs == 1 ? std::string("pass") + first_frame : "pass"));
   say(run.session,
@@ -166,7 +166,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
   if (const std::string problem = out.open(options.out); !problem.empty())
     return fail(session, ExitCode::environment, problem);
 
-  Run run{session, options, *loaded, diagnostics.files.front().text, **host, nullptr, {}, {}};
+  ApplyRun run{session, options, *loaded, diagnostics.files.front().text, **host, nullptr, {}, {}};
   run.hooks = host_passes.hooks();
   run.all_runs = sequence->folders.size() * uint64_t{options.repeat};
   Progress progress(progress_style(session.quiet, session.json), "apply", "frame", sequence->folders.size());

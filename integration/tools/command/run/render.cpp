@@ -39,7 +39,7 @@ demo::Error cannot_write(std::string problem) {
 }
 
 // Everything that the frames leave behind while they pass.
-struct Run {
+struct RenderRun {
   const Session& session;
   const RenderOptions& options;
   Progress progress;
@@ -60,7 +60,7 @@ struct Run {
   Diagnostics surfaces{};    // warnings of frames, each once
 };
 
-demo::Result<> start(Run& run, const demo::RenderInfo& info) {
+demo::Result<> start(RenderRun& run, const demo::RenderInfo& info) {
   run.info = info;
   for (const std::string& warning : info.warnings)
     spdlog::warn("{}", warning);
@@ -112,7 +112,7 @@ std::vector<uint8_t> skips_picture(const demo::FrameOutputs& frame) {
   return rgb;
 }
 
-demo::Result<> write_pictures(Run& run, const demo::FrameOutputs& frame) {
+demo::Result<> write_pictures(RenderRun& run, const demo::FrameOutputs& frame) {
   std::string problem;
   const auto name = [&](const char* what, const char* extension) {
     return run.out.path_of(fmt::format("{}_{:04}.{}", what, frame.frame, extension));
@@ -140,7 +140,7 @@ bool scatters_by_rays(const std::string& technique) {
                                [&](const auto& one) { return one.by_rays && one.name == technique; });
 }
 
-demo::Result<> take_frame(Run& run, const demo::FrameOutputs& frame) {
+demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
   if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
   if (auto written = write_pictures(run, frame); !written) return written;
   auto captured = captured_frame(frame, run.profiles);
@@ -190,7 +190,7 @@ bool transmits(const Graph& graph, const CompileChoices& choices) {
 }
 
 // Nothing to compare with: no scattered light handed out, no subsurface pixel, or not asked for.
-std::string why_no_error(const Run& run) {
+std::string why_no_error(const RenderRun& run) {
   if (run.textured_before) return "the reference needs 'texturing' = 'post'";
   if (run.options.graph == no_graph) return "rendered without a graph";
   if (run.by_rays)
@@ -202,7 +202,7 @@ std::string why_no_error(const Run& run) {
   return "";
 }
 
-ExitCode report(Run& run) {
+ExitCode report(RenderRun& run) {
   std::string text, error_json = "null";
   const std::string cold = run.options.frames == 1 ? first_frame : "";
   if (!run.graph_times.empty()) text += format_times(run.graph_times, "pass of the graph" + cold) + '\n';
@@ -314,7 +314,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     return fail(session, ExitCode::usage, "--set, --overlay, --kinds and --shaders need a graph");
   }
 
-  Run run{.session = session,
+  RenderRun run{.session = session,
           .options = options,
           .progress =
               Progress(progress_style(session.quiet, session.json), "render", "frame", options.frames),

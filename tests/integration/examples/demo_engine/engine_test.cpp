@@ -1,4 +1,5 @@
 #include "tests/integration/examples/demo_engine/rendering.hpp"
+#include "tests/support/shipped_graphs.hpp"
 #include "tests/support/test_folder.hpp"
 
 #include <gmock/gmock.h>
@@ -230,7 +231,7 @@ TEST_F(Engine, KernelsAreCompiledInTheFirstFrames) {
   for (const char* graph : {"afis_guided", "hybrid", "sap_blend", "sap_residual", "skin"}) {
     SCOPED_TRACE(graph);
     RenderOptions options = small();
-    options.graph = shipped + "graphs/" + graph + ".json";
+    options.graph = DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph);
     options.frames = 8;
     options.validation = false;
     std::vector<uint64_t> code_bytes;

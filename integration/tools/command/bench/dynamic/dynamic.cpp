@@ -7,6 +7,7 @@
 #include "integration/tools/command/bench/dynamic/figures.hpp"
 #include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
+#include "integration/tools/command/bench/selection.hpp"
 #include "integration/tools/command/bench/technique.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/files/capture_truth.hpp"
@@ -40,14 +41,6 @@ struct Bench {
   std::vector<std::string> notes = {};
   Report report = {};
 };
-
-demo::Error stopped() {
-  return {demo::ErrorKind::environment, "stopped"};
-}
-
-bool asked_for(const std::vector<std::string>& only, const std::string& name) {
-  return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
-}
 
 std::string name_of(const DynamicTechnique& technique) {
   return fmt::format("{} {} {}", technique.request.technique, technique.guidance, technique.request.setting);
@@ -180,7 +173,7 @@ demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
   std::vector<DynamicTechnique> techniques;
   std::vector<std::unique_ptr<TechniqueRun>> runs;
   for (const DynamicTechnique& technique : bench.file.techniques) {
-    if (!asked_for(bench.options.techniques, technique.request.technique)) continue;
+    if (!is_selected(bench.options.techniques, technique.request.technique)) continue;
     auto made = TechniqueRun::create(bench.host, technique.request,
                                      sequence.frames.front().captured.description.profiles, bench.sap_tables);
     if (!made) return made.error();
@@ -216,7 +209,7 @@ std::string facts_text(const Report& report) {
   return text;
 }
 
-std::vector<ReportColumn> columns() {
+std::vector<ReportColumn> dynamic_columns() {
   return {{"scene", "scene"},
           {"d_px", "d, px"},
           {"framing", "framing"},
@@ -275,9 +268,10 @@ ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& asked)
   bench.report.summary = "Error of the scattered light before albedo against the fp64 truth of each frame: "
                          "linear Rec.709 luminance, the "
                          "sequence's 99.9th percentile of light at 1. Samples are counted on the device.";
-  bench.report.table.columns = columns();
+  bench.report.table.columns = dynamic_columns();
   for (const SequenceRequest& request : file->scenes) {
-    if (!asked_for(options.scenes, request.scene) || !asked_for(options.framings, request.framing)) continue;
+    if (!is_selected(options.scenes, request.scene) || !is_selected(options.framings, request.framing))
+      continue;
     const auto done = measure_scene(bench, request);
     if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
     if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);

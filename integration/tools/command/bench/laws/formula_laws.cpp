@@ -9,11 +9,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace dermis::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double six_digits = 6e-7; // tabulated values are rounded to six digits
 constexpr double cut_digits = 1e-6; // or cut after them
 

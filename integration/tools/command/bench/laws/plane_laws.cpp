@@ -130,7 +130,7 @@ double contrast(const Asked& asked, double kx, double ky) {
   return 2 * (n * syc - sc * sy) / (n * scc - sc * sc);
 }
 
-double sinc(double x) {
+double unnormalised_sinc(double x) {
   return std::abs(x) < 1e-9 ? 1 : std::sin(x) / x;
 }
 
@@ -143,7 +143,7 @@ double sampled_contrast(double kx, double ky) {
   for (int j = -images; j <= images; ++j)
     for (int i = -images; i <= images; ++i) {
       const double fx = kx + sampling * i, fy = ky + sampling * j;
-      sum += subsurface::burley_mtf(std::hypot(fx, fy), d) * sinc(fx / 2) * sinc(fy / 2);
+      sum += subsurface::burley_mtf(std::hypot(fx, fy), d) * unnormalised_sinc(fx / 2) * unnormalised_sinc(fy / 2);
     }
   return sum;
 }

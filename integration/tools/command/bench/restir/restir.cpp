@@ -4,6 +4,7 @@
 #include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/restir/claims.hpp"
 #include "integration/tools/command/bench/restir/restir_report.hpp"
+#include "integration/tools/command/bench/selection.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "passes/common/environment.hpp"
 
@@ -35,14 +36,6 @@ struct Bench {
   std::vector<RestirVariant> variants = {};
   Report report = {};
 };
-
-demo::Error stopped() {
-  return {demo::ErrorKind::environment, "stopped"};
-}
-
-bool asked_for(const std::vector<std::string>& only, const std::string& name) {
-  return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
-}
 
 double median_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -162,7 +155,7 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
 demo::Result<> measure(Bench& bench) {
   std::vector<SceneRequest> scenes;
   for (const SceneRequest& scene : bench.file.scenes) {
-    if (!asked_for(bench.options.scenes, scene.scene)) continue;
+    if (!is_selected(bench.options.scenes, scene.scene)) continue;
     const std::string reason = scene.model ? why_no_head(bench.options.head) : "";
     if (reason.empty())
       scenes.push_back(scene);
@@ -204,7 +197,8 @@ ExitCode bench_restir(const Session& session, const BenchRestirOptions& asked) {
   const std::vector<RestirVariant> variants = variants_of(loaded->graph);
   bench.reuses = variants.size() > 1;
   for (const RestirVariant& variant : variants)
-    if (variant.shift.empty() || asked_for(options.shifts, variant.shift)) bench.variants.push_back(variant);
+    if (variant.shift.empty() || is_selected(options.shifts, variant.shift))
+      bench.variants.push_back(variant);
   if (bench.reuses && bench.variants.size() == 1)
     return fail(session, ExitCode::usage, fmt::format("'{}' has none of these shifts", file->graph));
   bench.report = start_restir_report(*file);

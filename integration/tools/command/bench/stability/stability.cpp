@@ -2,6 +2,7 @@
 
 #include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
+#include "integration/tools/command/bench/selection.hpp"
 #include "integration/tools/command/bench/stability/rows.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/verbs.hpp"
@@ -34,16 +35,12 @@ std::optional<std::vector<TechniqueRequest>> read_techniques(const std::string& 
   return techniques;
 }
 
-bool asked_for(const std::vector<std::string>& only, std::string_view name) {
-  return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
-}
-
 std::vector<StabilityCase> cases_asked_for(const std::vector<std::string>& only, bool quick) {
   std::vector<StabilityCase> asked;
   for (const auto& list : {light_cases(), shape_cases(), depth_cases(), tile_cases(), time_cases(),
                            motion_cases(), guidance_cases(), random_cases()})
     for (const StabilityCase& one : list)
-      if (asked_for(only, one.name) && !(quick && one.large)) asked.push_back(one);
+      if (is_selected(only, one.name) && !(quick && one.large)) asked.push_back(one);
   return asked;
 }
 
@@ -126,14 +123,14 @@ ExitCode bench_stability(const Session& session, const BenchStabilityOptions& as
   std::vector<std::string> notes;
   for (std::vector<StabilityRow>& list : std::array{formula_rows(), moving_rows(options.updates)})
     for (StabilityRow& row : list)
-      if (asked_for(options.cases, row.name) && asked_for(options.techniques, row.technique))
+      if (is_selected(options.cases, row.name) && is_selected(options.techniques, row.technique))
         rows.push_back(std::move(row));
   const std::vector<CaptureProfile> profiles = stability_profiles();
   Progress progress(progress_style(session.quiet, false), "stability", "case",
                     cases.size() * techniques->size());
   uint64_t done = 0;
   for (const TechniqueRequest& request : *techniques) {
-    if (!asked_for(options.techniques, request.technique)) {
+    if (!is_selected(options.techniques, request.technique)) {
       done += cases.size();
       continue;
     }
