@@ -1,6 +1,6 @@
 // Values of the settings, and which passes their `when` turns on.
 
-#include "framegraph/compile/offers.hpp"
+#include "framegraph/compile/availability.hpp"
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/model/expression.hpp"
 
@@ -51,18 +51,20 @@ void check_features(CompileContext& c) {
   if (missing == 0) return;
   c.diagnostics->add(DiagnosticId::device_feature, c.graph->requires_where,
                      fmt::format("graph '{}' cannot run on '{}': {}", c.graph->name, c.device->name,
-                                 lacks_text(*c.graph, {missing, {}})));
+                                 missing_text(*c.graph, {missing, {}})));
 }
 
 // The value that counts, where `value` names an option that is not offered.
 SettingValue settled(CompileContext& c, uint32_t setting, const SettingValue& value) {
   const SettingDeclaration& declared = c.graph->settings[setting];
   if (declared.needs.empty()) return value;
-  const Lacks lacks = lacks_of(declared, value.integer, c.device->features, c.input->bound);
-  if (!lacks.any()) return value;
-  c.because(Reason::About::choice, setting, Reason::Why::not_offered, static_cast<uint32_t>(value.integer),
-            lacks.features, lacks.imports.empty() ? 0 : lacks.imports.front().value);
-  return offered_value(declared, value, c.device->features, c.input->bound);
+  const MissingRequirements unmet =
+      missing_requirements(declared, value.integer, c.device->features, c.input->bound);
+  if (!unmet.any()) return value;
+  c.record_reason(Reason::About::choice, setting, Reason::ReasonKind::not_available,
+                  static_cast<uint32_t>(value.integer), unmet.features,
+                  unmet.imports.empty() ? 0 : unmet.imports.front().value);
+  return available_option(declared, value, c.device->features, c.input->bound);
 }
 
 } // namespace
@@ -86,7 +88,8 @@ void choose(CompileContext& c) {
     if (used.integer != value.integer) continue; // said already
     const bool differs =
         value.integer != declared.default_value.integer || value.real != declared.default_value.real;
-    c.because(Reason::About::choice, i, differs ? Reason::Why::asked_for : Reason::Why::by_default);
+    c.record_reason(Reason::About::choice, i,
+                    differs ? Reason::ReasonKind::requested : Reason::ReasonKind::by_default);
   }
   c.out->plan.setting_values = c.settings;
   constexpr size_t ahead = 8;
@@ -96,10 +99,10 @@ void choose(CompileContext& c) {
       fetch(&c.graph->passes[i + ahead].after);
     }
     const ExpressionId when = c.graph->passes[i].when;
-    c.kind_of.push_back(c.graph->passes[i].kind);
+    c.kind_of.push_back(c.graph->passes[i].type);
     c.ordered |= !c.graph->passes[i].after.empty();
     c.on.push_back(!when.valid() || evaluate(*c.graph, when, c.settings));
-    if (!c.on.back()) c.because(Reason::About::pass, i, Reason::Why::off);
+    if (!c.on.back()) c.record_reason(Reason::About::pass, i, Reason::ReasonKind::off);
   }
 }
 

@@ -66,25 +66,25 @@ bool Compiler::compile(const CompileInput& input, Diagnostics& diagnostics, Comp
   CompileContext& context = *context_;
   context.input = &input;
   context.graph = input.graph;
-  context.kinds = input.kinds;
+  context.pass_types = input.pass_types;
   context.device = input.device;
   context.diagnostics = &diagnostics;
   context.out = &out;
   const uint32_t errors_before = diagnostics.count(Severity::error);
   for (auto* phase : {
-           resolve_sizes,    // how large is each resource, and which slots does the host bind?
-           choose,           // what are the settings, and which passes are on?
-           find_parts,       // into which parts do ports divide images?
-           resolve_versions, // which version of which resource does each port see?
-           refuse_races,     // does a pass read what it writes?
-           cull,             // which passes does something bound need?
-           choose_queues,    // which of them run beside the others?
-           gather_usage,     // how do they use each resource?
-           resolve_formats,  // which format does each resource get, and how much memory?
-           order,            // in which order do they run?
-           lifetimes,        // from which pass to which is each resource alive?
-           pack,             // where in memory does each one lie?
-           synchronize,      // what must wait for what?
+           resolve_sizes,      // how large is each resource, and which slots does the host bind?
+           choose,             // what are the settings, and which passes are on?
+           split_subresources, // into which parts do ports divide images?
+           resolve_versions,   // which version of which resource does each port see?
+           report_races,       // does a pass read what it writes?
+           cull,               // which passes does something bound need?
+           choose_queues,      // which of them run beside the others?
+           gather_usage,       // how do they use each resource?
+           resolve_formats,    // which format does each resource get, and how much memory?
+           order,              // in which order do they run?
+           lifetimes,          // from which pass to which is each resource alive?
+           pack,               // where in memory does each one lie?
+           synchronize,        // what must wait for what?
        }) {
     phase(context);
     if (diagnostics.count(Severity::error) == errors_before) continue;

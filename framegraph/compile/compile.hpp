@@ -24,7 +24,7 @@ enum class PackingLevel : uint8_t {
 
 struct CompileInput {
   const Graph* graph = nullptr;
-  const KindRegistry* kinds = nullptr;
+  const PassTypeRegistry* pass_types = nullptr;
   const DeviceProfile* device = nullptr;
   uint32_t view_width = 0, view_height = 0; // allocated view size, 1 .. device->max_image_dimension
   std::vector<SettingValue> settings;       // one per Graph::settings; empty: the defaults

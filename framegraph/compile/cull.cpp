@@ -18,19 +18,19 @@ struct Culler {
   PassId following{};                         // whose reads are looked at
   std::vector<uint64_t>& waiting = c.waiting; // bit set of passes that are needed and not yet followed
 
-  void need(PassId pass, Reason::Why why, uint32_t a = 0, uint32_t b = 0) {
-    if (c.input->reasons && !c.live[pass.value]) c.because(Reason::About::pass, pass.value, why, a, b);
+  void need(PassId pass, Reason::ReasonKind why, uint32_t a = 0, uint32_t b = 0) {
+    if (c.input->reasons && !c.live[pass.value]) c.record_reason(Reason::About::pass, pass.value, why, a, b);
     waiting[pass.value / 64] |= uint64_t{c.live[pass.value] == 0} << pass.value % 64;
     c.live[pass.value] = 1;
   }
 
-  void need_value(uint32_t value, Reason::Why why, uint32_t a, uint32_t b = 0) {
+  void need_value(uint32_t value, Reason::ReasonKind why, uint32_t a, uint32_t b = 0) {
     if (value != no_value && c.values[value].producer.valid()) need(c.values[value].producer, why, a, b);
   }
 
   // Likewise, for the pass that is followed: it stands in for a producer that there is not, since it runs
   // anyway.
-  void need_producer(uint32_t value, Reason::Why why, uint32_t a, uint32_t b) {
+  void need_producer(uint32_t value, Reason::ReasonKind why, uint32_t a, uint32_t b) {
     if (c.values.empty()) return;
     const PassId producer = c.values[pick(value != no_value, value, 0u)].producer;
     const bool exists = (int{value != no_value} & int{producer.valid()}) != 0;
@@ -40,17 +40,18 @@ struct Culler {
   void follow(PassId pass) {
     for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
       const Use& use = c.uses[u];
-      if (use.trouble != Use::Trouble::none) {
+      if (use.bind_error != Use::BindError::none) {
         examine(use);
         continue;
       }
       const uint32_t resource = use.resource.value;
       if (use.frames_back > 0)
-        need_value(c.final_value[use.part], Reason::Why::read_later_by, pass.value, resource);
-      need_producer(use.read_value, Reason::Why::read_by, pass.value, resource);
+        need_value(c.final_value[use.part], Reason::ReasonKind::read_later_by, pass.value, resource);
+      need_producer(use.read_value, Reason::ReasonKind::read_by, pass.value, resource);
       // What is written in place may keep texels of the version before.
       if (c.overwrites && use.write_value != no_value)
-        need_value(c.values[use.write_value].previous, Reason::Why::written_over_by, pass.value, resource);
+        need_value(c.values[use.write_value].previous, Reason::ReasonKind::written_over_by, pass.value,
+                   resource);
     }
   }
 
@@ -74,11 +75,11 @@ struct Culler {
 
   // Without culling: every pass that has all it needs, and whatever these read.
   void keep_runnable() {
-    std::vector<uint8_t> lacks(c.live.size(), 0);
+    std::vector<uint8_t> unmet(c.live.size(), 0);
     for (const Use& use : c.uses)
-      if (use.trouble != Use::Trouble::none) lacks[use.pass.value] = 1;
+      if (use.bind_error != Use::BindError::none) unmet[use.pass.value] = 1;
     for (uint32_t i = 0; i < c.live.size(); ++i)
-      if (c.on[i] && !lacks[i]) need(PassId{i}, Reason::Why::culling_off);
+      if (c.on[i] && !unmet[i]) need(PassId{i}, Reason::ReasonKind::culling_off);
     for (bool again = true; again;) { // a pass needs all its producers to have what they need
       again = false;
       for (const Use& use : c.uses) {
@@ -93,76 +94,79 @@ struct Culler {
 
   // A history that nobody writes is never valid: where the port says what it reads then, it always reads
   // that.
-  bool has_stand_in(const Use& use) const {
-    if (use.when != ReadWhen::history_valid || use.trouble != Use::Trouble::history_unwritten) return false;
+  bool has_placeholder(const Use& use) const {
+    if (use.when != ReadWhen::history_valid || use.bind_error != Use::BindError::history_unwritten)
+      return false;
     const Use* next = &use + 1; // the stand-in stands behind it, at the same port
     const bool last = next == c.uses.data() + c.first_use[use.pass.value + 1];
     return !last && next->when == ReadWhen::history_invalid && next->port == use.port &&
-           next->trouble == Use::Trouble::none;
+           next->bind_error == Use::BindError::none;
   }
 
   // Whether the pass has no other port to go on with. Of several such ports the first is told.
   bool needs_it(const Use& use) const {
-    const PassKind& kind = c.kind(use.pass);
-    if (!kind.ports[use.port].optional) return true;
-    if (!is_one_of(kind, use.port)) return false;
+    const PassType& type = c.type(use.pass);
+    if (!type.ports[use.port].optional) return true;
+    if (!is_one_of(type, use.port)) return false;
     for (uint32_t u = c.first_use[use.pass.value]; u < c.first_use[use.pass.value + 1]; ++u) {
       const Use& other = c.uses[u];
-      if (!is_one_of(kind, other.port)) continue;
-      if (other.trouble == Use::Trouble::none || &other < &use) return false;
+      if (!is_one_of(type, other.port)) continue;
+      if (other.bind_error == Use::BindError::none || &other < &use) return false;
     }
     return true;
   }
 
   // A port of a pass that runs has nothing behind it: fine for an optional port, except for ambiguity.
   void examine(const Use& use) {
-    const Port& port = c.kind(use.pass).ports[use.port];
-    const bool missing = use.trouble == Use::Trouble::unbound || use.trouble == Use::Trouble::unwritten ||
-                         use.trouble == Use::Trouble::history_unwritten;
-    if (has_stand_in(use)) {
-      c.because(Reason::About::pass, use.pass.value, Reason::Why::always_otherwise, use.port,
-                use.asked.value);
+    const Port& port = c.type(use.pass).ports[use.port];
+    const bool missing = use.bind_error == Use::BindError::unbound ||
+                         use.bind_error == Use::BindError::unwritten ||
+                         use.bind_error == Use::BindError::history_unwritten;
+    if (has_placeholder(use)) {
+      c.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::always_otherwise, use.port,
+                      use.requested.value);
       return;
     }
     if (missing && !needs_it(use)) {
       if (first_of_binding(use))
-        c.because(Reason::About::pass, use.pass.value, Reason::Why::port_unbound, use.port, use.asked.value);
+        c.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::port_unbound, use.port,
+                        use.requested.value);
       return;
     }
-    if (c.reported[use.asked.value]) return;
-    c.reported[use.asked.value] = 1;
+    if (c.reported[use.requested.value]) return;
+    c.reported[use.requested.value] = 1;
     const auto refuse = [&](DiagnosticId id, std::string text) {
       auto& diagnostic = c.diagnostics->add(id, c.place_of(use), std::move(text));
-      diagnostic.related.emplace_back(c.graph->resources[use.asked.value].where,
-                                      fmt::format("'{}' is declared here", c.name(use.asked)));
+      diagnostic.related.emplace_back(c.graph->resources[use.requested.value].where,
+                                      fmt::format("'{}' is declared here", c.name(use.requested)));
       relate_producers(diagnostic, use);
     };
     const std::string reader = fmt::format("pass '{}', port '{}'", c.name(use.pass), port.name);
-    const std::string& resource = c.name(use.asked);
-    switch (use.trouble) {
-    case Use::Trouble::none:
+    const std::string& resource = c.name(use.requested);
+    switch (use.bind_error) {
+    case Use::BindError::none:
       break;
-    case Use::Trouble::unbound:
+    case Use::BindError::unbound:
       return refuse(DiagnosticId::unbound_import,
                     fmt::format("{} needs '{}', which the host leaves unbound", reader, resource));
-    case Use::Trouble::unwritten:
+    case Use::BindError::unwritten:
       return refuse(
           DiagnosticId::read_before_write,
           fmt::format("{} reads '{}', which no pass that is on writes before it", reader, seen_text(use)));
-    case Use::Trouble::ambiguous:
+    case Use::BindError::ambiguous:
       return refuse(DiagnosticId::ambiguous_version,
                     fmt::format("{} reads '{}' before any pass wrote it, and several write it later", reader,
                                 resource));
-    case Use::Trouble::replaced:
+    case Use::BindError::replaced:
       return refuse(
           DiagnosticId::replaced_update,
           fmt::format("{} updates '{}' in place, but it stands for '{}' because its producer is off", reader,
                       resource, c.name(use.resource)));
-    case Use::Trouble::history_unwritten:
+    case Use::BindError::history_unwritten:
       return refuse(DiagnosticId::history_unwritten,
                     fmt::format("{0} reads '{1}@-{2}', but no pass that is on writes '{1}'", reader,
                                 seen_text(use), use.frames_back));
-    case Use::Trouble::partly_unwritten:
+    case Use::BindError::partly_unwritten:
       return use.frames_back > 0
                  ? refuse(DiagnosticId::history_unwritten,
                           fmt::format("{} reads '{}@-{}', but no pass that is on writes {}", reader,
@@ -188,18 +192,18 @@ struct Culler {
   // Names the part that the port sees as the file does, without the frame.
   std::string seen_text(const Use& use) const {
     const PortBinding& binding = c.graph->bindings_of(c.graph->passes[use.pass.value])[use.binding];
-    return c.name(use.asked) + part_text(binding.part);
+    return c.name(use.requested) + part_text(binding.part);
   }
 
   // Without the numbers that the part has all of.
   ImagePart part_of(const Use& use) const {
     const SubresourceRange& range = c.parts[use.part];
     ImagePart part;
-    if (range.mips != c.extents[use.asked.value].mips) {
+    if (range.mips != c.extents[use.requested.value].mips) {
       part.first_mip = static_cast<uint8_t>(range.first_mip);
       part.mips = static_cast<uint8_t>(range.mips);
     }
-    if (range.layers != c.facts[use.asked.value].layers) {
+    if (range.layers != c.info[use.requested.value].layers) {
       part.first_layer = range.first_layer;
       part.layers = range.layers;
     }
@@ -211,15 +215,15 @@ struct Culler {
     std::vector<std::string> names;
     for (const Use* at = &use; at != c.uses.data() + c.first_use[use.pass.value + 1]; ++at) {
       if (at->binding != use.binding || c.is_written(*at)) continue;
-      names.push_back(c.name(use.asked) + part_text(part_of(*at)));
+      names.push_back(c.name(use.requested) + part_text(part_of(*at)));
     }
     return list_words(std::vector<std::string_view>(names.begin(), names.end()));
   }
 
   // Locates the passes that would write the missing parts, on or off: the likely cause.
   void relate_producers(Diagnostic& diagnostic, const Use& use) {
-    relate_producers(diagnostic, use.asked, [&](const PortBinding& written) {
-      if (!c.split(use.asked)) return true;
+    relate_producers(diagnostic, use.requested, [&](const PortBinding& written) {
+      if (!c.split(use.requested)) return true;
       for (const Use* at = &use; at != c.uses.data() + c.first_use[use.pass.value + 1]; ++at)
         if (at->binding == use.binding && !c.is_written(*at) && meets(written.part, c.parts[at->part]))
           return true;
@@ -235,9 +239,9 @@ struct Culler {
     for (uint32_t i = 0; i < c.graph->passes.size(); ++i)
       for (const PortBinding& binding : c.graph->writes(c.graph->passes[i]))
         if (binding.resource == resource && counts(binding))
-          diagnostic.related.emplace_back(c.graph->place_of(binding),
-                                          fmt::format("'{}' writes it and is {}", c.name(PassId{i}),
-                                                      state_of(PassId{i})));
+          diagnostic.related.emplace_back(
+              c.graph->place_of(binding),
+              fmt::format("'{}' writes it and is {}", c.name(PassId{i}), state_of(PassId{i})));
   }
 };
 
@@ -250,11 +254,11 @@ void cull(CompileContext& c) {
   c.reported.assign(c.graph->resources.size(), 0);
   Culler culler{c};
   for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {
-    if (!c.facts[i].exported || !c.bound[i]) continue;
+    if (!c.info[i].exported || !c.bound[i]) continue;
     if (c.final_value[i] != no_value) {
-      culler.need_value(c.final_value[i], Reason::Why::writes_export, i);
-    } else if (c.facts[i].optional) {
-      c.because(Reason::About::resource, i, Reason::Why::unwritten_export);
+      culler.need_value(c.final_value[i], Reason::ReasonKind::writes_export, i);
+    } else if (c.info[i].optional) {
+      c.record_reason(Reason::About::resource, i, Reason::ReasonKind::unwritten_export);
     } else {
       const ResourceDeclaration& declared = c.graph->resources[i];
       auto& diagnostic =
@@ -264,11 +268,11 @@ void cull(CompileContext& c) {
     }
   }
   for (uint32_t i = 0; i < passes; ++i)
-    if (c.on[i] && c.kind(PassId{i}).side_effects) culler.need(PassId{i}, Reason::Why::side_effects);
+    if (c.on[i] && c.type(PassId{i}).side_effects) culler.need(PassId{i}, Reason::ReasonKind::side_effects);
   culler.follow_all();
   if (!c.input->cull) culler.keep_runnable();
   for (uint32_t i = 0; i < passes; ++i)
-    if (c.on[i] && !c.live[i]) c.because(Reason::About::pass, i, Reason::Why::not_needed);
+    if (c.on[i] && !c.live[i]) c.record_reason(Reason::About::pass, i, Reason::ReasonKind::not_needed);
 }
 
 } // namespace dermis

@@ -42,7 +42,7 @@ inline uint32_t sharing_bits_anywhere(const uint32_t* numbers, uint32_t mask) { 
   return bits;
 }
 
-inline uint32_t sharing_bits(const uint32_t* numbers, uint32_t mask) {
+inline uint32_t any_common_bits(const uint32_t* numbers, uint32_t mask) {
 #if defined(__SSE2__)
   const __m128i wanted = _mm_set1_epi32(static_cast<int>(mask)), none = _mm_setzero_si128();
   uint32_t missed = 0;

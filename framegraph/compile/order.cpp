@@ -18,7 +18,7 @@ struct Orderer {
   template <class Visit> void for_each_before(uint32_t pass, Visit visit) const {
     for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
       const Use& use = c.uses[u];
-      if (use.trouble != Use::Trouble::none) continue;
+      if (use.bind_error != Use::BindError::none) continue;
       if (use.read_value != no_value) visit(c.values[use.read_value].producer);
       if (use.write_value == no_value) continue;
       const uint32_t previous = c.values[use.write_value].previous;
@@ -36,7 +36,7 @@ struct Orderer {
     for (const Value& value : c.values)
       if (value.previous != no_value) c.candidate[value.previous] = value.producer.value;
     for (const Use& use : c.uses) {
-      if (use.trouble != Use::Trouble::none || use.read_value == no_value) continue;
+      if (use.bind_error != Use::BindError::none || use.read_value == no_value) continue;
       const uint32_t overwriter = c.candidate[use.read_value];
       if (overwriter == no_value || overwriter == use.pass.value) continue;
       if (c.live[overwriter] && c.live[use.pass.value]) c.readers.emplace_back(overwriter, use.pass.value);
@@ -57,7 +57,7 @@ struct Orderer {
     c.before.resize(c.uses.size() + 1);
     c.first_before.assign(size_t{passes} + 1, 0);
     for (const Use& use : c.uses) {
-      const bool reads = (use.trouble == Use::Trouble::none) & (use.read_value != no_value);
+      const bool reads = (use.bind_error == Use::BindError::none) & (use.read_value != no_value);
       const PassId other = c.values[pick(reads, use.read_value, 0u)].producer;
       const bool waits = (int{reads} & int{other.valid()} & int{other != use.pass}) != 0;
       forward &= !waits | (other < use.pass);
@@ -108,7 +108,7 @@ struct Orderer {
     for (const auto& item : sequence)
       c.position[number(item)] = position++;
     for (const Use& use : c.uses) {
-      const bool counts = (use.trouble == Use::Trouble::none) & (c.live[use.pass.value] != 0);
+      const bool counts = (use.bind_error == Use::BindError::none) & (c.live[use.pass.value] != 0);
       Interval& interval = intervals[counts ? use.resource.value : nowhere];
       const uint32_t at = c.position[use.pass.value];
       interval.first = std::min(interval.first, at);
@@ -119,7 +119,7 @@ struct Orderer {
   static uint32_t number(uint32_t pass) { return pass; }
 
   // The most bytes of transients alive at once.
-  uint64_t most_alive(const std::vector<Interval>& intervals) {
+  uint64_t max_alive(const std::vector<Interval>& intervals) {
     c.changes.assign(c.order.size() + 1, 0);
     for (uint32_t r = 0; r < c.transient_bytes.size(); ++r) {
       if (intervals[r].first == no_value) continue;
@@ -127,10 +127,10 @@ struct Orderer {
       c.changes[intervals[r].first] += bytes;
       c.changes[intervals[r].last + 1] -= bytes;
     }
-    int64_t alive = 0, most = 0;
+    int64_t alive = 0, maximum = 0;
     for (const int64_t change : c.changes)
-      most = std::max(most, alive += change);
-    return static_cast<uint64_t>(most);
+      maximum = std::max(maximum, alive += change);
+    return static_cast<uint64_t>(maximum);
   }
 
   // As if the passes were a tree: how many bytes each needs while it and all before it run, and how many it
@@ -188,19 +188,19 @@ struct Orderer {
     }
   }
 
-  void because(Reason::Why why, uint64_t bytes = 0, uint64_t other_bytes = 0) {
-    constexpr uint64_t kib = 1024, most = no_value;
-    c.because(Reason::About::order, 0, why, static_cast<uint32_t>(std::min(bytes / kib, most)),
-              static_cast<uint32_t>(std::min(other_bytes / kib, most)));
+  void record_reason(Reason::ReasonKind why, uint64_t bytes = 0, uint64_t other_bytes = 0) {
+    constexpr uint64_t kib = 1024, maximum = no_value;
+    c.record_reason(Reason::About::order, 0, why, static_cast<uint32_t>(std::min(bytes / kib, maximum)),
+                    static_cast<uint32_t>(std::min(other_bytes / kib, maximum)));
   }
 
   void save_memory() {
     estimate();
     depth_first();
     find_intervals(c.candidate, c.other_intervals);
-    const uint64_t file = most_alive(c.intervals), depth = most_alive(c.other_intervals);
-    if (depth >= file) return because(Reason::Why::order_of_file, file, depth);
-    because(Reason::Why::depth_first, depth, file);
+    const uint64_t file = max_alive(c.intervals), depth = max_alive(c.other_intervals);
+    if (depth >= file) return record_reason(Reason::ReasonKind::order_of_file, file, depth);
+    record_reason(Reason::ReasonKind::depth_first, depth, file);
     c.intervals.swap(c.other_intervals);
     c.order.clear();
     for (const uint32_t pass : c.candidate)
@@ -243,9 +243,9 @@ void order(CompileContext& c) {
     sort_backward_graph(c);
     if (c.diagnostics->count(Severity::error) != errors) return;
   }
-  if (c.input->order == PassOrder::program) orderer.because(Reason::Why::program_order);
+  if (c.input->order == PassOrder::program) orderer.record_reason(Reason::ReasonKind::program_order);
   if (c.input->order == PassOrder::random) {
-    orderer.because(Reason::Why::random_order);
+    orderer.record_reason(Reason::ReasonKind::random_order);
     orderer.shuffle();
   }
   orderer.find_intervals(c.order, c.intervals);

@@ -13,9 +13,9 @@ namespace dermis {
 namespace {
 
 struct Edge { // `before` must run before `after`
-  enum class Why : uint8_t { reads, overwritten, overwrites, ordered };
+  enum class ReasonKind : uint8_t { reads, overwritten, overwrites, ordered };
   PassId before, after;
-  Why why = Why::reads;
+  ReasonKind why = ReasonKind::reads;
   ResourceId resource;
   uint32_t ordering = 0; // into the later pass's `after`
 };
@@ -31,33 +31,34 @@ std::vector<Edge> dependencies(const CompileContext& c, const std::vector<uint8_
   for (const Value& value : c.values)
     if (value.previous != no_value) overwriter[value.previous] = value.producer;
   for (const Use& use : c.uses) {
-    if (use.trouble != Use::Trouble::none) continue;
+    if (use.bind_error != Use::BindError::none) continue;
     if (use.read_value != no_value) {
       const Value& read = c.values[use.read_value];
-      add({read.producer, use.pass, Edge::Why::reads, read.resource});
-      if (with_readers) add({use.pass, overwriter[use.read_value], Edge::Why::overwritten, read.resource});
+      add({read.producer, use.pass, Edge::ReasonKind::reads, read.resource});
+      if (with_readers)
+        add({use.pass, overwriter[use.read_value], Edge::ReasonKind::overwritten, read.resource});
     }
     if (use.write_value != no_value && c.values[use.write_value].previous != no_value) {
       const Value& previous = c.values[c.values[use.write_value].previous];
-      add({previous.producer, use.pass, Edge::Why::overwrites, previous.resource});
+      add({previous.producer, use.pass, Edge::ReasonKind::overwrites, previous.resource});
     }
   }
   for (uint32_t i = 0; i < c.graph->passes.size(); ++i)
     for (uint32_t k = 0; k < c.graph->passes[i].after.size(); ++k)
-      add({c.graph->passes[i].after[k].after, PassId{i}, Edge::Why::ordered, {}, k});
+      add({c.graph->passes[i].after[k].after, PassId{i}, Edge::ReasonKind::ordered, {}, k});
   return edges;
 }
 
 std::string explain(const CompileContext& c, const Edge& edge) {
   const std::string &before = c.name(edge.before), &after = c.name(edge.after);
   switch (edge.why) {
-  case Edge::Why::reads:
+  case Edge::ReasonKind::reads:
     return fmt::format("'{}' reads '{}' from '{}'", after, c.name(edge.resource), before);
-  case Edge::Why::overwritten:
+  case Edge::ReasonKind::overwritten:
     return fmt::format("'{}' writes over '{}', which '{}' still reads", after, c.name(edge.resource), before);
-  case Edge::Why::overwrites:
+  case Edge::ReasonKind::overwrites:
     return fmt::format("'{}' writes over '{}' from '{}'", after, c.name(edge.resource), before);
-  case Edge::Why::ordered:
+  case Edge::ReasonKind::ordered:
     break;
   }
   return fmt::format("'{}' is to run after '{}': {}", after, before,
@@ -88,7 +89,7 @@ std::vector<PassId> sorted(const std::vector<uint8_t>& wanted, const std::vector
 
 // Walk against the edges among the passes that could not be sorted: each has one that waits too, so the walk
 // returns to a pass it has been at, and that part of it is a cycle.
-void refuse_cycle(CompileContext& c, std::vector<uint8_t> stuck, const std::vector<PassId>& done,
+void report_cycle(CompileContext& c, std::vector<uint8_t> stuck, const std::vector<PassId>& done,
                   const std::vector<Edge>& edges) {
   for (const PassId pass : done)
     stuck[pass.value] = 0;
@@ -133,10 +134,10 @@ void sort_backward_graph(CompileContext& c) {
   const auto count = [](const std::vector<uint8_t>& flags) {
     return static_cast<size_t>(std::count(flags.begin(), flags.end(), 1));
   };
-  if (all.size() != count(c.on)) return refuse_cycle(c, c.on, all, everywhere);
+  if (all.size() != count(c.on)) return report_cycle(c, c.on, all, everywhere);
   const auto among_live = dependencies(c, c.live, true);
   c.order = sorted(c.live, among_live);
-  if (c.order.size() != count(c.live)) refuse_cycle(c, c.live, c.order, among_live);
+  if (c.order.size() != count(c.live)) report_cycle(c, c.live, c.order, among_live);
 }
 
 } // namespace dermis

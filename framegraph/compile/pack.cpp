@@ -28,7 +28,7 @@ void make_placements(CompileContext& c) {
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
     PlanResource& resource = plan.resources[r];
     if (c.host_owned(resource.declared)) continue;
-    if (c.loans[r].from != no_value) continue;
+    if (c.history_aliases[r].from != no_value) continue;
     const Interval& life = c.intervals[resource.declared.value];
     const MemoryNeeds& needs = c.needs[r];
     const bool persistent = c.lifetimes[resource.declared.value].deepest_read > 0;
@@ -98,43 +98,43 @@ void place_all(CompileContext& c) {
 
 // Behind all others: an instance of each borrower for each of its lender's. In frame f the one that is
 // written is f mod n, and the one with the oldest frame the next of the n.
-void place_borrowers(CompileContext& c) {
+void place_aliased(CompileContext& c) {
   Plan& plan = c.out->plan;
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
-    const Loan& loan = c.loans[r];
-    if (loan.from == no_value) continue;
+    const HistoryAlias& history_alias = c.history_aliases[r];
+    if (history_alias.from == no_value) continue;
     PlanResource& resource = plan.resources[r];
-    const PlanResource& lender = plan.resources[loan.from];
+    const PlanResource& alias_target = plan.resources[history_alias.from];
     const Interval& life = c.intervals[resource.declared.value];
     resource.first_instance = static_cast<uint32_t>(plan.placements.size());
-    resource.instance_count = lender.instance_count;
+    resource.instance_count = alias_target.instance_count;
     for (uint32_t i = 0; i < resource.instance_count; ++i) {
-      const uint32_t slot = (i + (loan.after ? 1 : 0)) % lender.instance_count;
-      const Placement there = plan.placements[lender.first_instance + slot];
+      const uint32_t slot = (i + (history_alias.after ? 1 : 0)) % alias_target.instance_count;
+      const Placement there = plan.placements[alias_target.first_instance + slot];
       Placement& placement = plan.placements.emplace_back();
       placement.resource = r;
       placement.heap = there.heap;
-      placement.offset = there.offset + loan.offset;
+      placement.offset = there.offset + history_alias.offset;
       placement.size = c.needs[r].size;
       placement.alignment = c.needs[r].alignment;
       placement.first_use = life.first;
       placement.last_use = life.last;
     }
-    c.because(Reason::About::resource, resource.declared.value, Reason::Why::borrows_memory,
-              lender.declared.value, loan.after ? 1 : 0);
+    c.record_reason(Reason::About::resource, resource.declared.value, Reason::ReasonKind::aliases_history,
+                    alias_target.declared.value, history_alias.after ? 1 : 0);
   }
 }
 
 } // namespace
 
 void pack(CompileContext& c) {
-  c.loans.assign(c.out->plan.resources.size(), {});
+  c.history_aliases.assign(c.out->plan.resources.size(), {});
   place_all(c);
-  if (!find_loans(c)) return;
+  if (!find_history_aliases(c)) return;
   const uint64_t without = c.out->plan.transient_bytes;
   place_all(c);
-  if (c.out->plan.transient_bytes < without) return place_borrowers(c);
-  c.loans.assign(c.loans.size(), {});
+  if (c.out->plan.transient_bytes < without) return place_aliased(c);
+  c.history_aliases.assign(c.history_aliases.size(), {});
   place_all(c);
 }
 

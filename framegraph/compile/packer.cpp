@@ -15,7 +15,7 @@ namespace {
 // Comparisons of two items the searches may make; one takes about a nanosecond, several in large graphs,
 // which the caches do not hold.
 constexpr uint64_t tight_steps_per_item = 10'000;
-constexpr uint64_t most_tight_steps = 25'000'000;
+constexpr uint64_t max_tight_steps = 25'000'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
 constexpr uint32_t block_passes = 24; // positions that share one list of what is alive in them: below 32
 constexpr uint32_t began_before = 0x80000000;
@@ -50,10 +50,10 @@ void Packer::find_bound(Packing& out) {
     change_[item.first] += static_cast<int64_t>(item.size);
     change_[item.last + 1] -= static_cast<int64_t>(item.size);
   }
-  int64_t alive = 0, most = 0;
+  int64_t alive = 0, maximum = 0;
   for (const int64_t change : change_)
-    most = std::max(most, alive += change);
-  out.lower_bound = static_cast<uint64_t>(most);
+    maximum = std::max(maximum, alive += change);
+  out.lower_bound = static_cast<uint64_t>(maximum);
 }
 
 // In the order of time: what is over makes room, what begins takes the tightest gap.
@@ -167,8 +167,8 @@ size_t Packer::gather(const Block& block, uint32_t positions, bool began, Range*
   steps_ += block.count;
   size_t count = 0;
   for (size_t from = 0; from < block.count; from += chunk) {
-    uint32_t bits = sharing_bits(block.when.data() + from, positions & ~began_before);
-    if (began) bits &= ~sharing_bits(block.when.data() + from, began_before);
+    uint32_t bits = any_common_bits(block.when.data() + from, positions & ~began_before);
+    if (began) bits &= ~any_common_bits(block.when.data() + from, began_before);
     for (; bits != 0; bits &= bits - 1)
       to[count++] = block.ranges[from + static_cast<size_t>(std::countr_zero(bits))];
   }
@@ -184,7 +184,8 @@ uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last,
     const uint32_t positions = positions_in(first, item);
     steps_ += block.count;
     for (size_t from = 0; from < block.count; from += chunk)
-      for (uint32_t bits = sharing_bits(block.when.data() + from, positions); bits != 0; bits &= bits - 1) {
+      for (uint32_t bits = any_common_bits(block.when.data() + from, positions); bits != 0;
+           bits &= bits - 1) {
         const Range& other = block.ranges[from + static_cast<size_t>(std::countr_zero(bits))];
         gaps.pass(other.begin, other.end);
       }
@@ -426,7 +427,7 @@ void Packer::pack(std::span<const PackItem> items, PackingLevel level, Packing& 
   if (out.size == out.lower_bound) return;
   const uint64_t budget = level == PackingLevel::optimize
                               ? optimize_steps
-                              : std::min(tight_steps_per_item * items.size(), most_tight_steps);
+                              : std::min(tight_steps_per_item * items.size(), max_tight_steps);
   best_fit_ = Fit::tightest;
   try_orders(out);
   if (out.size > out.lower_bound && steps_ < budget) search(budget - steps_, out);

@@ -16,7 +16,7 @@ namespace dermis {
 inline constexpr uint32_t no_value = 0xffffffffu;
 
 // What most phases ask of a declaration, without its names and places in the file.
-struct ResourceFacts {
+struct ResourceInfo {
   ResourceType type = ResourceType::image;
   bool image = true, imported = false, exported = false, optional = false;
   bool host_owned = false; // its memory comes from the host in this plan
@@ -42,7 +42,7 @@ struct Value {
 // One bound port of one pass that is on, or one of the parts of an image that it sees.
 struct Use {
   // partly_unwritten: of the parts that the port sees, some are written and others are not.
-  enum class Trouble : uint8_t {
+  enum class BindError : uint8_t {
     none,
     unbound,
     unwritten,
@@ -53,7 +53,7 @@ struct Use {
   };
   PassId pass;
   ResourceId resource;                                    // whose memory is accessed, after `otherwise`
-  ResourceId asked;                                       // as bound in the file
+  ResourceId requested;                                   // as bound in the file
   uint32_t part = 0;                                      // of what is asked for: see CompileContext::parts
   uint32_t read_value = no_value, write_value = no_value; // into CompileContext::values
   uint32_t frames_back = 0;
@@ -62,7 +62,7 @@ struct Use {
   Usage usage = Usage::sampled_image;
   ReadWhen when = ReadWhen::always;
   bool reads = false, writes = false; // what the usage does
-  Trouble trouble = Trouble::none;
+  BindError bind_error = BindError::none;
 };
 
 // When the oldest frame of a history is read for the last time, and when this frame's is first touched.
@@ -91,16 +91,16 @@ struct NarrowUse { // a use whose port works with some formats only
 };
 
 // How a resource's name is understood at one point of the file: see versions.cpp.
-struct Meaning {
+struct Binding {
   uint32_t value = no_value;
   ResourceId later; // valid: whatever the only producer of this resource will write
 };
 
-struct Definition {
+struct ResourceDef {
   uint32_t producers = 0; // passes that are on and write it
   uint32_t first_value = no_value;
   bool replaced = false; // by `otherwise` of a pass that is off
-  Meaning instead;
+  Binding instead;
 };
 
 // How one object (a resource, or one of its earlier frames) stands between two accesses: see synchronize.cpp.
@@ -118,7 +118,7 @@ struct ObjectState {
 };
 
 // What the walk of synchronize.cpp asks of a plan resource, close together.
-struct SyncFacts {
+struct ResourceSyncInfo {
   uint32_t first_object = 0; // objects follow frames_back, those of one frame its parts
   uint32_t roles = 1;        // frames that a frame touches, this one included: each is an object
   uint32_t parts = 1;        // that ports tell apart: each is an object
@@ -137,7 +137,8 @@ struct PassTouch { // all accesses of one pass to one object
   Layout layout = Layout::undefined;
 };
 
-struct Loan { // memory of a history that a transient uses while it holds nothing: see packing/lend.cpp
+struct HistoryAlias {       // memory of a history that a transient uses while it holds nothing: see
+                            // packing/lend.cpp
   uint32_t from = no_value; // into Plan::resources: the history
   bool after = false;       // the last read of its oldest frame; false: before it is written
   uint64_t offset = 0;      // in each of its instances
@@ -208,14 +209,14 @@ inline bool meets(const ImagePart& seen, const SubresourceRange& range) {
 struct CompileContext {
   const CompileInput* input = nullptr;
   const Graph* graph = nullptr;
-  const KindRegistry* kinds = nullptr;
+  const PassTypeRegistry* pass_types = nullptr;
   const DeviceProfile* device = nullptr;
   Diagnostics* diagnostics = nullptr;
   CompiledPlan* out = nullptr;
 
   // resolve
-  std::vector<ResourceFacts> facts; // by resource
-  std::vector<uint8_t> bound;       // by resource: imports and exports the host binds
+  std::vector<ResourceInfo> info; // by resource
+  std::vector<uint8_t> bound;     // by resource: imports and exports the host binds
   std::vector<Extent> extents;
   std::vector<uint8_t> size_marks;
   std::vector<Shape> shapes;
@@ -224,22 +225,22 @@ struct CompileContext {
   std::vector<ResourceId> size_chain;
   // choose
   std::vector<SettingValue> settings;
-  std::vector<uint8_t> on;     // by pass: `when` holds
-  std::vector<KindId> kind_of; // by pass
-  bool ordered = false;        // some pass has an `after`
+  std::vector<uint8_t> on;         // by pass: `when` holds
+  std::vector<PassTypeId> kind_of; // by pass
+  bool ordered = false;            // some pass has an `after`
   // parts: images of which ports name parts fall into the fewest that every port sees whole. The first part
   // of a resource has the number of the resource, the others follow behind all resources.
-  std::vector<uint32_t> further_parts;                    // by resource: number of its second part
+  std::vector<uint32_t> further_subresources;             // by resource: number of its second part
   std::vector<SubresourceRange> parts;                    // by part, where Graph::parts
   std::vector<std::array<std::vector<uint16_t>, 2>> cuts; // by resource: where parts begin, mips and layers
   // versions
   std::vector<Value> values;
-  std::vector<Use> uses;               // sorted by pass, then port
-  std::vector<uint32_t> first_use;     // by pass, and one more: into uses
-  std::vector<uint32_t> final_value;   // by part: its version when the frame ends, no_value if none
-  std::vector<Meaning> current;        // by part
-  std::vector<uint32_t> last_version;  // by part: latest value in its own memory
-  std::vector<Definition> definitions; // by part
+  std::vector<Use> uses;                // sorted by pass, then port
+  std::vector<uint32_t> first_use;      // by pass, and one more: into uses
+  std::vector<uint32_t> final_value;    // by part: its version when the frame ends, no_value if none
+  std::vector<Binding> current;         // by part
+  std::vector<uint32_t> last_version;   // by part: latest value in its own memory
+  std::vector<ResourceDef> definitions; // by part
   std::vector<std::pair<uint32_t, uint32_t>> forward; // use -> part to look up when the scan is over
   bool overwrites = false;                            // some value is written over another
   // cull
@@ -264,21 +265,21 @@ struct CompileContext {
                                                     // candidate
   std::vector<int64_t> changes;                     // by position: bytes that come alive less those that die
   std::vector<uint8_t> seen;
-  std::vector<uint8_t> kind_fits; // by kind: 0 not looked at, 1 within the device's limits, 2 not
+  std::vector<uint8_t> pass_type_fits; // by kind: 0 not looked at, 1 within the device's limits, 2 not
   // pack
   std::vector<MemoryGroup> groups;
-  std::vector<Loan> loans; // by plan resource
+  std::vector<HistoryAlias> history_aliases; // by plan resource
   std::vector<PackItem> items;
   std::vector<uint32_t> item_placement;
   Packer packer;
   Packing packing;
   // synchronize
-  std::vector<SyncFacts> sync_facts; // by plan resource
+  std::vector<ResourceSyncInfo> sync_info; // by plan resource
   std::vector<ObjectState> states, ends;
   std::vector<PassTouch> touches;     // of one pass, and what is left of others
   std::vector<uint32_t> touch_number; // by object: of the last one, counted through all passes
   std::vector<uint32_t> touch_of_use;
-  std::vector<uint32_t> lent_memory;        // by plan resource: into `memory`, of what it lends
+  std::vector<uint32_t> aliased_memory;     // by plan resource: into `memory`, of what it lends
   std::vector<std::vector<Segment>> memory; // by heap, then two for each history that lends
   std::vector<PlanBarrier> drafts;          // as found, before they are sorted into batches
   std::vector<uint32_t>
@@ -303,16 +304,16 @@ struct CompileContext {
 
   const std::string& name(ResourceId id) const { return graph->resources[id.value].name; }
   const std::string& name(PassId id) const { return graph->passes[id.value].name; }
-  const PassKind& kind(PassId id) const { return (*kinds)[kind_of[id.value]]; }
+  const PassType& type(PassId id) const { return (*pass_types)[kind_of[id.value]]; }
   const SourceLocation& place_of(const Use& use) const { // in the file
     return graph->binding_places[graph->passes[use.pass.value].first_binding + use.binding];
   }
-  bool split(ResourceId id) const { return facts[id.value].parts > 1; }
+  bool split(ResourceId id) const { return info[id.value].parts > 1; }
   uint32_t part_number(ResourceId id, uint32_t index) const {
-    return index == 0 ? id.value : further_parts[id.value] + index - 1;
+    return index == 0 ? id.value : further_subresources[id.value] + index - 1;
   }
   uint32_t part_index(const Use& use) const {
-    return use.part == use.asked.value ? 0 : use.part - further_parts[use.asked.value] + 1;
+    return use.part == use.requested.value ? 0 : use.part - further_subresources[use.requested.value] + 1;
   }
   // Whether some pass writes what the use reads.
   bool is_written(const Use& use) const {
@@ -326,30 +327,30 @@ struct CompileContext {
       --at;
     return at;
   }
-  bool host_owned(ResourceId id) const { return facts[id.value].host_owned; }
-  void because(Reason::About about, uint32_t index, Reason::Why why, uint32_t a = 0, uint32_t b = 0,
-               uint32_t c = 0) {
+  bool host_owned(ResourceId id) const { return info[id.value].host_owned; }
+  void record_reason(Reason::About about, uint32_t index, Reason::ReasonKind why, uint32_t a = 0,
+                     uint32_t b = 0, uint32_t c = 0) {
     if (input->reasons) add_reason({about, why, index, a, b, c});
   }
   void add_reason(const Reason& reason); // apart, so that those who ask for none pay little
 };
 
 // The phases, in the order they run. Each adds diagnostics; compile() stops behind a phase that found errors.
-void resolve_sizes(CompileContext& context); // bound slots, extents
-void choose(CompileContext& context);        // values of settings; which passes are on
-void find_parts(CompileContext& context);    // into which parts do ports divide images?
+void resolve_sizes(CompileContext& context);      // bound slots, extents
+void choose(CompileContext& context);             // values of settings; which passes are on
+void split_subresources(CompileContext& context); // into which parts do ports divide images?
 void resolve_versions(
     CompileContext& context);                // which version each port reads and writes, `otherwise` applied
-void refuse_races(CompileContext& context);  // passes that read what they write
+void report_races(CompileContext& context);  // passes that read what they write
 void cull(CompileContext& context);          // which passes run: those that something bound needs
 void choose_queues(CompileContext& context); // which passes run beside the others
 void gather_usage(CompileContext& context);  // union of usages, deepest read
-void resolve_formats(CompileContext& context); // one format each, Plan::resources, memory needs
-void order(CompileContext& context);           // in which order; refuses cycles
-void lifetimes(CompileContext& context);       // first and last use, Plan::passes
-void pack(CompileContext& context);            // heaps and placements
-bool find_loans(CompileContext& context);      // of pack: who uses memory of histories; false: nobody
-void synchronize(CompileContext& context);     // accesses and barriers
+void resolve_formats(CompileContext& context);      // one format each, Plan::resources, memory needs
+void order(CompileContext& context);                // in which order; refuses cycles
+void lifetimes(CompileContext& context);            // first and last use, Plan::passes
+void pack(CompileContext& context);                 // heaps and placements
+bool find_history_aliases(CompileContext& context); // of pack: who uses memory of histories; false: nobody
+void synchronize(CompileContext& context);          // accesses and barriers
 
 // The passes marked in c.live in the order of the file, dependencies before all. Only for graphs in which
 // some pass needs one that stands behind it. Refuses cycles, also among the passes that are on but not

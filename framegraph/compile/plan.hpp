@@ -96,7 +96,7 @@ struct PlanBarrier {
   Stage source_stages = 0, destination_stages = 0;
   Access source_access = 0, destination_access = 0;
   Layout old_layout = Layout::undefined, new_layout = Layout::undefined;
-  enum class Why : uint8_t {
+  enum class ReasonKind : uint8_t {
     first_use,
     read_after_write,
     write_after_read,
@@ -106,7 +106,7 @@ struct PlanBarrier {
     history,
     host_before,
     host_after
-  } why = Why::first_use;
+  } why = ReasonKind::first_use;
   bool from_host = false; // source scope and old layout come from the binding's `before`
   bool to_host = false;   // destination scope and new layout come from the binding's `after`
   // Between queues, in two halves with the same layouts: released behind a pass of one queue (no
@@ -115,17 +115,17 @@ struct PlanBarrier {
   enum class Transfer : uint8_t { none, release, acquire } transfer = Transfer::none;
 };
 
-struct PlanSetting { // value of one setting of one pass kind, resolved
+struct PlanSetting { // value of one setting of one pass type, resolved
   SettingId from;    // valid: follows this run-time setting; `value` is its value at compile time
   SettingValue value;
 };
 
 struct PlanPass {
   PassId declared;
-  KindId kind;
+  PassTypeId type;
   uint32_t first_access = 0, access_count = 0;   // into Plan::accesses
   uint32_t first_barrier = 0, barrier_count = 0; // into Plan::barriers: one batch before the pass
-  uint32_t first_setting = 0;                    // into Plan::settings, one per KindSetting
+  uint32_t first_setting = 0;                    // into Plan::settings, one per PassTypeSetting
   Queue queue = Queue::main;
   uint32_t wait = no_point;   // of the other queue, before the barriers
   uint32_t release_count = 0; // barriers behind the pass, which follow those before it in Plan::barriers
@@ -179,14 +179,14 @@ struct Plan {
 // sentences of it. Placements need none: the plan itself tells what lives beside them.
 struct Reason {
   enum class About : uint8_t { pass, resource, barrier, choice, order };
-  enum class Why : uint8_t {
+  enum class ReasonKind : uint8_t {
     // of a pass; a, b: what needs it, as named here
     off,              // its `when` is false
     read_by,          // pass a reads its resource b
     read_later_by,    // pass a reads its resource b in later frames
     written_over_by,  // pass a writes over its resource b
     writes_export,    // resource a
-    side_effects,     // of its kind
+    side_effects,     // of its pass type
     culling_off,      // asked for by the caller
     beside,           // declared async, and on the async queue
     behind,           // pass a, which its `after` number b names
@@ -206,7 +206,7 @@ struct Reason {
     history_unread,     // no pass that runs reads its earlier frames
     history_read,       // earlier frames are read, down to a
     renewed_in_place,   // the oldest frame a has been read when this one is written; b: 1 by the same pass
-    borrows_memory,     // of history a; b: 0 before that is written, 1 after its oldest frame was read
+    aliases_history,    // of history a; b: 0 before that is written, 1 after its oldest frame was read
     // of a barrier; b: 1 if that was in the frame before
     from_host,       // the first access to resource a takes it over
     oldest_instance, // of resource a becomes that of this frame
@@ -216,9 +216,9 @@ struct Reason {
     dependency,      // pass at position c behind that at position a: see PlanBarrier::why
     to_host,         // resource a is handed back; b: 1 if no pass touched it
     // of a setting
-    asked_for, // by the caller
+    requested, // by the caller
     by_default,
-    not_offered, // option a: the device lacks features b, or the host leaves import c unbound (0: features)
+    not_available, // option a: the device lacks features b, or the host leaves import c unbound (0: features)
     // of the order; a, b: KiB of transients alive at once in it, and in the other one that was tried
     order_of_file,
     depth_first,
@@ -226,7 +226,7 @@ struct Reason {
     random_order   // likewise
   };
   About about = About::pass;
-  Why why = Why::off;
+  ReasonKind why = ReasonKind::off;
   uint32_t index = 0; // pass: PassId in the graph; resource: ResourceId; choice: SettingId; barrier: index in
                       // the plan; order: 0
   uint32_t a = 0, b = 0, c = 0; // as said at each Why; resources and passes are ids in the graph

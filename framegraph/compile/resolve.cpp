@@ -53,7 +53,7 @@ struct SizeResolver {
     while (true) { // walk to the first resource whose base is known
       const ResourceId id = chain.back();
       if (c.size_marks[id.value] == done || c.size_marks[id.value] == failed) break;
-      if (c.size_marks[id.value] == open) return refuse_cycle(chain);
+      if (c.size_marks[id.value] == open) return report_cycle(chain);
       c.size_marks[id.value] = open;
       const SizeExpression& size = c.graph->resources[id.value].size;
       if (size.base != SizeExpression::Base::resource) break;
@@ -66,7 +66,7 @@ struct SizeResolver {
     }
   }
 
-  void refuse_cycle(const std::vector<ResourceId>& chain) {
+  void report_cycle(const std::vector<ResourceId>& chain) {
     const auto start = std::find(chain.begin(), chain.end(), chain.back());
     std::string names;
     for (auto at = start; at != chain.end(); ++at)
@@ -143,33 +143,33 @@ struct SizeResolver {
   }
 };
 
-struct Objection { // why a format cannot be used for a resource
+struct FormatRejection { // why a format cannot be used for a resource
   bool exists = false;
   uint32_t use = no_value; // whose port cannot work with it; none: the device
 };
 
-Objection objection(const CompileContext& c, ResourceId id, Format format) {
+FormatRejection violation(const CompileContext& c, ResourceId id, Format format) {
   for (uint32_t n = c.lifetimes[id.value].first_narrow; n != no_value; n = c.narrow[n].next) {
     const Use& use = c.uses[c.narrow[n].use];
-    if (!works_with(c.kind(use.pass).ports[use.port], format)) return {true, c.narrow[n].use};
+    if (!works_with(c.type(use.pass).ports[use.port], format)) return {true, c.narrow[n].use};
   }
   const uint32_t usage = c.lifetimes[id.value].vk_usage;
   return {usage != 0 && !c.device->supports(format, usage), no_value};
 }
 
-void refuse_formats(CompileContext& c, ResourceId id, std::span<const Format> candidates) {
+void report_formats(CompileContext& c, ResourceId id, std::span<const Format> candidates) {
   const ResourceDeclaration& declared = c.graph->resources[id.value];
   std::string text = fmt::format("no format of '{}' can be used", declared.name);
   if (candidates.empty()) text += ": none is declared";
   for (const Format format : candidates) {
-    const Objection why = objection(c, id, format);
+    const FormatRejection why = violation(c, id, format);
     text += fmt::format("; not {}: ", format_info(format).name);
     if (why.use == no_value) {
       text += fmt::format("the device '{}' does not support it with image usage {:#x}", c.device->name,
                           c.lifetimes[id.value].vk_usage);
     } else {
       const Use& use = c.uses[why.use];
-      text += fmt::format("port '{}' of pass '{}' cannot work with it", c.kind(use.pass).ports[use.port].name,
+      text += fmt::format("port '{}' of pass '{}' cannot work with it", c.type(use.pass).ports[use.port].name,
                           c.name(use.pass));
     }
   }
@@ -193,23 +193,24 @@ void choose_format(CompileContext& c, ResourceId id, Format& chosen) {
     }
     candidates = candidates.subspan(static_cast<size_t>(found - candidates.begin()), 1);
   }
-  const auto because = [&](Reason::Why why, Format format, uint32_t b, uint32_t port = 0) {
-    c.because(Reason::About::resource, id.value, why, static_cast<uint32_t>(format), b, port);
+  const auto record_reason = [&](Reason::ReasonKind why, Format format, uint32_t b, uint32_t port = 0) {
+    c.record_reason(Reason::About::resource, id.value, why, static_cast<uint32_t>(format), b, port);
   };
   for (const Format format : candidates) {
-    const Objection why = objection(c, id, format);
+    const FormatRejection why = violation(c, id, format);
     if (!why.exists) {
       chosen = format;
       const bool host = bound == format && c.host_owned(id);
-      because(Reason::Why::format, format, host ? 2 : format == candidates.front() ? 0 : 1);
+      record_reason(Reason::ReasonKind::format, format, host ? 2 : format == candidates.front() ? 0 : 1);
       return;
     }
     if (why.use == no_value)
-      because(Reason::Why::format_unsupported, format, c.lifetimes[id.value].vk_usage);
+      record_reason(Reason::ReasonKind::format_unsupported, format, c.lifetimes[id.value].vk_usage);
     else
-      because(Reason::Why::format_not_ported, format, c.uses[why.use].pass.value, c.uses[why.use].port);
+      record_reason(Reason::ReasonKind::format_not_ported, format, c.uses[why.use].pass.value,
+                    c.uses[why.use].port);
   }
-  refuse_formats(c, id, candidates);
+  report_formats(c, id, candidates);
 }
 
 bool same_description(const PlanResource& a, const PlanResource& b) {
@@ -295,7 +296,7 @@ void resolve_sizes(CompileContext& c) {
   const auto count = c.graph->resources.size();
   c.bound.assign(count, 0);
   c.extents.assign(count, {});
-  c.facts.assign(count, {});
+  c.info.assign(count, {});
   c.size_marks.assign(count, SizeResolver::untouched);
   c.shapes.clear();
   c.shape_of.assign(count, no_value);
@@ -311,19 +312,19 @@ void resolve_sizes(CompileContext& c) {
     }
     const ResourceDeclaration& declared = c.graph->resources[i];
     const bool slot = declared.origin == Origin::imported || declared.exported;
-    ResourceFacts& facts = c.facts[i];
-    facts.type = declared.type;
-    facts.image = declared.type == ResourceType::image;
-    facts.imported = declared.origin == Origin::imported;
-    facts.exported = declared.exported;
-    facts.optional = declared.optional;
-    facts.history = declared.history.frames != 0;
-    facts.layers = declared.layers;
+    ResourceInfo& info = c.info[i];
+    info.type = declared.type;
+    info.image = declared.type == ResourceType::image;
+    info.imported = declared.origin == Origin::imported;
+    info.exported = declared.exported;
+    info.optional = declared.optional;
+    info.history = declared.history.frames != 0;
+    info.layers = declared.layers;
     if (slot) {
       c.bound[i] = !declared.optional || c.input->bound.empty() || c.input->bound[i];
-      facts.host_owned = facts.imported || c.bound[i];
-      if (!c.bound[i]) c.because(Reason::About::resource, i, Reason::Why::unbound);
-      if (facts.history)
+      info.host_owned = info.imported || c.bound[i];
+      if (!c.bound[i]) c.record_reason(Reason::About::resource, i, Reason::ReasonKind::unbound);
+      if (info.history)
         c.diagnostics->add(
             DiagnosticId::history_of_host_memory, declared.where,
             fmt::format("'{}' is bound by the host, so its earlier frames are not the graph's to keep",
@@ -350,20 +351,20 @@ void resolve_formats(CompileContext& c) {
   for (uint32_t i = 0; i < count; ++i) {
     const ResourceId id{i};
     if (i + ahead < count) fetch(&c.graph->resources[i + ahead].formats);
-    const bool is_slot = c.facts[i].imported || c.facts[i].exported;
+    const bool is_slot = c.info[i].imported || c.info[i].exported;
     const int32_t own_slot = is_slot ? slot++ : -1;
     const Lifetime& life = c.lifetimes[i];
     if (!life.used && !c.bound[i]) continue;
-    const ResourceFacts& facts = c.facts[i];
+    const ResourceInfo& info = c.info[i];
     PlanResource& resource = plan.resources.emplace_back();
     resource.declared = id;
-    resource.type = facts.type;
-    resource.origin = facts.imported ? Origin::imported : Origin::transient;
-    resource.exported = facts.exported && c.bound[i];
+    resource.type = info.type;
+    resource.origin = info.imported ? Origin::imported : Origin::transient;
+    resource.exported = info.exported && c.bound[i];
     resource.width = c.extents[i].width;
     resource.height = c.extents[i].height;
     resource.mips = c.extents[i].mips;
-    resource.layers = facts.layers;
+    resource.layers = info.layers;
     resource.bytes = c.extents[i].bytes;
     resource.vk_usage = life.vk_usage;
     resource.instance_count = life.deepest_read + 1;

@@ -15,14 +15,14 @@ namespace dermis {
 
 bool Synchronizer::number_objects() {
   uint32_t objects = 0, deepest = 0;
-  c.sync_facts.resize(plan.resources.size());
+  c.sync_info.resize(plan.resources.size());
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
     const PlanResource& resource = plan.resources[r];
     const Lifetime& life = c.lifetimes[resource.declared.value];
-    SyncFacts& of = c.sync_facts[r];
+    ResourceSyncInfo& of = c.sync_info[r];
     of.first_object = objects;
     of.roles = life.deepest_read + 1;
-    of.parts = c.graph->parts ? c.facts[resource.declared.value].parts : 1;
+    of.parts = c.graph->parts ? c.info[resource.declared.value].parts : 1;
     of.own_role = life.updates_oldest ? life.deepest_read : 0;
     of.host_owned = resource.first_instance == no_instance;
     of.image = resource.type == ResourceType::image;
@@ -38,7 +38,7 @@ bool Synchronizer::number_objects() {
 
 void Synchronizer::carry_over() {
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
-    const SyncFacts& of = facts(r);
+    const ResourceSyncInfo& of = info(r);
     for (uint32_t i = of.roles * of.parts; i-- > 0;) {
       const uint32_t back = i / of.parts, part = i % of.parts, object = of.first_object + i;
       c.states[object] = back == 0 ? ObjectState{} : c.ends[object_of(of, back - 1, part)];
@@ -72,10 +72,11 @@ void Synchronizer::transfer(const PassTouch& touch, const ObjectState& state, co
   PlanBarrier release;
   release.resource = touch.resource;
   release.frames_back = touch.frames_back;
-  release.range = range_of(facts(touch.resource), touch.resource, touch.part);
+  release.range = range_of(info(touch.resource), touch.resource, touch.part);
   release.old_layout = state.layout;
   release.new_layout = touch.layout;
-  release.why = set.reads ? PlanBarrier::Why::read_after_write : PlanBarrier::Why::write_after_write;
+  release.why =
+      set.reads ? PlanBarrier::ReasonKind::read_after_write : PlanBarrier::ReasonKind::write_after_write;
   PlanBarrier acquire = release;
   const Scope scope = tail(state);
   release.source_stages = scope.stages;
@@ -88,7 +89,8 @@ void Synchronizer::transfer(const PassTouch& touch, const ObjectState& state, co
     const uint32_t index = draft();
     c.drafts[index] = half;
     c.batch_of[index] = half.transfer == PlanBarrier::Transfer::release ? state.last_pass : position;
-    c.because(Reason::About::barrier, index, Reason::Why::dependency, state.last_pass, 0, position);
+    c.record_reason(Reason::About::barrier, index, Reason::ReasonKind::dependency, state.last_pass, 0,
+                    position);
   }
   need(position, state.last_pass);
 }
@@ -111,16 +113,16 @@ inline void Synchronizer::run_touch(const PassTouch& touch, uint32_t position) {
       PlanBarrier& barrier = c.drafts[index];
       barrier.resource = touch.resource;
       barrier.frames_back = touch.frames_back;
-      barrier.range = range_of(facts(touch.resource), touch.resource, touch.part);
+      barrier.range = range_of(info(touch.resource), touch.resource, touch.part);
       dependency(state, set, layout, must_see, barrier);
-      c.because(Reason::About::barrier, index, Reason::Why::dependency, state.last_pass,
-                state.carried ? 1 : 0, position);
+      c.record_reason(Reason::About::barrier, index, Reason::ReasonKind::dependency, state.last_pass,
+                      state.carried ? 1 : 0, position);
       if (two_queues()) { // what only makes a write visible does not wait for those that read it since
         const bool shows =
-            barrier.why == PlanBarrier::Why::read_after_write && !set.writes && layout == state.layout;
+            barrier.why == PlanBarrier::ReasonKind::read_after_write && !set.writes && layout == state.layout;
         wait_here(index, shows ? c.moments[touch.object].write : c.moments[touch.object].touch);
       }
-      if (state.carried) barrier.why = PlanBarrier::Why::history;
+      if (state.carried) barrier.why = PlanBarrier::ReasonKind::history;
       place(index, state.carried ? no_value : state.last_pass, position);
     }
   }
@@ -175,14 +177,15 @@ void Synchronizer::dependency(const ObjectState& state, const UsageSet& set, Lay
   barrier.old_layout = state.layout;
   barrier.new_layout = layout;
   if (layout != state.layout) {
-    barrier.why = !pending    ? PlanBarrier::Why::layout
-                  : set.reads ? PlanBarrier::Why::read_after_write
-                              : PlanBarrier::Why::write_after_write;
+    barrier.why = !pending    ? PlanBarrier::ReasonKind::layout
+                  : set.reads ? PlanBarrier::ReasonKind::read_after_write
+                              : PlanBarrier::ReasonKind::write_after_write;
   } else if (must_see) {
-    barrier.why = PlanBarrier::Why::read_after_write;
+    barrier.why = PlanBarrier::ReasonKind::read_after_write;
     barrier.source_stages = set.writes ? everything.stages | state.source_stages : state.source_stages;
   } else {
-    barrier.why = pending ? PlanBarrier::Why::write_after_write : PlanBarrier::Why::write_after_read;
+    barrier.why =
+        pending ? PlanBarrier::ReasonKind::write_after_write : PlanBarrier::ReasonKind::write_after_read;
     // Readers only have to be done: nothing to make visible.
     if (!pending && state.read_for_sure) barrier.destination_access = 0;
   }
@@ -190,7 +193,7 @@ void Synchronizer::dependency(const ObjectState& state, const UsageSet& set, Lay
 
 void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout layout, uint32_t position) {
   const uint32_t index = draft();
-  const SyncFacts& of = facts(touch.resource);
+  const ResourceSyncInfo& of = info(touch.resource);
   PlanBarrier& barrier = c.drafts[index];
   uint32_t after = no_value;
   barrier.resource = touch.resource;
@@ -201,14 +204,14 @@ void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout la
   barrier.new_layout = layout;
   if (of.host_owned) {
     barrier.from_host = true;
-    barrier.why = PlanBarrier::Why::host_before;
-    because(index, Reason::Why::from_host, touch.resource);
+    barrier.why = PlanBarrier::ReasonKind::host_before;
+    record_reason(index, Reason::ReasonKind::from_host, touch.resource);
   } else if (of.roles > 1) {
     const uint32_t oldest = of.first_object + (of.roles - 1) * of.parts + touch.part;
     const bool in_place = plan.resources[touch.resource].instance_count < of.roles;
     const ObjectState& before = in_place ? c.states[oldest] : c.ends[oldest];
     if (in_place && !before.carried) after = before.last_pass;
-    if (c.lent_memory[touch.resource] != no_value) after = take_over(touch.resource, index);
+    if (c.aliased_memory[touch.resource] != no_value) after = take_over(touch.resource, index);
     wait_for(barrier, tail(before));
     if (two_queues() && before.touched) {
       Moment last = (in_place ? c.moments : c.moment_ends)[oldest].touch;
@@ -216,12 +219,12 @@ void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout la
       wait_here(index, last);
       c.draft_waits[index].layout_kept = in_place && before.layout == layout;
     }
-    barrier.why = PlanBarrier::Why::history;
-    because(index, Reason::Why::oldest_instance, touch.resource);
+    barrier.why = PlanBarrier::ReasonKind::history;
+    record_reason(index, Reason::ReasonKind::oldest_instance, touch.resource);
   } else if (of.parts > 1 && c.arrival_of[touch.resource] != no_value) {
     after = c.arrived_after[touch.resource];
     c.part_arrivals.push_back({index, touch.resource, touch.object});
-    because(index, Reason::Why::first_use, touch.resource);
+    record_reason(index, Reason::ReasonKind::first_use, touch.resource);
   } else {
     after = take_over(touch.resource, index);
     if (of.parts > 1) {
@@ -233,7 +236,7 @@ void Synchronizer::arrive(const PassTouch& touch, const UsageSet& set, Layout la
 }
 
 void Synchronizer::hand_back(uint32_t resource) {
-  const ObjectState& end = c.states[facts(resource).first_object];
+  const ObjectState& end = c.states[info(resource).first_object];
   const Scope scope = tail(end);
   PlanBarrier barrier;
   barrier.resource = resource;
@@ -243,8 +246,9 @@ void Synchronizer::hand_back(uint32_t resource) {
   barrier.source_stages = scope.stages;
   barrier.source_access = scope.access;
   barrier.old_layout = end.layout;
-  barrier.why = PlanBarrier::Why::host_after;
-  because(static_cast<uint32_t>(plan.barriers.size()), Reason::Why::to_host, resource, end.touched ? 0 : 1);
+  barrier.why = PlanBarrier::ReasonKind::host_after;
+  record_reason(static_cast<uint32_t>(plan.barriers.size()), Reason::ReasonKind::to_host, resource,
+                end.touched ? 0 : 1);
   plan.barriers.push_back(barrier);
 }
 
@@ -259,11 +263,11 @@ void Synchronizer::describe_histories() {
     history.first_part = static_cast<uint32_t>(plan.history_parts.size());
     history.parts = parts(r);
     for (uint32_t part = 0; part < parts(r); ++part)
-      plan.history_parts.push_back(range_of(facts(r), r, part));
+      plan.history_parts.push_back(range_of(info(r), r, part));
     plan.history_layouts.insert(plan.history_layouts.end(), parts(r), Layout::undefined);
     for (uint32_t back = 1; back < roles(r); ++back)
       for (uint32_t part = 0; part < parts(r); ++part)
-        plan.history_layouts.push_back(c.ends[object_of(facts(r), back - 1, part)].layout);
+        plan.history_layouts.push_back(c.ends[object_of(info(r), back - 1, part)].layout);
     plan.histories.push_back(history);
   }
 }
@@ -286,7 +290,7 @@ void synchronize(CompileContext& c) {
   c.memory.resize(std::max(c.memory.size(), plan.heaps.size()));
   for (uint32_t heap = 0; heap < plan.heaps.size(); ++heap)
     c.memory[heap].assign(1, {0, plan.heaps[heap].size, no_value, 0});
-  walk.lend();
+  walk.alias_into_history();
   walk.find_memory();
   keep_orderings(c);
   walk.emit = true;
@@ -304,7 +308,7 @@ void synchronize(CompileContext& c) {
   walk.sort_into_batches();
   plan.first_final_barrier = static_cast<uint32_t>(plan.barriers.size());
   for (uint32_t r = 0; r < plan.resources.size(); ++r)
-    if (walk.facts(r).host_owned) walk.hand_back(r);
+    if (walk.info(r).host_owned) walk.hand_back(r);
   plan.final_barrier_count = static_cast<uint32_t>(plan.barriers.size()) - plan.first_final_barrier;
   if (histories) walk.describe_histories();
 }

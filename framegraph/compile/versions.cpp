@@ -30,7 +30,7 @@ struct VersionScan {
     c.last_version.assign(parts, no_value);
     c.definitions.assign(parts, {});
     for (uint32_t i = 0; i < resources; ++i) {
-      if (!c.facts[i].imported || !c.bound[i]) continue;
+      if (!c.info[i].imported || !c.bound[i]) continue;
       c.current[i].value = add_value({ResourceId{i}, 0, PassId{}, no_value});
       c.last_version[i] = c.current[i].value;
     }
@@ -41,15 +41,15 @@ struct VersionScan {
     return static_cast<uint32_t>(c.values.size() - 1);
   }
 
-  bool unbound_import(ResourceId id) const { return c.facts[id.value].imported && !c.bound[id.value]; }
+  bool unbound_import(ResourceId id) const { return c.info[id.value].imported && !c.bound[id.value]; }
 
   // One use for each part that the port sees.
   void add_parts(Use use, const ImagePart& seen) {
-    for (uint32_t i = 0; i < c.facts[use.asked.value].parts; ++i) {
-      use.part = c.part_number(use.asked, i);
+    for (uint32_t i = 0; i < c.info[use.requested.value].parts; ++i) {
+      use.part = c.part_number(use.requested, i);
       if (meets(seen, c.parts[use.part])) c.uses.push_back(use);
     }
-    part_uses += c.facts[use.asked.value].parts;
+    part_uses += c.info[use.requested.value].parts;
   }
 
   // A port of which no part can be read is not bound; one of which some parts can is refused, unless the
@@ -68,39 +68,40 @@ struct VersionScan {
 
   // Whether all passes that would write what the use reads are off for want of a profile.
   bool lacks_profile(const Use& use) const {
-    bool lacks = false;
+    bool unmet = false;
     for (const PassDeclaration& pass : c.graph->passes)
       for (const PortBinding& written : c.graph->writes(pass)) {
-        if (written.resource != use.asked || !meets(written.part, c.parts[use.part])) continue;
+        if (written.resource != use.requested || !meets(written.part, c.parts[use.part])) continue;
         if (pass.absence == PassDeclaration::Absence::none) return false;
-        lacks = true;
+        unmet = true;
       }
-    return lacks;
+    return unmet;
   }
 
   // `uses` are the parts of one binding.
   void spread_trouble(std::span<Use> uses) const {
-    using Trouble = Use::Trouble;
-    const auto has = [](Trouble trouble) {
-      return [trouble](const Use& use) { return use.trouble == trouble; };
+    using BindError = Use::BindError;
+    const auto has = [](BindError bind_error) {
+      return [bind_error](const Use& use) { return use.bind_error == bind_error; };
     };
-    const auto bad = std::find_if_not(uses.begin(), uses.end(), has(Trouble::none));
+    const auto bad = std::find_if_not(uses.begin(), uses.end(), has(BindError::none));
     if (bad == uses.end()) return;
-    const bool missing = bad->trouble == Trouble::unwritten || bad->trouble == Trouble::history_unwritten;
+    const bool missing =
+        bad->bind_error == BindError::unwritten || bad->bind_error == BindError::history_unwritten;
     const auto may_be_missing = [&](const Use& use) {
-      return use.trouble == Trouble::none || lacks_profile(use);
+      return use.bind_error == BindError::none || lacks_profile(use);
     };
-    const bool some = missing && std::any_of(uses.begin(), uses.end(), has(Trouble::none));
-    const bool partly = some && !(c.kind(bad->pass).ports[bad->port].optional &&
+    const bool some = missing && std::any_of(uses.begin(), uses.end(), has(BindError::none));
+    const bool partly = some && !(c.type(bad->pass).ports[bad->port].optional &&
                                   std::all_of(uses.begin(), uses.end(), may_be_missing));
-    const Trouble all = partly ? Trouble::partly_unwritten : bad->trouble;
+    const BindError all = partly ? BindError::partly_unwritten : bad->bind_error;
     for (Use& use : uses)
-      if (partly || use.trouble == Trouble::none) use.trouble = all;
+      if (partly || use.bind_error == BindError::none) use.bind_error = all;
   }
 
   void scan_uses(PassId pass) {
     const PassDeclaration& declared = c.graph->passes[pass.value];
-    const PassKind& kind = (*c.kinds)[declared.kind];
+    const PassType& type = (*c.pass_types)[declared.type];
     const auto first = static_cast<uint32_t>(c.uses.size());
     c.first_use.push_back(first);
     uint16_t number = 0;
@@ -112,16 +113,16 @@ struct VersionScan {
       Use& use = c.uses.emplace_back();
       use.pass = pass;
       use.port = static_cast<uint16_t>(binding.port);
-      use.usage = kind.ports[binding.port].usage;
+      use.usage = type.ports[binding.port].usage;
       const UsageInfo& usage = usage_info(use.usage);
       use.reads = usage.reads;
       use.writes = usage.writes;
-      use.resource = use.asked = binding.resource;
+      use.resource = use.requested = binding.resource;
       use.frames_back = binding.frames_back;
       use.when = binding.when;
-      use.part = use.asked.value;
+      use.part = use.requested.value;
       use.binding = number++;
-      if (c.split(use.asked)) {
+      if (c.split(use.requested)) {
         const Use whole = use;
         c.uses.pop_back();
         add_parts(whole, binding.part);
@@ -139,9 +140,9 @@ struct VersionScan {
 
   void read(Use& use, uint32_t index) {
     if (!use.reads || use.frames_back > 0) return;
-    const Meaning& meaning = c.current[use.part];
-    if (unbound_import(use.asked))
-      use.trouble = Use::Trouble::unbound;
+    const Binding& meaning = c.current[use.part];
+    if (unbound_import(use.requested))
+      use.bind_error = Use::BindError::unbound;
     else if (meaning.value != no_value)
       see(use, meaning.value);
     else
@@ -151,7 +152,7 @@ struct VersionScan {
   void see(Use& use, uint32_t value) {
     use.read_value = value;
     use.resource = c.values[value].resource;
-    if (use.writes && use.resource != use.asked) use.trouble = Use::Trouble::replaced;
+    if (use.writes && use.resource != use.requested) use.bind_error = Use::BindError::replaced;
   }
 
   bool reads_too(PassId pass, uint32_t part) const {
@@ -164,36 +165,36 @@ struct VersionScan {
 
   void write(Use& use) {
     if (!use.writes) return;
-    if (unbound_import(use.asked)) {
-      use.trouble = Use::Trouble::unbound;
+    if (unbound_import(use.requested)) {
+      use.bind_error = Use::BindError::unbound;
       return;
     }
-    const uint32_t id = use.asked.value;
+    const uint32_t id = use.requested.value;
     const uint32_t before = c.current[use.part].value;
     const PassId producer = before == no_value ? PassId{} : c.values[before].producer;
-    const bool own = before != no_value && c.values[before].resource == use.asked;
-    const bool second = own && (producer == use.pass || (!c.facts[id].imported && producer.valid() &&
-                                                         !reads_too(use.pass, use.part)));
-    if (second) return refuse_second(use, producer);
+    const bool own = before != no_value && c.values[before].resource == use.requested;
+    const bool second = own && (producer == use.pass ||
+                                (!c.info[id].imported && producer.valid() && !reads_too(use.pass, use.part)));
+    if (second) return report_second(use, producer);
     const uint32_t previous = c.last_version[use.part];
     const uint32_t version = previous == no_value ? 1 : c.values[previous].version + 1;
     c.overwrites |= previous != no_value;
-    use.write_value = add_value({use.asked, version, use.pass, previous});
+    use.write_value = add_value({use.requested, version, use.pass, previous});
     c.last_version[use.part] = use.write_value;
     c.current[use.part] = {use.write_value, {}};
-    Definition& definition = c.definitions[use.part];
+    ResourceDef& definition = c.definitions[use.part];
     if (++definition.producers == 1) definition.first_value = use.write_value;
   }
 
-  void refuse_second(const Use& use, PassId producer) {
+  void report_second(const Use& use, PassId producer) {
     const std::pair port{use.pass, use.port};
     if (std::exchange(refused, port) == port) return; // another part of what it writes
     auto& diagnostic = c.diagnostics->add(
         DiagnosticId::second_producer, c.place_of(use),
         producer == use.pass
-            ? fmt::format("pass '{}' writes '{}' through two ports", c.name(use.pass), c.name(use.asked))
+            ? fmt::format("pass '{}' writes '{}' through two ports", c.name(use.pass), c.name(use.requested))
             : fmt::format("passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
-                          c.name(producer), c.name(use.pass), c.name(use.asked), c.name(use.pass),
+                          c.name(producer), c.name(use.pass), c.name(use.requested), c.name(use.pass),
                           c.name(producer)));
     diagnostic.related.emplace_back(c.graph->passes[producer.value].where,
                                     fmt::format("'{}' is declared here", c.name(producer)));
@@ -201,7 +202,7 @@ struct VersionScan {
 
   void scan_otherwise(PassId pass) {
     c.first_use.push_back(static_cast<uint32_t>(c.uses.size()));
-    std::vector<std::pair<ResourceId, Meaning>> replaced; // all look at the state before the pass
+    std::vector<std::pair<ResourceId, Binding>> replaced; // all look at the state before the pass
     for (const PassThrough& through : c.graph->passes[pass.value].otherwise) {
       if (c.graph->resources[through.output.value].type != c.graph->resources[through.instead.value].type) {
         c.diagnostics->add(DiagnosticId::otherwise_mismatch, through.where,
@@ -218,14 +219,14 @@ struct VersionScan {
                                        c.name(c.split(through.output) ? through.output : through.instead)));
         continue;
       }
-      Meaning meaning = c.current[through.instead.value];
+      Binding meaning = c.current[through.instead.value];
       if (meaning.value == no_value && !meaning.later.valid()) meaning.later = through.instead;
       replaced.emplace_back(through.output, meaning);
-      c.because(Reason::About::resource, through.output.value, Reason::Why::stands_for, through.instead.value,
-                pass.value);
+      c.record_reason(Reason::About::resource, through.output.value, Reason::ReasonKind::stands_for,
+                      through.instead.value, pass.value);
     }
     for (const auto& [output, meaning] : replaced) {
-      Definition& definition = c.definitions[output.value];
+      ResourceDef& definition = c.definitions[output.value];
       if (!definition.replaced) {
         definition.replaced = true;
         definition.instead = meaning;
@@ -239,22 +240,22 @@ struct VersionScan {
   void look_ahead(uint32_t index, uint32_t part) {
     Use& use = c.uses[index];
     for (size_t step = 0; step <= c.definitions.size(); ++step) {
-      const Definition& definition = c.definitions[part];
+      const ResourceDef& definition = c.definitions[part];
       const bool writes_it = definition.first_value != no_value && writes(use.pass, part);
       if (part < c.graph->resources.size() && unbound_import(ResourceId{part})) {
-        use.trouble = Use::Trouble::unbound;
+        use.bind_error = Use::BindError::unbound;
         return;
       }
       if (definition.producers == 1 && !writes_it) return see(use, definition.first_value);
       if (definition.producers > 0) {
-        use.trouble = writes_it ? Use::Trouble::unwritten : Use::Trouble::ambiguous;
+        use.bind_error = writes_it ? Use::BindError::unwritten : Use::BindError::ambiguous;
         return;
       }
       if (!definition.replaced) break;
       if (definition.instead.value != no_value) return see(use, definition.instead.value);
       part = definition.instead.later.value;
     }
-    use.trouble = Use::Trouble::unwritten;
+    use.bind_error = Use::BindError::unwritten;
   }
 
   bool writes(PassId pass, uint32_t part) const {
@@ -293,7 +294,7 @@ void resolve_versions(CompileContext& c) {
   }
   for (Use& use : c.uses)
     if (use.frames_back > 0 && c.final_value[use.part] == no_value)
-      use.trouble = Use::Trouble::history_unwritten;
+      use.bind_error = Use::BindError::history_unwritten;
   if (c.graph->parts) scan.spread_trouble();
 }
 

@@ -1,6 +1,7 @@
 #include "framegraph/compose/compose.hpp"
 
 #include "framegraph/compose/composer.hpp"
+#include "framegraph/compose/format_version.hpp"
 #include "framegraph/text/limits.hpp"
 
 #include <algorithm>
@@ -89,6 +90,7 @@ bool add_document(Composer& composer, Document document, const SourceLocation& w
 std::optional<Composition> compose(Document graph, std::vector<Document> overlays, const OpenFile& open,
                                    Diagnostics& diagnostics) {
   if (overlays.empty() && !has_includes(graph)) return Composition{std::move(graph), {}};
+  if (!check_version(graph, "dermis", graph_format_version, diagnostics)) return std::nullopt;
   const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
   const uint64_t errors_before = errors();
   Composer composer{open, diagnostics};
@@ -112,7 +114,7 @@ std::optional<Composition> compose_fragment(Document fragment, const OpenFile& o
   const SourceLocation where = fragment.where(fragment.root());
   auto graph =
       parse_document("<a graph of the fragment alone>",
-                     R"({ "dermis": 1, "name": "fragment", "passes": [], "exports": [] })", diagnostics);
+                     R"({ "dermis": 2, "name": "fragment", "passes": [], "exports": [] })", diagnostics);
   Composer composer{open, diagnostics};
   if (!graph || !add_document(composer, std::move(*graph), where) ||
       !add_document(composer, std::move(fragment), where))

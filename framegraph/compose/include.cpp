@@ -2,6 +2,7 @@
 // graph's.
 
 #include "framegraph/compose/composer.hpp"
+#include "framegraph/compose/format_version.hpp"
 #include "framegraph/text/limits.hpp"
 
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace dermis {
 
 namespace {
 
-constexpr int64_t fragment_version = 1;
 constexpr std::string_view sections[] = {"settings", "imports", "resources"};
 
 // "'a' includes 'b' includes 'a'".
@@ -124,7 +124,7 @@ void include(Composer& composer, uint32_t document, NodeId entry, std::vector<It
 
 void join_fragment(Composer& composer, uint32_t document, std::vector<ItemId>& out) {
   const Document& fragment = composer.tree.documents[document];
-  if (!check_version(fragment, "dermis_fragment", fragment_version, composer.diagnostics)) return;
+  if (!check_version(fragment, "dermis_fragment", graph_format_version, composer.diagnostics)) return;
   ObjectReader reader(fragment, fragment.root(), "the fragment", composer.diagnostics);
   reader.any("dermis_fragment");
   for (const std::string_view section : sections)

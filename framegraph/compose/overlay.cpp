@@ -1,6 +1,7 @@
 // The edits of an overlay, applied one after the other to the graph as the edits before left it.
 
 #include "framegraph/compose/composer.hpp"
+#include "framegraph/compose/format_version.hpp"
 #include "framegraph/compose/path.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
@@ -14,7 +15,6 @@ namespace dermis {
 
 namespace {
 
-constexpr int64_t overlay_version = 1;
 constexpr std::string_view verbs[] = {"insert_before", "insert_after", "replace", "remove", "set"};
 enum class Verb : uint8_t { insert_before, insert_after, replace, remove, set, none };
 
@@ -219,7 +219,7 @@ std::string edit_name(size_t index) {
 // By their order; those with errors are absent. Empty when the overlay itself has errors.
 std::vector<std::optional<EditDeclaration>> read_edits(const Document& document, Diagnostics& diagnostics) {
   std::vector<std::optional<EditDeclaration>> out;
-  if (!check_version(document, "dermis_overlay", overlay_version, diagnostics)) return out;
+  if (!check_version(document, "dermis_overlay", graph_format_version, diagnostics)) return out;
   ObjectReader reader(document, document.root(), "the overlay", diagnostics);
   reader.any("dermis_overlay");
   const NodeId edits = reader.array("edits", 1, limits::edits);

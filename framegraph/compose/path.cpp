@@ -45,10 +45,10 @@ int find_step(const EditTree& tree, ItemId parent, std::string_view step) {
 }
 
 std::vector<std::string_view> steps_into(const EditTree& tree, ItemId parent) {
-  constexpr size_t most_steps = 4096; // a hostile object may have hundreds of thousands of members
+  constexpr size_t max_steps = 4096; // a hostile object may have hundreds of thousands of members
   std::vector<std::string_view> out;
   for (const ItemId child : tree[parent].children)
-    if (out.size() < most_steps)
+    if (out.size() < max_steps)
       out.push_back(tree.kind(parent) == NodeKind::object ? std::string_view(tree[child].key)
                                                           : element_name(tree, child));
   return out;

@@ -7,7 +7,7 @@ namespace dermis {
 
 namespace {
 
-constexpr size_t most_compared = 256; // members of an object; every member is looked for among the others
+constexpr size_t max_compared = 256; // members of an object; every member is looked for among the others
 
 // Depth of recursion is that of the tree, which limits::nesting bounds.
 ItemId copy(EditTree& tree, uint32_t document, NodeId node) {
@@ -102,7 +102,7 @@ bool same_value(const EditTree& tree, ItemId a, ItemId b) {
     return std::equal(tree[a].children.begin(), tree[a].children.end(), tree[b].children.begin(),
                       tree[b].children.end(), [&](ItemId x, ItemId y) { return same_value(tree, x, y); });
   if (kind != NodeKind::object) return left.integer == right.integer && left.real == right.real;
-  if (std::max(tree[a].children.size(), tree[b].children.size()) > most_compared) return false;
+  if (std::max(tree[a].children.size(), tree[b].children.size()) > max_compared) return false;
   const auto covers = [&](ItemId some, ItemId all) {
     return std::all_of(tree[some].children.begin(), tree[some].children.end(), [&](ItemId child) {
       if (tree[child].key == "note") return true;
@@ -119,10 +119,10 @@ bool same_value(const EditTree& tree, ItemId a, ItemId b) {
 
 uint32_t height_of(const EditTree& tree, ItemId id) {
   if (tree.kind(id) != NodeKind::object && tree.kind(id) != NodeKind::array) return 0;
-  uint32_t most = 0;
+  uint32_t maximum = 0;
   for (const ItemId child : tree[id].children)
-    most = std::max(most, height_of(tree, child));
-  return most + 1;
+    maximum = std::max(maximum, height_of(tree, child));
+  return maximum + 1;
 }
 
 Document flatten(EditTree&& tree) {

@@ -102,25 +102,25 @@ std::string_view layout_name(Layout layout) {
   return "unknown";
 }
 
-std::string_view why_name(PlanBarrier::Why why) {
+std::string_view why_name(PlanBarrier::ReasonKind why) {
   switch (why) {
-  case PlanBarrier::Why::first_use:
+  case PlanBarrier::ReasonKind::first_use:
     return "first_use";
-  case PlanBarrier::Why::read_after_write:
+  case PlanBarrier::ReasonKind::read_after_write:
     return "read_after_write";
-  case PlanBarrier::Why::write_after_read:
+  case PlanBarrier::ReasonKind::write_after_read:
     return "write_after_read";
-  case PlanBarrier::Why::write_after_write:
+  case PlanBarrier::ReasonKind::write_after_write:
     return "write_after_write";
-  case PlanBarrier::Why::layout:
+  case PlanBarrier::ReasonKind::layout:
     return "layout";
-  case PlanBarrier::Why::alias:
+  case PlanBarrier::ReasonKind::alias:
     return "alias";
-  case PlanBarrier::Why::history:
+  case PlanBarrier::ReasonKind::history:
     return "history";
-  case PlanBarrier::Why::host_before:
+  case PlanBarrier::ReasonKind::host_before:
     return "host_before";
-  case PlanBarrier::Why::host_after:
+  case PlanBarrier::ReasonKind::host_after:
     return "host_after";
   }
   return "unknown";

@@ -13,7 +13,7 @@ namespace dermis {
 std::vector<std::string> stage_names(Stage stages);
 std::vector<std::string> access_names(Access accesses);
 std::string_view layout_name(Layout layout);
-std::string_view why_name(PlanBarrier::Why why);
+std::string_view why_name(PlanBarrier::ReasonKind why);
 std::string_view queue_name(Queue queue);
 std::string_view transfer_name(PlanBarrier::Transfer transfer);
 std::string_view read_when_name(ReadWhen when); // "history_valid"

@@ -92,7 +92,7 @@ Lines settings(const SavedPlan& saved) {
 
 std::string pass_text(const SavedPlan& saved, size_t p) {
   const PlanPass& pass = saved.plan.passes[p];
-  std::string text = saved.names.kinds[p];
+  std::string text = saved.names.pass_types[p];
   if (pass.queue == Queue::async) text += " async";
   if (pass.wait != no_point) text += fmt::format(" wait={}", pass.wait);
   if (pass.signal != 0) text += fmt::format(" signal={}", pass.signal);

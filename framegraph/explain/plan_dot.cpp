@@ -26,10 +26,10 @@ std::string header(const std::string& name) {
                      quoted(name));
 }
 
-std::string pass_node(const Graph& graph, const KindRegistry& kinds, uint32_t pass, const std::string& prefix,
-                      const std::string& style) {
+std::string pass_node(const Graph& graph, const PassTypeRegistry& pass_types, uint32_t pass,
+                      const std::string& prefix, const std::string& style) {
   const PassDeclaration& declared = graph.passes[pass];
-  const std::string label = fmt::format("{}{}\n{}", prefix, declared.name, kinds[declared.kind].name);
+  const std::string label = fmt::format("{}{}\n{}", prefix, declared.name, pass_types[declared.type].name);
   return fmt::format("  p{} [shape=box, label={}{}];\n", pass, quoted(label), style);
 }
 
@@ -54,21 +54,21 @@ std::string arrows(uint32_t pass, uint32_t resource, uint32_t frames_back, const
 
 } // namespace
 
-std::string graph_dot(const Graph& graph, const KindRegistry& kinds) {
+std::string graph_dot(const Graph& graph, const PassTypeRegistry& pass_types) {
   std::string out = header(graph.name);
   for (uint32_t r = 0; r < graph.resources.size(); ++r)
     out += resource_node(graph.resources[r], r, "");
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
     const PassDeclaration& declared = graph.passes[p];
-    out += pass_node(graph, kinds, p, "", declared.when.valid() ? ", style=dashed" : "");
+    out += pass_node(graph, pass_types, p, "", declared.when.valid() ? ", style=dashed" : "");
     for (const PortBinding& binding : graph.bindings_of(declared))
       out += arrows(p, binding.resource.value, binding.frames_back, part_text(binding.part),
-                    kinds[declared.kind].ports[binding.port]);
+                    pass_types[declared.type].ports[binding.port]);
   }
   return out + "}\n";
 }
 
-std::string plan_dot(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled) {
+std::string plan_dot(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled) {
   const Plan& plan = compiled.plan;
   std::string out = header(plan.graph);
   for (const PlanResource& resource : plan.resources) {
@@ -80,23 +80,23 @@ std::string plan_dot(const Graph& graph, const KindRegistry& kinds, const Compil
     out += resource_node(graph.resources[resource.declared.value], resource.declared.value, detail);
   }
   std::vector<bool> runs(graph.passes.size(), false);
-  const ReasonIndex reasons(graph, kinds, compiled);
+  const ReasonIndex reasons(graph, pass_types, compiled);
   for (uint32_t position = 0; position < plan.passes.size(); ++position) {
     const PlanPass& pass = plan.passes[position];
     runs[pass.declared.value] = true;
-    out += pass_node(graph, kinds, pass.declared.value, fmt::format("{}. ", position), "");
+    out += pass_node(graph, pass_types, pass.declared.value, fmt::format("{}. ", position), "");
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
       const PlanAccess& access = plan.accesses[a];
       out += arrows(pass.declared.value, plan.resources[access.resource].declared.value, access.frames_back,
                     range_text(plan.resources[access.resource], access.range),
-                    kinds[pass.kind].ports[access.port]);
+                    pass_types[pass.type].ports[access.port]);
     }
   }
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
     if (runs[p]) continue;
     const std::string why = reasons.about(Reason::About::pass, p);
-    out +=
-        pass_node(graph, kinds, p, "", fmt::format(", color=gray, fontcolor=gray, tooltip={}", quoted(why)));
+    out += pass_node(graph, pass_types, p, "",
+                     fmt::format(", color=gray, fontcolor=gray, tooltip={}", quoted(why)));
   }
   return out + "}\n";
 }

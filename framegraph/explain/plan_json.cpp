@@ -28,7 +28,7 @@ std::string_view name_in(const std::string_view (&names)[count], Enum value) {
 
 struct Exporter {
   const Graph& graph;
-  const KindRegistry& kinds;
+  const PassTypeRegistry& pass_types;
   const CompiledPlan& compiled;
   const Provenance& provenance;
   const Plan& plan = compiled.plan;
@@ -156,7 +156,7 @@ struct Exporter {
     out.key("accesses").open_array();
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
       const PlanAccess& access = plan.accesses[a];
-      const Port& port = kinds[pass.kind].ports[access.port];
+      const Port& port = pass_types[pass.type].ports[access.port];
       out.open_object();
       out.member("port", port.name)
           .member("binding", access.port)
@@ -174,10 +174,10 @@ struct Exporter {
   }
 
   void pass(const PlanPass& pass) {
-    const PassKind& kind = kinds[pass.kind];
+    const PassType& type = pass_types[pass.type];
     out.open_object();
-    out.member("name", graph.passes[pass.declared.value].name).member("kind", kind.name);
-    out.member("dispatch", name_in(dispatch_shapes, kind.dispatch));
+    out.member("name", graph.passes[pass.declared.value].name).member("kind", type.name);
+    out.member("dispatch", name_in(dispatch_shapes, type.dispatch));
     out.member("queue", queue_name(pass.queue));
     point("wait", pass.wait == no_point, pass.wait);
     out.key("after").open_array(true);
@@ -192,10 +192,10 @@ struct Exporter {
     barriers("releases", pass.first_barrier + pass.barrier_count, pass.release_count);
     point("signal", pass.signal == 0, pass.signal);
     out.key("settings").open_array();
-    for (uint32_t s = 0; s < kind.settings.size(); ++s) {
+    for (uint32_t s = 0; s < type.settings.size(); ++s) {
       const PlanSetting& setting = plan.settings[pass.first_setting + s];
-      out.open_object(true).member("name", kind.settings[s].name);
-      setting_value(setting.value, kind.settings[s].options);
+      out.open_object(true).member("name", type.settings[s].name);
+      setting_value(setting.value, type.settings[s].options);
       out.key("follows");
       setting.from.valid() ? out.value(graph.settings[setting.from.value].name) : out.null();
       out.close();
@@ -230,7 +230,7 @@ struct Exporter {
       if (reason.about == Reason::About::pass) out.member("name", graph.passes[reason.index].name);
       if (reason.about == Reason::About::resource) out.member("name", graph.resources[reason.index].name);
       if (reason.about == Reason::About::choice) out.member("name", graph.settings[reason.index].name);
-      out.member("text", reason_text(graph, kinds, plan, reason)).close();
+      out.member("text", reason_text(graph, pass_types, plan, reason)).close();
     }
     if (!compiled.reasons.empty()) {
       const std::vector<std::string> texts = placement_reasons(graph, plan);
@@ -280,9 +280,9 @@ struct Exporter {
 
 } // namespace
 
-std::string plan_json(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled,
+std::string plan_json(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
                       const Provenance& provenance) {
-  return Exporter{graph, kinds, compiled, provenance}.whole();
+  return Exporter{graph, pass_types, compiled, provenance}.whole();
 }
 
 } // namespace dermis

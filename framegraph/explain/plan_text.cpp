@@ -12,10 +12,10 @@ namespace {
 
 struct TextExporter {
   const Graph& graph;
-  const KindRegistry& kinds;
+  const PassTypeRegistry& pass_types;
   const CompiledPlan& compiled;
   const Plan& plan = compiled.plan;
-  const ReasonIndex reasons{graph, kinds, compiled};
+  const ReasonIndex reasons{graph, pass_types, compiled};
   std::string out = {};
 
   void line(const std::string& text) { out += text + '\n'; }
@@ -98,18 +98,18 @@ struct TextExporter {
     if (const std::string why = reason(Reason::About::order, 0); !why.empty()) line("  " + why);
     for (uint32_t position = 0; position < plan.passes.size(); ++position) {
       const PlanPass& pass = plan.passes[position];
-      const PassKind& kind = kinds[pass.kind];
+      const PassType& type = pass_types[pass.type];
       if (pass.wait != no_point) waits(pass.queue == Queue::main ? Queue::async : Queue::main, pass.wait);
       for (uint32_t b = 0; b < pass.barrier_count; ++b)
         barrier(pass.first_barrier + b, position);
-      line(fmt::format("{:4} {} ({}){}", position, graph.passes[pass.declared.value].name, kind.name,
+      line(fmt::format("{:4} {} ({}){}", position, graph.passes[pass.declared.value].name, type.name,
                        pass.queue == Queue::main ? "" : " on the async queue"));
       line("       " + reason(Reason::About::pass, pass.declared.value));
       for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[a];
-        const UsageInfo& usage = usage_info(kind.ports[access.port].usage);
+        const UsageInfo& usage = usage_info(type.ports[access.port].usage);
         const char* arrow = usage.reads && usage.writes ? "<->" : usage.reads ? "<-" : "->";
-        line(fmt::format("       {} {} {}{}", kind.ports[access.port].name, arrow,
+        line(fmt::format("       {} {} {}{}", type.ports[access.port].name, arrow,
                          object(access.resource, access.frames_back,
                                 range_text(plan.resources[access.resource], access.range)),
                          read_when_text(access.when)));
@@ -178,9 +178,9 @@ struct TextExporter {
 
 } // namespace
 
-std::string plan_text(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled,
+std::string plan_text(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
                       const Provenance& provenance) {
-  TextExporter exporter{graph, kinds, compiled};
+  TextExporter exporter{graph, pass_types, compiled};
   exporter.head();
   exporter.passes();
   exporter.idle_passes();

@@ -10,7 +10,7 @@
 namespace dermis {
 
 // Several lines, newline at the end. `provenance` tells what other files than the graph's did to it.
-std::string plan_text(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled,
+std::string plan_text(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
                       const Provenance& provenance = {});
 
 } // namespace dermis

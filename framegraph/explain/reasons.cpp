@@ -1,7 +1,7 @@
 #include "framegraph/explain/reasons.hpp"
 
+#include "framegraph/compile/availability.hpp"
 #include "framegraph/compile/compile.hpp"
-#include "framegraph/compile/offers.hpp"
 #include "framegraph/explain/names.hpp"
 
 #include <fmt/format.h>
@@ -12,9 +12,9 @@
 namespace dermis {
 namespace {
 
-struct Speaker {
+struct ReasonFormatter {
   const Graph& graph;
-  const KindRegistry& kinds;
+  const PassTypeRegistry& pass_types;
   const Plan& plan;
   const Reason& reason;
 
@@ -22,7 +22,7 @@ struct Speaker {
   const std::string& resource(uint32_t id) const { return graph.resources[id].name; }
   const std::string& pass_at(uint32_t position) const { return pass(plan.passes[position].declared.value); }
   std::string_view port(uint32_t of_pass, uint32_t number) const {
-    return kinds[graph.passes[of_pass].kind].ports[number].name;
+    return pass_types[graph.passes[of_pass].type].ports[number].name;
   }
   std::string_view format() const { return format_info(static_cast<Format>(reason.a)).name; }
   const char* when() const { return reason.b != 0 ? " in the frame before" : ""; }
@@ -38,37 +38,37 @@ struct Speaker {
     return names.empty() ? "culled: it writes nothing" : "culled: nothing that is bound needs " + names;
   }
 
-  std::string not_offered() const {
+  std::string not_available() const {
     const SettingDeclaration& declared = graph.settings[reason.index];
-    Lacks lacks{reason.b, {}};
-    if (reason.b == 0) lacks.imports.push_back(ResourceId{reason.c});
+    MissingRequirements unmet{reason.b, {}};
+    if (reason.b == 0) unmet.imports.push_back(ResourceId{reason.c});
     return fmt::format("{} instead of '{}', which is not offered: {}",
                        setting_text(declared, plan.setting_values[reason.index]), declared.options[reason.a],
-                       lacks_text(graph, lacks));
+                       missing_text(graph, unmet));
   }
 
   // With the values that its `when` asks for.
   std::string off() const {
     const PassDeclaration& declared = graph.passes[reason.index];
     if (declared.absence == PassDeclaration::Absence::no_profile)
-      return "off: its kind serves scattering, and the graph has no profile";
+      return "off: its pass type serves scattering, and the graph has no profile";
     if (declared.absence == PassDeclaration::Absence::no_input)
       return fmt::format("off: it reads '{}', which only passes that are off without a profile write",
                          resource(declared.missing.value));
-    std::vector<uint32_t> asked;
+    std::vector<uint32_t> requested;
     std::vector<ExpressionId> left{graph.passes[reason.index].when};
     while (!left.empty()) {
       const ExpressionId id = left.back();
       left.pop_back();
       if (!id.valid()) continue;
       const Expression& one = graph.expressions[id.value];
-      if (one.op == Expression::Op::setting) asked.push_back(one.setting.value);
+      if (one.op == Expression::Op::setting) requested.push_back(one.setting.value);
       left.insert(left.end(), {one.left, one.right});
     }
-    std::sort(asked.begin(), asked.end());
-    asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+    std::sort(requested.begin(), requested.end());
+    requested.erase(std::unique(requested.begin(), requested.end()), requested.end());
     std::string values;
-    for (const uint32_t s : asked)
+    for (const uint32_t s : requested)
       values += fmt::format("{}{} = {}", values.empty() ? " with " : ", ", graph.settings[s].name,
                             setting_text(graph.settings[s], plan.setting_values[s]));
     return "off: its 'when' is false" + values;
@@ -103,11 +103,11 @@ struct Speaker {
                                                       : fmt::format("'{}@-{}'", name, barrier.frames_back);
     const std::string last = fmt::format("'{}'{}", pass_at(reason.a), when());
     switch (barrier.why) {
-    case PlanBarrier::Why::write_after_read:
+    case PlanBarrier::ReasonKind::write_after_read:
       return fmt::format("'{}' writes over {} once {} has read it", later, what, last);
-    case PlanBarrier::Why::write_after_write:
+    case PlanBarrier::ReasonKind::write_after_write:
       return fmt::format("'{}' writes {} after {}", later, what, last);
-    case PlanBarrier::Why::layout:
+    case PlanBarrier::ReasonKind::layout:
       return fmt::format("'{}' needs {} in another layout than {}", later, what, last);
     default:
       return fmt::format("'{}' reads {} as {} left it", later, what, last);
@@ -116,95 +116,95 @@ struct Speaker {
 
   std::string text() const {
     switch (reason.why) {
-    case Reason::Why::off:
+    case Reason::ReasonKind::off:
       return off();
-    case Reason::Why::read_by:
+    case Reason::ReasonKind::read_by:
       return needed("reads");
-    case Reason::Why::read_later_by:
+    case Reason::ReasonKind::read_later_by:
       return needed("reads in later frames");
-    case Reason::Why::written_over_by:
+    case Reason::ReasonKind::written_over_by:
       return needed("writes over");
-    case Reason::Why::writes_export:
+    case Reason::ReasonKind::writes_export:
       return fmt::format("runs: it writes the export '{}'", resource(reason.a));
-    case Reason::Why::side_effects:
-      return "runs: its kind has side effects";
-    case Reason::Why::culling_off:
+    case Reason::ReasonKind::side_effects:
+      return "runs: its pass type has side effects";
+    case Reason::ReasonKind::culling_off:
       return "runs: culling is switched off";
-    case Reason::Why::port_unbound:
+    case Reason::ReasonKind::port_unbound:
       return fmt::format("optional port '{}' stays unbound: nothing provides '{}'",
                          port(reason.index, reason.a), resource(reason.b));
-    case Reason::Why::beside:
+    case Reason::ReasonKind::beside:
       return "runs on the async queue";
-    case Reason::Why::behind:
+    case Reason::ReasonKind::behind:
       return fmt::format("runs after '{}': {}", pass(reason.a),
                          graph.passes[reason.index].after[reason.b].reason);
-    case Reason::Why::not_beside:
+    case Reason::ReasonKind::not_beside:
       return fmt::format("stays on the main queue: '{}' is the host's, kept across frames, or bound in parts",
                          resource(reason.a));
-    case Reason::Why::always_otherwise:
+    case Reason::ReasonKind::always_otherwise:
       return fmt::format("port '{}' reads its 'otherwise' in every frame: no pass that is on writes '{}'",
                          port(reason.index, reason.a), resource(reason.b));
-    case Reason::Why::lacks_input_without_bounds:
+    case Reason::ReasonKind::lacks_input_without_bounds:
       return fmt::format("left out in frames with empty bounds: it reads '{}', which only passes that serve "
                          "scattering write",
                          resource(reason.a));
-    case Reason::Why::not_needed:
+    case Reason::ReasonKind::not_needed:
       return not_needed();
-    case Reason::Why::unbound:
+    case Reason::ReasonKind::unbound:
       return "the host leaves this optional slot unbound";
-    case Reason::Why::stands_for:
+    case Reason::ReasonKind::stands_for:
       return fmt::format("stands for '{}' after pass '{}', which is off", resource(reason.a), pass(reason.b));
-    case Reason::Why::unwritten_export:
+    case Reason::ReasonKind::unwritten_export:
       return "left as the host bound it: no pass that is on writes this optional export";
-    case Reason::Why::format:
+    case Reason::ReasonKind::format:
       return chosen_format();
-    case Reason::Why::format_not_ported:
+    case Reason::ReasonKind::format_not_ported:
       return fmt::format("not {}: port '{}' of pass '{}' cannot work with it", format(),
                          port(reason.b, reason.c), pass(reason.b));
-    case Reason::Why::format_unsupported:
+    case Reason::ReasonKind::format_unsupported:
       return fmt::format("not {}: the device '{}' does not support it used as {}", format(),
                          plan.device_profile, usage_text(ResourceType::image, reason.b));
-    case Reason::Why::history_unused:
+    case Reason::ReasonKind::history_unused:
       return "no memory: no pass that runs uses it";
-    case Reason::Why::history_unread:
+    case Reason::ReasonKind::history_unread:
       return "kept like a transient: no pass that runs reads its earlier frames";
-    case Reason::Why::history_read:
+    case Reason::ReasonKind::history_read:
       return fmt::format("earlier frames are read down to @-{}", reason.a);
-    case Reason::Why::renewed_in_place:
+    case Reason::ReasonKind::renewed_in_place:
       return fmt::format("each frame takes the memory of @-{}, which {}", reason.a,
                          reason.b != 0 ? "its writer reads texel by texel" : "has been read by then");
-    case Reason::Why::borrows_memory:
+    case Reason::ReasonKind::aliases_history:
       return fmt::format("lies in memory of the history '{}', {}", resource(reason.a),
                          reason.b != 0 ? "whose oldest frame has been read by then"
                                        : "which this frame has not written by then");
-    case Reason::Why::from_host:
+    case Reason::ReasonKind::from_host:
       return fmt::format("takes '{}' over from the host", resource(reason.a));
-    case Reason::Why::oldest_instance:
+    case Reason::ReasonKind::oldest_instance:
       return fmt::format("reuses the oldest instance of '{}' for this frame", resource(reason.a));
-    case Reason::Why::first_use:
+    case Reason::ReasonKind::first_use:
       return fmt::format("first use of '{}'", resource(reason.a));
-    case Reason::Why::behind_last_use:
+    case Reason::ReasonKind::behind_last_use:
       return fmt::format("behind its last use{}", when());
-    case Reason::Why::takes_memory:
+    case Reason::ReasonKind::takes_memory:
       return fmt::format("takes over memory of '{}'{}", resource(reason.a), when());
-    case Reason::Why::dependency:
+    case Reason::ReasonKind::dependency:
       return dependency();
-    case Reason::Why::to_host:
+    case Reason::ReasonKind::to_host:
       return fmt::format("hands '{}' back to the host{}", resource(reason.a),
                          reason.b != 0 ? "; no pass touched it" : "");
-    case Reason::Why::asked_for:
+    case Reason::ReasonKind::requested:
       return setting("asked for by the caller");
-    case Reason::Why::by_default:
+    case Reason::ReasonKind::by_default:
       return setting("its default");
-    case Reason::Why::not_offered:
-      return not_offered();
-    case Reason::Why::order_of_file:
+    case Reason::ReasonKind::not_available:
+      return not_available();
+    case Reason::ReasonKind::order_of_file:
       return order("in the order of the file", "depth first it would be");
-    case Reason::Why::depth_first:
+    case Reason::ReasonKind::depth_first:
       return order("depth first", "in the order of the file it would be");
-    case Reason::Why::program_order:
+    case Reason::ReasonKind::program_order:
       return "in the order of the file: asked for by the caller";
-    case Reason::Why::random_order:
+    case Reason::ReasonKind::random_order:
       return "in an order drawn at random: asked for by the caller";
     }
     return {};
@@ -228,13 +228,13 @@ constexpr size_t named_neighbours = 24;
 
 } // namespace
 
-std::string reason_text(const Graph& graph, const KindRegistry& kinds, const Plan& plan,
+std::string reason_text(const Graph& graph, const PassTypeRegistry& pass_types, const Plan& plan,
                         const Reason& reason) {
-  return Speaker{graph, kinds, plan, reason}.text();
+  return ReasonFormatter{graph, pass_types, plan, reason}.text();
 }
 
-ReasonIndex::ReasonIndex(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled)
-    : graph_(graph), kinds_(kinds), compiled_(compiled) {
+ReasonIndex::ReasonIndex(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled)
+    : graph_(graph), pass_types_(pass_types), compiled_(compiled) {
   for (const Reason& reason : compiled.reasons)
     sorted_.push_back(&reason);
   std::stable_sort(sorted_.begin(), sorted_.end(),
@@ -250,10 +250,10 @@ std::string ReasonIndex::about(Reason::About about, uint32_t index) const {
   for (; at != sorted_.end() && subject(**at) == wanted; ++at) {
     const Reason& one = **at;
     const auto alike = [&](const Reason* other) {
-      return one.why == Reason::Why::takes_memory && other->why == one.why && other->b == one.b;
+      return one.why == Reason::ReasonKind::takes_memory && other->why == one.why && other->b == one.b;
     };
     if (std::any_of(first, at, alike)) continue; // named there
-    all += (all.empty() ? "" : "; ") + reason_text(graph_, kinds_, compiled_.plan, one);
+    all += (all.empty() ? "" : "; ") + reason_text(graph_, pass_types_, compiled_.plan, one);
     std::string others;
     for (auto later = at + 1; later != sorted_.end() && subject(**later) == wanted; ++later)
       if (alike(*later)) others += fmt::format(", '{}'", graph_.resources[(*later)->a].name);
@@ -274,12 +274,12 @@ std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan)
     const Placement& own = plan.placements[by_first[at]];
     std::string& text = texts[by_first[at]];
     if (own.persistent) {
-      const bool lends =
+      const bool is_aliased =
           std::any_of(plan.placements.begin(), plan.placements.end(), [&](const Placement& other) {
             return !other.persistent && other.heap == own.heap && share_bytes(own, other);
           });
-      text = lends ? "its contents outlive the frame; lends its memory while it holds nothing"
-                   : "shares no memory: its contents outlive the frame";
+      text = is_aliased ? "its contents outlive the frame; lends its memory while it holds nothing"
+                        : "shares no memory: its contents outlive the frame";
       continue;
     }
     const size_t from = at > named_neighbours ? at - named_neighbours : 0;

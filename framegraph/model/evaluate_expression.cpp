@@ -6,7 +6,7 @@ namespace dermis {
 
 namespace {
 
-constexpr SettingValue truth(bool value) {
+constexpr SettingValue reference(bool value) {
   return {SettingType::boolean, value ? 1 : 0, 0.0};
 }
 
@@ -50,15 +50,15 @@ SettingValue value_of(const Graph& graph, ExpressionId id, const std::vector<Set
   case Expression::Op::setting:
     return values[node.setting.value];
   case Expression::Op::logical_not:
-    return truth(!evaluate(graph, node.left, values));
+    return reference(!evaluate(graph, node.left, values));
   case Expression::Op::logical_and:
-    return truth(evaluate(graph, node.left, values) && evaluate(graph, node.right, values));
+    return reference(evaluate(graph, node.left, values) && evaluate(graph, node.right, values));
   case Expression::Op::logical_or:
-    return truth(evaluate(graph, node.left, values) || evaluate(graph, node.right, values));
+    return reference(evaluate(graph, node.left, values) || evaluate(graph, node.right, values));
   case Expression::Op::in:
-    return truth(is_listed(node, value_of(graph, node.left, values)));
+    return reference(is_listed(node, value_of(graph, node.left, values)));
   default:
-    return truth(
+    return reference(
         holds(node.op, compare(value_of(graph, node.left, values), value_of(graph, node.right, values))));
   }
 }
@@ -73,15 +73,16 @@ MaybeValue value_of(const Graph& graph, ExpressionId id, const PartialValues& va
   if (node.op == Expression::Op::literal) return node.literal;
   if (node.op == Expression::Op::setting) return values[node.setting.value];
   const MaybeValue left = value_of(graph, node.left, values);
-  if (node.op == Expression::Op::logical_not) return left ? MaybeValue(truth(left->integer == 0)) : left;
-  if (node.op == Expression::Op::in) return left ? MaybeValue(truth(is_listed(node, *left))) : left;
+  if (node.op == Expression::Op::logical_not) return left ? MaybeValue(reference(left->integer == 0)) : left;
+  if (node.op == Expression::Op::in) return left ? MaybeValue(reference(is_listed(node, *left))) : left;
   const MaybeValue right = value_of(graph, node.right, values);
-  if (node.op == Expression::Op::logical_and && (is(left, false) || is(right, false))) return truth(false);
-  if (node.op == Expression::Op::logical_or && (is(left, true) || is(right, true))) return truth(true);
+  if (node.op == Expression::Op::logical_and && (is(left, false) || is(right, false)))
+    return reference(false);
+  if (node.op == Expression::Op::logical_or && (is(left, true) || is(right, true))) return reference(true);
   if (!left || !right) return std::nullopt;
-  if (node.op == Expression::Op::logical_and) return truth(true);
-  if (node.op == Expression::Op::logical_or) return truth(false);
-  return truth(holds(node.op, compare(*left, *right)));
+  if (node.op == Expression::Op::logical_and) return reference(true);
+  if (node.op == Expression::Op::logical_or) return reference(false);
+  return reference(holds(node.op, compare(*left, *right)));
 }
 
 } // namespace

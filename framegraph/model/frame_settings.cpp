@@ -2,13 +2,13 @@
 
 namespace dermis {
 
-std::vector<uint8_t> frame_settings(const Graph& graph, const KindRegistry& kinds) {
+std::vector<uint8_t> frame_settings(const Graph& graph, const PassTypeRegistry& pass_types) {
   std::vector<uint8_t> followed(graph.settings.size(), 0), fixed(graph.settings.size(), 0);
   for (const PassDeclaration& pass : graph.passes)
     for (const SettingBinding& binding : pass.settings) {
       if (!binding.from.valid()) continue;
       followed[binding.from.value] = 1;
-      if (!kinds[pass.kind].settings[binding.setting].per_frame) fixed[binding.from.value] = 1;
+      if (!pass_types[pass.type].settings[binding.setting].per_frame) fixed[binding.from.value] = 1;
     }
   for (const Expression& expression : graph.expressions)
     if (expression.op == Expression::Op::setting) fixed[expression.setting.value] = 1;

@@ -4,7 +4,7 @@
 
 #include "framegraph/model/format_list.hpp"
 #include "framegraph/model/ids.hpp"
-#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/model/pass_type.hpp"
 #include "framegraph/text/diagnostic.hpp"
 
 #include <cstdint>
@@ -115,7 +115,7 @@ struct ImagePart {
 enum class ReadWhen : uint8_t { always, history_valid, history_invalid };
 
 struct PortBinding {
-  uint32_t port = 0; // index into PassKind::ports
+  uint32_t port = 0; // index into PassType::ports
   ResourceId resource;
   uint32_t frames_back = 0; // 0: this frame; 1: `name@-1`
   // history_invalid: this is what the port reads where the history of the binding before this one, at the
@@ -125,7 +125,7 @@ struct PortBinding {
 };
 
 struct SettingBinding {
-  uint32_t setting = 0; // index into PassKind::settings
+  uint32_t setting = 0; // index into PassType::settings
   SettingId from;       // valid: "$name" of the graph's settings; else the literal
   SettingValue literal;
   SourceLocation where;
@@ -144,7 +144,7 @@ struct Ordering {
 };
 
 struct PassDeclaration { // what every compile reads comes first
-  KindId kind;
+  PassTypeId type;
   ExpressionId when;  // invalid: always
   bool async = false; // may run beside the others, where there are two queues
   uint32_t first_binding = 0, read_count = 0, write_count = 0; // into Graph::bindings: reads, then writes
@@ -157,7 +157,7 @@ struct PassDeclaration { // what every compile reads comes first
   // Why the pass is off whatever the settings are: the graph has no profile. `when` is never true then.
   enum class Absence : uint8_t {
     none,
-    no_profile, // its kind serves scattering
+    no_profile, // its pass type serves scattering
     no_input    // only passes that are off for want of a profile write `missing`
   };
   Absence absence = Absence::none;

@@ -8,7 +8,7 @@ namespace dermis {
 using PassId = Index<struct PassTag>;             // into Graph::passes
 using ResourceId = Index<struct ResourceTag>;     // into Graph::resources
 using SettingId = Index<struct SettingTag>;       // into Graph::settings
-using KindId = Index<struct KindTag>;             // into KindRegistry
+using PassTypeId = Index<struct KindTag>;         // into PassTypeRegistry
 using ExpressionId = Index<struct ExpressionTag>; // into Graph::expressions
 
 } // namespace dermis

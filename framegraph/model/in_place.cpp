@@ -6,7 +6,7 @@ namespace dermis {
 
 std::string text_of(const InPlaceRace& race) {
   const std::string stands =
-      race.stand_in.empty() ? "" : fmt::format(", for which '{}' stands,", race.stand_in);
+      race.placeholder.empty() ? "" : fmt::format(", for which '{}' stands,", race.placeholder);
   return fmt::format("pass '{}' reads '{}'{} through its port '{}' and writes '{}' through '{}': an "
                      "invocation may read what another one has written already",
                      race.pass, race.read, stands, race.reading_port, race.written, race.writing_port);

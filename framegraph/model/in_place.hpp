@@ -9,7 +9,7 @@ namespace dermis {
 struct InPlaceRace {
   std::string_view pass, reading_port, writing_port;
   std::string read, written; // as the pass names them
-  std::string stand_in;      // what is read in place of `read`; "": nothing else
+  std::string placeholder;   // what is read in place of `read`; "": nothing else
 };
 std::string text_of(const InPlaceRace& race);
 

@@ -1,5 +1,6 @@
 #include "framegraph/model/read_graph.hpp"
 
+#include "framegraph/compose/format_version.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
 #include "framegraph/text/limits.hpp"
 
@@ -11,14 +12,13 @@ std::string note_of(const Document& document, NodeId object) {
                                                                  : std::string();
 }
 
-std::optional<Graph> read_graph(const Document& document, const KindRegistry& kinds,
+std::optional<Graph> read_graph(const Document& document, const PassTypeRegistry& pass_types,
                                 Diagnostics& diagnostics) {
-  constexpr int64_t format_version = 1;
-  if (!check_version(document, "dermis", format_version, diagnostics)) return std::nullopt;
+  if (!check_version(document, "dermis", graph_format_version, diagnostics)) return std::nullopt;
   const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
   const uint64_t errors_before = errors();
 
-  GraphReader reader(document, kinds, diagnostics);
+  GraphReader reader(document, pass_types, diagnostics);
   ObjectReader root(document, document.root(), "the graph", diagnostics);
   root.any("dermis");
   if (const auto name = root.name("name")) reader.graph.name = *name;

@@ -114,7 +114,7 @@ struct UsageInfo {
 
 const UsageInfo& usage_info(Usage usage);
 
-// What a device may lack. Graphs, options of choices and pass kinds say what they require.
+// What a device may lack. Graphs, options of choices and pass types say what they require.
 enum class Feature : uint8_t {
   ray_query, // VK_KHR_ray_query and VK_KHR_acceleration_structure
   count

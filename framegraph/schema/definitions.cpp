@@ -24,12 +24,12 @@ std::string feature_names() {
   return out;
 }
 
-// `text` with every <word> replaced: limits by their number, <kinds> and <formats> by their names.
-std::string filled(std::string_view text, std::string_view kinds = {}) {
+// `text` with every <word> replaced: limits by their number, <pass types> and <formats> by their names.
+std::string filled(std::string_view text, std::string_view pass_types = {}) {
   const std::pair<std::string_view, std::string> values[] = {
       {"<formats>", format_names()},
       {"<features>", feature_names()},
-      {"<kinds>", std::string(kinds)},
+      {"<pass types>", std::string(pass_types)},
       {"<name bytes>", fmt::format("{}", limits::name_bytes)},
       {"<expression bytes>", fmt::format("{}", limits::expression_bytes)},
       {"<passes>", fmt::format("{}", limits::passes)},
@@ -160,9 +160,9 @@ constexpr std::string_view import_text =
         "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } } } })";
 
 constexpr std::string_view pass_text =
-    R"({ "type": "object", "required": ["pass", "kind"], "additionalProperties": false, "properties": {
+    R"({ "type": "object", "required": ["pass", "type"], "additionalProperties": false, "properties": {
         "pass": { "$ref": "#/definitions/name" },
-        "kind": { "enum": [<kinds>] },
+        "type": { "enum": [<pass types>] },
         "when": { "type": "string", "maxLength": <expression bytes>, "description": "the pass is off where this is false: quality in ['good', 'best'] and samples > 4" },
         "queue": { "enum": ["main", "async"], "description": "async: may run beside the passes of the main queue, where there are two" },
         "read": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer, or resource@-N of the frame N before, or an object that requires it to be valid" },
@@ -188,12 +188,12 @@ constexpr std::string_view passes_text =
         "if": { "required": ["include"], "not": { "required": ["pass"] } },
         "then": { "$ref": "#/definitions/include" }, "else": { "$ref": "#/definitions/pass" } } })";
 
-std::string with_note(std::string_view text, std::string_view kinds = {}) {
+std::string with_note(std::string_view text, std::string_view pass_types = {}) {
   std::string out(text);
   constexpr std::string_view word = "<note>";
   for (size_t at = out.find(word); at != std::string::npos; at = out.find(word, at))
     out.replace(at, word.size(), note);
-  return filled(out, kinds);
+  return filled(out, pass_types);
 }
 
 } // namespace
@@ -205,7 +205,7 @@ SchemaMembers graph_root_members() {
       {"additionalProperties", "false"},
       {"properties", with_note(R"({
     "$schema": { "type": "string" },
-    "dermis": { "type": "integer", "const": 1, "description": "version of the format" },
+    "dermis": { "type": "integer", "const": 2, "description": "version of the format" },
     "name": { "$ref": "#/definitions/name" },
     "requires": { "type": "array", "maxItems": <options>, "items": { "enum": [<features>] }, "description": "features of the device without which the graph does not run" },
     "settings": { "type": "object", "maxProperties": <settings>, "additionalProperties": { "$ref": "#/definitions/setting" } },
@@ -227,7 +227,7 @@ SchemaMembers fragment_root_members() {
       {"additionalProperties", "false"},
       {"properties", with_note(R"({
     "$schema": { "type": "string" },
-    "dermis_fragment": { "type": "integer", "const": 1, "description": "version of the format" },
+    "dermis_fragment": { "type": "integer", "const": 2, "description": "version of the format" },
     "settings": { "type": "object", "maxProperties": <settings>, "additionalProperties": { "$ref": "#/definitions/setting" } },
     "imports": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/import" } },
     "resources": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/resource" } },
@@ -238,7 +238,7 @@ SchemaMembers fragment_root_members() {
   };
 }
 
-SchemaMembers graph_definitions(std::string_view kind_names) {
+SchemaMembers graph_definitions(std::string_view pass_type_names) {
   return {
       {"name",
        with_note(
@@ -267,7 +267,7 @@ SchemaMembers graph_definitions(std::string_view kind_names) {
       {"resource", with_note(resource_definition())},
       {"source", with_note(source_text)},
       {"target", R"({ "type": "string" })"},
-      {"pass", with_note(pass_text, kind_names)},
+      {"pass", with_note(pass_text, pass_type_names)},
       {"include", with_note(include_text)},
       {"passes", with_note(passes_text)},
   };

@@ -1,5 +1,5 @@
 #pragma once
-// The parts of the graph's schema that do not depend on the pass kinds. Inside of graph_schema.hpp.
+// The parts of the graph's schema that do not depend on the pass types. Inside of graph_schema.hpp.
 
 #include <string>
 #include <string_view>
@@ -15,7 +15,7 @@ using SchemaMembers = std::vector<std::pair<std::string_view, std::string>>;
 
 SchemaMembers graph_root_members();
 SchemaMembers fragment_root_members();
-// `kind_names`: the names of all kinds as the inside of a JSON array.
-SchemaMembers graph_definitions(std::string_view kind_names);
+// `pass_type_names`: the names of all pass types as the inside of a JSON array.
+SchemaMembers graph_definitions(std::string_view pass_type_names);
 
 } // namespace dermis

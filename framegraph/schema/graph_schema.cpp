@@ -12,7 +12,7 @@ std::string with_unit(std::string_view doc, std::string_view unit) {
   return unit.empty() ? std::string(doc) : fmt::format("{} [{}]", doc, unit);
 }
 
-void write_setting(JsonWriter& out, const KindSetting& setting) {
+void write_setting(JsonWriter& out, const PassTypeSetting& setting) {
   out.key(setting.name).open_object(true);
   out.member("description", with_unit(setting.doc, setting.unit));
   out.key("anyOf").open_array().open_object();
@@ -43,12 +43,12 @@ void write_setting(JsonWriter& out, const KindSetting& setting) {
 }
 
 // True if a port of this side must be bound.
-bool write_ports(JsonWriter& out, const PassKind& kind, PortSide side) {
+bool write_ports(JsonWriter& out, const PassType& type, PortSide side) {
   std::vector<std::string_view> required;
   out.key(side == PortSide::read ? "read" : "write").open_object();
   out.member("type", "object").member("additionalProperties", false);
   out.key("properties").open_object();
-  for (const Port& port : kind.ports) {
+  for (const Port& port : type.ports) {
     if (side_of(port) != side) continue;
     if (!port.optional) required.push_back(port.name);
     out.key(port.name).open_object(true);
@@ -63,30 +63,30 @@ bool write_ports(JsonWriter& out, const PassKind& kind, PortSide side) {
     out.close();
   }
   bool one_of = false;
-  for (uint32_t i = 0; i < kind.ports.size(); ++i) {
-    if (side_of(kind.ports[i]) != side || !is_one_of(kind, i)) continue;
+  for (uint32_t i = 0; i < type.ports.size(); ++i) {
+    if (side_of(type.ports[i]) != side || !is_one_of(type, i)) continue;
     if (!one_of) out.key("anyOf").open_array(true);
     one_of = true;
-    out.open_object(true).key("required").open_array(true).value(kind.ports[i].name).close().close();
+    out.open_object(true).key("required").open_array(true).value(type.ports[i].name).close().close();
   }
   if (one_of) out.close();
   out.close();
   return one_of || !required.empty();
 }
 
-void write_kind(JsonWriter& out, const PassKind& kind) {
+void write_pass_type(JsonWriter& out, const PassType& type) {
   out.open_object();
-  out.key("if").open_object(true).key("required").open_array().value("kind").close();
-  out.key("properties").open_object().key("kind").open_object().member("const", kind.name);
+  out.key("if").open_object(true).key("required").open_array().value("type").close();
+  out.key("properties").open_object().key("type").open_object().member("const", type.name);
   out.close().close().close();
   out.key("then").open_object();
-  out.member("description", kind.doc);
+  out.member("description", type.doc);
   out.key("properties").open_object();
-  const bool reads = write_ports(out, kind, PortSide::read);
-  const bool writes = write_ports(out, kind, PortSide::write);
+  const bool reads = write_ports(out, type, PortSide::read);
+  const bool writes = write_ports(out, type, PortSide::write);
   out.key("set").open_object().member("type", "object").member("additionalProperties", false);
   out.key("properties").open_object();
-  for (const KindSetting& setting : kind.settings)
+  for (const PassTypeSetting& setting : type.settings)
     write_setting(out, setting);
   out.close().close().close();
   out.key("required").open_array(true);
@@ -95,42 +95,42 @@ void write_kind(JsonWriter& out, const PassKind& kind) {
   out.close().close().close();
 }
 
-std::string kind_names(const KindRegistry& kinds) {
+std::string pass_type_names(const PassTypeRegistry& pass_types) {
   std::string out;
-  for (uint32_t i = 0; i < kinds.size(); ++i)
-    out += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", kinds[{i}].name);
+  for (uint32_t i = 0; i < pass_types.size(); ++i)
+    out += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", pass_types[{i}].name);
   return out;
 }
 
-std::string write_schema(const KindRegistry& kinds, std::string_view title, std::string_view description,
-                         const SchemaMembers& root) {
+std::string write_schema(const PassTypeRegistry& pass_types, std::string_view title,
+                         std::string_view description, const SchemaMembers& root) {
   JsonWriter out;
   out.open_object();
   out.member("$schema", schema_dialect).member("title", title).member("description", description);
   for (const auto& [key, text] : root)
     out.key(key).json(text);
   out.key("definitions").open_object();
-  for (const auto& [name, text] : graph_definitions(kind_names(kinds)))
+  for (const auto& [name, text] : graph_definitions(pass_type_names(pass_types)))
     out.key(name).json(text);
   out.key("pass_of_a_kind").open_object();
   out.key("allOf").open_array();
-  for (uint32_t i = 0; i < kinds.size(); ++i)
-    write_kind(out, kinds[{i}]);
+  for (uint32_t i = 0; i < pass_types.size(); ++i)
+    write_pass_type(out, pass_types[{i}]);
   out.close().close().close().close();
   return std::move(out).finish();
 }
 
 } // namespace
 
-std::string graph_schema(const KindRegistry& kinds) {
-  return write_schema(kinds, "Dermis graph",
+std::string graph_schema(const PassTypeRegistry& pass_types) {
+  return write_schema(pass_types, "Dermis graph",
                       "What Dermis may run: settings, images and buffers, passes, and what is handed back. "
                       "docs/format.md describes every key.",
                       graph_root_members());
 }
 
-std::string fragment_schema(const KindRegistry& kinds) {
-  return write_schema(kinds, "Dermis fragment",
+std::string fragment_schema(const PassTypeRegistry& pass_types) {
+  return write_schema(pass_types, "Dermis fragment",
                       "A part that several graphs include. docs/overlays.md describes every key.",
                       fragment_root_members());
 }

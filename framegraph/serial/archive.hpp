@@ -90,18 +90,18 @@ public:
       fail(fmt::format("'{}' is {}, expected 0 .. {}", what, bits,
                        static_cast<std::underlying_type_t<Enum>>(last)));
   }
-  void text(const char* what, std::string& value, size_t most) {
+  void text(const char* what, std::string& value, size_t maximum) {
     value.clear();
-    const size_t bytes = count(what, 1, most);
+    const size_t bytes = count(what, 1, maximum);
     if (bytes == 0 || !take(what, bytes)) return;
     value = bytes_.substr(at_ - bytes, bytes);
     if (find_invalid_utf8(value) != std::string_view::npos) fail(fmt::format("'{}' is not UTF-8", what));
   }
-  template <class T> void list(const char* what, std::vector<T>& values, size_t most) {
+  template <class T> void list(const char* what, std::vector<T>& values, size_t maximum) {
     Writer smallest; // empty strings and lists: no T takes less
     fields(smallest, static_cast<const T&>(T{}));
     values.clear();
-    values.resize(count(what, smallest.size(), most));
+    values.resize(count(what, smallest.size(), maximum));
     for (T& value : values) {
       if (!problem_.empty()) return;
       fields(*this, value);
@@ -126,13 +126,14 @@ private:
     at_ += bytes;
     return true;
   }
-  size_t count(const char* what, size_t bytes_each, size_t most) {
+  size_t count(const char* what, size_t bytes_each, size_t maximum) {
     uint32_t value = 0;
     number(what, value);
-    const size_t room = (bytes_.size() - at_) / bytes_each;
-    if (value <= most && value <= room) return value;
-    fail(value > most ? fmt::format("'{}' has {} entries, at most {} are accepted", what, value, most)
-                      : fmt::format("'{}' has {} entries, the file has room for {}", what, value, room));
+    const size_t available = (bytes_.size() - at_) / bytes_each;
+    if (value <= maximum && value <= available) return value;
+    fail(value > maximum
+             ? fmt::format("'{}' has {} entries, at most {} are accepted", what, value, maximum)
+             : fmt::format("'{}' has {} entries, the file has room for {}", what, value, available));
     return 0;
   }
 

@@ -9,7 +9,7 @@ namespace {
 
 struct GraphWriter {
   const Graph& graph;
-  const KindRegistry& kinds;
+  const PassTypeRegistry& pass_types;
   serial::Writer out = {};
 
   void text(std::string_view value) { out.text("", value, 0); }
@@ -85,29 +85,29 @@ struct GraphWriter {
     });
   }
 
-  void kind(const PassKind& kind) {
-    text(kind.name);
-    all(kind.ports, [&](const Port& port) {
+  void type(const PassType& type) {
+    text(type.name);
+    all(type.ports, [&](const Port& port) {
       text(port.name);
       word(port.usage);
       number(port.optional);
       all(port.formats, [&](Format format) { word(format); });
       number(port.own_texels);
     });
-    all(kind.settings, [&](const KindSetting& setting) {
+    all(type.settings, [&](const PassTypeSetting& setting) {
       text(setting.name);
       word(setting.type);
       value(setting.default_value);
       all(setting.options, [&](std::string_view option) { text(option); });
     });
-    word(kind.dispatch);
-    number(kind.side_effects);
-    number(kind.features);
+    word(type.dispatch);
+    number(type.side_effects);
+    number(type.features);
   }
 
   void pass(const PassDeclaration& pass) {
     text(pass.name);
-    index(pass.kind); // plans hold the number of the kind
+    index(pass.type); // plans hold the number of the pass type
     index(pass.when);
     number(pass.async);
     bindings(graph.reads(pass));
@@ -124,13 +124,13 @@ struct GraphWriter {
     all(pass.after, [&](const Ordering& ordering) { index(ordering.after); });
   }
 
-  void used_kinds() {
-    std::vector<KindId> used;
+  void used_pass_types() {
+    std::vector<PassTypeId> used;
     for (const PassDeclaration& one : graph.passes)
-      used.push_back(one.kind);
+      used.push_back(one.type);
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
-    all(used, [&](KindId id) { kind(kinds[id]); });
+    all(used, [&](PassTypeId id) { type(pass_types[id]); });
   }
 
   std::string whole() {
@@ -140,15 +140,15 @@ struct GraphWriter {
     all(graph.resources, [&](const ResourceDeclaration& one) { resource(one); });
     all(graph.expressions, [&](const Expression& one) { expression(one); });
     all(graph.passes, [&](const PassDeclaration& one) { pass(one); });
-    used_kinds();
+    used_pass_types();
     return std::move(out).finish();
   }
 };
 
 } // namespace
 
-std::string graph_bytes(const Graph& graph, const KindRegistry& kinds) {
-  return GraphWriter{graph, kinds}.whole();
+std::string graph_bytes(const Graph& graph, const PassTypeRegistry& pass_types) {
+  return GraphWriter{graph, pass_types}.whole();
 }
 
 } // namespace dermis

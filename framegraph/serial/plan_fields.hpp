@@ -84,7 +84,7 @@ template <class A> void fields(A& a, Of<A, Placement>& placement) {
 
 template <class A> void fields(A& a, Of<A, PlanPass>& pass) {
   fields(a, pass.declared);
-  fields(a, pass.kind);
+  fields(a, pass.type);
   a.number("first access", pass.first_access);
   a.number("accesses", pass.access_count);
   a.number("first barrier", pass.first_barrier);
@@ -125,7 +125,7 @@ template <class A> void fields(A& a, Of<A, PlanBarrier>& barrier) {
   a.number("destination access", barrier.destination_access);
   fields(a, barrier.old_layout);
   fields(a, barrier.new_layout);
-  a.word("why", barrier.why, PlanBarrier::Why::host_after);
+  a.word("why", barrier.why, PlanBarrier::ReasonKind::host_after);
   a.flag("from host", barrier.from_host);
   a.flag("to host", barrier.to_host);
   a.word("transfer", barrier.transfer, PlanBarrier::Transfer::acquire);
@@ -183,7 +183,7 @@ template <class A> void fields(A& a, Of<A, Plan>& plan) {
 
 template <class A> void fields(A& a, Of<A, PlanNames>& names) {
   a.list("names of passes", names.passes, limits::passes);
-  a.list("names of kinds", names.kinds, limits::passes);
+  a.list("names of pass types", names.pass_types, limits::passes);
   a.list("names of resources", names.resources, limits::resources);
   a.list("names of ports", names.ports, many);
   a.list("named settings", names.settings, limits::settings);

@@ -28,7 +28,7 @@ template <class Options> std::string value_text(const SettingValue& value, const
                                                        : fmt::format("{}", value.integer);
 }
 
-PlanNames names_of(const Graph& graph, const KindRegistry& kinds, const Plan& plan) {
+PlanNames names_of(const Graph& graph, const PassTypeRegistry& pass_types, const Plan& plan) {
   PlanNames names;
   for (const PlanResource& resource : plan.resources)
     names.resources.push_back(graph.resources[resource.declared.value].name);
@@ -38,15 +38,15 @@ PlanNames names_of(const Graph& graph, const KindRegistry& kinds, const Plan& pl
   names.ports.resize(plan.accesses.size());
   names.pass_settings.resize(plan.settings.size());
   for (const PlanPass& pass : plan.passes) {
-    const PassKind& kind = kinds[pass.kind];
+    const PassType& type = pass_types[pass.type];
     names.passes.push_back(graph.passes[pass.declared.value].name);
-    names.kinds.emplace_back(kind.name);
+    names.pass_types.emplace_back(type.name);
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a)
-      names.ports[a] = kind.ports[plan.accesses[a].port].name;
-    for (size_t s = 0; s < kind.settings.size(); ++s)
+      names.ports[a] = type.ports[plan.accesses[a].port].name;
+    for (size_t s = 0; s < type.settings.size(); ++s)
       names.pass_settings[pass.first_setting + s] = {
-          std::string(kind.settings[s].name),
-          value_text(plan.settings[pass.first_setting + s].value, kind.settings[s].options)};
+          std::string(type.settings[s].name),
+          value_text(plan.settings[pass.first_setting + s].value, type.settings[s].options)};
   }
   return names;
 }
@@ -55,7 +55,7 @@ PlanNames names_of(const Graph& graph, const KindRegistry& kinds, const Plan& pl
 std::string first_misfit(const SavedPlan& saved) {
   const Plan& plan = saved.plan;
   const PlanNames& names = saved.names;
-  if (names.passes.size() != plan.passes.size() || names.kinds.size() != plan.passes.size() ||
+  if (names.passes.size() != plan.passes.size() || names.pass_types.size() != plan.passes.size() ||
       names.resources.size() != plan.resources.size() || names.ports.size() != plan.accesses.size() ||
       names.settings.size() != plan.setting_values.size() ||
       names.pass_settings.size() != plan.settings.size())
@@ -86,7 +86,7 @@ std::string first_misfit(const SavedPlan& saved) {
 } // namespace
 
 SavedPlan saved_plan(const CompileInput& input, const Plan& plan) {
-  return {plan_key(input), names_of(*input.graph, *input.kinds, plan), plan};
+  return {plan_key(input), names_of(*input.graph, *input.pass_types, plan), plan};
 }
 
 std::string plan_bytes(const Plan& plan) {
@@ -132,8 +132,8 @@ std::optional<SavedPlan> read_plan(const std::string& name, std::string_view byt
   reader.expect_end();
   if (!reader.problem().empty()) return refuse(reader.problem());
   if (const std::string misfit = first_misfit(saved); !misfit.empty()) return refuse(misfit);
-  if (const std::vector<std::string> objections = verify_structure(saved.plan); !objections.empty())
-    return refuse(objections.front());
+  if (const std::vector<std::string> violations = verify_structure(saved.plan); !violations.empty())
+    return refuse(violations.front());
   return saved;
 }
 

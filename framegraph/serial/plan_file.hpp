@@ -19,9 +19,9 @@ struct NamedSettingValue {
   std::string name, text; // text: the value as a graph file would write it
 };
 
-// What the plan's indices into graph and kinds mean.
+// What the plan's indices into graph and pass types mean.
 struct PlanNames {
-  std::vector<std::string> passes, kinds;       // one each per Plan::passes
+  std::vector<std::string> passes, pass_types;  // one each per Plan::passes
   std::vector<std::string> resources;           // one per Plan::resources
   std::vector<std::string> ports;               // one per Plan::accesses
   std::vector<NamedSettingValue> settings;      // one per Plan::setting_values

@@ -8,7 +8,7 @@ PlanKey plan_key(const CompileInput& input) {
   const Graph& graph = *input.graph;
   const DeviceProfile& device = *input.device;
   PlanKey key;
-  key.graph = sha256(graph_bytes(graph, *input.kinds));
+  key.graph = sha256(graph_bytes(graph, *input.pass_types));
   key.view_width = input.view_width;
   key.view_height = input.view_height;
   key.device_profile = device.name;

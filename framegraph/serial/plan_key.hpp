@@ -33,9 +33,9 @@ struct PlanKey {
 // formats.
 PlanKey plan_key(const CompileInput& input);
 
-// Canonical bytes of what compiling reads of a graph and of the kinds it uses: neither notes nor places in
-// files.
-std::string graph_bytes(const Graph& graph, const KindRegistry& kinds);
+// Canonical bytes of what compiling reads of a graph and of the pass types it uses: neither notes nor places
+// in files.
+std::string graph_bytes(const Graph& graph, const PassTypeRegistry& pass_types);
 
 std::string key_bytes(const PlanKey& key); // equal exactly where the keys are
 

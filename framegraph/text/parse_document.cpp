@@ -54,12 +54,12 @@ public:
     return true;
   }
   bool number_unsigned(number_unsigned_t value) {
-    if (value > static_cast<number_unsigned_t>(INT64_MAX)) return refuse_integer();
+    if (value > static_cast<number_unsigned_t>(INT64_MAX)) return reject_integer();
     return number_integer(static_cast<number_integer_t>(value));
   }
   bool number_float(number_float_t value, const string_t&) {
     const std::string_view token = number_token();
-    if (token.find_first_of(".eE") == std::string_view::npos) return refuse_integer();
+    if (token.find_first_of(".eE") == std::string_view::npos) return reject_integer();
     Node* node = add(NodeKind::real);
     if (node == nullptr) return false;
     // The parser's value went through strtod and the host's locale; from_chars knows no locale. It may refuse
@@ -106,7 +106,7 @@ private:
     failed_ = true;
     return false;
   }
-  bool refuse_integer() {
+  bool reject_integer() {
     return refuse(DiagnosticId::integer_precision, cursor_.value_position(),
                   fmt::format("the integer {} does not fit in 64 signed bits", shown_token(number_token())));
   }

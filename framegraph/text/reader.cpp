@@ -59,22 +59,22 @@ std::optional<bool> read_boolean(const Document& document, NodeId node, std::str
 }
 
 std::optional<int64_t> read_integer(const Document& document, NodeId node, std::string_view what,
-                                    int64_t least, int64_t greatest, Diagnostics& diagnostics) {
+                                    int64_t minimum, int64_t maximum, Diagnostics& diagnostics) {
   if (!expect_kind(document, node, what, NodeKind::integer, diagnostics)) return std::nullopt;
   const int64_t value = document[node].integer;
-  if (value >= least && value <= greatest) return value;
+  if (value >= minimum && value <= maximum) return value;
   diagnostics.add(DiagnosticId::out_of_range, document.where(node),
-                  fmt::format("{} is {}; it must lie in {} .. {}", what, value, least, greatest));
+                  fmt::format("{} is {}; it must lie in {} .. {}", what, value, minimum, maximum));
   return std::nullopt;
 }
 
-std::optional<double> read_number(const Document& document, NodeId node, std::string_view what, double least,
-                                  double greatest, Diagnostics& diagnostics) {
+std::optional<double> read_number(const Document& document, NodeId node, std::string_view what,
+                                  double minimum, double maximum, Diagnostics& diagnostics) {
   if (!expect_kind(document, node, what, NodeKind::real, diagnostics)) return std::nullopt;
   const double value = document[node].real;
-  if (value >= least && value <= greatest) return value;
+  if (value >= minimum && value <= maximum) return value;
   diagnostics.add(DiagnosticId::out_of_range, document.where(node),
-                  fmt::format("{} is {}; it must lie in {} .. {}", what, value, least, greatest));
+                  fmt::format("{} is {}; it must lie in {} .. {}", what, value, minimum, maximum));
   return std::nullopt;
 }
 
@@ -92,7 +92,7 @@ std::optional<uint32_t> read_word(const Document& document, NodeId node, std::st
 }
 
 bool read_numbers(const Document& document, NodeId node, std::string_view what, std::span<double> out,
-                  double least, double greatest, Diagnostics& diagnostics) {
+                  double minimum, double maximum, Diagnostics& diagnostics) {
   if (!expect_kind(document, node, what, NodeKind::array, diagnostics)) return false;
   if (document[node].child_count != out.size()) {
     diagnostics.add(DiagnosticId::wrong_type, document.where(node),
@@ -103,8 +103,8 @@ bool read_numbers(const Document& document, NodeId node, std::string_view what, 
   std::vector<double> values;
   for (NodeId child : children(document, node)) {
     const auto value =
-        read_number(document, child, fmt::format("number {} of {}", document[child].index + 1, what), least,
-                    greatest, diagnostics);
+        read_number(document, child, fmt::format("number {} of {}", document[child].index + 1, what), minimum,
+                    maximum, diagnostics);
     if (value) values.push_back(*value);
   }
   if (values.size() != out.size()) return false;
@@ -113,10 +113,10 @@ bool read_numbers(const Document& document, NodeId node, std::string_view what, 
 }
 
 NodeId find_misspelt(const Document& document, NodeId object, std::string_view key) {
-  constexpr size_t most_looked_at = 256; // a hostile object may have hundreds of thousands of keys
+  constexpr size_t max_looked_at = 256; // a hostile object may have hundreds of thousands of keys
   const std::string_view wanted[] = {key};
   size_t looked_at = 0;
-  for (NodeId child = document[object].first_child; child.valid() && looked_at < most_looked_at;
+  for (NodeId child = document[object].first_child; child.valid() && looked_at < max_looked_at;
        child = document[child].next, ++looked_at)
     if (!nearest(document.key(child), wanted).empty()) return child;
   return {};
@@ -133,7 +133,7 @@ std::vector<NodeId> children(const Document& document, NodeId node) {
 namespace {
 
 // The key by which a file of another kind says what it is ("dermis": a graph); invalid: there is none.
-NodeId find_other_kind(const Document& document) {
+NodeId find_other_type(const Document& document) {
   for (const NodeId node : children(document, document.root()))
     if ((document.key(node) == "dermis" || document.key(node).starts_with("dermis_")) &&
         document[node].kind == NodeKind::integer)
@@ -148,7 +148,12 @@ bool check_version(const Document& document, std::string_view key, int64_t suppo
   if (!expect_kind(document, document.root(), "the file", NodeKind::object, diagnostics)) return false;
   const NodeId node = document.find(document.root(), key);
   if (!node.valid()) {
-    if (const NodeId other = find_other_kind(document); other.valid()) {
+    if (const NodeId other = find_other_type(document); other.valid()) {
+      if (key == "dermis_pass_types" && document.key(other) == "dermis_kinds") {
+        diagnostics.add(DiagnosticId::unsupported_version, document.where_key(other),
+                        "'dermis_kinds' is the key of version 1; `dermis upgrade FILE` converts the file");
+        return false;
+      }
       diagnostics.add(DiagnosticId::other_kind_of_file, document.where_key(other),
                       fmt::format("the file says '{}' where '{}' is expected", document.key(other), key));
       return false;
@@ -165,20 +170,22 @@ bool check_version(const Document& document, std::string_view key, int64_t suppo
                    diagnostics)) {
     return false;
   }
-  if (document[node].integer == supported) return true;
-  diagnostics.add(
-      DiagnosticId::unsupported_version, document.where(node),
-      fmt::format("'{}' is {}; this library reads version {}", key, document[node].integer, supported));
+  const int64_t version = document[node].integer;
+  if (version == supported) return true;
+  const bool older = version >= 1 && version < supported;
+  diagnostics.add(DiagnosticId::unsupported_version, document.where(node),
+                  fmt::format("'{}' is {}; this library reads version {}{}", key, version, supported,
+                              older ? "; `dermis upgrade FILE` converts the file" : ""));
   return false;
 }
 
 ObjectReader::ObjectReader(const Document& document, NodeId node, std::string what, Diagnostics& diagnostics)
     : document_(document), diagnostics_(diagnostics), node_(node), what_(std::move(what)) {
   ok_ = expect_kind(document_, node_, what_, NodeKind::object, diagnostics_);
-  asked_.push_back("note");
-  if (!document_[node_].parent.valid()) asked_.push_back("$schema");
+  requested_.push_back("note");
+  if (!document_[node_].parent.valid()) requested_.push_back("$schema");
   if (!ok_) return;
-  for (std::string_view key : asked_) {
+  for (std::string_view key : requested_) {
     const NodeId child = document_.find(node_, key);
     if (child.valid()) ok_ &= expect_kind(document_, child, describe(key), NodeKind::string, diagnostics_);
   }
@@ -189,7 +196,7 @@ std::string ObjectReader::describe(std::string_view key) const {
 }
 
 NodeId ObjectReader::find(std::string_view key, Need need) {
-  asked_.push_back(key);
+  requested_.push_back(key);
   if (document_[node_].kind != NodeKind::object) return {};
   const NodeId child = document_.find(node_, key);
   if (!child.valid() && need == Need::required) {
@@ -218,15 +225,15 @@ NodeId ObjectReader::object(std::string_view key, Need need) {
   return find(key, need, NodeKind::object);
 }
 
-NodeId ObjectReader::array(std::string_view key, size_t least, size_t greatest, Need need) {
+NodeId ObjectReader::array(std::string_view key, size_t minimum, size_t maximum, Need need) {
   const NodeId child = find(key, need, NodeKind::array);
   if (!child.valid()) return {};
   const size_t count = document_[child].child_count;
-  if (count >= least && count <= greatest) return child;
+  if (count >= minimum && count <= maximum) return child;
   ok_ = false;
   diagnostics_.add(
-      count > greatest ? DiagnosticId::limit_exceeded : DiagnosticId::out_of_range, document_.where(child),
-      fmt::format("{} has {} entries; it must have {} .. {}", describe(key), count, least, greatest));
+      count > maximum ? DiagnosticId::limit_exceeded : DiagnosticId::out_of_range, document_.where(child),
+      fmt::format("{} has {} entries; it must have {} .. {}", describe(key), count, minimum, maximum));
   return {};
 }
 
@@ -250,28 +257,28 @@ std::optional<bool> ObjectReader::boolean(std::string_view key, Need need) {
   return document_[child].integer != 0;
 }
 
-std::optional<int64_t> ObjectReader::integer(std::string_view key, int64_t least, int64_t greatest,
+std::optional<int64_t> ObjectReader::integer(std::string_view key, int64_t minimum, int64_t maximum,
                                              Need need) {
   const NodeId child = find(key, need);
   if (!child.valid()) return std::nullopt;
-  const auto value = read_integer(document_, child, describe(key), least, greatest, diagnostics_);
+  const auto value = read_integer(document_, child, describe(key), minimum, maximum, diagnostics_);
   ok_ &= value.has_value();
   return value;
 }
 
-std::optional<double> ObjectReader::number(std::string_view key, double least, double greatest, Need need) {
+std::optional<double> ObjectReader::number(std::string_view key, double minimum, double maximum, Need need) {
   const NodeId child = find(key, need);
   if (!child.valid()) return std::nullopt;
-  const auto value = read_number(document_, child, describe(key), least, greatest, diagnostics_);
+  const auto value = read_number(document_, child, describe(key), minimum, maximum, diagnostics_);
   ok_ &= value.has_value();
   return value;
 }
 
-bool ObjectReader::numbers(std::string_view key, std::span<double> out, double least, double greatest,
+bool ObjectReader::numbers(std::string_view key, std::span<double> out, double minimum, double maximum,
                            Need need) {
   const NodeId child = find(key, need);
   if (!child.valid()) return false;
-  const bool read = read_numbers(document_, child, describe(key), out, least, greatest, diagnostics_);
+  const bool read = read_numbers(document_, child, describe(key), out, minimum, maximum, diagnostics_);
   ok_ &= read;
   return read;
 }
@@ -289,16 +296,16 @@ bool ObjectReader::finish() {
   if (document_[node_].kind != NodeKind::object) return false;
   for (NodeId child = document_[node_].first_child; child.valid(); child = document_[child].next) {
     const std::string_view key = document_.key(child);
-    if (std::find(asked_.begin(), asked_.end(), key) != asked_.end()) continue;
+    if (std::find(requested_.begin(), requested_.end(), key) != requested_.end()) continue;
     ok_ = false;
     if (diagnostics_.full()) break; // a hostile object may have hundreds of thousands of unknown keys
-    const std::string_view meant = nearest(key, asked_);
+    const std::string_view meant = nearest(key, requested_);
     const auto missing =
         std::find_if(missing_.begin(), missing_.end(), [&](const Missing& one) { return one.key == meant; });
     Diagnostic fresh{DiagnosticId::unknown_key,
                      document_.where_key(child),
                      fmt::format("{} has no key '{}'", what_, shown_token(key)),
-                     did_you_mean(key, asked_),
+                     did_you_mean(key, requested_),
                      {}};
     if (missing != missing_.end()) { // one root cause: the key is there, misspelt
       diagnostics_.list[missing->diagnostic] = std::move(fresh);

@@ -32,19 +32,19 @@ public:
   // [A-Za-z_][A-Za-z0-9_]*, at most limits::name_bytes: what other parts of a file refer to.
   std::optional<std::string_view> name(std::string_view key, Need need = Need::required);
   std::optional<bool> boolean(std::string_view key, Need need = Need::required);
-  std::optional<int64_t> integer(std::string_view key, int64_t least, int64_t greatest,
+  std::optional<int64_t> integer(std::string_view key, int64_t minimum, int64_t maximum,
                                  Need need = Need::required);
-  std::optional<double> number(std::string_view key, double least, double greatest,
+  std::optional<double> number(std::string_view key, double minimum, double maximum,
                                Need need = Need::required);
   // Exactly out.size() numbers; false and `out` untouched where a getter would return nullopt.
-  bool numbers(std::string_view key, std::span<double> out, double least, double greatest,
+  bool numbers(std::string_view key, std::span<double> out, double minimum, double maximum,
                Need need = Need::required);
   // Index into `words`.
   std::optional<uint32_t> word(std::string_view key, std::span<const std::string_view> words,
                                Need need = Need::required);
   // The node, for whoever reads it further; invalid where another getter would return nullopt.
   NodeId object(std::string_view key, Need need = Need::required);
-  NodeId array(std::string_view key, size_t least, size_t greatest, Need need = Need::required);
+  NodeId array(std::string_view key, size_t minimum, size_t maximum, Need need = Need::required);
   NodeId any(std::string_view key, Need need = Need::required);
 
   // Reports keys that nobody asked for; one that is a misspelt required key takes the place of the message
@@ -68,7 +68,7 @@ private:
     std::string_view key;
     size_t diagnostic; // index into Diagnostics::list
   };
-  std::vector<std::string_view> asked_;
+  std::vector<std::string_view> requested_;
   std::vector<Missing> missing_;
   bool ok_ = true;
 };
@@ -77,14 +77,14 @@ private:
 std::optional<std::string_view> read_string(const Document&, NodeId, std::string_view what, Diagnostics&);
 std::optional<std::string_view> read_name(const Document&, NodeId, std::string_view what, Diagnostics&);
 std::optional<bool> read_boolean(const Document&, NodeId, std::string_view what, Diagnostics&);
-std::optional<int64_t> read_integer(const Document&, NodeId, std::string_view what, int64_t least,
-                                    int64_t greatest, Diagnostics&);
-std::optional<double> read_number(const Document&, NodeId, std::string_view what, double least,
-                                  double greatest, Diagnostics&);
+std::optional<int64_t> read_integer(const Document&, NodeId, std::string_view what, int64_t minimum,
+                                    int64_t maximum, Diagnostics&);
+std::optional<double> read_number(const Document&, NodeId, std::string_view what, double minimum,
+                                  double maximum, Diagnostics&);
 std::optional<uint32_t> read_word(const Document&, NodeId, std::string_view what,
                                   std::span<const std::string_view> words, Diagnostics&);
-bool read_numbers(const Document&, NodeId, std::string_view what, std::span<double> out, double least,
-                  double greatest, Diagnostics&);
+bool read_numbers(const Document&, NodeId, std::string_view what, std::span<double> out, double minimum,
+                  double maximum, Diagnostics&);
 bool expect_kind(const Document&, NodeId, std::string_view what, NodeKind kind, Diagnostics&);
 
 // Is it [A-Za-z_][A-Za-z0-9_]* of at most limits::name_bytes? Else an error at `where`.
@@ -96,7 +96,7 @@ NodeId find_misspelt(const Document&, NodeId object, std::string_view key);
 // Children in the order of the text.
 std::vector<NodeId> children(const Document&, NodeId);
 
-// The version key of a root object (`"dermis": 1`): absent, mistyped or not `supported` is an error.
+// The version key of a root object (`"dermis": 2`): absent, mistyped or not `supported` is an error.
 bool check_version(const Document&, std::string_view key, int64_t supported, Diagnostics&);
 
 } // namespace dermis

@@ -15,10 +15,10 @@ Memory::Memory(const Plan& plan) : plan_(plan), spaces_(plan.heaps.size()) {
     space[0].end = UINT64_MAX;
 }
 
-void Memory::add_instance(const Thing& thing, uint32_t count, uint32_t used_things) {
-  InstanceThings place{static_cast<uint32_t>(things.size()), count, used_things, 0};
-  if (thing.placement != no_instance) {
-    const Placement& memory = plan_.placements[thing.placement];
+void Memory::add_instance(const Subresource& subresource, uint32_t count, uint32_t used_subresources) {
+  InstanceSubresources place{static_cast<uint32_t>(subresources.size()), count, used_subresources, 0};
+  if (subresource.placement != no_instance) {
+    const Placement& memory = plan_.placements[subresource.placement];
     place.space = memory.heap;
     place.begin = memory.offset;
     place.end = memory.offset + memory.size;
@@ -26,40 +26,41 @@ void Memory::add_instance(const Thing& thing, uint32_t count, uint32_t used_thin
     place.space = static_cast<uint32_t>(spaces_.size());
     spaces_.emplace_back()[0].end = UINT64_MAX;
   }
-  things.insert(things.end(), count, thing);
-  for (uint32_t t = place.first; t < things.size(); ++t)
-    things[t].owner = static_cast<uint32_t>(instances.size());
+  subresources.insert(subresources.end(), count, subresource);
+  for (uint32_t t = place.first; t < subresources.size(); ++t)
+    subresources[t].owner = static_cast<uint32_t>(instances.size());
   instances.push_back(place);
 }
 
-void Memory::set_kept(uint32_t thing, int64_t of_frame, Layout layout) {
-  things[thing].defined = true;
-  things[thing].of_frame = of_frame;
-  things[thing].layout = layout;
-  isolate(thing);
-  for_each_range(instances[things[thing].owner], [&](ByteRange& range) { events_of(range, thing); });
+void Memory::set_kept(uint32_t subresource, int64_t of_frame, Layout layout) {
+  subresources[subresource].defined = true;
+  subresources[subresource].of_frame = of_frame;
+  subresources[subresource].layout = layout;
+  isolate(subresource);
+  for_each_range(instances[subresources[subresource].owner],
+                 [&](ByteRange& range) { events_of(range, subresource); });
 }
 
-ThingEvents* Memory::find(InstanceEvents& occupant, uint32_t thing) {
-  const auto found = std::lower_bound(occupant.things.begin(), occupant.things.end(), thing,
-                                      [](const ThingEvents& a, uint32_t b) { return a.thing < b; });
-  return found != occupant.things.end() && found->thing == thing ? &*found : nullptr;
+ThingEvents* Memory::find(InstanceEvents& occupant, uint32_t subresource) {
+  const auto found = std::lower_bound(occupant.subresources.begin(), occupant.subresources.end(), subresource,
+                                      [](const ThingEvents& a, uint32_t b) { return a.subresource < b; });
+  return found != occupant.subresources.end() && found->subresource == subresource ? &*found : nullptr;
 }
 
-std::vector<Event>& Memory::events_of(ByteRange& range, uint32_t thing) const {
-  const uint32_t owner = things[thing].owner;
+std::vector<Event>& Memory::events_of(ByteRange& range, uint32_t subresource) const {
+  const uint32_t owner = subresources[subresource].owner;
   auto occupant = std::find_if(range.occupants.begin(), range.occupants.end(),
                                [&](const InstanceEvents& one) { return one.instance == owner; });
   if (occupant == range.occupants.end())
     occupant = range.occupants.insert(range.occupants.end(), InstanceEvents{owner, {}});
-  const auto at = std::lower_bound(occupant->things.begin(), occupant->things.end(), thing,
-                                   [](const ThingEvents& a, uint32_t b) { return a.thing < b; });
-  if (at != occupant->things.end() && at->thing == thing) return at->events;
-  return occupant->things.insert(at, ThingEvents{thing, {}})->events;
+  const auto at = std::lower_bound(occupant->subresources.begin(), occupant->subresources.end(), subresource,
+                                   [](const ThingEvents& a, uint32_t b) { return a.subresource < b; });
+  if (at != occupant->subresources.end() && at->subresource == subresource) return at->events;
+  return occupant->subresources.insert(at, ThingEvents{subresource, {}})->events;
 }
 
 // The place must be isolated.
-template <class Visit> void Memory::for_each_range(const InstanceThings& place, Visit visit) {
+template <class Visit> void Memory::for_each_range(const InstanceSubresources& place, Visit visit) {
   std::map<uint64_t, ByteRange>& space = spaces_[place.space];
   for (auto range = space.lower_bound(place.begin); range != space.end() && range->first < place.end; ++range)
     visit(range->second);
@@ -72,16 +73,16 @@ void Memory::cut(std::map<uint64_t, ByteRange>& space, uint64_t at) {
   range->second.end = at;
 }
 
-void Memory::isolate(uint32_t thing) {
-  const InstanceThings& place = instances[things[thing].owner];
+void Memory::isolate(uint32_t subresource) {
+  const InstanceSubresources& place = instances[subresources[subresource].owner];
   cut(spaces_[place.space], place.begin);
   cut(spaces_[place.space], place.end);
 }
 
-void Memory::add_read(uint32_t thing, const Event& event) {
-  isolate(thing);
-  for_each_range(instances[things[thing].owner], [&](ByteRange& range) {
-    std::vector<Event>& events = events_of(range, thing);
+void Memory::add_read(uint32_t subresource, const Event& event) {
+  isolate(subresource);
+  for_each_range(instances[subresources[subresource].owner], [&](ByteRange& range) {
+    std::vector<Event>& events = events_of(range, subresource);
     const auto same = std::find_if(events.rbegin(), events.rend(), [&](const Event& one) {
       return one.is_write ||
              (one.stages == event.stages && one.queue == event.queue && one.ordered == event.ordered);
@@ -96,31 +97,32 @@ void Memory::add_read(uint32_t thing, const Event& event) {
   });
 }
 
-// Holds events that other instances left on these bytes. They count until each used part of the new owner was written.
+// Holds events that other instances left on these bytes. They count until each used part of the new owner was
+// written.
 void Memory::take_over(ByteRange& range, uint32_t owner, bool whole, const Event& write) {
   for (InstanceEvents& other : range.occupants) {
     if (other.instance == owner) continue;
-    for (ThingEvents& left : other.things) {
-      Thing& thing = things[left.thing];
-      thing.defined = false;
-      if (thing.written) --instances[other.instance].written_things;
-      thing.written = false;
+    for (ThingEvents& left : other.subresources) {
+      Subresource& subresource = subresources[left.subresource];
+      subresource.defined = false;
+      if (subresource.written) --instances[other.instance].written_subresources;
+      subresource.written = false;
       if (whole) std::erase_if(left.events, [&](const Event& event) { return is_before(event, write); });
     }
-    std::erase_if(other.things, [](const ThingEvents& left) { return left.events.empty(); });
+    std::erase_if(other.subresources, [](const ThingEvents& left) { return left.events.empty(); });
   }
-  std::erase_if(range.occupants, [](const InstanceEvents& one) { return one.things.empty(); });
+  std::erase_if(range.occupants, [](const InstanceEvents& one) { return one.subresources.empty(); });
 }
 
-void Memory::add_write(uint32_t thing, const Event& event) {
-  const uint32_t owner = things[thing].owner;
-  InstanceThings& place = instances[owner];
-  if (!things[thing].written) ++place.written_things;
-  things[thing].written = true;
-  isolate(thing);
+void Memory::add_write(uint32_t subresource, const Event& event) {
+  const uint32_t owner = subresources[subresource].owner;
+  InstanceSubresources& place = instances[owner];
+  if (!subresources[subresource].written) ++place.written_subresources;
+  subresources[subresource].written = true;
+  isolate(subresource);
   for_each_range(place, [&](ByteRange& range) {
-    take_over(range, owner, place.written_things >= place.used_things, event);
-    std::vector<Event>& events = events_of(range, thing);
+    take_over(range, owner, place.written_subresources >= place.used_subresources, event);
+    std::vector<Event>& events = events_of(range, subresource);
     std::erase_if(events, [&](const Event& one) { return is_before(one, event); });
     events.push_back(event);
   });
@@ -128,7 +130,7 @@ void Memory::add_write(uint32_t thing, const Event& event) {
 }
 
 // Neighbours of which the same is known become one range.
-void Memory::join(const InstanceThings& place) {
+void Memory::join(const InstanceSubresources& place) {
   std::map<uint64_t, ByteRange>& space = spaces_[place.space];
   auto range = space.lower_bound(place.begin);
   for (auto next = std::next(range); next != space.end() && next->first < place.end;) {

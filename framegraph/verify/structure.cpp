@@ -14,11 +14,11 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t most_mips = 32; // of an image whose sides are 32-bit numbers
+constexpr uint32_t max_mips = 32; // of an image whose sides are 32-bit numbers
 
 struct Checker {
   const Plan& plan;
-  std::vector<std::string> objections;
+  std::vector<std::string> violations;
   std::vector<uint32_t> deepest = {}; // by resource: earlier frames that its history keeps
 
   void find_histories() {
@@ -28,8 +28,8 @@ struct Checker {
   }
 
   void expect(bool holds, const char* what, size_t index) {
-    if (!holds && objections.size() < most_objections)
-      objections.push_back(fmt::format("{} (index {})", what, index));
+    if (!holds && violations.size() < max_violations)
+      violations.push_back(fmt::format("{} (index {})", what, index));
   }
 
   static bool range_in(uint64_t first, uint64_t count, size_t size) { return first + count <= size; }
@@ -50,7 +50,7 @@ struct Checker {
     for (size_t i = 0; i < plan.resources.size(); ++i) {
       const PlanResource& resource = plan.resources[i];
       const bool buffer = resource.type != ResourceType::image;
-      expect(resource.mips >= 1 && resource.mips <= (buffer ? 1 : most_mips) && resource.layers >= 1 &&
+      expect(resource.mips >= 1 && resource.mips <= (buffer ? 1 : max_mips) && resource.layers >= 1 &&
                  resource.layers <= (buffer ? 1 : limits::image_layers),
              "a resource has no mips or layers, or too many", i);
       expect(resource.instance_count >= 1, "a resource has no instance", i);
@@ -130,9 +130,9 @@ struct Checker {
       }
       const auto next = alive.lower_bound(own.offset);
       const auto refuses = [&](size_t other) {
-        const bool shares = share_memory(own, plan.placements[other]);
-        expect(!shares, "placements alive at the same time share memory", std::max(i, other));
-        return shares;
+        const bool fractions = share_memory(own, plan.placements[other]);
+        expect(!fractions, "placements alive at the same time share memory", std::max(i, other));
+        return fractions;
       };
       if ((next != alive.end() && refuses(next->second)) ||
           (next != alive.begin() && refuses(std::prev(next)->second)))
@@ -219,12 +219,13 @@ struct Checker {
         expect(has(history.resource, plan.history_parts[history.first_part + part]),
                "a history has mips or layers that do not exist", h);
     }
-    uint32_t most = 1; // who uses memory of a history goes round with it
+    uint32_t maximum = 1; // who uses memory of a history goes round with it
     for (const PlanHistory& history : plan.histories)
       if (history.resource < plan.resources.size())
-        most = std::max(most, plan.resources[history.resource].instance_count);
+        maximum = std::max(maximum, plan.resources[history.resource].instance_count);
     for (size_t r = 0; r < plan.resources.size(); ++r)
-      expect(plan.resources[r].instance_count <= most, "a resource has more instances than any history", r);
+      expect(plan.resources[r].instance_count <= maximum, "a resource has more instances than any history",
+             r);
     for (size_t r = 0; r < plan.resources.size(); ++r) {
       const uint32_t first = plan.resources[r].first_instance;
       const bool kept = first < plan.placements.size() && plan.placements[first].persistent;
@@ -247,7 +248,7 @@ std::vector<std::string> verify_structure(const Plan& plan) {
   checker.passes();
   checker.orderings();
   checker.histories();
-  return std::move(checker.objections);
+  return std::move(checker.violations);
 }
 
 } // namespace dermis

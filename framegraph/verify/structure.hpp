@@ -9,7 +9,7 @@
 
 namespace dermis {
 
-inline constexpr size_t most_objections =
+inline constexpr size_t max_violations =
     32; // the first ones tell; a hostile plan could cause one for each pair
 
 // What is wrong with the shape of the plan, one sentence each; empty: every index can be followed.

@@ -4,9 +4,9 @@
 #include "framegraph/verify/verify.hpp"
 
 #include "framegraph/verify/memory.hpp"
-#include "framegraph/verify/parts.hpp"
 #include "framegraph/verify/structure.hpp"
-#include "framegraph/verify/things.hpp"
+#include "framegraph/verify/subresource_ranges.hpp"
+#include "framegraph/verify/subresources.hpp"
 #include "framegraph/verify/within_pass.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ namespace {
 
 // A hostile plan could divide images without end, and let everything meet in the same memory. A chain of
 // 4,096 passes, the longest that a graph may have, takes 3e5 looks.
-constexpr uint64_t max_things = 1u << 20, max_looks = 1u << 27;
+constexpr uint64_t max_subresources = 1u << 20, max_looks = 1u << 27;
 
 // Waits of one queue for the other one that show it more than the waits before them, in their order.
 struct Waits {
@@ -44,7 +44,7 @@ struct Machine {
   Memory memory = Memory(plan);
   std::vector<uint32_t> first_instance = {}; // by resource: into Memory::instances
   std::vector<uint8_t> in_place = {};        // by resource: this frame is written over the oldest one
-  std::vector<std::string> objections = {};
+  std::vector<std::string> violations = {};
   uint32_t frame = 0;
   Queue queue = Queue::main;                             // that runs now
   int64_t now = 0;                                       // which pass, counted through all frames
@@ -52,7 +52,7 @@ struct Machine {
   std::array<size_t, queues> points_before = {};         // those of earlier frames
   std::array<Waits, queues> waits = {};                  // by the queue that waits
   int64_t frame_began = 0;                               // behind which pass
-  uint64_t looks = 0;                                    // at events
+  uint64_t work_budget = 0;                              // at events
 
   void prepare() {
     const std::vector<uint32_t> used = used_parts(plan, parts);
@@ -60,11 +60,11 @@ struct Machine {
       const PlanResource& resource = plan.resources[r];
       first_instance.push_back(static_cast<uint32_t>(memory.instances.size()));
       for (uint32_t i = 0; i < resource.instance_count; ++i) {
-        Thing thing;
-        thing.image = resource.type == ResourceType::image;
-        if (resource.first_instance != no_instance) thing.placement = resource.first_instance + i;
-        thing.with_host = resource.first_instance == no_instance;
-        memory.add_instance(thing, parts[r].count(), used[r]);
+        Subresource subresource;
+        subresource.image = resource.type == ResourceType::image;
+        if (resource.first_instance != no_instance) subresource.placement = resource.first_instance + i;
+        subresource.with_host = resource.first_instance == no_instance;
+        memory.add_instance(subresource, parts[r].count(), used[r]);
       }
     }
     in_place.assign(plan.resources.size(), 0);
@@ -100,20 +100,20 @@ struct Machine {
   }
 
   void object(const std::string& what, uint32_t resource, uint32_t frames_back, const std::string& where) {
-    if (objections.size() < most_objections)
-      objections.push_back(
+    if (violations.size() < max_violations)
+      violations.push_back(
           fmt::format("frame {}, {}: resource {}@-{}: {}", frame, where, resource, frames_back, what));
   }
 
   // Whether the check has taken too long to go on.
-  bool is_over() const { return looks > max_looks; }
+  bool is_over() const { return work_budget > max_looks; }
 
   // Calls with the events of the thing itself and of what shares memory with it, as the waits so far left
   // them.
   template <class Visit> void for_each_meeting(uint32_t index, Visit visit) {
-    ++looks;
+    ++work_budget;
     memory.for_each_meeting(index, [&](ThingEvents& there, bool own) {
-      looks += 1 + there.events.size();
+      work_budget += 1 + there.events.size();
       if (is_over()) return;
       for (Event& event : there.events)
         apply_waits(event);
@@ -122,17 +122,17 @@ struct Machine {
   }
 
   void begin_frame() {
-    for (Thing& thing : memory.things)
-      thing.handed_back = false;
+    for (Subresource& subresource : memory.subresources)
+      subresource.handed_back = false;
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       if (in_place[r] != 0) continue; // it holds the oldest frame still
       for_each_part(r, 0, plan.resources[r].whole(), [&](uint32_t index) {
-        Thing& current = memory.things[index];
+        Subresource& current = memory.subresources[index];
         current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
       });
     }
     for_each_kept([&](const PlanHistory& history, uint32_t back, Layout layout, uint32_t index) {
-      if (memory.things[index].layout != layout)
+      if (memory.subresources[index].layout != layout)
         object("is not in the layout the plan promises at the start of a frame", history.resource, back,
                "start");
     });
@@ -183,7 +183,7 @@ struct Machine {
   }
 
   void complain(std::string what) {
-    if (objections.size() < most_objections) objections.push_back(std::move(what));
+    if (violations.size() < max_violations) violations.push_back(std::move(what));
   }
 
   void wait(uint32_t point, const std::string& where) {
@@ -218,31 +218,31 @@ struct Machine {
   }
 
   // Whether the thing may go from queue to queue as the barrier says; it does so.
-  void change_queue(Thing& thing, const PlanBarrier& barrier, const auto& wrong) {
-    const bool discarded = thing.image && barrier.old_layout == Layout::undefined;
+  void change_queue(Subresource& subresource, const PlanBarrier& barrier, const auto& wrong) {
+    const bool discarded = subresource.image && barrier.old_layout == Layout::undefined;
     switch (barrier.transfer) {
     case PlanBarrier::Transfer::none:
-      if (discarded || (!thing.image && !thing.in_transfer)) {
-        if (thing.image) thing.queue = queue;
-        thing.in_transfer = false;
-      } else if (thing.queue != queue || thing.in_transfer) {
+      if (discarded || (!subresource.image && !subresource.in_transfer)) {
+        if (subresource.image) subresource.queue = queue;
+        subresource.in_transfer = false;
+      } else if (subresource.queue != queue || subresource.in_transfer) {
         wrong("has a barrier on a queue that it does not belong to");
       }
       break;
     case PlanBarrier::Transfer::release:
-      if (thing.queue != queue || thing.in_transfer)
+      if (subresource.queue != queue || subresource.in_transfer)
         wrong("is released by a queue that it does not belong to");
-      thing.in_transfer = true;
-      thing.released_old = barrier.old_layout;
-      thing.released_new = barrier.new_layout;
+      subresource.in_transfer = true;
+      subresource.released_old = barrier.old_layout;
+      subresource.released_new = barrier.new_layout;
       break;
     case PlanBarrier::Transfer::acquire:
-      if (thing.queue == queue || !thing.in_transfer)
+      if (subresource.queue == queue || !subresource.in_transfer)
         wrong("is acquired, but the other queue has not released it");
-      if (thing.released_old != barrier.old_layout || thing.released_new != barrier.new_layout)
+      if (subresource.released_old != barrier.old_layout || subresource.released_new != barrier.new_layout)
         wrong("is acquired in other layouts than it was released in");
-      thing.queue = queue;
-      thing.in_transfer = false;
+      subresource.queue = queue;
+      subresource.in_transfer = false;
       break;
     }
   }
@@ -254,32 +254,33 @@ struct Machine {
 
   void run(const PlanBarrier& barrier, uint32_t index, const std::string& where) {
     if (is_over()) return;
-    Thing& thing = memory.things[index];
+    Subresource& subresource = memory.subresources[index];
     const auto wrong = [&](const char* what) { object(what, barrier.resource, barrier.frames_back, where); };
     if (barrier.to_host) {
-      if (thing.placement != no_instance) wrong("is handed to the host, but is not the host's");
-      if (thing.handed_back) wrong("is handed back to the host twice");
-      thing.handed_back = true;
+      if (subresource.placement != no_instance) wrong("is handed to the host, but is not the host's");
+      if (subresource.handed_back) wrong("is handed back to the host twice");
+      subresource.handed_back = true;
     }
     if ((barrier.from_host || barrier.to_host) && queue != Queue::main)
       wrong("is the host's on the async queue");
     if (barrier.from_host) {
-      if (!thing.with_host) wrong("is taken over from the host twice");
-      thing.with_host = barrier.to_host;
-      thing.layout = barrier.new_layout;
+      if (!subresource.with_host) wrong("is taken over from the host twice");
+      subresource.with_host = barrier.to_host;
+      subresource.layout = barrier.new_layout;
       memory.add_write(index, left_by(barrier));
       return;
     }
-    if (thing.with_host) wrong("has a barrier while it is the host's");
-    change_queue(thing, barrier, wrong);
+    if (subresource.with_host) wrong("has a barrier while it is the host's");
+    change_queue(subresource, barrier, wrong);
     const bool release = barrier.transfer == PlanBarrier::Transfer::release;
     const bool transition = barrier.to_host || barrier.transfer != PlanBarrier::Transfer::none ||
-                            (thing.image && barrier.old_layout != barrier.new_layout);
-    if (thing.image && barrier.old_layout != Layout::undefined && barrier.old_layout != thing.layout)
+                            (subresource.image && barrier.old_layout != barrier.new_layout);
+    if (subresource.image && barrier.old_layout != Layout::undefined &&
+        barrier.old_layout != subresource.layout)
       wrong("has a barrier from a layout it is not in");
-    if (thing.image && barrier.old_layout == Layout::undefined) {
+    if (subresource.image && barrier.old_layout == Layout::undefined) {
       if (!barrier.to_host && barrier.new_layout == Layout::undefined) wrong("is moved to no layout");
-      thing.defined = false;
+      subresource.defined = false;
     }
     memory.isolate(index);
     for_each_meeting(index, [&](ThingEvents& there, bool) {
@@ -292,9 +293,9 @@ struct Machine {
       }
     });
     if (!transition) return;
-    if (!release) thing.layout = barrier.new_layout;
+    if (!release) subresource.layout = barrier.new_layout;
     memory.add_write(index, left_by(barrier));
-    thing.with_host = barrier.to_host;
+    subresource.with_host = barrier.to_host;
   }
 
   void run(const PlanBarrier* barriers, uint32_t count, bool releases, const std::string& where) {
@@ -319,19 +320,20 @@ struct Machine {
 
   void check(const PlanAccess& access, uint32_t index, const std::string& where) {
     if (is_over()) return;
-    const Thing& thing = memory.things[index];
+    const Subresource& subresource = memory.subresources[index];
     const auto wrong = [&](const char* what) { object(what, access.resource, access.frames_back, where); };
     const Access as_read = access.access & ~all_write_access, as_write = access.access & all_write_access;
     const bool reads = as_read != 0, writes = as_write != 0;
-    if (thing.with_host) return wrong("is touched while it is the host's");
+    if (subresource.with_host) return wrong("is touched while it is the host's");
     if (writes && access.frames_back > 0) wrong("is written, but it holds an earlier frame");
-    if (thing.in_transfer || (thing.queue != queue && (thing.image || reads)))
+    if (subresource.in_transfer || (subresource.queue != queue && (subresource.image || reads)))
       wrong("is touched by a queue that it does not belong to");
-    if (thing.image && thing.layout != access.layout)
+    if (subresource.image && subresource.layout != access.layout)
       wrong("is not in the layout the access was planned with");
-    if (reads && !thing.defined) wrong("is read, but its contents are not defined");
-    if (reads && thing.defined && thing.placement != no_instance &&
-        plan.placements[thing.placement].persistent && thing.of_frame != int64_t{frame} - access.frames_back)
+    if (reads && !subresource.defined) wrong("is read, but its contents are not defined");
+    if (reads && subresource.defined && subresource.placement != no_instance &&
+        plan.placements[subresource.placement].persistent &&
+        subresource.of_frame != int64_t{frame} - access.frames_back)
       wrong("is read, but holds the contents of another frame");
     for_each_meeting(index, [&](const ThingEvents& there, bool own) {
       bool followed = false; // by an access of every frame
@@ -361,10 +363,10 @@ struct Machine {
     event.queue = queue;
     event.at = now;
     if (!event.is_write) return memory.add_read(index, event);
-    Thing& thing = memory.things[index];
-    thing.defined = true;
-    thing.of_frame = int64_t{frame} - access.frames_back;
-    thing.queue = queue;
+    Subresource& subresource = memory.subresources[index];
+    subresource.defined = true;
+    subresource.of_frame = int64_t{frame} - access.frames_back;
+    subresource.queue = queue;
     memory.add_write(index, event);
   }
 
@@ -390,7 +392,7 @@ struct Machine {
     run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, false, where);
     for (uint32_t a = 0; a < pass.access_count; ++a)
       check(accesses[a], where);
-    looks += uint64_t{pass.access_count} * pass.access_count;
+    work_budget += uint64_t{pass.access_count} * pass.access_count;
     if (is_over()) return;
     for (const PassRace& race : races_within(plan, pass, frame))
       object(race.what, race.resource, race.frames_back, where);
@@ -404,7 +406,7 @@ struct Machine {
   void run_frame() {
     begin_frame();
     frame_began = now;
-    for (uint32_t p = 0; p < plan.passes.size() && !is_over(); ++p, ++looks)
+    for (uint32_t p = 0; p < plan.passes.size() && !is_over(); ++p, ++work_budget)
       run(plan.passes[p], fmt::format("pass {}", p));
     if (is_over()) return;
     queue = Queue::main;
@@ -413,7 +415,7 @@ struct Machine {
     run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, false, "final batch");
     for (uint32_t r = 0; r < plan.resources.size(); ++r)
       if (plan.resources[r].first_instance == no_instance &&
-          !memory.things[memory.instances[first_instance[r]].first].handed_back)
+          !memory.subresources[memory.instances[first_instance[r]].first].handed_back)
         object("is not handed back to the host", r, 0, "end");
     for (size_t q = 0; q < queues; ++q)
       points_before[q] = reached[q].size();
@@ -424,24 +426,25 @@ struct Machine {
 } // namespace
 
 Verdict verify(const Plan& plan) {
-  auto objections = verify_structure(plan);
-  if (!objections.empty()) return {std::move(objections), ""};
+  auto violations = verify_structure(plan);
+  if (!violations.empty()) return {std::move(violations), ""};
   uint32_t frames = 3; // the first, one that follows it, and one that follows a frame like itself
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
   for (const PlanResource& resource : plan.resources) // whoever uses one instance too many is found out when
     frames = std::max(frames, 2 * resource.instance_count + 1); // that has become the oldest
   std::vector<ResourceParts> parts = parts_of(plan);
-  uint64_t things = 0;
+  uint64_t subresources = 0;
   for (size_t r = 0; r < parts.size(); ++r)
-    things += uint64_t{parts[r].count()} * plan.resources[r].instance_count;
-  if (things > max_things)
-    return {{}, fmt::format("it divides its images into {} parts, more than {}", things, max_things)};
+    subresources += uint64_t{parts[r].count()} * plan.resources[r].instance_count;
+  if (subresources > max_subresources)
+    return {{},
+            fmt::format("it divides its images into {} parts, more than {}", subresources, max_subresources)};
   Machine machine{plan, std::move(parts)};
   machine.prepare();
-  for (uint32_t f = 0; f < frames && machine.objections.empty() && !machine.is_over(); ++f)
+  for (uint32_t f = 0; f < frames && machine.violations.empty() && !machine.is_over(); ++f)
     machine.run_frame();
-  Verdict verdict{std::move(machine.objections), ""};
+  Verdict verdict{std::move(machine.violations), ""};
   if (machine.is_over())
     verdict.not_verified = fmt::format("its accesses meet in memory more than {} times", max_looks);
   return verdict;

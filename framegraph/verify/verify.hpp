@@ -10,11 +10,11 @@
 namespace dermis {
 
 struct Verdict {
-  std::vector<std::string> objections; // hazards, one sentence each, in the order in which they would happen
+  std::vector<std::string> violations; // hazards, one sentence each, in the order in which they would happen
   std::string not_verified;            // why the check ended before it was complete; "": it is complete
 
   // No hazard, and nothing left to check.
-  bool proven() const { return objections.empty() && not_verified.empty(); }
+  bool proven() const { return violations.empty() && not_verified.empty(); }
 };
 
 // Runs the plan over enough consecutive frames for every history instance to have played every role. Stricter

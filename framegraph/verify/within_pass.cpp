@@ -1,7 +1,7 @@
 #include "framegraph/verify/within_pass.hpp"
 
-#include "framegraph/verify/parts.hpp"
 #include "framegraph/verify/structure.hpp"
+#include "framegraph/verify/subresource_ranges.hpp"
 
 namespace dermis {
 namespace {

@@ -29,12 +29,13 @@ std::optional<uint32_t> choose_type(const Device& device, const MemoryRequest& r
   return fallback;
 }
 
-Error take_from_host(const Device& device, const MemoryRequest& request, const std::string& thing,
+Error take_from_host(const Device& device, const MemoryRequest& request, const std::string& subresource,
                      MemoryBlock& block) {
   MemoryBlock given;
   const VkResult result = device.host_memory.take(device.host_memory.user, request, given);
   if (result != VK_SUCCESS)
-    return call_error(result, "the host's allocator", fmt::format("{}, {} bytes", thing, request.bytes));
+    return call_error(result, "the host's allocator",
+                      fmt::format("{}, {} bytes", subresource, request.bytes));
   const bool unmapped =
       (request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0 && given.mapped == nullptr;
   if (given.memory != VK_NULL_HANDLE && given.offset % request.alignment == 0 && !unmapped) {
@@ -43,7 +44,7 @@ Error take_from_host(const Device& device, const MemoryRequest& request, const s
   }
   give_back_memory(device, given);
   return {ErrorKind::vulkan, VK_SUCCESS,
-          fmt::format("{}: the host's allocator gave {}", thing,
+          fmt::format("{}: the host's allocator gave {}", subresource,
                       given.memory == VK_NULL_HANDLE ? std::string("no memory")
                       : unmapped
                           ? std::string("memory that is not mapped")
@@ -52,13 +53,13 @@ Error take_from_host(const Device& device, const MemoryRequest& request, const s
 
 } // namespace
 
-Error take_memory(const Device& device, const MemoryRequest& request, const std::string& thing,
+Error take_memory(const Device& device, const MemoryRequest& request, const std::string& subresource,
                   MemoryBlock& block) {
-  if (device.host_memory.take != nullptr) return take_from_host(device, request, thing, block);
+  if (device.host_memory.take != nullptr) return take_from_host(device, request, subresource, block);
   const auto type = choose_type(device, request);
   if (!type)
     return {ErrorKind::unsupported, VK_SUCCESS,
-            fmt::format("{}: the device has no memory type among {:#x}", thing, request.memory_types)};
+            fmt::format("{}: the device has no memory type among {:#x}", subresource, request.memory_types)};
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = request.bytes;
@@ -67,15 +68,16 @@ Error take_memory(const Device& device, const MemoryRequest& request, const std:
   VkResult result = device.vk.vkAllocateMemory(device.device, &info, device.allocator, &taken.memory);
   if (result != VK_SUCCESS)
     return call_error(result, "vkAllocateMemory",
-                      fmt::format("{}, {} bytes of memory type {}", thing, request.bytes, *type));
+                      fmt::format("{}, {} bytes of memory type {}", subresource, request.bytes, *type));
   if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
     result = device.vk.vkMapMemory(device.device, taken.memory, 0, VK_WHOLE_SIZE, 0, &taken.mapped);
     if (result != VK_SUCCESS) {
       give_back_memory(device, taken);
-      return call_error(result, "vkMapMemory", thing);
+      return call_error(result, "vkMapMemory", subresource);
     }
   }
-  name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(taken.memory), thing.c_str());
+  name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(taken.memory),
+              subresource.c_str());
   block = taken;
   return {};
 }

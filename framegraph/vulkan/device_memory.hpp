@@ -15,7 +15,7 @@ namespace dermis::vulkan {
 // A type of device memory among `request.memory_types` with its required properties, and if there is one with
 // the preferred ones too. `thing` is for messages. Errors: unsupported (no such type), device_memory,
 // host_memory, device_lost, vulkan; then `block` is unchanged. Free-threaded.
-Error take_memory(const Device& device, const MemoryRequest& request, const std::string& thing,
+Error take_memory(const Device& device, const MemoryRequest& request, const std::string& subresource,
                   MemoryBlock& block);
 // Nothing where the block is empty. Free-threaded.
 void give_back_memory(const Device& device, const MemoryBlock& block);

@@ -66,10 +66,11 @@ ErrorKind kind_of(VkResult result) {
   }
 }
 
-Error call_error(VkResult result, const char* call, const std::string& thing) {
+Error call_error(VkResult result, const char* call, const std::string& subresource) {
   if (result == VK_SUCCESS) return {};
   return {kind_of(result), result,
-          fmt::format("{} failed ({}, {}): {}", call, result_name(result), static_cast<int>(result), thing)};
+          fmt::format("{} failed ({}, {}): {}", call, result_name(result), static_cast<int>(result),
+                      subresource)};
 }
 
 } // namespace dermis::vulkan

@@ -32,6 +32,6 @@ const char* result_name(VkResult result);
 // The kind that a failed call belongs to; none for VK_SUCCESS. Free-threaded.
 ErrorKind kind_of(VkResult result);
 // The error of a failed call on `thing`; no error when `result` is VK_SUCCESS. Free-threaded.
-Error call_error(VkResult result, const char* call, const std::string& thing);
+Error call_error(VkResult result, const char* call, const std::string& subresource);
 
 } // namespace dermis::vulkan

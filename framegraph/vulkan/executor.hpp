@@ -17,7 +17,7 @@ namespace dermis::vulkan {
 
 inline constexpr uint32_t max_frames_in_flight = 8;
 
-// One compiled kernel: `shader` is PassKind::shader, the entry point is "main".
+// One compiled kernel: `shader` is PassType::shader, the entry point is "main".
 struct KernelCode {
   std::string_view shader;
   std::span<const uint32_t> spirv;
@@ -98,11 +98,11 @@ struct HostPort {
 
 // One call of a host's pass. Everything lives until the call returns.
 struct HostPass {
-  KindId kind;
+  PassTypeId type;
   const char* pass = ""; // name
   VkCommandBuffer command_buffer = VK_NULL_HANDLE;
-  std::span<const HostPort> ports;        // by PassKind::ports
-  std::span<const SettingValue> settings; // by PassKind::settings
+  std::span<const HostPort> ports;        // by PassType::ports
+  std::span<const SettingValue> settings; // by PassType::settings
   Rectangle rectangle;                    // that is rendered
   uint64_t frame_index = 0;
   void* view_user = nullptr; // FrameInput::view_user
@@ -114,9 +114,9 @@ using HostPassFunction = void (*)(void* user, const HostPass& call);
 struct ExecutorInput { // nothing is kept but `device`; all the rest is copied or consumed during the call
   const Device* device = nullptr; // must outlive the executor
   const Graph* graph = nullptr;   // that the plan was compiled from: names
-  const KindRegistry* kinds = nullptr;
+  const PassTypeRegistry* pass_types = nullptr;
   const Plan* plan = nullptr;                      // compiled with device_profile(*device)
-  std::span<const KernelCode> kernels;             // at least those of the plan's kinds
+  std::span<const KernelCode> kernels;             // at least those of the plan's pass types
   std::span<const EnvironmentBinding> environment; // may be empty
   std::shared_ptr<const EnvironmentTables> tables =
       nullptr;                   // made from `environment`; null: the executor makes them for itself

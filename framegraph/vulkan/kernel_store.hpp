@@ -2,7 +2,7 @@
 // Compiled kernels that executors share, so that a graph made beside or after another compiles only what no
 // other had.
 
-#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/model/pass_type.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -13,15 +13,15 @@ namespace dermis::vulkan {
 
 struct Kernel; // executor/state.hpp
 
-// Of executors with one device, one registry of kinds and environments of the same types; destroyed before
-// the device is. Any thread.
+// Of executors with one device, one registry of pass types and environments of the same types; destroyed
+// before the device is. Any thread.
 class KernelStore {
 public:
   KernelStore() = default;
   // Has what `shared` has, which must outlive it; what is added `shared` has only once it is handed over.
   explicit KernelStore(KernelStore& shared) : shared_(&shared) {}
-  // Null: there is none of that kind and KernelCode::version.
-  std::shared_ptr<const Kernel> find(KindId kind, uint64_t version) const;
+  // Null: there is none of that pass type and KernelCode::version.
+  std::shared_ptr<const Kernel> find(PassTypeId type, uint64_t version) const;
   void add(std::shared_ptr<const Kernel> kernel);
   // For a store that has a `shared` one, which keeps kernels of version 0 until it is destroyed, others as
   // long as an executor uses them. Where memory for that cannot be had, none of them.
@@ -29,7 +29,7 @@ public:
 
 private:
   struct InUse {
-    KindId kind;
+    PassTypeId type;
     uint64_t version = 0;
     std::weak_ptr<const Kernel> kernel;
   };

@@ -68,7 +68,7 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   out.programs[1].program = view.next;
   for (auto& [program, outcomes] : out.programs)
     if (program)
-      outcomes = described(view.context->kinds, *program, out.errors, out.costs, program->outcomes);
+      outcomes = described(view.context->pass_types, *program, out.errors, out.costs, program->outcomes);
   return out;
 }
 
@@ -85,14 +85,14 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   const Log& log = graph.context->log;
   dermis_budget budget = DERMIS_BUDGET_INIT;
   if (const SizedRead read = read_sized(given, budget); read != SizedRead::ok)
-    return refused_size(log, read, "dermis_graph_set_budget: budget", stated_size(given),
-                        first_version_size<dermis_budget>);
+    return rejected_size(log, read, "dermis_graph_set_budget: budget", stated_size(given),
+                         first_version_size<dermis_budget>);
   if (!(budget.milliseconds >= 0 && budget.milliseconds <= largest_budget_ms)) // NaN is refused, too
     return bad_argument(log, "dermis_graph_set_budget: milliseconds is {}, expected 0..{}",
                         budget.milliseconds, largest_budget_ms);
-  if ((budget.flags & ~DERMIS_BUDGET_METER) != 0)
+  if ((budget.flags & ~DERMIS_BUDGET_DETERMINISTIC) != 0)
     return bad_argument(log, "dermis_graph_set_budget: flags is {:#x}, known is {:#x}", budget.flags,
-                        DERMIS_BUDGET_METER);
+                        DERMIS_BUDGET_DETERMINISTIC);
   Diagnostics diagnostics;
   Tables tables;
   if (const dermis_result result = read_tables(log, budget, tables, diagnostics); result != DERMIS_OK)
@@ -114,7 +114,7 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
     const std::lock_guard lock(view.mutex);
     if (anew) take_over(view, views[v++]);
     view.chooser.budget_ms = static_cast<double>(budget.milliseconds);
-    view.chooser.metered = (budget.flags & DERMIS_BUDGET_METER) != 0;
+    view.chooser.deterministic = (budget.flags & DERMIS_BUDGET_DETERMINISTIC) != 0;
   });
   return DERMIS_OK;
 }
@@ -124,9 +124,9 @@ uint32_t skips_of(const FrameChoice& frame, const Program& program) {
   if (program.without_material) return DERMIS_SKIP_NO_MATERIAL;
   if (frame.left_out) return DERMIS_SKIP_NO_BOUNDS;
   uint32_t skips = 0;
-  if (seen.scattering_tiles + seen.copied_tiles + seen.flat_tiles == 0) skips |= DERMIS_SKIP_NOTHING_SEEN;
+  if (seen.scattering_tiles + seen.copied_tiles + seen.uniform_tiles == 0) skips |= DERMIS_SKIP_NOTHING_SEEN;
   if (seen.copied_tiles > 0) skips |= DERMIS_SKIP_SUBPIXEL;
-  if (seen.flat_tiles > 0) skips |= DERMIS_SKIP_FLAT_LIGHT;
+  if (seen.uniform_tiles > 0) skips |= DERMIS_SKIP_UNIFORM_LIGHT;
   if (frame.history_invalid) skips |= DERMIS_SKIP_HISTORY;
   return skips;
 }
@@ -136,10 +136,10 @@ const char* miss_of(const FrameChoice& frame) {
   constexpr double tolerance = 1.15; // of the budget, as dermis bench budget judges
   constexpr double changed_by = 0.1; // share of the tiles
   if (!frame.timed || frame.budget_ms <= 0 || frame.measured_ms <= tolerance * frame.budget_ms) return "";
-  if (frame.decision.why == choice::Why::nothing_fits) return "no outcome fits the budget";
+  if (frame.decision.why == choice::ReasonKind::nothing_fits) return "no outcome fits the budget";
   const double expected = static_cast<double>(frame.expected_tiles);
   const double seen = static_cast<double>(uint64_t{frame.counters.scattering_tiles} +
-                                          frame.counters.copied_tiles + frame.counters.flat_tiles);
+                                          frame.counters.copied_tiles + frame.counters.uniform_tiles);
   return std::abs(seen - expected) > changed_by * std::max(expected, 1.0) ? "the scene changed"
                                                                           : "the times were not as learned";
 }
@@ -169,20 +169,20 @@ dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   out.scattering_tiles = frame.counters.scattering_tiles;
   out.copied_tiles = frame.counters.copied_tiles;
   out.switches = frame.switches;
-  out.flat_tiles = frame.counters.flat_tiles;
+  out.uniform_tiles = frame.counters.uniform_tiles;
   out.skips = skips_of(frame, program);
   out.dispatches = frame.dispatches;
   out.groups = frame.groups;
   std::copy(frame.counters.sampled_tiles.begin(), frame.counters.sampled_tiles.end(), out.sampled_tiles);
   out.sample_units = frame.counters.sample_units;
-  out.wanted_units = frame.counters.wanted_units;
+  out.sample_demand = frame.counters.sample_demand;
   out.miss = miss_of(frame);
   const subsurface::ProbedError probed = subsurface::probed_error(frame.counters);
   out.probed_tiles = probed.tiles;
   out.probed_rmse = static_cast<float>(probed.rmse);
   out.probed_rmse_low = static_cast<float>(probed.low);
   out.probed_rmse_high = static_cast<float>(probed.high);
-  out.through_rms = static_cast<float>(subsurface::through_rms(frame.counters));
+  out.transmitted_rms = static_cast<float>(subsurface::transmitted_rms(frame.counters));
   return out;
 }
 
@@ -193,7 +193,7 @@ dermis_result get_choice(dermis_view_t& view, const char* function, uint64_t com
   if (out == nullptr) return bad_argument(log, "{}: choice is NULL", function);
   const size_t size = stated_size(out);
   if (const SizedRead read = check_size<dermis_choice>(size); read != SizedRead::ok)
-    return refused_size(log, read, function, "choice", size, first_version_size<dermis_choice>);
+    return rejected_size(log, read, function, "choice", size, first_version_size<dermis_choice>);
   const std::lock_guard lock(view.mutex);
   if (completed > view.last_frame)
     return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
@@ -239,10 +239,10 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph
     const std::lock_guard lock(graph->own.mutex);
     const std::string json = dermis::choice::write_calibration(
         {graph->context->device.properties.deviceName, graph->own.chooser.costs.calibration()});
-    const size_t room = *size;
+    const size_t capacity = *size;
     *size = json.size() + 1;
     if (text == nullptr) return DERMIS_OK;
-    if (room < *size) return DERMIS_INCOMPLETE;
+    if (capacity < *size) return DERMIS_INCOMPLETE;
     std::memcpy(text, json.c_str(), *size);
     return DERMIS_OK;
   });

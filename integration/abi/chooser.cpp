@@ -34,7 +34,7 @@ choice::Calibration default_calibration() {
 choice::FrameLoad load_of(const subsurface::FrameCounters& counters, uint64_t view_tiles,
                           uint64_t view_blocks) {
   const uint64_t listed = std::min<uint64_t>(view_tiles, uint64_t{counters.scattering_tiles} +
-                                                             counters.copied_tiles + counters.flat_tiles);
+                                                             counters.copied_tiles + counters.uniform_tiles);
   return {view_tiles, listed, counters.scattering_tiles == 0 ? listed : 0, counters.sample_units,
           view_blocks};
 }
@@ -82,12 +82,12 @@ void learn_error(Chooser& chooser, const choice::Outcome& outcome,
   if (outcome.technique >= 0 && chooser.errors.techniques[static_cast<size_t>(outcome.technique)].by_rays)
     return;
   const double expected = expected_rmse(chooser.errors, outcome, mean_d_px(counters), counters.sample_units,
-                                        counters.wanted_units);
+                                        counters.sample_demand);
   observe_error(chooser.found, outcome.technique, probed.rmse, expected);
 }
 
 uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
-  return uint64_t{counters.scattering_tiles} + counters.copied_tiles + counters.flat_tiles;
+  return uint64_t{counters.scattering_tiles} + counters.copied_tiles + counters.uniform_tiles;
 }
 
 void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
@@ -105,8 +105,9 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
       executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
   count_groups(passes, variant.left_out, frame);
   if (!frame.left_out)
-    frame.metered_ms =
-        metered(outcome, chooser.costs, load_of(frame.counters, frame.view_tiles, frame.view_blocks)).ms;
+    frame.metered_ms = calibrated_estimate(outcome, chooser.costs,
+                                           load_of(frame.counters, frame.view_tiles, frame.view_blocks))
+                           .ms;
   if (counted && frame.timed) learn(chooser, passes, frame);
   if (counted) learn_error(chooser, outcome, frame.counters);
   frame.observed = true;
@@ -115,7 +116,7 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   if (!counted || frame.left_out) return; // nothing was looked at
   if (outcome.takes_samples && frame.counters.scattering_tiles > 0)
     found_units(chooser.wanted, subsurface::mean_d_px(frame.counters),
-                double(frame.counters.wanted_units) / frame.counters.scattering_tiles);
+                double(frame.counters.sample_demand) / frame.counters.scattering_tiles);
   follow(chooser.trend, frame.frame_index, listed_tiles(frame.counters));
   chooser.counted = true;
   chooser.counters = frame.counters;
@@ -132,13 +133,14 @@ Chooser make_chooser() {
   return chooser;
 }
 
-void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program) {
-  program.outcomes = described(kinds, program, chooser.errors, chooser.costs, std::move(program.outcomes));
+void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, Program& program) {
+  program.outcomes =
+      described(pass_types, program, chooser.errors, chooser.costs, std::move(program.outcomes));
   for (choice::Outcome empty : program.outcomes) {
     empty.plan = program.variants[empty.plan].without_bounds;
     if (empty.plan == no_variant) continue;
     program.variants[empty.plan].loads =
-        described(kinds, program, chooser.errors, chooser.costs, {empty}).front().passes;
+        described(pass_types, program, chooser.errors, chooser.costs, {empty}).front().passes;
   }
   size_t passes = chooser.times.size();
   for (const Variant& variant : program.variants)
@@ -172,7 +174,7 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
     load.copied_tiles = grown(load.copied_tiles);
     scattering = grown(chooser.counters.scattering_tiles);
     if (scattering > 0) d_px = subsurface::mean_d_px(chooser.counters);
-    through = subsurface::through_rms(chooser.counters);
+    through = subsurface::transmitted_rms(chooser.counters);
   }
   const auto wanted = static_cast<uint32_t>(expected_units(chooser.wanted, d_px) * double(scattering));
   const double filled_ms = chooser.budget_ms / choice::entry_margin;
@@ -182,10 +184,10 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
     if (outcome.takes_samples)
       load.sample_units =
           chooser.budget_ms > 0
-              ? std::min(wanted, units_within(outcome, chooser.costs, load, filled_ms, chooser.metered))
+              ? std::min(wanted, units_within(outcome, chooser.costs, load, filled_ms, chooser.deterministic))
               : wanted;
-    const choice::Estimate cost =
-        chooser.metered ? metered(outcome, chooser.costs, load) : estimate(outcome, chooser.costs, load);
+    const choice::Estimate cost = chooser.deterministic ? calibrated_estimate(outcome, chooser.costs, load)
+                                                        : estimate(outcome, chooser.costs, load);
     const double rmse =
         expected_rmse(chooser.errors, outcome, d_px, static_cast<uint32_t>(load.sample_units), wanted);
     const double seen = rmse * error_factor(chooser.found, outcome.technique);
@@ -202,11 +204,11 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
     frame.decision =
         decide(forecasts.first(program.outcomes.size()), chooser.budget_ms, delta_seconds, state);
   else
-    frame.decision = {0, choice::Why::no_budget};
+    frame.decision = {0, choice::ReasonKind::no_budget};
   frame.outcome = frame.decision.outcome;
   if (chooser.budget_ms > 0)
     frame.sample_units =
-        units_within(program.outcomes[frame.outcome], chooser.costs, load, filled_ms, chooser.metered);
+        units_within(program.outcomes[frame.outcome], chooser.costs, load, filled_ms, chooser.deterministic);
   frame.switches = state.switches;
   frame.forecast = forecasts[frame.outcome];
   return frame;

@@ -4,13 +4,13 @@
 
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
-#include "passes/choice/allotment.hpp"
 #include "passes/choice/calibration.hpp"
-#include "passes/choice/decide.hpp"
+#include "passes/choice/configurations.hpp"
+#include "passes/choice/controller.hpp"
 #include "passes/choice/error_correction.hpp"
-#include "passes/choice/outcomes.hpp"
-#include "passes/choice/trend.hpp"
-#include "passes/choice/wanted.hpp"
+#include "passes/choice/sample_allocation.hpp"
+#include "passes/choice/sample_demand.hpp"
+#include "passes/choice/tile_growth.hpp"
 #include "passes/common/environment.hpp"
 
 #include <array>
@@ -54,17 +54,17 @@ struct Chooser {
   choice::CostModel costs;
   choice::ErrorCorrection found; // by the error probe, beside `errors`
   double budget_ms = 0;          // 0: choices keep their defaults
-  bool metered = false;          // DERMIS_BUDGET_METER
+  bool deterministic = false;    // DERMIS_BUDGET_DETERMINISTIC
   choice::DecisionState state;
   uint64_t decided_for = 0;           // Program::serial that `state` is about
   subsurface::FrameCounters counters; // of the newest observed frame
   bool counted = false;
-  choice::TileTrend trend;    // of tiles with subsurface
-  choice::WantedUnits wanted; // of tiles where samples are given by tile
+  choice::TileGrowth trend;    // of tiles with subsurface
+  choice::SampleDemand wanted; // of tiles where samples are given by tile
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
   uint64_t programs = 0;                                            // built so far
-  // Room, so that recording allocates nothing: see make_room().
+  // Room, so that recording allocates nothing: see reserve().
   std::vector<choice::Forecast> forecasts;
   std::vector<vulkan::PassTiming> times;
 };
@@ -74,7 +74,7 @@ Chooser make_chooser();
 
 // Makes a program one of this chooser's: what deciding and observing need is allocated. Before its first
 // record.
-void adopt(Chooser& chooser, const KindRegistry& kinds, Program& program);
+void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, Program& program);
 
 // Learns from frames of `program` that the device has finished. Allocates nothing.
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;

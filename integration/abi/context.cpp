@@ -3,7 +3,7 @@
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/missing_functions.hpp"
 #include "integration/abi/requirements.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -116,8 +116,8 @@ dermis_result read_allocators(const dermis_context_desc& desc, const Log& log, H
   if (desc.allocator != nullptr) {
     dermis_allocator given = DERMIS_ALLOCATOR_INIT;
     if (const SizedRead read = read_sized(desc.allocator, given); read != SizedRead::ok)
-      return refused_size(log, read, function, "desc.allocator", stated_size(desc.allocator),
-                          first_version_size<dermis_allocator>);
+      return rejected_size(log, read, function, "desc.allocator", stated_size(desc.allocator),
+                           first_version_size<dermis_allocator>);
     if (given.allocate == nullptr || given.release == nullptr)
       return bad_argument(log, "{}: desc.allocator.{} is NULL", function,
                           given.allocate == nullptr ? "allocate" : "release");
@@ -131,8 +131,8 @@ dermis_result read_allocators(const dermis_context_desc& desc, const Log& log, H
   if (desc.device_allocator != nullptr) {
     dermis_device_allocator given = DERMIS_DEVICE_ALLOCATOR_INIT;
     if (const SizedRead read = read_sized(desc.device_allocator, given); read != SizedRead::ok)
-      return refused_size(log, read, function, "desc.device_allocator", stated_size(desc.device_allocator),
-                          first_version_size<dermis_device_allocator>);
+      return rejected_size(log, read, function, "desc.device_allocator", stated_size(desc.device_allocator),
+                           first_version_size<dermis_device_allocator>);
     if (given.take == nullptr || given.give_back == nullptr)
       return bad_argument(log, "{}: desc.device_allocator.{} is NULL", function,
                           given.take == nullptr ? "take" : "give_back");
@@ -147,8 +147,8 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   if (given == nullptr) return bad_argument({}, "dermis_context_create: desc is NULL");
   dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
-    return refused_size({}, read, "dermis_context_create: desc", stated_size(given),
-                        first_version_size<dermis_context_desc>);
+    return rejected_size({}, read, "dermis_context_create: desc", stated_size(given),
+                         first_version_size<dermis_context_desc>);
   Log log{desc.log, desc.log_user};
   if (const dermis_result result = check_desc(desc, log); result != DERMIS_OK) return result;
   if (const dermis_result result = check_requirements(desc, log); result != DERMIS_OK) return result;
@@ -182,7 +182,7 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
       has_device_extension(desc.get_instance_proc_addr, desc.instance, desc.physical_device,
                            VK_EXT_QUEUE_FAMILY_FOREIGN_EXTENSION_NAME);
   context->profile = vulkan::device_profile(context->device);
-  context->kinds = subsurface::make_kinds();
+  context->pass_types = subsurface::make_pass_types();
   context->pipeline_cache = desc.pipeline_cache;
   context->frames_in_flight = desc.frames_in_flight == 0 ? default_frames_in_flight : desc.frames_in_flight;
   *out = context.release();

@@ -1,12 +1,12 @@
 #pragma once
 // What one device shares between its graphs.
 
-#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/model/pass_type.hpp"
 #include "framegraph/vulkan/device.hpp"
 #include "framegraph/vulkan/device_profile.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
 #include "integration/abi/failure.hpp"
-#include "integration/abi/host_kinds.hpp"
+#include "integration/abi/host_pass_types.hpp"
 #include "integration/abi/memory/device_memory.hpp"
 
 #include <atomic>
@@ -18,8 +18,8 @@ struct dermis_context_t {
   dermis::abi::DeviceAllocator device_allocator; // `device` refers to it
   dermis::vulkan::Device device;
   dermis::DeviceProfile profile; // refers to `device`
-  dermis::KindRegistry kinds;
-  dermis::abi::HostPasses host_passes; // its kinds are among `kinds`
+  dermis::PassTypeRegistry pass_types;
+  dermis::abi::HostPasses host_passes; // its pass types are among `pass_types`
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
   dermis::vulkan::KernelStore kernels; // of all graphs; refers to `device`
   uint32_t queue_family_count = 0;     // of the physical device

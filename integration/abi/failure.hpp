@@ -56,19 +56,19 @@ dermis_result bad_argument(const Log& log, fmt::format_string<Arguments...> form
 }
 
 // Turns a refused struct_size into its result. `what` names function and struct.
-inline dermis_result refused_size(const Log& log, SizedRead why, std::string_view what, size_t stated,
-                                  size_t least) noexcept {
+inline dermis_result rejected_size(const Log& log, SizedRead why, std::string_view what, size_t stated,
+                                   size_t minimum) noexcept {
   if (why == SizedRead::unknown_fields)
     return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
                 "{}: struct_size is {} and fields beyond those this library knows are not zero", what,
                 stated);
   return bad_argument(log, "{}.struct_size is {}, expected {}..{}: use the struct's INIT macro", what, stated,
-                      least, largest_struct_size);
+                      minimum, largest_struct_size);
 }
 
-inline dermis_result refused_size(const Log& log, SizedRead why, const char* function, const char* argument,
-                                  size_t stated, size_t least) {
-  return refused_size(log, why, fmt::format("{}: {}", function, argument), stated, least);
+inline dermis_result rejected_size(const Log& log, SizedRead why, const char* function, const char* argument,
+                                   size_t stated, size_t minimum) {
+  return rejected_size(log, why, fmt::format("{}: {}", function, argument), stated, minimum);
 }
 
 // Runs the body of an exported function, with the host's memory: whatever is thrown inside (by the standard

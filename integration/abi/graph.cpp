@@ -22,8 +22,8 @@ using Candidates = std::vector<std::shared_ptr<Program>>; // by view, the graph'
 
 // Reports each history of `program` that goes on from none of what the view recorded last. Under the view's
 // mutex.
-void tell_lost_histories(const dermis_view_t& view, const Program& program, vulkan::HistoryReason reason,
-                         Diagnostics& diagnostics) {
+void report_lost_histories(const dermis_view_t& view, const Program& program, vulkan::HistoryReason reason,
+                           Diagnostics& diagnostics) {
   const Program& last = *view.running;
   const vulkan::Executor& before = *last.recorded().executor;
   const vulkan::Executor& executor = *program.current().executor;
@@ -65,15 +65,15 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
   if (result != DERMIS_OK || diagnostics.has_errors())
     return result; // errors of profiles come from the caller
   size_t v = 0;
-  bool told = false; // views share the declarations: one of them speaks for all
+  bool reported = false; // views share the declarations: one of them speaks for all
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
-    if (!told && view.running && view.running->last_frame > 0) {
-      tell_lost_histories(view, *candidates[v], reason, diagnostics);
-      told = true;
+    if (!reported && view.running && view.running->last_frame > 0) {
+      report_lost_histories(view, *candidates[v], reason, diagnostics);
+      reported = true;
     }
-    make_room(view.image_views, candidates[v]->slots.size());
-    adopt(view.chooser, context.kinds, *candidates[v++]);
+    reserve(view.image_views, candidates[v]->slots.size());
+    adopt(view.chooser, context.pass_types, *candidates[v++]);
   });
   return DERMIS_OK;
 }
@@ -94,8 +94,8 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   const Log& log = context->log;
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
-    return refused_size(log, read, "dermis_graph_create: desc", stated_size(given),
-                        first_version_size<dermis_graph_desc>);
+    return rejected_size(log, read, "dermis_graph_create: desc", stated_size(given),
+                         first_version_size<dermis_graph_desc>);
   if (desc.keep != 0)
     return bad_argument(log, "dermis_graph_create: desc.keep is {:#x}, expected 0: only a reload can keep",
                         desc.keep);
@@ -122,8 +122,8 @@ dermis_result reload(dermis_graph_t& graph, const dermis_graph_desc* given, derm
   const Log& log = graph.context->log;
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
-    return refused_size(log, read, "dermis_graph_reload: desc", stated_size(given),
-                        first_version_size<dermis_graph_desc>);
+    return rejected_size(log, read, "dermis_graph_reload: desc", stated_size(given),
+                         first_version_size<dermis_graph_desc>);
   const std::lock_guard changing(graph.changing);
   ProgramInput input = graph.input;
   input.included.clear(); // files may have changed

@@ -22,8 +22,8 @@ dermis_result for_each(const Log& log, const char* function, const char* field, 
     const std::byte* from = at + i * step;
     const SizedRead read = stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
     if (read != SizedRead::ok)
-      return refused_size(log, read, fmt::format("{}: desc.{}[{}]", function, field, i), stated_size(from),
-                          std::max(i == 0 ? 0 : step, first_version_size<T>));
+      return rejected_size(log, read, fmt::format("{}: desc.{}[{}]", function, field, i), stated_size(from),
+                           std::max(i == 0 ? 0 : step, first_version_size<T>));
     if (const dermis_result result = use(i, item); result != DERMIS_OK) return result;
   }
   return DERMIS_OK;

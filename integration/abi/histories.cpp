@@ -36,7 +36,7 @@ struct KnownHistory {
 };
 
 // Those of a plan that are not among `all` yet, as its next frame would find them.
-void add_histories(const KindRegistry& kinds, const Program& program, const Variant& variant,
+void add_histories(const PassTypeRegistry& pass_types, const Program& program, const Variant& variant,
                    const vulkan::Executor* before, std::vector<KnownHistory>& all) {
   for (uint32_t i = 0; i < variant.executor->history_count(); ++i) {
     vulkan::HistoryState state = variant.executor->history_state(i, false, before);
@@ -45,20 +45,21 @@ void add_histories(const KindRegistry& kinds, const Program& program, const Vari
     const vulkan::HistoryState own = variant.executor->history_state(i);
     if (!state.valid && !variant.recorded && own.lost == vulkan::HistoryReason::first_frame)
       state.lost = own.lost; // no plan was in between: it never ran
-    all.push_back({state, settling_frames(kinds, variant.compiled->plan, i,
+    all.push_back({state, settling_frames(pass_types, variant.compiled->plan, i,
                                           program.outcomes[program.outcome].settings)});
   }
 }
 
 // The plan that ran last, or will run first, before the others.
 std::vector<KnownHistory> histories_of(const dermis_view_t& view, const Program& program) {
-  const KindRegistry& kinds = view.context->kinds;
+  const PassTypeRegistry& pass_types = view.context->pass_types;
   std::vector<KnownHistory> all;
   const uint32_t last = program.variant;
   const vulkan::Executor* const before = recorded_before(view, program, last);
-  add_histories(kinds, program, program.variants[last], before, all);
+  add_histories(pass_types, program, program.variants[last], before, all);
   for (uint32_t v = 0; v < program.variants.size(); ++v)
-    if (v != last) add_histories(kinds, program, program.variants[v], recorded_before(view, program, v), all);
+    if (v != last)
+      add_histories(pass_types, program, program.variants[v], recorded_before(view, program, v), all);
   return all;
 }
 

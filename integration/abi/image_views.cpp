@@ -23,7 +23,7 @@ ImageViews::~ImageViews() {
     device.vk.vkDestroyImageView(device.device, entry.view, device.allocator);
 }
 
-void make_room(ImageViews& views, size_t slots) {
+void reserve(ImageViews& views, size_t slots) {
   if (views.entries.size() < slots * image_views_a_slot) views.entries.resize(slots * image_views_a_slot);
 }
 

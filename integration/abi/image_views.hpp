@@ -37,7 +37,7 @@ struct ImageViews {
 };
 
 // Room for so many slots. May throw std::bad_alloc; then nothing changed.
-void make_room(ImageViews& views, size_t slots);
+void reserve(ImageViews& views, size_t slots);
 
 // The view for `key`, used by frame `frame_index`. Views that no frame after `completed` uses make room.
 // Errors: of vkCreateImageView; VK_ERROR_TOO_MANY_OBJECTS when more images take turns than there is room for.

@@ -47,16 +47,16 @@ BytesByTypes unaliased_bytes(const Plan& plan) {
 
 dermis_memory describe_view_memory(const Program& program) {
   dermis_memory out = DERMIS_MEMORY_INIT;
-  BytesByTypes most; // of the variants, of which one runs in a frame
+  BytesByTypes maximum; // of the variants, of which one runs in a frame
   for (const Variant& variant : program.variants) {
     const Plan& plan = variant.compiled->plan;
     for (const auto& [types, bytes] : unaliased_bytes(plan))
-      most[types] = std::max(most[types], bytes);
+      maximum[types] = std::max(maximum[types], bytes);
     out.transient_bytes = std::max(out.transient_bytes, plan.transient_bytes);
     out.history_bytes += plan.history_bytes;
     out.constant_bytes += variant.executor->constant_bytes();
   }
-  for (const auto& [types, bytes] : most)
+  for (const auto& [types, bytes] : maximum)
     out.transient_unaliased_bytes += bytes;
   if (program.heap_pool) out.transient_bytes = program.heap_pool->bytes();
   return out;
@@ -152,18 +152,18 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
       plan = kept->current().compiled;
     }
     const Program& program = *kept;
-    const dermis::KindRegistry& kinds = graph->context->kinds;
+    const dermis::PassTypeRegistry& pass_types = graph->context->pass_types;
     const dermis::CompiledPlan& compiled = *plan;
     std::string description;
     switch (static_cast<int>(format)) {
     case DERMIS_DESCRIBE_JSON:
-      description = dermis::plan_json(program.graph, kinds, compiled, {program.changes, program.files});
+      description = dermis::plan_json(program.graph, pass_types, compiled, {program.changes, program.files});
       break;
     case DERMIS_DESCRIBE_DOT:
-      description = dermis::plan_dot(program.graph, kinds, compiled);
+      description = dermis::plan_dot(program.graph, pass_types, compiled);
       break;
     case DERMIS_DESCRIBE_TEXT:
-      description = dermis::plan_text(program.graph, kinds, compiled, {program.changes, program.files});
+      description = dermis::plan_text(program.graph, pass_types, compiled, {program.changes, program.files});
       break;
     default:
       return bad_argument(log, "dermis_graph_describe: format is {}, expected 0..2",
@@ -180,7 +180,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, der
     if (memory == nullptr) return bad_argument(log, "dermis_graph_memory: memory is NULL");
     const size_t size = stated_size(memory);
     if (const SizedRead read = check_size<dermis_memory>(size); read != SizedRead::ok)
-      return refused_size(log, read, "dermis_graph_memory: memory", size, first_version_size<dermis_memory>);
+      return rejected_size(log, read, "dermis_graph_memory: memory", size, first_version_size<dermis_memory>);
     const std::lock_guard changing(graph->changing);
     write_sized(memory, size, describe_memory(*graph));
     return DERMIS_OK;

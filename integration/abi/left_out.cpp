@@ -60,14 +60,14 @@ SubresourceRange declared_range(const ResourceDeclaration& resource, const Image
 
 // What can be read: imported, written by a pass that is not turned off, or replaced by what can. Ports that
 // update need contents themselves.
-Subresources provided_subresources(const Graph& graph, const KindRegistry& kinds) {
+Subresources provided_subresources(const Graph& graph, const PassTypeRegistry& pass_types) {
   Subresources provided(graph.resources.size());
   for (uint32_t r = 0; r < graph.resources.size(); ++r)
     if (graph.resources[r].origin == Origin::imported)
       provided.add(r, declared_range(graph.resources[r], {}));
   for (const PassDeclaration& pass : graph.passes)
     for (const PortBinding& binding : graph.writes(pass))
-      if (!is_off(pass) && !usage_info(kinds[pass.kind].ports[binding.port].usage).reads)
+      if (!is_off(pass) && !usage_info(pass_types[pass.type].ports[binding.port].usage).reads)
         provided.add(binding.resource.value,
                      declared_range(graph.resources[binding.resource.value], binding.part));
   for (bool again = true; again;) {
@@ -96,10 +96,10 @@ bool turned_off_writer(const Graph& graph, ResourceId resource) {
 }
 
 // A resource that the pass has to read and that only passes which are turned off write; or none.
-ResourceId missing_input(const Graph& graph, const Subresources& provided, const PassKind& kind,
+ResourceId missing_input(const Graph& graph, const Subresources& provided, const PassType& type,
                          const PassDeclaration& pass) {
   for (const PortBinding& binding : graph.bindings_of(pass)) {
-    const Port& port = kind.ports[binding.port];
+    const Port& port = type.ports[binding.port];
     if (port.optional || !usage_info(port.usage).reads || binding.when != ReadWhen::always) continue;
     const SubresourceRange range = declared_range(graph.resources[binding.resource.value], binding.part);
     if (!provided.has(binding.resource.value, range) && turned_off_writer(graph, binding.resource))
@@ -121,23 +121,23 @@ bool writes_wanted(const Plan& plan, size_t pass, const std::vector<uint8_t>& wa
 
 } // namespace
 
-void turn_scattering_off(Graph& graph, const KindRegistry& kinds) {
+void turn_scattering_off(Graph& graph, const PassTypeRegistry& pass_types) {
   Expression never;
   never.op = Expression::Op::literal;
   never.literal = {SettingType::boolean, 0, 0.0};
   const ExpressionId id{static_cast<uint32_t>(graph.expressions.size())};
   graph.expressions.push_back(never);
   for (PassDeclaration& pass : graph.passes)
-    if (kinds[pass.kind].serves_scattering) {
+    if (pass_types[pass.type].serves_scattering) {
       pass.when = id;
       pass.absence = PassDeclaration::Absence::no_profile;
     }
   for (bool again = true; again;) { // what lacks its input leaves others without theirs
     again = false;
-    const Subresources provided = provided_subresources(graph, kinds);
+    const Subresources provided = provided_subresources(graph, pass_types);
     for (PassDeclaration& pass : graph.passes) {
       if (is_off(pass)) continue;
-      const ResourceId missing = missing_input(graph, provided, kinds[pass.kind], pass);
+      const ResourceId missing = missing_input(graph, provided, pass_types[pass.type], pass);
       if (!missing.valid()) continue;
       pass.when = id;
       pass.absence = PassDeclaration::Absence::no_input;
@@ -147,16 +147,16 @@ void turn_scattering_off(Graph& graph, const KindRegistry& kinds) {
   }
 }
 
-std::vector<uint8_t> left_out_without_bounds(const KindRegistry& kinds, const Plan& plan) {
+std::vector<uint8_t> left_out_without_bounds(const PassTypeRegistry& pass_types, const Plan& plan) {
   std::vector<uint8_t> left_out(plan.passes.size(), 1), wanted(plan.resources.size(), 0);
   for (size_t r = 0; r < plan.resources.size(); ++r)
     wanted[r] = plan.resources[r].slot >= 0;
   for (bool again = true; again;) { // passes before the writers of a history want it, too
     again = false;
     for (size_t p = plan.passes.size(); p-- > 0;) {
-      const PassKind& kind = kinds[plan.passes[p].kind];
-      if (left_out[p] == 0 || kind.serves_scattering) continue;
-      if (!kind.side_effects && !writes_wanted(plan, p, wanted)) continue;
+      const PassType& type = pass_types[plan.passes[p].type];
+      if (left_out[p] == 0 || type.serves_scattering) continue;
+      if (!type.side_effects && !writes_wanted(plan, p, wanted)) continue;
       left_out[p] = 0;
       again = true;
       for (const PlanAccess& access : accesses_of(plan, p))
@@ -166,12 +166,12 @@ std::vector<uint8_t> left_out_without_bounds(const KindRegistry& kinds, const Pl
   return left_out;
 }
 
-bool reads_what_is_left_out(const KindRegistry& kinds, const Plan& plan) {
+bool reads_what_is_left_out(const PassTypeRegistry& pass_types, const Plan& plan) {
   Subresources written(plan.resources.size());
   for (uint32_t r = 0; r < plan.resources.size(); ++r)
     if (plan.resources[r].origin == Origin::imported) written.add(r, plan.resources[r].whole());
   for (size_t p = 0; p < plan.passes.size(); ++p) {
-    if (kinds[plan.passes[p].kind].serves_scattering) continue;
+    if (pass_types[plan.passes[p].type].serves_scattering) continue;
     for (const PlanAccess& access : accesses_of(plan, p))
       if ((access.access & ~all_write_access) != 0 && access.frames_back == 0 &&
           !written.has(access.resource, access.range))
@@ -186,7 +186,7 @@ void explain_lacking_inputs(const Graph& without_scattering, CompiledPlan& compi
   for (const PlanPass& pass : compiled.plan.passes) {
     const PassDeclaration& declared = without_scattering.passes[pass.declared.value];
     if (declared.absence == PassDeclaration::Absence::no_input)
-      compiled.reasons.push_back({Reason::About::pass, Reason::Why::lacks_input_without_bounds,
+      compiled.reasons.push_back({Reason::About::pass, Reason::ReasonKind::lacks_input_without_bounds,
                                   pass.declared.value, declared.missing.value, 0, 0});
   }
 }

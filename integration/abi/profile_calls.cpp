@@ -12,14 +12,14 @@ namespace {
 constexpr const char* function = "dermis_graph_set_profile";
 
 // How long the histories of the graph's own view show the profile that was replaced.
-void add_settling(const KindRegistry& kinds, const Program& program, uint32_t outcome, uint32_t id,
+void add_settling(const PassTypeRegistry& pass_types, const Program& program, uint32_t outcome, uint32_t id,
                   Diagnostics& diagnostics) {
   std::vector<ResourceId> known;
   for (const Variant& variant : program.variants) {
     const Plan& plan = variant.compiled->plan;
     for (uint32_t h = 0; h < plan.histories.size(); ++h) {
       const ResourceId declared = plan.resources[plan.histories[h].resource].declared;
-      const uint32_t frames = settling_frames(kinds, plan, h, program.outcomes[outcome].settings);
+      const uint32_t frames = settling_frames(pass_types, plan, h, program.outcomes[outcome].settings);
       if (frames <= 1 || std::find(known.begin(), known.end(), declared) != known.end()) continue;
       known.push_back(declared);
       const ResourceDeclaration& resource = program.graph.resources[declared.value];
@@ -44,7 +44,7 @@ dermis_result replace_tables(dermis_graph_t& graph, ProgramInput&& input, uint32
   {
     const std::shared_ptr<Program> kept = keep_newest(graph.own);
     const std::lock_guard lock(graph.own.mutex); // recording chooses an outcome
-    add_settling(context.kinds, *kept, kept->outcome, id, diagnostics);
+    add_settling(context.pass_types, *kept, kept->outcome, id, diagnostics);
   }
   const dermis_result result = conclude(context.log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;

@@ -1,12 +1,12 @@
 #include "integration/abi/program.hpp"
 
-#include "framegraph/compile/offers.hpp"
+#include "framegraph/compile/availability.hpp"
 
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/abi/host_files.hpp"
 #include "integration/abi/slots.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <fmt/format.h>
 
@@ -96,14 +96,14 @@ Environment environment_of(const subsurface::KernelTables& tables) { // points i
 vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
                              vulkan::KernelStore& kernels, Program& program) {
   const std::vector<vulkan::KernelCode> codes = kernel_codes(input.shaders);
-  const subsurface::TableUse use = subsurface::table_use(program.graph, context.kinds);
+  const subsurface::TableUse use = subsurface::table_use(program.graph, context.pass_types);
   if (!input.tables || input.tables->use != use)
     if (vulkan::Error error = make_tables(context, use, input)) return error;
   const Environment environment = environment_of(*input.tables);
   vulkan::ExecutorInput executor;
   executor.device = &context.device;
   executor.graph = &program.graph;
-  executor.kinds = &context.kinds;
+  executor.pass_types = &context.pass_types;
   executor.kernels = codes;
   executor.environment = environment;
   executor.tables = input.device_tables;
@@ -129,7 +129,7 @@ vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vul
   return {};
 }
 
-void make_room_for_bindings(Program& program) {
+void reserve_bindings(Program& program) {
   program.images.resize(program.slots.size());
   program.buffers.resize(program.slots.size());
   program.structures.resize(program.slots.size());
@@ -165,7 +165,7 @@ std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
                                                    uint32_t number, PlanCache& plans,
                                                    CompiledPlan& instead_of, Diagnostics& diagnostics) {
   Graph graph = *input.graph;
-  turn_scattering_off(graph, *input.kinds);
+  turn_scattering_off(graph, *input.pass_types);
   explain_lacking_inputs(graph, instead_of);
   for (ResourceDeclaration& resource : graph.resources) // an export that no pass writes then stays as it is
     if (resource.exported && resource.origin != Origin::imported) resource.optional = true;
@@ -173,9 +173,9 @@ std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
   one.graph = &graph;
   const auto runs = [&](const choice::Outcome& outcome) { return outcome.plan == number; };
   one.settings = std::find_if(outcomes.begin(), outcomes.end(), runs)->settings;
-  Diagnostics told; // warnings are about passes that the graph's own plans have as well
-  auto compiled = compile(one, plans, told);
-  for (Diagnostic& message : told.list) {
+  Diagnostics reported; // warnings are about passes that the graph's own plans have as well
+  auto compiled = compile(one, plans, reported);
+  for (Diagnostic& message : reported.list) {
     if (compiled) break;
     message.text += ", in frames with empty bounds";
     diagnostics.list.push_back(std::move(message));
@@ -203,23 +203,23 @@ vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse&
   return {};
 }
 
-std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
+std::vector<choice::Outcome> described(const PassTypeRegistry& pass_types, const Program& program,
                                        const choice::ErrorModel& errors, choice::CostModel& costs,
                                        std::vector<choice::Outcome> outcomes) {
   std::vector<const Plan*> plans;
   for (const Variant& variant : program.variants)
     plans.push_back(&variant.compiled->plan);
-  describe_outcomes(kinds, plans, errors, costs, outcomes);
+  describe_outcomes(pass_types, plans, errors, costs, outcomes);
   return outcomes;
 }
 
-std::vector<choice::Outcome> outcomes_with(const Program& program, const KindRegistry& kinds,
+std::vector<choice::Outcome> outcomes_with(const Program& program, const PassTypeRegistry& pass_types,
                                            const choice::ErrorModel& errors, choice::CostModel& costs,
                                            uint32_t setting, const SettingValue& value) {
   std::vector<choice::Outcome> outcomes = program.outcomes;
   for (choice::Outcome& outcome : outcomes)
     outcome.settings[setting] = value;
-  return described(kinds, program, errors, costs, std::move(outcomes));
+  return described(pass_types, program, errors, costs, std::move(outcomes));
 }
 
 dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
@@ -227,7 +227,7 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
                             Diagnostics& diagnostics, std::shared_ptr<Program>& program) {
   auto composition = compose_sources(input, diagnostics);
   if (!composition) return DERMIS_ERROR_CONFIG;
-  auto graph = read_graph(composition->document, context.kinds, diagnostics);
+  auto graph = read_graph(composition->document, context.pass_types, diagnostics);
   if (!graph) return DERMIS_ERROR_CONFIG;
   auto candidate = std::make_shared<Program>();
   candidate->graph = std::move(*graph);
@@ -235,12 +235,12 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   for (const SourceFile& file : diagnostics.files)
     candidate->files.push_back({file.name, ""});
   candidate->without_material = input.profiles.empty();
-  if (candidate->without_material) turn_scattering_off(candidate->graph, context.kinds);
+  if (candidate->without_material) turn_scattering_off(candidate->graph, context.pass_types);
   candidate->settings = settings_of(candidate->graph, input.settings, diagnostics);
 
   CompileInput compile_input;
   compile_input.graph = &candidate->graph;
-  compile_input.kinds = &context.kinds;
+  compile_input.pass_types = &context.pass_types;
   compile_input.device = &context.profile;
   compile_input.view_width = input.width;
   compile_input.view_height = input.height;
@@ -248,23 +248,23 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   report_unknown_slots(candidate->graph, input.unbound, input.formats, diagnostics);
   compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);
   compile_input.host_formats = host_formats(candidate->graph, input.formats);
-  tell_withheld(candidate->graph, context.profile, compile_input.bound, diagnostics);
+  report_unavailable(candidate->graph, context.profile, compile_input.bound, diagnostics);
   for (size_t i = 0; i < candidate->settings.size(); ++i)
-    candidate->settings[i] = offered_value(candidate->graph.settings[i], candidate->settings[i],
-                                           context.profile.features, compile_input.bound);
+    candidate->settings[i] = available_option(candidate->graph.settings[i], candidate->settings[i],
+                                              context.profile.features, compile_input.bound);
   compile_input.settings = candidate->settings;
   auto made = choice::make_outcomes(
       compile_input, errors, costs,
-      [&](const CompileInput& one, Diagnostics& told) { return compile(one, plans, told); }, diagnostics,
-      pinned_settings(candidate->graph, input.settings));
+      [&](const CompileInput& one, Diagnostics& reported) { return compile(one, plans, reported); },
+      diagnostics, pinned_settings(candidate->graph, input.settings));
   if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
   candidate->outcomes = std::move(made->outcomes);
   std::vector<CompiledPlan> empty_plans;
   for (uint32_t p = 0; p < made->plans.size(); ++p) {
     CompiledPlan& compiled = made->plans[p];
     Variant variant;
-    variant.left_out = left_out_without_bounds(context.kinds, compiled.plan);
-    if (!candidate->without_material && reads_what_is_left_out(context.kinds, compiled.plan)) {
+    variant.left_out = left_out_without_bounds(context.pass_types, compiled.plan);
+    if (!candidate->without_material && reads_what_is_left_out(context.pass_types, compiled.plan)) {
       auto empty =
           compile_without_bounds(compile_input, candidate->outcomes, p, plans, compiled, diagnostics);
       if (!empty) return DERMIS_ERROR_CONFIG;
@@ -281,11 +281,11 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
   }
   candidate->variant = candidate->outcomes[candidate->outcome].plan;
   candidate->slots = slots_of(*candidate);
-  make_room_for_bindings(*candidate);
+  reserve_bindings(*candidate);
   name_options(*candidate);
 
   candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
-  if (!compile_missing(input.shaders, candidate->graph, context.kinds, diagnostics))
+  if (!compile_missing(input.shaders, candidate->graph, context.pass_types, diagnostics))
     return DERMIS_ERROR_SHADER;
   if (const vulkan::Error error = make_executors(context, input, history, *candidate->kernels, *candidate))
     return refused(context, error, diagnostics);
@@ -314,7 +314,7 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
   candidate->variant = candidate->outcomes[candidate->outcome].plan;
   candidate->settings = of.settings;
   candidate->slots = of.slots;
-  make_room_for_bindings(*candidate);
+  reserve_bindings(*candidate);
   name_options(*candidate);
   if (of.kernels == nullptr) candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
   vulkan::KernelStore& kernels = of.kernels != nullptr ? *of.kernels : *candidate->kernels;

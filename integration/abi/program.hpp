@@ -10,7 +10,7 @@
 #include "integration/abi/context.hpp"
 #include "integration/abi/left_out.hpp"
 #include "integration/abi/shaders/runtime_shaders.hpp"
-#include "passes/choice/outcomes.hpp"
+#include "passes/choice/configurations.hpp"
 #include "passes/common/kernel_tables.hpp"
 
 #include <array>
@@ -135,12 +135,12 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
 
 // The outcomes of `program` with what their passes cost and which technique they are, by these tables;
 // `costs` gets entries for what is new. After a setting or a table changed.
-std::vector<choice::Outcome> described(const KindRegistry& kinds, const Program& program,
+std::vector<choice::Outcome> described(const PassTypeRegistry& pass_types, const Program& program,
                                        const choice::ErrorModel& errors, choice::CostModel& costs,
                                        std::vector<choice::Outcome> outcomes);
 
 // The same with a new value of a setting that turns no pass on or off.
-std::vector<choice::Outcome> outcomes_with(const Program& program, const KindRegistry& kinds,
+std::vector<choice::Outcome> outcomes_with(const Program& program, const PassTypeRegistry& pass_types,
                                            const choice::ErrorModel& errors, choice::CostModel& costs,
                                            uint32_t setting, const SettingValue& value);
 

@@ -91,7 +91,7 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   if (const dermis_result alive = check_alive(*view.context, function); alive != DERMIS_OK) return alive;
   dermis_frame frame = DERMIS_FRAME_INIT;
   if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
-    return refused_size(log, read, function, "frame", stated_size(given), first_version_size<dermis_frame>);
+    return rejected_size(log, read, function, "frame", stated_size(given), first_version_size<dermis_frame>);
   if (capture != nullptr) frame.command_buffer = handle_of(*capture);
   Program& program = newest(view);
   CheckedFrame checked;

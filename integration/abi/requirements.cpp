@@ -10,10 +10,10 @@
 namespace dermis::abi {
 namespace {
 
-dermis_requirement requirement(dermis_requirement_kind kind, const char* name, bool present,
+dermis_requirement requirement(dermis_requirement_type type, const char* name, bool present,
                                const char* why) {
   dermis_requirement item = DERMIS_REQUIREMENT_INIT;
-  item.kind = kind;
+  item.type = type;
   item.name = name;
   item.required = 1;
   item.present = present ? 1 : 0;

@@ -2,7 +2,7 @@
 #include "framegraph/model/expression.hpp"
 #include "framegraph/model/frame_settings.hpp"
 #include "integration/abi/graph.hpp"
-#include "integration/abi/host_kinds.hpp"
+#include "integration/abi/host_pass_types.hpp"
 #include "integration/abi/report.hpp"
 #include "integration/abi/two_call.hpp"
 
@@ -41,7 +41,7 @@ dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* 
     const std::lock_guard lock(view.mutex); // recording chooses an outcome
     values = kept->outcomes[kept->outcome].settings;
   }
-  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->kinds);
+  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
   return fill_array(log, function, count, out, static_cast<uint32_t>(values.size()), [&](uint32_t i) {
     const SettingDeclaration& declared = graph.settings[i];
     dermis_setting setting = DERMIS_SETTING_INIT;
@@ -126,7 +126,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
-    outcomes.push_back(outcomes_with(newest(view), graph.context->kinds, view.chooser.errors,
+    outcomes.push_back(outcomes_with(newest(view), graph.context->pass_types, view.chooser.errors,
                                      view.chooser.costs, index, *value));
   });
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
@@ -158,7 +158,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
     return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
   }
   const auto index = static_cast<uint32_t>(at - graph.settings.begin());
-  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->kinds);
+  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
   if (per_frame[index] == 0) {
     std::string own;
     for (size_t i = 0; i < graph.settings.size(); ++i)
@@ -183,7 +183,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   std::vector<choice::Outcome> outcomes;
   {
     const std::lock_guard lock(view.mutex);
-    outcomes = outcomes_with(newest(view), view.context->kinds, view.chooser.errors, view.chooser.costs,
+    outcomes = outcomes_with(newest(view), view.context->pass_types, view.chooser.errors, view.chooser.costs,
                              index, *value);
   }
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
@@ -201,7 +201,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
 void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics& diagnostics) {
   if (view.settings.empty()) return;
   const Graph& graph = program.graph;
-  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->kinds);
+  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
   for (const HostSetting& own : view.settings) {
     const auto at = find_declared(graph, own.name);
     const auto index = static_cast<size_t>(at - graph.settings.begin());

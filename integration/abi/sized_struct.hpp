@@ -58,10 +58,10 @@ template <>
 inline constexpr size_t first_version_size<dermis_port> = offsetof(dermis_port, own_texels) +
                                                           sizeof(uint32_t);
 template <>
-inline constexpr size_t first_version_size<dermis_kind_setting> = offsetof(dermis_kind_setting, maximum) +
+inline constexpr size_t first_version_size<dermis_pass_setting> = offsetof(dermis_pass_setting, maximum) +
                                                                   sizeof(double);
 template <>
-inline constexpr size_t first_version_size<dermis_pass_kind> = offsetof(dermis_pass_kind, user) +
+inline constexpr size_t first_version_size<dermis_pass_type> = offsetof(dermis_pass_type, user) +
                                                                sizeof(void*);
 template <>
 inline constexpr size_t first_version_size<dermis_image_binding> = offsetof(dermis_image_binding, after) +

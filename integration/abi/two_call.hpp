@@ -17,25 +17,25 @@ dermis_result fill_array(const Log& log, const char* what, uint32_t* count, T* i
     *count = available;
     return DERMIS_OK;
   }
-  const uint32_t room = *count;
-  if (room > 0) {
+  const uint32_t capacity = *count;
+  if (capacity > 0) {
     const size_t size = stated_size(items);
     if (const SizedRead read = check_size<T>(size); read != SizedRead::ok)
-      return refused_size(log, read, what, size, first_version_size<T>);
+      return rejected_size(log, read, what, size, first_version_size<T>);
     auto* to = reinterpret_cast<std::byte*>(items);
-    for (uint32_t i = 0; i < std::min(room, available); ++i)
+    for (uint32_t i = 0; i < std::min(capacity, available); ++i)
       write_sized(to + i * size, size, T(at(i)));
   }
   *count = available;
-  return room < available ? DERMIS_INCOMPLETE : DERMIS_OK;
+  return capacity < available ? DERMIS_INCOMPLETE : DERMIS_OK;
 }
 
 // The two-call text: *size in: room in `text`; out: bytes needed with the final 0.
 inline dermis_result fill_text(const std::string& whole, size_t* size, char* text) {
-  const size_t room = *size;
+  const size_t capacity = *size;
   *size = whole.size() + 1;
   if (text == nullptr) return DERMIS_OK;
-  if (room < *size) return DERMIS_INCOMPLETE;
+  if (capacity < *size) return DERMIS_INCOMPLETE;
   std::memcpy(text, whole.c_str(), *size);
   return DERMIS_OK;
 }

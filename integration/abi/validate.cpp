@@ -4,7 +4,7 @@
 #include "framegraph/text/document.hpp"
 #include "integration/abi/graph_desc.hpp"
 #include "integration/abi/report.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 namespace dermis::abi {
 namespace {
@@ -15,24 +15,24 @@ constexpr uint32_t validation_width = 1920, validation_height = 1080;
 dermis_result validate(const dermis_source* given, dermis_report* report) {
   dermis_source source = DERMIS_SOURCE_INIT;
   if (const SizedRead read = read_sized(given, source); read != SizedRead::ok)
-    return refused_size({}, read, "dermis_validate: source", stated_size(given),
-                        first_version_size<dermis_source>);
+    return rejected_size({}, read, "dermis_validate: source", stated_size(given),
+                         first_version_size<dermis_source>);
   std::string name, text;
   if (const dermis_result result = read_source({}, "dermis_validate: source", source, name, text);
       result != DERMIS_OK)
     return result;
   Diagnostics diagnostics;
-  const KindRegistry kinds = subsurface::make_kinds();
+  const PassTypeRegistry pass_types = subsurface::make_pass_types();
   const DeviceProfile device = generic_profile();
   bool valid = false;
   auto document = parse_document(std::move(name), std::move(text), diagnostics);
   const auto composition =
       document ? compose(std::move(*document), {}, {}, diagnostics) : std::optional<Composition>();
   if (composition)
-    if (const auto graph = read_graph(composition->document, kinds, diagnostics)) {
+    if (const auto graph = read_graph(composition->document, pass_types, diagnostics)) {
       CompileInput input;
       input.graph = &*graph;
-      input.kinds = &kinds;
+      input.pass_types = &pass_types;
       input.device = &device;
       input.view_width = validation_width;
       input.view_height = validation_height;

@@ -14,8 +14,8 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
   dermis_view_desc desc = DERMIS_VIEW_DESC_INIT;
   const SizedRead read = given == nullptr ? SizedRead::ok : read_sized(given, desc);
   if (read != SizedRead::ok)
-    return refused_size(log, read, "dermis_view_create: desc", stated_size(given),
-                        first_version_size<dermis_view_desc>);
+    return rejected_size(log, read, "dermis_view_create: desc", stated_size(given),
+                         first_version_size<dermis_view_desc>);
   const std::lock_guard changing(graph.changing);
   auto view = std::make_unique<dermis_view_t>(graph.context, &graph, desc.user);
   {
@@ -25,7 +25,7 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
     view->chooser.calibration = from.calibration;
     view->chooser.costs = from.costs;
     view->chooser.budget_ms = from.budget_ms;
-    view->chooser.metered = from.metered;
+    view->chooser.deterministic = from.deterministic;
   }
   Diagnostics diagnostics;
   std::shared_ptr<Program> program;
@@ -33,8 +33,8 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
                                           vulkan::HistoryReason::first_frame, diagnostics, program);
   const dermis_result result = conclude(log, made, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
-  make_room(view->image_views, program->slots.size());
-  adopt(view->chooser, graph.context->kinds, *program);
+  reserve(view->image_views, program->slots.size());
+  adopt(view->chooser, graph.context->pass_types, *program);
   view->next = program;
   graph.others.push_back(std::move(view));
   share_kernels(*program);

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
-enum { HEADLESS_MOST_IMAGES = 32 };
+enum { HEADLESS_MAX_IMAGES = 32 };
 
 typedef struct headless_texture {
   VkImage image;
@@ -23,7 +23,7 @@ typedef struct headless {
   VkQueue queue; /* of family 0 */
   VkCommandPool pool;
   VkCommandBuffer commands;
-  headless_texture textures[HEADLESS_MOST_IMAGES];
+  headless_texture textures[HEADLESS_MAX_IMAGES];
   uint32_t texture_count;
 } headless;
 
@@ -103,7 +103,7 @@ static VkImage headless_image(headless* host, VkFormat format, uint32_t width, u
   const VkImageSubresourceRange whole = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
   VkMemoryRequirements needs;
   headless_texture made;
-  if (host->texture_count == HEADLESS_MOST_IMAGES) headless_die("too many images", "");
+  if (host->texture_count == HEADLESS_MAX_IMAGES) headless_die("too many images", "");
   image_info.imageType = VK_IMAGE_TYPE_2D;
   image_info.format = format;
   image_info.extent.width = width;
@@ -135,11 +135,11 @@ static VkImage headless_image(headless* host, VkFormat format, uint32_t width, u
   return made.image;
 }
 
-static inline size_t headless_read_file(const char* path, char* text, size_t room) {
+static inline size_t headless_read_file(const char* path, char* text, size_t capacity) {
   FILE* file = fopen(path, "rb");
   size_t length;
   if (file == NULL) headless_die("cannot read", path);
-  length = fread(text, 1, room, file);
+  length = fread(text, 1, capacity, file);
   fclose(file);
   return length;
 }

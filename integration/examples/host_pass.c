@@ -1,5 +1,5 @@
-/* A host whose own pass stands in the graph: it registers a kind, an overlay puts a pass of it between those
- * of the library, and the library calls it with the images and with all barriers in place. C99 and C++.
+/* A host whose own pass stands in the graph: it registers a pass type, an overlay puts a pass of it between
+ * those of the library, and the library calls it with the images and with all barriers in place. C99 and C++.
  * usage: host_pass configs/graphs/burley.json configs/profiles/skin.json integration/examples/host_pass.json
  */
 #include "headless.h"
@@ -8,7 +8,7 @@
 
 #include <dermis/dermis.h>
 
-enum { SIDE = 64, MOST = 64, TILE = 8, FILE_ROOM = 65536 };
+enum { SIDE = 64, MOST = 64, TILE = 8, MAX_FILE_BYTES = 65536 };
 
 static void check(dermis_result result, const char* call) {
   if (result >= 0) return; /* above 0 are no errors */
@@ -85,7 +85,7 @@ static void free_tone(tone* pass) {
   vkDestroyDescriptorSetLayout(pass->device, pass->set_layout, NULL);
 }
 
-/* Called by dermis_graph_record. The ports come in the order in which the kind declares them. */
+/* Called by dermis_graph_record. The ports come in the order in which the pass type declares them. */
 static void DERMIS_CALL record_tone(void* user, const dermis_pass_call* call) {
   const tone* pass = (const tone*)user;
   const float level = (float)call->settings[0];
@@ -118,25 +118,25 @@ static void DERMIS_CALL record_tone(void* user, const dermis_pass_call* call) {
 
 static void register_tone(dermis_context context, tone* pass) {
   dermis_port ports[2] = {DERMIS_PORT_INIT, DERMIS_PORT_INIT};
-  dermis_kind_setting level = DERMIS_KIND_SETTING_INIT;
-  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
+  dermis_pass_setting level = DERMIS_PASS_SETTING_INIT;
+  dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
   ports[0].name = "light";
   ports[0].usage = DERMIS_PORT_SAMPLED_IMAGE;
   ports[1].name = "toned";
   ports[1].usage = DERMIS_PORT_STORAGE_IMAGE_WRITE;
   level.name = "level";
-  level.type = DERMIS_KIND_SETTING_REAL;
+  level.type = DERMIS_PASS_SETTING_REAL;
   level.default_value = 1.0;
   level.maximum = 100.0;
-  kind.name = "example.tone";
-  kind.doc = "light above a level becomes warmer";
-  kind.ports = ports;
-  kind.port_count = 2;
-  kind.settings = &level;
-  kind.setting_count = 1;
-  kind.record = record_tone;
-  kind.user = pass;
-  check(dermis_register_pass_kind(context, &kind), "dermis_register_pass_kind");
+  type.name = "example.tone";
+  type.doc = "light above a level becomes warmer";
+  type.ports = ports;
+  type.port_count = 2;
+  type.settings = &level;
+  type.setting_count = 1;
+  type.record = record_tone;
+  type.user = pass;
+  check(dermis_register_pass_type(context, &type), "dermis_register_pass_type");
 }
 
 /* ---- the host, as in minimal.c ---- */
@@ -150,19 +150,19 @@ static VkClearColorValue contents_of(const char* slot) {
   return value;
 }
 
-static dermis_source source_of(const char* path, char* room) {
+static dermis_source source_of(const char* path, char* buffer) {
   dermis_source source = DERMIS_SOURCE_INIT;
   source.name = path;
-  source.text = room;
-  source.length = headless_read_file(path, room, FILE_ROOM);
+  source.text = buffer;
+  source.length = headless_read_file(path, buffer, MAX_FILE_BYTES);
   return source;
 }
 
 int main(int argc, char** argv) {
-  static char graph_text[FILE_ROOM], profile_text[FILE_ROOM], overlay_text[FILE_ROOM];
+  static char graph_text[MAX_FILE_BYTES], profile_text[MAX_FILE_BYTES], overlay_text[MAX_FILE_BYTES];
   const char* unbound[] = {"albedo", "scatter_scale", "scattered_light"};
-  const dermis_image_state general = {VK_IMAGE_LAYOUT_GENERAL, 0,
-                                      VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, 0};
+  const dermis_image_state general = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_CLEAR_BIT,
+                                      VK_ACCESS_2_TRANSFER_WRITE_BIT, 0};
   dermis_context_desc context_desc = DERMIS_CONTEXT_DESC_INIT;
   dermis_graph_desc graph_desc = DERMIS_GRAPH_DESC_INIT;
   dermis_profile skin = DERMIS_PROFILE_INIT;

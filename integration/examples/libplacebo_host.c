@@ -1,5 +1,6 @@
-/* Dermis between the passes of a foreign renderer: libplacebo owns instance, device, queue and images, fills them, lets
- * go of them, and reads the picture back. usage: libplacebo_host configs/graphs/burley.json configs/profiles/skin.json */
+/* Dermis between the passes of a foreign renderer: libplacebo owns instance, device, queue and images, fills
+ * them, lets go of them, and reads the picture back. usage: libplacebo_host configs/graphs/burley.json
+ * configs/profiles/skin.json */
 #include <dermis/dermis.h>
 #include <libplacebo/vulkan.h>
 
@@ -31,10 +32,10 @@ static void check_vk(VkResult result, const char* call) {
 
 static char* read_file(const char* path, size_t* length) {
   FILE* file = fopen(path, "rb");
-  const size_t most = 1 << 16;
-  char* text = (char*)malloc(most);
+  const size_t maximum = 1 << 16;
+  char* text = (char*)malloc(maximum);
   if (file == NULL || text == NULL) die("cannot read", path);
-  *length = fread(text, 1, most, file);
+  *length = fread(text, 1, maximum, file);
   fclose(file);
   return text;
 }
@@ -72,7 +73,8 @@ static pl_vulkan make_device(pl_log log, pl_vk_inst* instance) {
   struct pl_vk_inst_params instance_params = pl_vk_inst_default_params;
   struct pl_vulkan_params params = pl_vulkan_default_params;
   pl_vulkan device;
-  static const char* const names[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME}; /* libplacebo names its objects unasked */
+  static const char* const names[] = {
+      VK_EXT_DEBUG_UTILS_EXTENSION_NAME}; /* libplacebo names its objects unasked */
   instance_params.opt_extensions = names;
   instance_params.num_opt_extensions = 1;
   *instance = pl_vk_inst_create(log, &instance_params);
@@ -261,7 +263,8 @@ int main(int argc, char** argv) {
       }
     held.sem = images[i].semaphore;
     held.value = 1;
-    if (!pl_vulkan_hold(device->gpu, images[i].texture, binding.before.layout, held)) die("pl_vulkan_hold", images[i].name);
+    if (!pl_vulkan_hold(device->gpu, images[i].texture, binding.before.layout, held))
+      die("pl_vulkan_hold", images[i].name);
     binding.view = make_view(device, binding.image, binding.format);
     binding.width = binding.height = SIDE;
     /* The semaphore makes everything before visible: only the order of our own commands is left to tell. */

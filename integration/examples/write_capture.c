@@ -11,10 +11,10 @@ static float metres_from_depth(float value) {
   return value > 0.0f ? near_plane / value : 0.0f;
 }
 
-static const char* in_folder(char* room, const char* folder, const char* file) {
+static const char* in_folder(char* path, const char* folder, const char* file) {
   if (strlen(folder) + strlen(file) + 2 > 4096) headless_die("path too long", folder);
-  sprintf(room, "%s/%s", folder, file);
-  return room;
+  sprintf(path, "%s/%s", folder, file);
+  return path;
 }
 
 int main(int argc, char** argv) {

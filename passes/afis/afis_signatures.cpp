@@ -34,7 +34,7 @@ constexpr std::string_view direct_options[] = {"inscribed", "circumscribed", "no
 constexpr std::string_view estimator_options[] = {"self", "centred", "none"};
 constexpr std::string_view mips_options[] = {"trilinear", "whole", "none"};
 
-constexpr KindSetting afis_settings[] = {
+constexpr PassTypeSetting afis_settings[] = {
     {.name = "samples",
      .type = SettingType::integer,
      .default_value = integer_value(16),
@@ -92,7 +92,7 @@ constexpr Port afis_tiles_ports[] = {
     port::depth,
     port::scatter_scale,
     port::classes,
-    port::shares,
+    port::samples_per_tile,
     port::tiles,
     port::arguments,
     {"scattered", Usage::storage_image_update, false, "image2D",
@@ -136,7 +136,7 @@ constexpr Port guided_ports[] = {
 };
 
 constexpr std::string_view guidance_options[] = {"split_half", "spvg", "ccv", "ocv"};
-constexpr KindSetting count_setting(std::string_view name, int64_t standard, std::string_view doc) {
+constexpr PassTypeSetting count_setting(std::string_view name, int64_t standard, std::string_view doc) {
   return {.name = name,
           .type = SettingType::integer,
           .default_value = integer_value(standard),
@@ -147,7 +147,7 @@ constexpr KindSetting count_setting(std::string_view name, int64_t standard, std
           .doc = doc};
 }
 
-constexpr KindSetting guided_settings[] = {
+constexpr PassTypeSetting guided_settings[] = {
     afis_settings[1],
     afis_settings[2],
     afis_settings[3],
@@ -161,8 +161,8 @@ constexpr KindSetting guided_settings[] = {
         "guidance", guidance_options,
         "what is watched: the difference of two half sequences; luminance (spvg); less that of the "
         "pixel's own light (ccv); less as much of it as follows best (ocv)"),
-    count_setting("least", 8, "at least"),
-    count_setting("most", 64, "at most"),
+    count_setting("min_samples", 8, "at least"),
+    count_setting("max_samples", 64, "at most"),
     setting::per_frame(setting::real("sigma2_target", 1e-4, 1e-12, 1e6, "",
                                      "variance of a frame's exposed luminance that is aimed at")),
     setting::per_frame(setting::real("kappa", 0.2, 0, 1, "", "how fast a change is followed")),
@@ -185,7 +185,7 @@ constexpr HistoryWeight guided_mixes[] = {{"guide_out", "eta"}, {"control_out", 
 
 } // namespace
 
-const PassKind afis_tiles_kind{
+const PassType afis_tiles_type{
     .name = "subsurface.afis_tiles",
     .shader = "afis/subsurface_afis_tiles",
     .doc = "Filtered importance sampling where a tile was given samples: `samples` for its first step, twice "
@@ -196,7 +196,7 @@ const PassKind afis_tiles_kind{
     .side_effects = false,
 };
 
-const PassKind guided_kind{
+const PassType guided_type{
     .name = "subsurface.guided",
     .shader = "afis/subsurface_guided",
     .doc = "Filtered importance sampling with as many samples as the spread of earlier frames asks for.",
@@ -207,7 +207,7 @@ const PassKind guided_kind{
     .mixes = guided_mixes,
 };
 
-const PassKind afis_kind{
+const PassType afis_type{
     .name = "subsurface.afis",
     .shader = "afis/subsurface_afis",
     .doc = "Filtered importance sampling: samples read the level of a masked chain that fits their density.",

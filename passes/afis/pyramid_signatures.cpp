@@ -19,7 +19,7 @@ constexpr Port setup_ports[] = {
     {"level_0", Usage::storage_image_write, false, "image2D", level_doc, light_formats},
 };
 constexpr std::string_view profiles_options[] = {"merged", "apart"};
-constexpr KindSetting setup_settings[] = {
+constexpr PassTypeSetting setup_settings[] = {
     setting::texturing,
     setting::choice("profiles", profiles_options,
                     "apart: for subsurface.afis; masks are scaled, and mark texels that mix profiles"),
@@ -31,14 +31,14 @@ constexpr Port down_ports[] = {
 };
 
 constexpr std::string_view halving_options[] = {"binomial", "box"};
-constexpr KindSetting down_settings[] = {
+constexpr PassTypeSetting down_settings[] = {
     setting::choice("halving", halving_options,
                     "binomial: [1 3 3 1], four filtered reads; box: the mean of 2x2, one"),
 };
 
 } // namespace
 
-const PassKind pyramid_setup_kind{
+const PassType pyramid_setup_type{
     .name = "subsurface.pyramid_setup",
     .shader = "afis/subsurface_pyramid_setup",
     .doc = "Level 0 of the plain pyramid: light times mask of every pixel, a border of zeros around it.",
@@ -48,7 +48,7 @@ const PassKind pyramid_setup_kind{
     .side_effects = false,
 };
 
-const PassKind pyramid_down_kind{
+const PassType pyramid_down_type{
     .name = "subsurface.pyramid_down",
     .shader = "afis/subsurface_pyramid_down",
     .doc = "Halves a level of the plain pyramid with [1 3 3 1] or a box.",

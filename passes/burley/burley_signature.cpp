@@ -7,7 +7,7 @@ namespace dermis::subsurface {
 namespace {
 
 using port::burley_ports;
-constexpr KindSetting burley_settings[] = {
+constexpr PassTypeSetting burley_settings[] = {
     {.name = "samples",
      .type = SettingType::integer,
      .default_value = integer_value(32),
@@ -20,7 +20,7 @@ constexpr KindSetting burley_settings[] = {
 
 } // namespace
 
-const PassKind burley_kind{
+const PassType burley_type{
     .name = "subsurface.burley",
     .shader = "burley/subsurface_burley",
     .doc = "Importance sampling of the profile at stratified radii, weighted by 3-D distance and patch area.",

@@ -8,26 +8,26 @@
 namespace dermis::choice {
 namespace {
 
-constexpr size_t most_costs = 4096;
-constexpr double most_us = 1e9;
+constexpr size_t max_costs = 4096;
+constexpr double max_us = 1e9;
 
 } // namespace
 
 std::optional<Calibration> read_calibration(const Document& document, Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
-  if (!check_version(document, "dermis_calibration", 1, diagnostics)) return std::nullopt;
+  if (!check_version(document, "dermis_calibration", 2, diagnostics)) return std::nullopt;
   Calibration out;
   ObjectReader root(document, document.root(), "calibration", diagnostics);
   root.any("dermis_calibration");
   out.device = root.string("device").value_or("");
-  const NodeId costs = root.array("costs", 0, most_costs);
+  const NodeId costs = root.array("costs", 0, max_costs);
   if (costs.valid())
     for (const NodeId node : children(document, costs)) {
       ObjectReader object(document, node, "cost", diagnostics);
       Cost& cost = out.costs.emplace_back();
       cost.work = object.string("work").value_or("");
-      cost.base_us = object.number("base_us", 0, most_us).value_or(0);
-      cost.group_us = object.number("group_us", 0, most_us).value_or(0);
+      cost.base_us = object.number("base_us", 0, max_us).value_or(0);
+      cost.group_us = object.number("group_us", 0, max_us).value_or(0);
       cost.spread = object.number("spread", 0, 1).value_or(0);
       object.finish();
     }
@@ -39,7 +39,7 @@ std::optional<Calibration> read_calibration(const Document& document, Diagnostic
 std::string write_calibration(const Calibration& calibration) {
   JsonWriter json;
   json.open_object();
-  json.member("$schema", "../schema/calibration.schema.json").member("dermis_calibration", 1);
+  json.member("$schema", "../schema/calibration.schema.json").member("dermis_calibration", 2);
   json.member("device", std::string_view(calibration.device));
   json.key("costs").open_array();
   for (const Cost& cost : calibration.costs) {

@@ -15,7 +15,7 @@ struct Calibration {
   std::vector<Cost> costs;
 };
 
-// Reads `"dermis_calibration": 1`. nullopt with errors in `diagnostics`. Thread: any.
+// Reads `"dermis_calibration": 2`. nullopt with errors in `diagnostics`. Thread: any.
 std::optional<Calibration> read_calibration(const Document& document, Diagnostics& diagnostics);
 // The same costs give the same bytes.
 std::string write_calibration(const Calibration& calibration);

@@ -57,25 +57,25 @@ CostId CostModel::add(std::string_view work) {
   Line line;
   line.work = work;
   line.spread = first_spread;
-  if (const Line* like = stand_in_for(work)) {
+  if (const Line* like = placeholder_for(work)) {
     const Coefficients at = like->has_prior ? Coefficients{like->prior[0], like->prior[1]} : solve(*like);
     line.prior[0] = at.base_ms;
     line.prior[1] = at.unit_ms;
-    line.has_prior = line.stand_in = true;
+    line.has_prior = line.placeholder = true;
     line.guess = like->guess || words_alike(like->work, work) == 0;
   }
   lines_.push_back(std::move(line));
   return {static_cast<uint32_t>(lines_.size() - 1)};
 }
 
-const CostModel::Line* CostModel::stand_in_for(std::string_view work) const {
+const CostModel::Line* CostModel::placeholder_for(std::string_view work) const {
   const Line* best = nullptr;
-  size_t most = 0;
+  size_t maximum = 0;
   for (const Line& line : lines_) {
     if (!line.has_prior && line.observations == 0) continue;
     const size_t alike = words_alike(line.work, work);
-    if (alike > most) {
-      most = alike;
+    if (alike > maximum) {
+      maximum = alike;
       best = &line;
     }
   }
@@ -146,7 +146,7 @@ void CostModel::observe(CostId id, uint64_t groups, double ms) {
 std::vector<Cost> CostModel::calibration() const {
   std::vector<Cost> out;
   for (const Line& line : lines_) {
-    if (line.observations == 0 && (line.stand_in || !line.has_prior)) continue;
+    if (line.observations == 0 && (line.placeholder || !line.has_prior)) continue;
     const Coefficients at = solve(line);
     out.push_back({line.work, at.base_ms * 1e3, at.unit_ms * 1e3 / unit_groups, line.spread});
   }

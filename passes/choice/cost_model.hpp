@@ -51,9 +51,9 @@ public:
 private:
   struct Line {
     std::string work;
-    double prior[2] = {0, 0};                 // ms: base, and for unit_groups groups; of the calibration
-    bool has_prior = false, stand_in = false; // stand_in: the prior is that of other work,
-    bool guess = false;                       // of another kind even: it says nothing of the device
+    double prior[2] = {0, 0};                    // ms: base, and for unit_groups groups; of the calibration
+    bool has_prior = false, placeholder = false; // placeholder: the prior is that of other work,
+    bool guess = false;                          // of another kind even: it says nothing of the device
     uint64_t observations = 0;
     double moments[3] = {0, 0, 0}; // weighted sums of 1, x and x^2; x = groups / unit_groups
     double targets[2] = {0, 0};    // weighted sums of ms and ms * x
@@ -62,7 +62,7 @@ private:
   struct Coefficients {
     double base_ms, unit_ms;
   };
-  const Line* stand_in_for(std::string_view work) const;
+  const Line* placeholder_for(std::string_view work) const;
   Coefficients solve(const Line& line) const;
   double device_scale() const; // of the calibration's times
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double error_memory = 0.96; // of what is known, a probed frame: a memory of 25, as that of times
 constexpr double prior_frames = 4;    // that the table counts as
-constexpr double most_factor = 4;     // either way: a table that is further off is of other content
+constexpr double max_factor = 4;      // either way: a table that is further off is of other content
 constexpr double wild = 3;            // times what is known so far: a frame counts as no more than that
 
 ErrorCorrection::Line& line_of(ErrorCorrection& correction, int32_t technique) {
@@ -18,7 +18,7 @@ ErrorCorrection::Line& line_of(ErrorCorrection& correction, int32_t technique) {
 double factor_of(const ErrorCorrection::Line& line) {
   if (line.newest <= 0) return 1;
   const double prior = prior_frames * line.newest; // the table's word
-  return std::clamp(std::sqrt((line.probed + prior) / (line.expected + prior)), 1 / most_factor, most_factor);
+  return std::clamp(std::sqrt((line.probed + prior) / (line.expected + prior)), 1 / max_factor, max_factor);
 }
 
 } // namespace
@@ -31,8 +31,8 @@ void observe_error(ErrorCorrection& correction, int32_t technique, double probed
   const bool known = technique >= -1 && static_cast<size_t>(technique + 1) < correction.lines.size();
   if (!known || !std::isfinite(probed) || !std::isfinite(expected) || probed < 0 || expected <= 0) return;
   ErrorCorrection::Line& line = line_of(correction, technique);
-  const double most = wild * factor_of(line) * expected;
-  const double found = std::min(probed, most);
+  const double maximum = wild * factor_of(line) * expected;
+  const double found = std::min(probed, maximum);
   for (ErrorCorrection::Line& other : correction.lines) {
     other.probed *= error_memory;
     other.expected *= error_memory;

@@ -10,14 +10,14 @@
 namespace dermis::choice {
 namespace {
 
-constexpr size_t most_points = 64, most_techniques = 256, most_kinds = 16;
+constexpr size_t max_points = 64, max_techniques = 256, max_pass_types = 16;
 constexpr double largest_through = 10; // times the light that a slab lets through
-constexpr double least_d_px = 1e-3, largest_d_px = 1e4, least_rmse = 1e-9, largest_rmse = 1e3;
+constexpr double min_d_px = 1e-3, largest_d_px = 1e4, min_rmse = 1e-9, largest_rmse = 1e3;
 
 std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner, std::string_view key,
                                    Diagnostics& diagnostics) {
   std::vector<ErrorPoint> curve;
-  const NodeId list = owner.array(key, 1, most_points);
+  const NodeId list = owner.array(key, 1, max_points);
   if (!list.valid()) return curve;
   for (const NodeId node : children(document, list)) {
     const std::string what = fmt::format("point of '{}' of {}", key, owner.what());
@@ -28,9 +28,9 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
                       fmt::format("{} has {} numbers, expected 2: d in pixels and RMSE", what, pair.size()));
       continue;
     }
-    const auto d_px = read_number(document, pair[0], "d of a " + what, least_d_px, largest_d_px, diagnostics);
+    const auto d_px = read_number(document, pair[0], "d of a " + what, min_d_px, largest_d_px, diagnostics);
     const auto rmse =
-        read_number(document, pair[1], "RMSE of a " + what, least_rmse, largest_rmse, diagnostics);
+        read_number(document, pair[1], "RMSE of a " + what, min_rmse, largest_rmse, diagnostics);
     if (!d_px || !rmse) continue;
     if (!curve.empty() && *d_px <= curve.back().d_px)
       diagnostics.add(DiagnosticId::error_curve, document.where(node),
@@ -41,10 +41,11 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
   return curve;
 }
 
-KindMatch read_kind(const Document& document, NodeId node, const std::string& of, Diagnostics& diagnostics) {
-  KindMatch match;
+PassTypeMatch read_pass_type(const Document& document, NodeId node, const std::string& of,
+                             Diagnostics& diagnostics) {
+  PassTypeMatch match;
   ObjectReader object(document, node, fmt::format("kind of {}", of), diagnostics);
-  match.kind = object.string("kind").value_or("");
+  match.type = object.string("type").value_or("");
   const NodeId set = object.object("set", Need::optional);
   if (set.valid())
     for (const NodeId value : children(document, set)) {
@@ -74,9 +75,9 @@ bool holds(const SettingMatch& condition, const RunningPass& pass) {
   });
 }
 
-bool runs(const KindMatch& match, const std::vector<RunningPass>& passes) {
+bool runs(const PassTypeMatch& match, const std::vector<RunningPass>& passes) {
   return std::any_of(passes.begin(), passes.end(), [&](const RunningPass& pass) {
-    return pass.kind == match.kind &&
+    return pass.type == match.type &&
            std::all_of(match.settings.begin(), match.settings.end(),
                        [&](const SettingMatch& condition) { return holds(condition, pass); });
   });
@@ -86,7 +87,7 @@ bool runs(const KindMatch& match, const std::vector<RunningPass>& passes) {
 
 std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
-  if (!check_version(document, "dermis_errors", 1, diagnostics)) return std::nullopt;
+  if (!check_version(document, "dermis_errors", 2, diagnostics)) return std::nullopt;
   ErrorModel model;
   ObjectReader root(document, document.root(), "error table", diagnostics);
   root.any("dermis_errors");
@@ -94,17 +95,17 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
   model.unscattered = read_curve(document, root, "unscattered", diagnostics);
   model.unscattered_through =
       root.number("unscattered_through", 0, largest_through, Need::optional).value_or(0);
-  const NodeId techniques = root.array("techniques", 0, most_techniques);
+  const NodeId techniques = root.array("techniques", 0, max_techniques);
   if (techniques.valid())
     for (const NodeId node : children(document, techniques)) {
       TechniqueError& technique = model.techniques.emplace_back();
       ObjectReader object(document, node, "technique", diagnostics);
       technique.name = object.string("name").value_or("");
       const std::string what = fmt::format("technique '{}'", technique.name);
-      const NodeId kinds = object.array("kinds", 1, most_kinds);
-      if (kinds.valid())
-        for (const NodeId kind : children(document, kinds))
-          technique.kinds.push_back(read_kind(document, kind, what, diagnostics));
+      const NodeId pass_types = object.array("pass_types", 1, max_pass_types);
+      if (pass_types.valid())
+        for (const NodeId type : children(document, pass_types))
+          technique.pass_types.push_back(read_pass_type(document, type, what, diagnostics));
       technique.curve = read_curve(document, object, "rmse", diagnostics);
       technique.through = object.number("through", 0, largest_through, Need::optional).value_or(0);
       technique.by_rays = object.boolean("by_rays", Need::optional).value_or(false);
@@ -117,17 +118,17 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
 
 int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& passes) {
   int32_t found = -1;
-  size_t most = 0;
+  size_t maximum = 0;
   for (size_t t = 0; t < model.techniques.size(); ++t) {
     const TechniqueError& technique = model.techniques[t];
     size_t conditions = 0;
     bool all = true;
-    for (const KindMatch& match : technique.kinds) {
+    for (const PassTypeMatch& match : technique.pass_types) {
       all = all && runs(match, passes);
       conditions += 1 + match.settings.size();
     }
-    if (!all || conditions <= most) continue;
-    most = conditions;
+    if (!all || conditions <= maximum) continue;
+    maximum = conditions;
     found = static_cast<int32_t>(t);
   }
   return found;
@@ -145,9 +146,9 @@ double expected_rmse(const ErrorModel& model, int32_t technique, double d_px) {
   return curve.back().rmse;
 }
 
-double missed_rmse(const ErrorModel& model, int32_t technique, double through_rms) {
-  return through_rms * (technique < 0 ? model.unscattered_through
-                                      : model.techniques[static_cast<size_t>(technique)].through);
+double missed_rmse(const ErrorModel& model, int32_t technique, double transmitted_rms) {
+  return transmitted_rms * (technique < 0 ? model.unscattered_through
+                                          : model.techniques[static_cast<size_t>(technique)].through);
 }
 
 } // namespace dermis::choice

@@ -21,17 +21,17 @@ struct SettingMatch {
 };
 
 // A pass that a technique is known by.
-struct KindMatch {
-  std::string kind;
+struct PassTypeMatch {
+  std::string type;
   std::vector<SettingMatch> settings; // all of them, in any order; other settings do not matter
 };
 
 struct TechniqueError {
-  std::string name;              // for people: "separable 25"
-  std::vector<KindMatch> kinds;  // a graph that runs passes like all of these
-  std::vector<ErrorPoint> curve; // d_px grows; at least one
-  double through = 0;            // of the light that comes through thin parts, how much it is off by
-  bool by_rays = false;          // the curve is against a truth by rays, not against that of the screen
+  std::string name;                      // for people: "separable 25"
+  std::vector<PassTypeMatch> pass_types; // a graph that runs passes like all of these
+  std::vector<ErrorPoint> curve;         // d_px grows; at least one
+  double through = 0;                    // of the light that comes through thin parts, how much it is off by
+  bool by_rays = false; // the curve is against a truth by rays, not against that of the screen
 };
 
 struct ErrorModel {
@@ -41,12 +41,12 @@ struct ErrorModel {
   double unscattered_through = 0; // as TechniqueError::through
 };
 
-// Reads `"dermis_errors": 1`. nullopt with errors in `diagnostics`. Thread: any.
+// Reads `"dermis_errors": 2`. nullopt with errors in `diagnostics`. Thread: any.
 std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics& diagnostics);
 
 // A pass of a plan with the values it runs with, as texts.
 struct RunningPass {
-  std::string_view kind;
+  std::string_view type;
   std::vector<SettingMatch> settings;
 };
 // The technique that most of its conditions name; -1: none runs.
@@ -54,8 +54,8 @@ int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& 
 
 // Straight between points on logarithmic axes, constant beyond the ends. technique -1: unscattered.
 double expected_rmse(const ErrorModel& model, int32_t technique, double d_px);
-// What the curve does not know of: light through thin parts, of which there is `through_rms` (as
-// subsurface::through_rms).
-double missed_rmse(const ErrorModel& model, int32_t technique, double through_rms);
+// What the curve does not know of: light through thin parts, of which there is `transmitted_rms` (as
+// subsurface::transmitted_rms).
+double missed_rmse(const ErrorModel& model, int32_t technique, double transmitted_rms);
 
 } // namespace dermis::choice

@@ -15,8 +15,8 @@ AccumulatedLight clip_to_neighbours(const AccumulatedLight& history, const std::
                                     const std::array<double, 3>& deviation, double reach) {
   double keep = 1;
   for (size_t c = 0; c < 3; ++c) {
-    const double way = std::abs(history.light[c] - mean[c]), room = reach * deviation[c];
-    if (way > room) keep = std::min(keep, room / way);
+    const double way = std::abs(history.light[c] - mean[c]), box_half = reach * deviation[c];
+    if (way > box_half) keep = std::min(keep, box_half / way);
   }
   AccumulatedLight clipped{{}, history.count * keep};
   for (size_t c = 0; c < 3; ++c)
@@ -24,14 +24,14 @@ AccumulatedLight clip_to_neighbours(const AccumulatedLight& history, const std::
   return clipped;
 }
 
-double frame_weight(double count, double least) {
-  return std::max(1 / (count + 1), least);
+double frame_weight(double count, double minimum) {
+  return std::max(1 / (count + 1), minimum);
 }
 
 AccumulatedLight add_frame(const AccumulatedLight& history, const std::array<double, 3>& light,
-                           double least) {
-  const double weight = frame_weight(history.count, least);
-  AccumulatedLight sum{{}, std::min(history.count + 1, 1 / least)};
+                           double minimum) {
+  const double weight = frame_weight(history.count, minimum);
+  AccumulatedLight sum{{}, std::min(history.count + 1, 1 / minimum)};
   for (size_t c = 0; c < 3; ++c)
     sum.light[c] = history.light[c] + weight * (light[c] - history.light[c]);
   return sum;
@@ -41,7 +41,7 @@ std::array<double, 3> remainder_of(const std::array<double, 3>& light, const std
                                    const std::array<double, 3>& brightness) {
   std::array<double, 3> remainder{};
   for (size_t c = 0; c < 3; ++c)
-    remainder[c] = (light[c] - near[c]) / std::max(brightness[c], accumulate_least_brightness);
+    remainder[c] = (light[c] - near[c]) / std::max(brightness[c], accumulate_min_brightness);
   return remainder;
 }
 

@@ -22,11 +22,12 @@ AccumulatedLight clip_to_neighbours(const AccumulatedLight& history, const std::
 
 // Weight of a new frame against `count` frames of history: all frames weigh the same until a frame weighs
 // `least` (0..1].
-double frame_weight(double count, double least);
-AccumulatedLight add_frame(const AccumulatedLight& history, const std::array<double, 3>& light, double least);
+double frame_weight(double count, double minimum);
+AccumulatedLight add_frame(const AccumulatedLight& history, const std::array<double, 3>& light,
+                           double minimum);
 
 // Less brightness than this counts as dark: half floats of light say too little there.
-inline constexpr double accumulate_least_brightness = 1e-6;
+inline constexpr double accumulate_min_brightness = 1e-6;
 // A remainder beyond this is not kept. Light over frames is then at most 1 + 1.5 * 4.5 = 7.75 times the
 // brightest light around.
 inline constexpr double accumulate_largest_remainder = 4.5;

@@ -120,8 +120,8 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   return true;
 }
 
-double through_rms(const FrameCounters& counters) {
-  const double tiles = double(counters.scattering_tiles) + counters.copied_tiles + counters.flat_tiles;
+double transmitted_rms(const FrameCounters& counters) {
+  const double tiles = double(counters.scattering_tiles) + counters.copied_tiles + counters.uniform_tiles;
   return tiles > 0 ? std::sqrt(double(counters.through_steps) / (double(through_square_steps) * tiles)) : 0;
 }
 
@@ -182,16 +182,16 @@ std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> 
   return table;
 }
 
-bool uses_separable(const Graph& graph, const KindRegistry& kinds) {
-  const KindId separable = kinds.find("subsurface.separable");
+bool uses_separable(const Graph& graph, const PassTypeRegistry& pass_types) {
+  const PassTypeId separable = pass_types.find("subsurface.separable");
   return std::any_of(graph.passes.begin(), graph.passes.end(),
-                     [&](const PassDeclaration& pass) { return pass.kind == separable; });
+                     [&](const PassDeclaration& pass) { return pass.type == separable; });
 }
 
-PyramidUse pyramid_use(const Graph& graph, const KindRegistry& kinds) {
-  const auto has = [&](std::string_view kind) {
+PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types) {
+  const auto has = [&](std::string_view type) {
     return std::any_of(graph.passes.begin(), graph.passes.end(),
-                       [id = kinds.find(kind)](const PassDeclaration& pass) { return pass.kind == id; });
+                       [id = pass_types.find(type)](const PassDeclaration& pass) { return pass.type == id; });
   };
   const bool surface = has("subsurface.sap_gather") || has("subsurface.sap_up") ||
                        has("subsurface.sap_gather_half") || has("subsurface.sap_gather_layered") ||

@@ -27,7 +27,7 @@ enum class EnvironmentSlot : uint32_t {
   count = 7
 };
 
-inline constexpr size_t most_probes = 32; // tiles of a frame
+inline constexpr size_t max_probes = 32; // tiles of a frame
 
 // What subsurface.classify counts in a frame, as words of the counters binding.
 struct FrameCounters {
@@ -35,26 +35,27 @@ struct FrameCounters {
   uint32_t copied_tiles = 0;     // tiles with subsurface below that
   uint32_t log2_d_sum = 0; // over scattering tiles: counter_log2_steps * (log2 of the largest d in pixels
                            // + counter_log2_shift), rounded down
-  uint32_t flat_tiles = 0; // of subsurface.flat: would scatter, but the light is the same all around
+  uint32_t uniform_tiles =
+      0; // of subsurface.classify_uniform_light: would scatter, but the light is the same all around
   // Groups that one dispatch over the tiles of a level of the surface-aware pyramid launches.
   std::array<uint32_t, 9> level_groups{};
-  // Of subsurface.allot: tiles that took one, two and three steps of samples; units that they spend, and that
-  // all tiles would.
+  // Of subsurface.allocate_samples: tiles that took one, two and three steps of samples; units that they
+  // spend, and that all tiles would.
   std::array<uint32_t, 3> sampled_tiles{};
-  uint32_t sample_units = 0, wanted_units = 0;
+  uint32_t sample_units = 0, sample_demand = 0;
   uint32_t probe_count = 0; // of subsurface.probe: tiles that it looked at
-  // Of subsurface.thin_parts: over tiles with subsurface, the mean square of the exposed light that comes
-  // through, at most 1, in steps of 1 / through_square_steps.
+  // Of subsurface.transmission_stats: over tiles with subsurface, the mean square of the exposed light that
+  // comes through, at most 1, in steps of 1 / through_square_steps.
   uint32_t through_steps = 0;
   // Of each probed tile, as bits of floats, the sum of squared errors and the pixels that it was made of,
   // both times the tiles that it stands for.
-  std::array<std::array<uint32_t, 2>, most_probes> probes{};
+  std::array<std::array<uint32_t, 2>, max_probes> probes{};
 };
 inline constexpr float counter_log2_shift = 8;      // d from 1/256 pixel
 inline constexpr float counter_log2_steps = 16;     // an octave; the sum of 4 M tiles fits 32 bits
 inline constexpr float through_square_steps = 1023; // the sum of 4 M tiles fits 32 bits
 // Light that comes through thin parts, root mean square over the tiles with subsurface, exposed luminance.
-double through_rms(const FrameCounters& counters);
+double transmitted_rms(const FrameCounters& counters);
 // Geometric mean of d over the scattering tiles, pixels; 0 where there are none.
 double mean_d_px(const FrameCounters& counters);
 
@@ -79,7 +80,7 @@ struct FrameConstants {
   float previous_ray_scale[2], previous_ray_offset[2]; // as ray_scale and ray_offset
   int32_t previous_rect[4];
   float previous_jitter[2]; // pixels
-  uint32_t sample_units;    // that subsurface.allot may spend
+  uint32_t sample_units;    // that subsurface.allocate_samples may spend
   float unused;             // rounds to 16 bytes
   int32_t bounds[4]; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
   float view_from_world[3][4]; // rows; view position in mm = M * (world position in the host's units, 1)
@@ -137,7 +138,7 @@ std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> pr
 // (make_jimenez_rows); one row of zeros if there are none. About .1 s a profile.
 std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles);
 // Does the graph have a pass that reads the separable table?
-bool uses_separable(const Graph& graph, const KindRegistry& kinds);
+bool uses_separable(const Graph& graph, const PassTypeRegistry& pass_types);
 
 // Radial tables of the profiles that are not Burley's, in order; one row of zeros if there are none.
 std::vector<RadialRow> make_radial_table(std::span<const NumberedProfile> profiles);
@@ -148,7 +149,7 @@ struct PyramidUse {
   bool plain = false;
   bool operator==(const PyramidUse&) const = default;
 };
-PyramidUse pyramid_use(const Graph& graph, const KindRegistry& kinds);
+PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types);
 // Tables of make_sap_table (sap_weights.hpp): the shared ones, base, smooth, plain; then for each profile
 // that is not Burley's, in order, those of red, green and blue for base, for smooth and for plain. What is
 // not used is 0; a single zero where nothing is. About .1 s a shared table and the same for each channel of

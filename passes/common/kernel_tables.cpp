@@ -2,8 +2,8 @@
 
 namespace dermis::subsurface {
 
-TableUse table_use(const Graph& graph, const KindRegistry& kinds) {
-  return {uses_separable(graph, kinds), pyramid_use(graph, kinds)};
+TableUse table_use(const Graph& graph, const PassTypeRegistry& pass_types) {
+  return {uses_separable(graph, pass_types), pyramid_use(graph, pass_types)};
 }
 
 KernelTables make_kernel_tables(const TableUse& use, std::span<const NumberedProfile> profiles) {

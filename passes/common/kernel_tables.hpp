@@ -25,7 +25,7 @@ struct KernelTables {
   std::vector<RadialRow> radial;
 };
 
-TableUse table_use(const Graph& graph, const KindRegistry& kinds);
+TableUse table_use(const Graph& graph, const PassTypeRegistry& pass_types);
 // Fits what is used: up to .2 s for the pyramids and .1 s a profile for separable. Thread: any.
 KernelTables make_kernel_tables(const TableUse& use, std::span<const NumberedProfile> profiles);
 

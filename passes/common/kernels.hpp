@@ -8,7 +8,7 @@
 namespace dermis {
 
 struct Kernel {
-  std::string_view shader; // PassKind::shader
+  std::string_view shader; // PassType::shader
   std::span<const uint32_t> spirv;
 };
 

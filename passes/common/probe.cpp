@@ -24,7 +24,7 @@ double student_t(double freedom) {
 ProbedError probed_error(const FrameCounters& counters) {
   const auto count = std::min<size_t>(counters.probe_count, counters.probes.size());
   double errors = 0, pixels = 0;
-  std::array<std::array<double, 2>, most_probes> tiles{};
+  std::array<std::array<double, 2>, max_probes> tiles{};
   for (size_t i = 0; i < count; ++i)
     tiles[i] = {double(std::bit_cast<float>(counters.probes[i][0])),
                 double(std::bit_cast<float>(counters.probes[i][1]))};

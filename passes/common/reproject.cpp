@@ -52,7 +52,7 @@ PreviousPlace place_before(const FrameConstants& frame, double x, double y, doub
 }
 
 double depth_tolerance(double depth, double rise) {
-  return std::max(reproject_depth_share * depth, reproject_slope_pixels * rise);
+  return std::max(reproject_depth_fraction * depth, reproject_slope_pixels * rise);
 }
 
 HistoryTaps find_history(const FrameConstants& frame, const PreviousPlace& place, uint32_t id,
@@ -72,7 +72,7 @@ HistoryTaps find_history(const FrameConstants& frame, const PreviousPlace& place
     if (surface.id != id || !(std::abs(surface.depth - place.depth) <= tolerance)) weight = 0;
     total += weight;
   }
-  if (total < reproject_least_weight) return {};
+  if (total < reproject_min_weight) return {};
   for (double& weight : taps.weight)
     weight /= total;
   return taps;

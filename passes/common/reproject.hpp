@@ -16,9 +16,9 @@ inline constexpr double reproject_snap_px = 1.0 / 1024;
 inline constexpr double reproject_largest_velocity = 65536; // pixels; beyond, and NaN, is no motion
 // Two depths are one surface within this share, or within so many pixels of its slope; below this sum of
 // valid bilinear weights a surface was not to be seen (issue 5 of the project's list, "Temporal").
-inline constexpr double reproject_depth_share = 0.02;
+inline constexpr double reproject_depth_fraction = 0.02;
 inline constexpr double reproject_slope_pixels = 2;
-inline constexpr double reproject_least_weight = 0.25;
+inline constexpr double reproject_min_weight = 0.25;
 
 bool history_usable(const FrameConstants& frame);
 

@@ -1,12 +1,12 @@
 #include "passes/generate/bindings.hpp"
 
-#include "passes/choice/allotment.hpp"
+#include "passes/choice/sample_allocation.hpp"
 #include "passes/common/accumulate.hpp"
-#include "passes/common/flat_light.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "passes/common/profiles/radial_table.hpp"
+#include "passes/common/reference/surface.hpp"
 #include "passes/common/reproject.hpp"
-#include "passes/common/truth/surface.hpp"
+#include "passes/common/uniform_light.hpp"
 #include "passes/sap/sap_tiles.hpp"
 #include "passes/separable/separable_kernel.hpp"
 
@@ -53,27 +53,27 @@ std::string declare_port(const Port& port, uint32_t binding) {
   }
 }
 
-std::string declare_setting(const KindSetting& setting) {
+std::string declare_setting(const PassTypeSetting& setting) {
   const char* type = setting.type == SettingType::real ? "float" : "int";
   std::string out = fmt::format("  {} {}; // {}{}{}\n", type, setting.name, setting.doc,
                                 setting.unit.empty() ? "" : "; ", setting.unit);
   return out;
 }
 
-std::string header_of(const PassKind& kind) {
-  std::string out = fmt::format("// Generated from the signature of {}.\n\n", kind.name);
-  for (uint32_t i = 0; i < kind.ports.size(); ++i)
-    out += declare_port(kind.ports[i], i);
+std::string header_of(const PassType& type) {
+  std::string out = fmt::format("// Generated from the signature of {}.\n\n", type.name);
+  for (uint32_t i = 0; i < type.ports.size(); ++i)
+    out += declare_port(type.ports[i], i);
   out += "\nlayout(push_constant) uniform settings_block {\n  uint port_mask; // bit i: port i is bound\n";
-  for (const KindSetting& setting : kind.settings)
+  for (const PassTypeSetting& setting : type.settings)
     out += declare_setting(setting);
   out += "} settings;\n\n";
-  for (const KindSetting& setting : kind.settings)
+  for (const PassTypeSetting& setting : type.settings)
     for (uint32_t i = 0; i < setting.options.size(); ++i)
       out += fmt::format("const int {}_{} = {};\n", upper(setting.name), upper(setting.options[i]), i);
-  for (uint32_t i = 0; i < kind.ports.size(); ++i)
-    if (kind.ports[i].optional)
-      out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n", kind.ports[i].name,
+  for (uint32_t i = 0; i < type.ports.size(); ++i)
+    if (type.ports[i].optional)
+      out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n", type.ports[i].name,
                          1u << i);
   return out;
 }
@@ -83,15 +83,15 @@ std::string shared_constants() {
   return fmt::format(
       "// Generated from the constants of passes/common/.\n"
       "#ifndef DERMIS_CONSTANTS_GLSL\n#define DERMIS_CONSTANTS_GLSL\n\n"
-      "const float copy_below_d_px = {}; // kinds.hpp\n"
-      "const float flat_reach_d = {:.1f}; // flat_light.hpp\n"
+      "const float copy_below_d_px = {}; // pass_types.hpp\n"
+      "const float flat_reach_d = {:.1f}; // uniform_light.hpp\n"
       "const float flat_tolerance = {};\n"
-      "const int flat_most_reach = {};\n"
+      "const int flat_max_reach = {};\n"
       "const uint flat_cell_side = {}u;\n"
-      "const int probe_most_reach = {}; // kinds.hpp\n"
+      "const int probe_max_reach = {}; // pass_types.hpp\n"
       "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // allotment.hpp\n"
-      "const float allot_stay = {};\n"
-      "const int allot_first_bin = {};\n"
+      "const float allocation_stay = {};\n"
+      "const int allocation_first_bin = {};\n"
       "const float min_patch_cosine = {}; // truth/surface.hpp\n"
       "const int separable_nodes = {}; // separable_kernel.hpp\n"
       "const float separable_first_log2_d = {:.1f};\n"
@@ -111,39 +111,39 @@ std::string shared_constants() {
       "const float radial_inverse_nodes_per_unit = {:.1f};\n"
       "const float reproject_snap_px = {}; // temporal/reproject.hpp\n"
       "const float reproject_largest_velocity = {:.1f};\n"
-      "const float reproject_depth_share = {};\n"
+      "const float reproject_depth_fraction = {};\n"
       "const float reproject_slope_pixels = {:.1f};\n"
-      "const float reproject_least_weight = {};\n"
-      "const float accumulate_least_brightness = {}; // temporal/accumulate.hpp\n"
+      "const float reproject_min_weight = {};\n"
+      "const float accumulate_min_brightness = {}; // temporal/accumulate.hpp\n"
       "const float accumulate_largest_remainder = {:.1f};\n"
       "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
       "const float counter_log2_steps = {:.1f};\n"
       "const float through_square_steps = {:.1f};\n\n#endif\n",
       subsurface::copy_below_d_px, subsurface::flat_reach_d, subsurface::flat_tolerance,
-      subsurface::flat_most_reach, subsurface::flat_cell_side, subsurface::probe_most_reach,
-      choice::allot_gain[0], choice::allot_gain[1], choice::allot_gain[2], choice::allot_stay,
-      choice::allot_first_bin, subsurface::min_patch_cosine, subsurface::separable_nodes,
-      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
+      subsurface::flat_max_reach, subsurface::flat_cell_side, subsurface::probe_max_reach,
+      choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
+      choice::allocation_stay, choice::allocation_first_bin, subsurface::min_patch_cosine,
+      subsurface::separable_nodes, subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
       subsurface::separable_rows_per_profile, subsurface::sap_level_count, subsurface::sap_variant_count,
       static_cast<int>(subsurface::SapVariant::half), static_cast<int>(subsurface::SapVariant::plain),
       subsurface::sap_node_count, double(subsurface::sap_nodes_per_octave), subsurface::sap_log2_d_first,
       subsurface::sap_tiles_per_group_first, subsurface::sap_tiles_per_group, subsurface::radial_nodes,
       subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
       subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
-      subsurface::reproject_largest_velocity, subsurface::reproject_depth_share,
-      subsurface::reproject_slope_pixels, subsurface::reproject_least_weight,
-      subsurface::accumulate_least_brightness, subsurface::accumulate_largest_remainder,
+      subsurface::reproject_largest_velocity, subsurface::reproject_depth_fraction,
+      subsurface::reproject_slope_pixels, subsurface::reproject_min_weight,
+      subsurface::accumulate_min_brightness, subsurface::accumulate_largest_remainder,
       subsurface::counter_log2_shift, subsurface::counter_log2_steps, subsurface::through_square_steps);
 }
 
 } // namespace
 
 std::vector<GeneratedFile> generated_glsl() {
-  const KindRegistry kinds = subsurface::make_kinds();
+  const PassTypeRegistry pass_types = subsurface::make_pass_types();
   std::vector<GeneratedFile> files;
-  for (uint32_t i = 0; i < kinds.size(); ++i) {
-    const PassKind& kind = kinds[KindId{i}];
-    files.push_back({fmt::format("{}.bindings.glsl", kind.shader), header_of(kind)});
+  for (uint32_t i = 0; i < pass_types.size(); ++i) {
+    const PassType& type = pass_types[PassTypeId{i}];
+    files.push_back({fmt::format("{}.bindings.glsl", type.shader), header_of(type)});
   }
   files.push_back({"constants.glsl", shared_constants()});
   return files;

@@ -12,7 +12,7 @@ constexpr std::string_view inverse_options[] = {"polynomial", "exact", "approxim
 constexpr std::string_view weighting_options[] = {"sampler", "profile"};
 constexpr std::string_view normalise_options[] = {"self", "none"};
 constexpr std::string_view direct_options[] = {"inscribed", "circumscribed", "none"};
-constexpr KindSetting fixed_settings[] = {
+constexpr PassTypeSetting fixed_settings[] = {
     {.name = "samples",
      .type = SettingType::integer,
      .default_value = integer_value(16),
@@ -38,7 +38,7 @@ constexpr KindSetting fixed_settings[] = {
 
 } // namespace
 
-const PassKind fixed_kind{
+const PassType fixed_type{
     .name = "subsurface.fixed",
     .shader = "papers/subsurface_fixed",
     .doc = "Importance sampling of the widest channel at points of the R2 sequence, weighted by 3-D distance "

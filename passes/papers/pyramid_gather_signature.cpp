@@ -17,7 +17,7 @@ constexpr Port gather_ports[] = {
 
 } // namespace
 
-const PassKind pyramid_gather_kind{
+const PassType pyramid_gather_type{
     .name = "subsurface.pyramid_gather",
     .shader = "papers/subsurface_pyramid_gather",
     .doc =

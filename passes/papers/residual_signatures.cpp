@@ -55,10 +55,10 @@ constexpr std::string_view place_doc = "view depth in metres, profile id, patter
                                        "ratio was learned in (a logarithm), mean "
                                        "square of how far patterns stray; 0 where nothing was written";
 
-constexpr Format brightness_formats[] = {Format::rgba32f};
-constexpr std::string_view brightness_doc = "logarithm of how much brighter all that is seen is than what "
-                                            "was learned, odds that light of the learned "
-                                            "pattern is the learned light, tolerance of patterns";
+constexpr Format global_light_formats[] = {Format::rgba32f};
+constexpr std::string_view global_light_doc = "logarithm of how much brighter all that is seen is than what "
+                                              "was learned, odds that light of the learned "
+                                              "pattern is the learned light, tolerance of patterns";
 
 constexpr Port brightness_ports[] = {
     port::level_surface("surface"),
@@ -66,7 +66,7 @@ constexpr Port brightness_ports[] = {
     port::velocity,
     classes,
     {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
-    {"brightness", Usage::storage_image_write, false, "image2D", brightness_doc, brightness_formats},
+    {"brightness", Usage::storage_image_write, false, "image2D", global_light_doc, global_light_formats},
 };
 
 constexpr Port residual_ports[] = {
@@ -83,45 +83,45 @@ constexpr Port residual_ports[] = {
     port::level_surface("surface_4"),
     port::level_surface("surface_5"),
     own_sure_light,
-    {"brightness", Usage::sampled_image, false, "texture2D", brightness_doc, brightness_formats},
+    {"brightness", Usage::sampled_image, false, "texture2D", global_light_doc, global_light_formats},
     port::velocity,
     classes,
     {"ratio", Usage::sampled_image, false, "texture2D", ratio_doc, ratio_formats},
     {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
     port::tiles,
     port::arguments,
-    {"mended", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
+    {"refined", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
      light_formats},
     {"ratio_out", Usage::storage_image_write, false, "image2D", ratio_doc, ratio_formats},
     {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
     port::sampling,
 };
 
-constexpr KindSetting samples{.name = "samples",
-                              .type = SettingType::integer,
-                              .default_value = integer_value(16),
-                              .minimum = 1,
-                              .maximum = 4096,
-                              .options = {},
-                              .unit = "samples a pixel",
-                              .doc = "beyond the direct radius, where confidence is low"};
-constexpr KindSetting lod_bias = setting::real(
+constexpr PassTypeSetting samples{.name = "samples",
+                                  .type = SettingType::integer,
+                                  .default_value = integer_value(16),
+                                  .minimum = 1,
+                                  .maximum = 4096,
+                                  .options = {},
+                                  .unit = "samples a pixel",
+                                  .doc = "beyond the direct radius, where confidence is low"};
+constexpr PassTypeSetting lod_bias = setting::real(
     "lod_bias", -1.5, -8, 4, "levels", "on the level whose texels have the area that a sample stands for");
 
-constexpr KindSetting brightness_settings[] = {
+constexpr PassTypeSetting brightness_settings[] = {
     setting::per_frame(setting::real(
         "tolerance", 0.06, 0.001, 100, "",
         "change of the logarithm of a surface's light, beside that of all light, that is none, at least")),
 };
 
-constexpr KindSetting blend_settings[] = {
+constexpr PassTypeSetting blend_settings[] = {
     samples,
     lod_bias,
     setting::per_frame(setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel is sampled")),
-    setting::per_frame(setting::real("share", 0.5, 0, 1, "", "of the samples in the result")),
+    setting::per_frame(setting::real("sample_weight", 0.5, 0, 1, "", "of the samples in the result")),
 };
 
-constexpr KindSetting residual_settings[] = {
+constexpr PassTypeSetting residual_settings[] = {
     samples,
     lod_bias,
     setting::per_frame(setting::real("below", 0.988, 0, 2, "", "confidence below which a pixel is sampled")),
@@ -139,13 +139,13 @@ constexpr KindSetting residual_settings[] = {
      .doc = "a pixel with less history takes twice the samples in every frame"},
 };
 
-constexpr HistoryWeight residual_mixes[] = {{"ratio_out", "alpha", HistoryWeight::By::share, 16}};
+constexpr HistoryWeight residual_mixes[] = {{"ratio_out", "alpha", HistoryWeight::By::fraction, 16}};
 
 } // namespace
 
-const PassKind blend_kind{
-    .name = "subsurface.blend",
-    .shader = "papers/subsurface_blend",
+const PassType refine_type{
+    .name = "subsurface.refine",
+    .shader = "papers/subsurface_refine",
     .doc = "Blends the pyramid's light with samples where its confidence is low. No history.",
     .ports = blend_ports,
     .settings = blend_settings,
@@ -153,9 +153,9 @@ const PassKind blend_kind{
     .side_effects = false,
 };
 
-const PassKind brightness_kind{
-    .name = "subsurface.brightness",
-    .shader = "papers/subsurface_brightness",
+const PassType global_light_change_type{
+    .name = "subsurface.global_light_change",
+    .shader = "papers/subsurface_global_light_change",
     .doc = "Finds how bright all that is seen is, so that light that flashes can be told from another light.",
     .ports = brightness_ports,
     .settings = brightness_settings,
@@ -163,7 +163,7 @@ const PassKind brightness_kind{
     .side_effects = false,
 };
 
-const PassKind residual_kind{
+const PassType residual_type{
     .name = "subsurface.residual",
     .shader = "papers/subsurface_residual",
     .doc =

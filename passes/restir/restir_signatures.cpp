@@ -38,7 +38,7 @@ constexpr Port initial_ports[] = {
     port::arguments, {"reservoirs", Usage::storage_buffer_write, false, "uvec4", reservoirs_doc},
 };
 
-constexpr KindSetting initial_settings[] = {
+constexpr PassTypeSetting initial_settings[] = {
     {.name = "samples",
      .type = SettingType::integer,
      .default_value = integer_value(1),
@@ -50,7 +50,7 @@ constexpr KindSetting initial_settings[] = {
 };
 
 constexpr std::string_view shift_options[] = {"reconnection", "delayed", "hybrid", "sequential"};
-constexpr KindSetting shift =
+constexpr PassTypeSetting shift =
     setting::choice("shift", shift_options, "how a path of one pixel becomes one of another");
 
 constexpr Port temporal_ports[] = {
@@ -75,7 +75,7 @@ constexpr Port temporal_ports[] = {
     {"lights_kept", Usage::storage_buffer_write, false, "light_source", kept_lights_doc},
 };
 
-constexpr KindSetting temporal_settings[] = {
+constexpr PassTypeSetting temporal_settings[] = {
     shift,
     setting::per_frame(
         setting::real("cap", 20, 0, 1000, "times the frame", "that history counts for at most")),
@@ -98,7 +98,7 @@ constexpr Port spatial_ports[] = {
     {"merged", Usage::storage_buffer_write, false, "uvec4", reservoirs_doc},
 };
 
-constexpr KindSetting spatial_settings[] = {
+constexpr PassTypeSetting spatial_settings[] = {
     shift,
     {.name = "pass",
      .type = SettingType::integer,
@@ -135,13 +135,13 @@ constexpr Port resolve_ports[] = {
     port::scattered,
 };
 
-constexpr KindSetting resolve_settings[] = {setting::texturing};
+constexpr PassTypeSetting resolve_settings[] = {setting::texturing};
 
 constexpr HistoryWeight temporal_mixes[] = {{"merged", "cap", HistoryWeight::By::cap}};
 
 } // namespace
 
-const PassKind restir_initial_kind{
+const PassType restir_initial_type{
     .name = "restir.initial",
     .shader = "restir/restir_initial",
     .doc = "Draws paths from each pixel through the object to a light, by probe rays, and keeps one of them.",
@@ -152,7 +152,7 @@ const PassKind restir_initial_kind{
     .features = bit_of(Feature::ray_query),
 };
 
-const PassKind restir_temporal_kind{
+const PassType restir_temporal_type{
     .name = "restir.temporal",
     .shader = "restir/restir_temporal",
     .doc = "Merges each pixel's path with the one that its surface had in the frame before.",
@@ -164,7 +164,7 @@ const PassKind restir_temporal_kind{
     .mixes = temporal_mixes,
 };
 
-const PassKind restir_spatial_kind{
+const PassType restir_spatial_type{
     .name = "restir.spatial",
     .shader = "restir/restir_spatial",
     .doc = "Merges each pixel's path with those of pixels around it that show the same profile.",
@@ -175,7 +175,7 @@ const PassKind restir_spatial_kind{
     .features = bit_of(Feature::ray_query),
 };
 
-const PassKind restir_resolve_kind{
+const PassType restir_resolve_type{
     .name = "restir.resolve",
     .shader = "restir/restir_resolve",
     .doc = "Light that the kept path of each pixel brings; its own in channels that do not scatter.",

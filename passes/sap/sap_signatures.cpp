@@ -1,4 +1,4 @@
-// The surface-aware pyramid: one kind a step, one pass a level. Level 0 is the view, level l has a texel
+// The surface-aware pyramid: one pass type a step, one pass a level. Level 0 is the view, level l has a texel
 // every 2^l pixels and a border of one texel, which takes what lies beyond the last pixels.
 
 #include "passes/common/signatures/level_ports.hpp"
@@ -24,7 +24,8 @@ constexpr std::string_view scattered_doc = "scattered light of this level and co
 using port::light_formats;
 using port::surface_formats;
 
-constexpr KindSetting level_setting(double first, std::string_view doc, double last = sap_level_count - 1) {
+constexpr PassTypeSetting level_setting(double first, std::string_view doc,
+                                        double last = sap_level_count - 1) {
   return {.name = "level",
           .type = SettingType::integer,
           .default_value = integer_value(static_cast<int64_t>(first)),
@@ -35,19 +36,19 @@ constexpr KindSetting level_setting(double first, std::string_view doc, double l
           .doc = doc};
 }
 
-constexpr KindSetting variant =
+constexpr PassTypeSetting variant =
     setting::choice("variant", variant_options,
                     "base: tent at levels 0 and 1; smooth: at every level, which hides the grid; half: at "
                     "level 1, below subsurface.sap_gather_half",
                     1);
 
 // With two layers at level 1 there is no other first level.
-constexpr KindSetting layered_variant =
+constexpr PassTypeSetting layered_variant =
     setting::choice("variant", std::span(variant_options).first(2),
                     "base: tent at levels 0 and 1; smooth: at every level, which hides the grid", 1);
 
 constexpr std::string_view storage_options[] = {"half", "full"};
-constexpr KindSetting storage =
+constexpr PassTypeSetting storage =
     setting::choice("storage", storage_options,
                     "of light that is written: half floats, or floats, whose images then need 32 bits a "
                     "channel; the same in all passes of a pyramid");
@@ -100,7 +101,7 @@ constexpr Port setup_ports[] = {
     {"light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
-constexpr KindSetting setup_settings[] = {setting::texturing, storage};
+constexpr PassTypeSetting setup_settings[] = {setting::texturing, storage};
 
 constexpr Port halve_ports[] = {
     setup_ports[0],
@@ -113,8 +114,8 @@ constexpr Port halve_ports[] = {
     {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
-constexpr KindSetting halve_settings[] = {level_setting(1, "that is written", 1), setting::texturing,
-                                          storage};
+constexpr PassTypeSetting halve_settings[] = {level_setting(1, "that is written", 1), setting::texturing,
+                                              storage};
 
 constexpr Port down_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of the finer level", light_formats},
@@ -124,7 +125,7 @@ constexpr Port down_ports[] = {
     {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
-constexpr KindSetting down_settings[] = {level_setting(1, "that is written"), storage};
+constexpr PassTypeSetting down_settings[] = {level_setting(1, "that is written"), storage};
 
 // Of levels whose texels can have a second surface: ports of that layer beside those of the first. Its images
 // hold something only where the first surface says so.
@@ -148,7 +149,7 @@ constexpr Port up_ports[] = {
     level_arguments,
     {"scattered", Usage::storage_image_write, false, "uimage2D", scattered_doc, surface_formats},
 };
-constexpr KindSetting up_settings[] = {level_setting(1, "that is written"), variant, storage};
+constexpr PassTypeSetting up_settings[] = {level_setting(1, "that is written"), variant, storage};
 
 constexpr Port gather_ports[] = {
     {"light", Usage::sampled_image, false, "texture2D", "of level 0", light_formats},
@@ -160,14 +161,14 @@ constexpr Port gather_ports[] = {
     {"scattered", Usage::storage_image_write, false, "image2D",
      "rgb scattered light where there is subsurface, undefined elsewhere; a = confidence", light_formats},
 };
-constexpr KindSetting gather_settings[] = {variant, storage};
+constexpr PassTypeSetting gather_settings[] = {variant, storage};
 
 constexpr Port half_gather_ports[] = {
     setup_ports[0],  port::material,  port::depth, port::scatter_scale, port::albedo,
     gather_ports[2], gather_ports[3], level_tiles, level_arguments,     gather_ports[6],
 };
 
-constexpr KindSetting layered_gather_settings[] = {layered_variant, storage};
+constexpr PassTypeSetting layered_gather_settings[] = {layered_variant, storage};
 
 constexpr Port layered_down_ports[] = {
     down_ports[0],
@@ -213,7 +214,7 @@ constexpr Port layered_gather_ports[] = {
 
 } // namespace
 
-const PassKind sap_tiles_kind{
+const PassType sap_tiles_type{
     .name = "subsurface.sap_tiles",
     .shader = "sap/subsurface_sap_tiles",
     .doc =
@@ -225,7 +226,7 @@ const PassKind sap_tiles_kind{
     .side_effects = false,
 };
 
-const PassKind sap_setup_kind{
+const PassType sap_setup_type{
     .name = "subsurface.sap_setup",
     .shader = "sap/subsurface_sap_setup",
     .doc = "Level 0 of the surface-aware pyramid: light and surface of every pixel of listed tiles.",
@@ -235,7 +236,7 @@ const PassKind sap_setup_kind{
     .side_effects = false,
 };
 
-const PassKind sap_down_kind{
+const PassType sap_down_type{
     .name = "subsurface.sap_down",
     .shader = "sap/subsurface_sap_down",
     .doc = "Reduces one level of the pyramid along the surface; stops at depth steps and other profiles.",
@@ -246,7 +247,7 @@ const PassKind sap_down_kind{
     .arguments_entry = "level",
 };
 
-const PassKind sap_up_kind{
+const PassType sap_up_type{
     .name = "subsurface.sap_up",
     .shader = "sap/subsurface_sap_up",
     .doc = "Blends one level of the pyramid with what comes from the coarser ones; of two layers there a "
@@ -259,7 +260,7 @@ const PassKind sap_up_kind{
     .arguments_entry = "level",
 };
 
-const PassKind sap_gather_kind{
+const PassType sap_gather_type{
     .name = "subsurface.sap_gather",
     .shader = "sap/subsurface_sap_gather",
     .doc = "Level 0 of the way up: the scattered light of every listed pixel.",
@@ -269,9 +270,9 @@ const PassKind sap_gather_kind{
     .side_effects = false,
 };
 
-const PassKind sap_halve_kind{
-    .name = "subsurface.sap_halve",
-    .shader = "sap/subsurface_sap_halve",
+const PassType sap_setup_half_res_type{
+    .name = "subsurface.sap_setup_half_res",
+    .shader = "sap/subsurface_sap_setup_half_res",
     .doc = "Level 1 of the surface-aware pyramid straight from the view: 2x2 pixels of one surface a texel. "
            "Takes the place of subsurface.sap_setup and the first subsurface.sap_down.",
     .ports = halve_ports,
@@ -281,19 +282,19 @@ const PassKind sap_halve_kind{
     .arguments_entry = "level",
 };
 
-const PassKind sap_gather_half_kind{
+const PassType sap_gather_half_type{
     .name = "subsurface.sap_gather_half",
     .shader = "sap/subsurface_sap_gather_half",
-    .doc =
-        "As subsurface.sap_gather, above subsurface.sap_halve: a pixel's own light at full resolution, all "
-        "that comes from others at half of it.",
+    .doc = "As subsurface.sap_gather, above subsurface.sap_setup_half_res: a pixel's own light at full "
+           "resolution, all "
+           "that comes from others at half of it.",
     .ports = half_gather_ports,
     .settings = setup_settings,
     .dispatch = DispatchShape::over_tiles,
     .side_effects = false,
 };
 
-const PassKind sap_down_layered_kind{
+const PassType sap_down_layered_type{
     .name = "subsurface.sap_down_layered",
     .shader = "sap/subsurface_sap_down_layered",
     .doc = "As subsurface.sap_down, with a second surface a texel: what lies off the first.",
@@ -304,7 +305,7 @@ const PassKind sap_down_layered_kind{
     .arguments_entry = "level",
 };
 
-const PassKind sap_up_layered_kind{
+const PassType sap_up_layered_type{
     .name = "subsurface.sap_up_layered",
     .shader = "sap/subsurface_sap_up_layered",
     .doc = "As subsurface.sap_up, of both layers: each takes of another texel the layer nearer to it.",
@@ -315,7 +316,7 @@ const PassKind sap_up_layered_kind{
     .arguments_entry = "level",
 };
 
-const PassKind sap_gather_layered_kind{
+const PassType sap_gather_layered_type{
     .name = "subsurface.sap_gather_layered",
     .shader = "sap/subsurface_sap_gather_layered",
     .doc = "As subsurface.sap_gather, from two layers at level 1.",

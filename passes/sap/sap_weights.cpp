@@ -1,8 +1,8 @@
 #include "passes/sap/sap_weights.hpp"
 
 #include "passes/common/nnls.hpp"
+#include "passes/common/reference/planar.hpp"
 #include "passes/common/sinc.hpp"
-#include "passes/common/truth/planar.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ std::vector<Frequency> make_frequencies() {
   double total = 0;
   for (size_t ring = 0; ring < ring_count; ++ring) {
     const double f = sap_min_frequency * std::pow(sap_max_frequency / sap_min_frequency,
-                                                 (double(ring) + 0.5) / double(ring_count));
+                                                  (double(ring) + 0.5) / double(ring_count));
     for (size_t angle = 0; angle < angle_count; ++angle) {
       const double theta = 0.25 * pi * (double(angle) + 0.5) / double(angle_count);
       list.push_back({f * std::cos(theta), f * std::sin(theta), std::pow(f, 2 + spectrum_exponent)});
@@ -220,24 +220,24 @@ std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const 
   return fits;
 }
 
-SapShares sap_shares(const SapWeights& weights) {
-  SapShares shares{.centre = weights[0], .tent = weights[1], .share = {}};
+SapFractions sap_fractions(const SapWeights& weights) {
+  SapFractions fractions{.centre = weights[0], .tent = weights[1], .fraction = {}};
   double rest = 0;
   for (uint32_t level = sap_level_count - 1; level >= 1; --level) {
     rest += weights[level + 1];
-    shares.share[level] = rest > 0 ? weights[level + 1] / rest : 1;
+    fractions.fraction[level] = rest > 0 ? weights[level + 1] / rest : 1;
   }
-  return shares;
+  return fractions;
 }
 
 std::vector<float> make_sap_table(const SapFit& fit) {
   std::vector<float> table(size_t{sap_table_rows} * sap_node_count);
   for (uint32_t k = 0; k < sap_node_count; ++k) {
-    const SapShares shares = sap_shares(fit.nodes[k].weights);
-    table[k] = static_cast<float>(shares.centre);
-    table[sap_node_count + k] = static_cast<float>(shares.tent);
+    const SapFractions fractions = sap_fractions(fit.nodes[k].weights);
+    table[k] = static_cast<float>(fractions.centre);
+    table[sap_node_count + k] = static_cast<float>(fractions.tent);
     for (uint32_t level = 1; level < sap_level_count; ++level)
-      table[(level + 1) * sap_node_count + k] = static_cast<float>(shares.share[level]);
+      table[(level + 1) * sap_node_count + k] = static_cast<float>(fractions.fraction[level]);
   }
   return table;
 }
@@ -246,9 +246,9 @@ template <class Real> Real sap_lookup(std::span<const float> table, uint32_t row
   const float* values = &table[size_t{row} * sap_node_count];
   const Real first = static_cast<Real>(std::exp2(sap_log2_d_first));
   if (!(d_px >= first)) {
-    const Real share = std::max(Real(0), d_px) / first;
-    if (row == 0) return 1 - share * (1 - Real(values[0]));
-    return row == 1 ? share * Real(values[0]) : Real(values[0]);
+    const Real fraction = std::max(Real(0), d_px) / first;
+    if (row == 0) return 1 - fraction * (1 - Real(values[0]));
+    return row == 1 ? fraction * Real(values[0]) : Real(values[0]);
   }
   const Real at = std::min((std::log2(d_px) - Real(sap_log2_d_first)) * Real(sap_nodes_per_octave),
                            Real(sap_node_count - 1));

@@ -58,11 +58,11 @@ std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const 
 // What a kernel needs of the weights, as shares of what is left at each level: out = mix(coarser, level l,
 // t_l). centre and tent are level 0's weights; share[l] = W_l / sum of W_k over k >= l for l >= 1, share[8]
 // = 1.
-struct SapShares {
+struct SapFractions {
   double centre = 1, tent = 0;
-  std::array<double, sap_level_count> share{}; // share[0] unused
+  std::array<double, sap_level_count> fraction{}; // share[0] unused
 };
-SapShares sap_shares(const SapWeights& weights);
+SapFractions sap_fractions(const SapWeights& weights);
 
 // The device's table: sap_table_rows rows (centre, tent, share[1] to share[8]) of sap_node_count floats, so
 // that a level reads one row only.

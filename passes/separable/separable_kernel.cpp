@@ -29,20 +29,20 @@ struct FitFrequency {
 
 // What the transfer of the pixel's kernel asks at a frequency and those that alias with it, of no shape.
 struct Aliases {
-  static constexpr int most = 8; // periods on each side
-  static constexpr size_t count = 2 * most + 1;
+  static constexpr int maximum = 8; // periods on each side
+  static constexpr size_t count = 2 * maximum + 1;
   std::array<double, count> sinc_x, sinc_y;
   std::array<std::array<double, count>, count> k; // by y, x: radians a pixel
 };
 
 Aliases aliases_of(double fx, double fy) {
   Aliases aliases;
-  for (int m = -Aliases::most; m <= Aliases::most; ++m) {
-    const auto at = static_cast<size_t>(m + Aliases::most);
+  for (int m = -Aliases::maximum; m <= Aliases::maximum; ++m) {
+    const auto at = static_cast<size_t>(m + Aliases::maximum);
     aliases.sinc_x[at] = sinc(fx + m);
     aliases.sinc_y[at] = sinc(fy + m);
-    for (int n = -Aliases::most; n <= Aliases::most; ++n)
-      aliases.k[at][static_cast<size_t>(n + Aliases::most)] = 2 * pi * std::hypot(fx + n, fy + m);
+    for (int n = -Aliases::maximum; n <= Aliases::maximum; ++n)
+      aliases.k[at][static_cast<size_t>(n + Aliases::maximum)] = 2 * pi * std::hypot(fx + n, fy + m);
   }
   return aliases;
 }
@@ -51,9 +51,9 @@ double transfer_of(const ChannelShape& shape, const Aliases& aliases) {
   // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum settles to 1e-4 within 8 periods for d >=
   // 1/16 px.
   const int reach =
-      shape.d > 0 ? std::clamp(static_cast<int>(2 + 2 / shape.d), 2, Aliases::most) : Aliases::most;
-  const auto first = static_cast<size_t>(Aliases::most - reach),
-             last = static_cast<size_t>(Aliases::most + reach);
+      shape.d > 0 ? std::clamp(static_cast<int>(2 + 2 / shape.d), 2, Aliases::maximum) : Aliases::maximum;
+  const auto first = static_cast<size_t>(Aliases::maximum - reach),
+             last = static_cast<size_t>(Aliases::maximum + reach);
   double sum = 0;
   for (size_t y = first; y <= last; ++y)
     for (size_t x = first; x <= last; ++x)
@@ -70,7 +70,8 @@ struct Grid {
 Grid make_grid() {
   Grid grid;
   for (int i = 0; i < radii; ++i) {
-    const double f = separable_min_frequency * std::pow(separable_max_frequency / separable_min_frequency, (i + 0.5) / radii);
+    const double f = separable_min_frequency *
+                     std::pow(separable_max_frequency / separable_min_frequency, (i + 0.5) / radii);
     for (int j = 0; j < angles; ++j) {
       const double angle = (j + 0.5) / angles * pi / 2;
       const double fx = f * std::cos(angle), fy = f * std::sin(angle);
@@ -117,7 +118,8 @@ struct Sample {
   Row x, y;
 };
 
-std::vector<Sample> make_samples(const std::vector<FitFrequency>& frequencies, std::span<const double> offsets) {
+std::vector<Sample> make_samples(const std::vector<FitFrequency>& frequencies,
+                                 std::span<const double> offsets) {
   std::vector<Sample> samples;
   for (const FitFrequency& f : frequencies)
     samples.push_back({axis_row(offsets, f.x), axis_row(offsets, f.y)});

@@ -22,7 +22,7 @@ constexpr Port separable_ports[] = {
     port::arguments,
     port::scattered,
 };
-constexpr KindSetting separable_settings[] = {
+constexpr PassTypeSetting separable_settings[] = {
     setting::choice("axis", axis_options, "of this pass; a graph runs horizontal, then vertical"),
     {.name = "taps",
      .type = SettingType::enumeration,
@@ -39,7 +39,7 @@ constexpr KindSetting separable_settings[] = {
 
 } // namespace
 
-const PassKind separable_kind{
+const PassType separable_type{
     .name = "subsurface.separable",
     .shader = "separable/subsurface_separable",
     .doc =

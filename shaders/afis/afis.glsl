@@ -52,7 +52,7 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own,
   if (settings.direct != DIRECT_NONE) {
     float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y) : 0.5 * length(footprint);
     vec3 survival = profile_survival(profile, r0);
-    beyond = draws_mixture(profile) ? dot(mixture_shares(profile), survival) : survival[widest];
+    beyond = draws_mixture(profile) ? dot(mixture_fractions(profile), survival) : survival[widest];
     r0 = draw(profile, beyond).r; // what the sampler leaves out is what is taken from the pixel's own light
     direct = 1.0 - profile_survival(profile, settings.surface == SURFACE_PATCH ? r0 * sqrt(area) : r0);
   }

@@ -13,7 +13,7 @@ float wanted_samples(float variance, float mean_count) {
 
 // A6: a whole number within the range.
 int clamped_samples(float wanted) {
-  return int(round(clamp(wanted, float(settings.least), float(settings.most))));
+  return int(round(clamp(wanted, float(settings.min_samples), float(settings.max_samples))));
 }
 
 struct moving_variance {

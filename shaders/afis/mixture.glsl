@@ -8,16 +8,16 @@
 const int mixture_steps = 8;
 
 // Equal shares of the channels that scatter.
-vec3 mixture_shares(scatter_profile profile) {
-  vec3 shares = vec3(greaterThan(profile.d.rgb, vec3(0.0)));
-  return shares / max(shares.r + shares.g + shares.b, 1.0);
+vec3 mixture_fractions(scatter_profile profile) {
+  vec3 fractions = vec3(greaterThan(profile.d.rgb, vec3(0.0)));
+  return fractions / max(fractions.r + fractions.g + fractions.b, 1.0);
 }
 
 // Radius at survival u of the mixture, for Burley's profile. The logarithm of the survival is convex and the narrowest
 // channel's radius lies before the root: Newton's steps come from one side and do not pass it.
 radial_sample mixture_sample(scatter_profile profile, float u) {
   u = clamp(u, burley_min_survival, 1.0);
-  vec3 shares = mixture_shares(profile), d = profile.d.rgb;
+  vec3 fractions = mixture_fractions(profile), d = profile.d.rgb;
   float narrowest = profile.d.w;
   for (int c = 0; c < 3; ++c)
     if (d[c] > 0.0)
@@ -25,10 +25,10 @@ radial_sample mixture_sample(scatter_profile profile, float u) {
   float last = 50.0 * profile.d.w;
   float r = max(burley_inverse_survival(u, narrowest), 1e-6 * narrowest), density = 1.0;
   for (int i = 0; i <= mixture_steps; ++i) {
-    density = dot(shares, profile_falloff(profile, r) * r);
+    density = dot(fractions, profile_falloff(profile, r) * r);
     if (i == mixture_steps)
       break;
-    float survival = dot(shares, profile_survival(profile, r));
+    float survival = dot(fractions, profile_survival(profile, r));
     r = clamp(r + survival * log(survival / u) / density, 1e-6 * narrowest, last);
   }
   return radial_sample(r, density);

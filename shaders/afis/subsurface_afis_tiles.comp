@@ -19,7 +19,7 @@ void main() {
     return;
   ivec2 texel = texel_of(pixel), tile = pixel >> 3;
   uint id = texelFetch(material_image, texel, 0).r;
-  uint steps = shares_data[tile.y * frame.tiles.x + tile.x];
+  uint steps = samples_per_tile_data[tile.y * frame.tiles.x + tile.x];
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   if (id == 0u || steps == 0u || depth <= 0.0)
     return;

@@ -11,7 +11,7 @@
 #include "common/hash.glsl"
 #include "common/tap.glsl"
 
-const float least_weight = 1e-30; // less is what exponentials leave at their end, and says nothing
+const float min_weight = 1e-30; // less is what exponentials leave at their end, and says nothing
 
 vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
   vec2 pixels_per_mm = 1.0 / pixel_footprint(point.depth);
@@ -30,8 +30,8 @@ vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
     sum += weight * light.rgb;
     total += weight;
   }
-  bvec3 scattered = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(least_weight))));
-  vec3 mean = mix(own, sum / max(total, vec3(least_weight)), scattered);
+  bvec3 scattered = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(min_weight))));
+  vec3 mean = mix(own, sum / max(total, vec3(min_weight)), scattered);
   return mix(mean, own, profile_direct(point.id));
 }
 

@@ -21,26 +21,26 @@ struct accumulated_light {
 // Variance clipping (Salvi 2016): history is drawn along the line to the neighbourhood's mean until it lies within
 // `reach` of its standard deviations, and counts for as much less as it was drawn.
 accumulated_light clip_to_neighbours(accumulated_light history, vec3 mean, vec3 deviation, float reach) {
-  vec3 way = abs(history.light - mean), room = reach * deviation;
+  vec3 way = abs(history.light - mean), box_half = reach * deviation;
   float keep = 1.0;
   for (int c = 0; c < 3; ++c)
-    if (way[c] > room[c])
-      keep = min(keep, room[c] / way[c]);
+    if (way[c] > box_half[c])
+      keep = min(keep, box_half[c] / way[c]);
   return accumulated_light(mix(mean, history.light, keep), history.count * keep);
 }
 
 // Weight of a new frame against `count` frames of history: all frames weigh the same until a frame weighs `least`.
-float frame_weight(float count, float least) { return max(1.0 / (count + 1.0), least); }
+float frame_weight(float count, float minimum) { return max(1.0 / (count + 1.0), minimum); }
 
-accumulated_light add_frame(accumulated_light history, vec3 light, float least) {
-  return accumulated_light(mix(history.light, light, frame_weight(history.count, least)),
-                           min(history.count + 1.0, 1.0 / least));
+accumulated_light add_frame(accumulated_light history, vec3 light, float minimum) {
+  return accumulated_light(mix(history.light, light, frame_weight(history.count, minimum)),
+                           min(history.count + 1.0, 1.0 / minimum));
 }
 
 // What history keeps of a pixel's scattered light: the part that the nearest pixels do not explain, over the brightness
 // around. The nearest pixels carry what is sharp, and are read anew in each frame; brightness follows lights that change.
 vec3 remainder_of(vec3 light, vec3 near, vec3 brightness) {
-  return (light - near) / max(brightness, vec3(accumulate_least_brightness));
+  return (light - near) / max(brightness, vec3(accumulate_min_brightness));
 }
 bool can_be_kept(vec3 remainder) { return all(lessThanEqual(abs(remainder), vec3(accumulate_largest_remainder))); }
 

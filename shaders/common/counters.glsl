@@ -6,11 +6,11 @@ layout(std430, set = 1, binding = 6) buffer counter_block {
   uint scattering_tiles;
   uint copied_tiles;
   uint log2_d_sum;
-  uint flat_tiles;
+  uint uniform_tiles;
   uint level_groups[9];
   uint sampled_tiles[3];
   uint sample_units;
-  uint wanted_units;
+  uint sample_demand;
   uint probe_count;
   uint through_steps;
   uvec2 probes[32];
@@ -34,7 +34,7 @@ void count_tiles(uint scattering, uint copied, uint steps) {
 void recount_as_flat(float d_px) {
   atomicAdd(counters.scattering_tiles, 0xffffffffu);
   atomicAdd(counters.log2_d_sum, 0u - counter_steps(d_px));
-  atomicAdd(counters.flat_tiles, 1u);
+  atomicAdd(counters.uniform_tiles, 1u);
 }
 
 #endif

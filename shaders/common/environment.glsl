@@ -20,7 +20,7 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   vec2 previous_ray_offset;
   ivec4 previous_rect;
   vec2 previous_jitter; // pixels
-  uint sample_units;    // that subsurface.allot may spend
+  uint sample_units;    // that subsurface.allocate_samples may spend
   float unused;
   ivec4 bounds; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
   vec4 view_from_world[3]; // rows; view position in mm = M * (world position in the host's units, 1)

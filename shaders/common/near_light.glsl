@@ -28,13 +28,13 @@ int near_index(ivec2 local) { return (local.y + near_ring) * near_side + local.x
 
 // The smaller change of depth to both sides along an axis, mm; 0 where no neighbour has the profile.
 float near_rise(int index, int step) {
-  float depth = near_depth[index], least = 1e30;
+  float depth = near_depth[index], minimum = 1e30;
   for (int side = -1; side <= 1; side += 2) {
     int other = index + side * step;
     if (near_profile[other] == near_profile[index] && near_depth[other] > 0.0)
-      least = min(least, abs(near_depth[other] - depth));
+      minimum = min(minimum, abs(near_depth[other] - depth));
   }
-  return least < 1e30 ? least : 0.0;
+  return minimum < 1e30 ? minimum : 0.0;
 }
 vec2 near_rise(int index) { return vec2(near_rise(index, 1), near_rise(index, near_side)); }
 

@@ -1,4 +1,4 @@
-// The surface patch behind a pixel, from depth differences; mirrors passes/common/truth/surface.cpp.
+// The surface patch behind a pixel, from depth differences; mirrors passes/common/reference/surface.cpp.
 #ifndef DERMIS_PATCH_GLSL
 #define DERMIS_PATCH_GLSL
 

@@ -47,7 +47,7 @@ ivec2 previous_texel(ivec2 pixel) { return pixel + frame.previous_rect.xy; }
 
 // Distance in depth up to which two places are one surface. `rise`: change of its depth over a pixel, mm.
 float depth_tolerance(float depth, float rise) {
-  return max(reproject_depth_share * depth, reproject_slope_pixels * rise);
+  return max(reproject_depth_fraction * depth, reproject_slope_pixels * rise);
 }
 
 struct history_taps {
@@ -73,7 +73,7 @@ history_taps find_history(previous_place place, uint id, float tolerance) {
     weight[i] = 0.0;
   }
   float total = weight.x + weight.y + weight.z + weight.w;
-  return total < reproject_least_weight ? none : history_taps(first, weight / total);
+  return total < reproject_min_weight ? none : history_taps(first, weight / total);
 }
 
 #endif

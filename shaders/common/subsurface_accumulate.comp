@@ -100,7 +100,7 @@ ivec2 ring_pixel(int i) {
 // Over the 3x3 pixels that have the profile.
 struct neighbourhood {
   vec3 mean, deviation; // of remainders
-  vec3 least, largest;  // of scattered light
+  vec3 minimum, largest;  // of scattered light
 };
 neighbourhood look_around(ivec2 first, ivec2 local, vec3 own_light) {
   vec3 own = shared_remainders[remainder_index(local)], sum = vec3(0.0), squares = vec3(0.0);
@@ -117,7 +117,7 @@ neighbourhood look_around(ivec2 first, ivec2 local, vec3 own_light) {
       sum += way;
       squares += way * way;
       count += 1.0;
-      around.least = min(around.least, light);
+      around.minimum = min(around.minimum, light);
       around.largest = max(around.largest, light);
     }
   vec3 mean = sum / max(count, 1.0);
@@ -131,7 +131,7 @@ struct shown_and_kept {
   accumulated_light kept;
 };
 shown_and_kept with_history(accumulated_light history, vec3 light, near_field near, vec3 now, neighbourhood around) {
-  bvec3 lit = greaterThan(near.brightness, vec3(accumulate_least_brightness));
+  bvec3 lit = greaterThan(near.brightness, vec3(accumulate_min_brightness));
   if (!any(lit)) // history waits until light comes back
     return shown_and_kept(light, history);
   now = mix(history.light, now, lit);
@@ -144,7 +144,7 @@ shown_and_kept with_history(accumulated_light history, vec3 light, near_field ne
     history = clip_to_neighbours(history, mix(history.light, around.mean, lit), around.deviation, settings.clip);
   accumulated_light sum = add_frame(history, now, settings.weight);
   vec3 shown = mix(light, light_of_remainder(sum.light, near.light, near.brightness), lit);
-  return shown_and_kept(settings.clip > 0.0 ? clamp(shown, around.least, around.largest) : shown, sum);
+  return shown_and_kept(settings.clip > 0.0 ? clamp(shown, around.minimum, around.largest) : shown, sum);
 }
 
 void main() {

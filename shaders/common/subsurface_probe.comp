@@ -2,7 +2,7 @@
 // How far off the picture is, by samples of it: a few tiles, drawn with known probabilities, in which the reference is
 // computed at four pixels each, one in each quarter. The tiles are cut into runs of 64; every n-th run gives one of its
 // tiles with subsurface, from a random start. What the host makes of it: passes/common/probe.hpp.
-// The reference is the truth of passes/common/truth/truth.hpp in fp32:
+// The reference is the truth of passes/common/reference/reference.hpp in fp32:
 //   L_c(p) = sum_q K_c a_q B_c(q) / sum_q K_c a_q
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -82,7 +82,7 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
   float scale = has_scatter_scale() && inside ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   scatter_profile profile = find_profile(id, scale);
   float reach = depth > 0.0 ? flat_reach_d * projected_d(profile.d.w, depth) : 0.0;
-  bool counts = depth > 0.0 && reach >= flat_reach_d * copy_below_d_px && reach <= float(probe_most_reach);
+  bool counts = depth > 0.0 && reach >= flat_reach_d * copy_below_d_px && reach <= float(probe_max_reach);
   vec3 light = vec3(0.0), weight = vec3(0.0);
   if (counts) {
     vec3 p = view_position(vec2(pixel), depth);
@@ -113,18 +113,18 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
   if (!counts)
     return -1.0;
   vec3 own = pixel_light(texel), direct = profile_direct(id);
-  vec3 truth = mix(sums[0] / max(weights[0], vec3(1e-30)), own, direct);
-  truth = mix(own, truth, vec3(greaterThan(profile.d.rgb, vec3(0.0))));
+  vec3 reference = mix(sums[0] / max(weights[0], vec3(1e-30)), own, direct);
+  reference = mix(own, reference, vec3(greaterThan(profile.d.rgb, vec3(0.0))));
   vec3 shown = has_scattered() && !copied ? texelFetch(scattered_image, texel, 0).rgb : own;
-  float off = dot(shown - truth, luminance) * frame.exposure;
+  float off = dot(shown - reference, luminance) * frame.exposure;
   return off * off;
 }
 
 void main() {
   uint lane = gl_LocalInvocationIndex, run = gl_WorkGroupID.x, runs = gl_NumWorkGroups.x;
-  float share = min(float(settings.tiles) / float(runs), 1.0); // of the runs: the probability that this one is drawn
+  float fraction = min(float(settings.tiles) / float(runs), 1.0); // of the runs: the probability that this one is drawn
   float start = unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 0u))).x;
-  if (share < 1.0 && floor((float(run) + 1.0) * share + start) <= floor(float(run) * share + start))
+  if (fraction < 1.0 && floor((float(run) + 1.0) * fraction + start) <= floor(float(run) * fraction + start))
     return;
   uint tile = run * lanes + lane;
   listed[lane] = tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(classes_data[tile]) : class_none;
@@ -155,7 +155,7 @@ void main() {
   }
   if (lane != 0u)
     return;
-  float stands_for = float(count) / share; // tiles
+  float stands_for = float(count) / fraction; // tiles
   uint place = atomicAdd(counters.probe_count, 1u);
   if (place < counters.probes.length()) {
     counters.probes[place] = uvec2(floatBitsToUint(stands_for * errors), floatBitsToUint(stands_for * pixels));

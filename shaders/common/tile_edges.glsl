@@ -8,7 +8,7 @@
 bool has_samples(ivec2 tile) {
   ivec2 at = clamp(tile, ivec2(0), frame.tiles - 1);
   uint index = uint(at.y * frame.tiles.x + at.x);
-  return shares_data[index] > 0u || class_of_tile(classes_data[index]) != class_scatter; // nothing that blends borders there
+  return samples_per_tile_data[index] > 0u || class_of_tile(classes_data[index]) != class_scatter; // nothing that blends borders there
 }
 
 // 0 at an edge or a corner that a tile without samples shares, 1 from `ramp_px` inside.

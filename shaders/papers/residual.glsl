@@ -5,7 +5,7 @@
 #define DERMIS_RESIDUAL_GLSL
 
 const float mm_per_metre = 1000.0; // halves hold a depth within .05 % from a tenth of a millimetre to 65 km
-const float least_light = 1e-6;    // of the pyramid; a ratio to less says nothing
+const float min_light = 1e-6;    // of the pyramid; a ratio to less says nothing
 const float never_lit = -128.0;    // instead of a pattern
 const float stray_width = 2.0;     // of what strays, in its root mean square: 95 % of a normal distribution
 const float sqrt_pi = 1.7724539;
@@ -13,8 +13,8 @@ const float sqrt_pi = 1.7724539;
 vec2 residual_surface_before(vec4 kept) { return vec2(kept.r * mm_per_metre, kept.g); }
 
 float residual_luminance(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); } // Rec. 709
-bool is_lit(vec3 light) { return residual_luminance(light) > least_light; }
-float brightness(vec3 light) { return log(max(residual_luminance(light), least_light)); }
+bool is_lit(vec3 light) { return residual_luminance(light) > min_light; }
+float brightness(vec3 light) { return log(max(residual_luminance(light), min_light)); }
 
 bool has_pattern(vec2 kept) { return kept.x > 0.5 * never_lit; }
 

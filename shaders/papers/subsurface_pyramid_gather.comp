@@ -11,7 +11,7 @@
 #include "afis/pyramid.glsl"
 #include "sap/sap.glsl"
 
-const float least_share = 0.001; // below it a level is not worth its reads
+const float min_fraction = 0.001; // below it a level is not worth its reads
 
 vec4 spline_read(texture2D level, vec2 at) {
   vec2 low = floor(at), t = at - low, s = 1.0 - t;
@@ -25,13 +25,13 @@ vec4 spline_read(texture2D level, vec2 at) {
 
 // Adds a level's light and mask with its share of what is left; returns what is left after it, never less than nothing.
 vec3 add_level(texture2D level, int index, uint id, vec3 d_px, vec2 pixel, vec3 left, inout vec3 sum, inout vec3 total) {
-  vec3 share = index == 0 ? sap_lookup(id, sap_plain, 1, d_px) : left * sap_lookup(id, sap_plain, index + 1, d_px);
-  if (max(share.r, max(share.g, share.b)) >= least_share) {
+  vec3 fraction = index == 0 ? sap_lookup(id, sap_plain, 1, d_px) : left * sap_lookup(id, sap_plain, index + 1, d_px);
+  if (max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction) {
     vec4 light = spline_read(level, (pixel + 0.5) * exp2(-float(index)) - 0.5);
-    sum += share * light.rgb;
-    total += share * light.a;
+    sum += fraction * light.rgb;
+    total += fraction * light.a;
   }
-  return max(left - share, vec3(0.0));
+  return max(left - fraction, vec3(0.0));
 }
 
 void main() {

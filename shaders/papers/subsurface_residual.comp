@@ -18,7 +18,7 @@ vec2 surface_before(ivec2 pixel);
 
 const float largest_kept = 8.0;  // of a sampled ratio
 const float largest_ratio = 4.0; // that light is multiplied by
-const float doubt = 16.0;        // samples that weigh as much as the pyramid
+const float tile_error = 16.0;        // samples that weigh as much as the pyramid
 const float stray_rate = 0.1;    // of the moving mean of what strays
 const float largest_stray = 0.3; // of a logarithm, that counts there
 const float caution = 0.5;       // of alpha, that is left where light came that may not stay
@@ -96,24 +96,24 @@ void main() {
       ratio.a *= 1.0 - 0.25 * settings.alpha; // no ratio is learned here; patterns are, so that they can be compared
       if (turn && lit)
         kept.x = mix(kept.x, pattern, alpha);
-    } else if (any(greaterThan(light.rgb, vec3(least_light))) && // nor in the dark
+    } else if (any(greaterThan(light.rgb, vec3(min_light))) && // nor in the dark
                (turn || ratio.a < float(settings.eager) * n)) {
       count = ratio.a < float(settings.eager) * n ? 2 * settings.samples : settings.samples;
       // Frames in which it is a tile's turn follow each other in the sequence; the others stand far from them.
       uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), index);
       vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count, settings.lod_bias);
-      vec3 found = clamp(sampled / max(light.rgb, vec3(least_light)), vec3(0.0), vec3(largest_kept));
-      found = mix(vec3(1.0), found, greaterThan(light.rgb, vec3(least_light)));
+      vec3 found = clamp(sampled / max(light.rgb, vec3(min_light)), vec3(0.0), vec3(largest_kept));
+      found = mix(vec3(1.0), found, greaterThan(light.rgb, vec3(min_light)));
       float weight = max(alpha, float(count) / (ratio.a + float(count)));
       ratio.rgb = mix(ratio.rgb, found, weight);
       kept.x = mix(kept.x, pattern, weight);
       ratio.a = min(ratio.a + float(count), memory * n / settings.alpha);
     }
     float trusted = first ? 1.0 : trust(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
-    light.rgb *= 1.0 + trusted * ratio.a / (ratio.a + doubt) * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
+    light.rgb *= 1.0 + trusted * ratio.a / (ratio.a + tile_error) * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
   }
-  imageStore(mended_image, texel, round_to_half(light));
+  imageStore(refined_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));
   imageStore(place_out_image, texel, round_to_half(vec4(own.depth / mm_per_metre, float(own.id), kept)));
   if (has_sampling())

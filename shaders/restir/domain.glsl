@@ -18,9 +18,9 @@ struct packed_domain {
 };
 
 const float restir_pi = 3.14159265358979;
-const float probe_share = 0.999;            // of a channel's energy that probes reach
-const float reach_in_d = 19.8602213973662; // where it lies: 1 - probe_share = (e^-r + 3 e^(-r/3)) / 4
-const float least_radius_in_d = 1e-6;       // R is infinite at 0; nearer counts as this near
+const float probe_fraction = 0.999;            // of a channel's energy that probes reach
+const float reach_in_d = 19.8602213973662; // where it lies: 1 - probe_fraction = (e^-r + 3 e^(-r/3)) / 4
+const float min_radius_in_d = 1e-6;       // R is infinite at 0; nearer counts as this near
 
 float scattering_reach(vec3 d) { return reach_in_d * max(d.r, max(d.g, d.b)); }
 
@@ -44,7 +44,7 @@ vec3 scattering_profile(vec3 d, float r) {
     return profile;
   for (int c = 0; c < 3; ++c)
     if (d[c] > 0.0)
-      profile[c] = burley_R(max(r, least_radius_in_d * d[c]), d[c]) / burley_cdf(reach, d[c]);
+      profile[c] = burley_R(max(r, min_radius_in_d * d[c]), d[c]) / burley_cdf(reach, d[c]);
   return profile;
 }
 

@@ -8,7 +8,7 @@ struct light_source {
   vec3 position; // point: where; areas: a corner; directional: unit vector towards the light
   uint type;
   vec3 edge_u; // areas: edges; the light shines where cross(edge_u, edge_v) points
-  float share; // probability of being picked
+  float fraction; // probability of being picked
   vec3 edge_v;
   float area;    // areas: theirs; directional: length of its shadow rays; point: 1
   vec3 emission; // point: intensity; areas: radiance; directional: irradiance
@@ -26,7 +26,7 @@ uint light_place(float u, float v) {
 }
 
 // Of picking this light and this place: per area of areas.
-float light_density(light_source light) { return light_has_area(light) ? light.share / light.area : light.share; }
+float light_density(light_source light) { return light_has_area(light) ? light.fraction / light.area : light.fraction; }
 
 // Where shadow rays from `from` end.
 vec3 light_target(light_source light, uint place, vec3 from) {

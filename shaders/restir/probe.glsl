@@ -5,13 +5,13 @@
 
 #include "restir/domain.glsl"
 
-const vec3 probe_axis_share = vec3(0.5, 0.25, 0.25); // normal, tangents
-const uint most_probe_hits = 16u;
+const vec3 probe_axis_fraction = vec3(0.5, 0.25, 0.25); // normal, tangents
+const uint max_probe_hits = 16u;
 const uint assumed_hits = 255u; // not traced: taken for that of whatever it is compared with
 
 struct probe_numbers {
   uint axis, channel;
-  float survival; // 1 - probe_share u
+  float survival; // 1 - probe_fraction u
   float angle;    // of a full turn
   float pick;     // which of the hits
 };
@@ -26,7 +26,7 @@ struct probe_hit {
 };
 struct probe_hits {
   uint count;
-  probe_hit hit[most_probe_hits];
+  probe_hit hit[max_probe_hits];
 };
 
 uint scattering_channels(vec3 d) { return uint(d.r > 0.0) + uint(d.g > 0.0) + uint(d.b > 0.0); }
@@ -40,15 +40,15 @@ probe_numbers draw_numbers(vec3 d, vec4 u) {
   numbers.axis = 0u;
   numbers.channel = 0u;
   float below = 0.0;
-  while (numbers.axis < 2u && u.x >= below + probe_axis_share[numbers.axis])
-    below += probe_axis_share[numbers.axis++];
-  uint skip = picked_hit((u.x - below) / probe_axis_share[numbers.axis], max(1u, scattering_channels(d)));
+  while (numbers.axis < 2u && u.x >= below + probe_axis_fraction[numbers.axis])
+    below += probe_axis_fraction[numbers.axis++];
+  uint skip = picked_hit((u.x - below) / probe_axis_fraction[numbers.axis], max(1u, scattering_channels(d)));
   for (uint c = 0u; c < 3u; ++c)
     if (d[c] > 0.0 && skip-- == 0u) {
       numbers.channel = c;
       break;
     }
-  numbers.survival = 1.0 - probe_share * u.y;
+  numbers.survival = 1.0 - probe_fraction * u.y;
   numbers.angle = u.z;
   numbers.pick = u.w;
   return numbers;
@@ -88,9 +88,9 @@ float probe_technique_pdf(scatter_domain domain, uint axis, uint channel, vec3 p
   vec3 offset = position - domain.position;
   if (!(d > 0.0) || !(length(offset) <= reach_in_d * d))
     return 0.0;
-  float r = max(length(on_probe_disc(domain, axis, offset)), least_radius_in_d * d);
+  float r = max(length(on_probe_disc(domain, axis, offset)), min_radius_in_d * d);
   float cosine = abs(dot(normal, probe_axis(domain.normal, axis)));
-  return probe_axis_share[axis] / float(scattering_channels(domain.d)) * cosine * burley_R(r, d) / probe_share;
+  return probe_axis_fraction[axis] / float(scattering_channels(domain.d)) * cosine * burley_R(r, d) / probe_fraction;
 }
 
 // Over all of them.
@@ -121,7 +121,7 @@ bool invert_point(scatter_domain domain, vec3 position, vec3 normal, float u, in
     return false;
   vec2 place = on_probe_disc(domain, numbers.axis, position - domain.position);
   float d = domain.d[numbers.channel];
-  numbers.survival = clamp(1.0 - burley_cdf(length(place), d), 1.0 - probe_share, 1.0);
+  numbers.survival = clamp(1.0 - burley_cdf(length(place), d), 1.0 - probe_fraction, 1.0);
   float turn = place == vec2(0.0) ? 0.0 : atan(place.y, place.x) / (2.0 * restir_pi);
   numbers.angle = turn < 0.0 ? turn + 1.0 : turn;
   numbers.pick = 0.0;

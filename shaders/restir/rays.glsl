@@ -21,13 +21,13 @@ void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
     met.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
     met.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, false);
     met.distance = rayQueryGetIntersectionTEXT(query, false);
-    uint at = min(hits.count, most_probe_hits - 1u);
-    if (hits.count == most_probe_hits && met.distance >= hits.hit[at].distance)
+    uint at = min(hits.count, max_probe_hits - 1u);
+    if (hits.count == max_probe_hits && met.distance >= hits.hit[at].distance)
       continue;
     for (; at > 0u && hits.hit[at - 1u].distance > met.distance; --at)
       hits.hit[at] = hits.hit[at - 1u];
     hits.hit[at] = met;
-    hits.count = min(hits.count + 1u, most_probe_hits);
+    hits.count = min(hits.count + 1u, max_probe_hits);
   }
 }
 

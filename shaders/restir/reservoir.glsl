@@ -6,7 +6,7 @@
 #include "restir/probe.glsl"
 
 const uint no_instance = 0xffffffffu;
-const float most_confidence = 65536.0;
+const float max_confidence = 65536.0;
 const float confidence_cap = 20.0;
 
 struct reservoir {
@@ -36,14 +36,14 @@ const float restir_largest = 3.0e38; // what is not below is infinite, or NaN
 bool is_usable(float x) { return x >= 0.0 && x < restir_largest; }
 
 reservoir sanitised(reservoir r) {
-  r.confidence = r.confidence > 0.0 ? min(r.confidence, most_confidence) : 0.0;
+  r.confidence = r.confidence > 0.0 ? min(r.confidence, max_confidence) : 0.0;
   bool good = is_usable(r.weight) && is_usable(r.density) && is_usable(r.irradiance.r) && is_usable(r.irradiance.g) &&
               is_usable(r.irradiance.b);
-  float shares[5] = float[5](r.barycentrics.x, r.barycentrics.y, r.numbers.survival, r.numbers.angle, r.numbers.pick);
+  float fractions[5] = float[5](r.barycentrics.x, r.barycentrics.y, r.numbers.survival, r.numbers.angle, r.numbers.pick);
   for (int i = 0; i < 5; ++i)
-    good = good && shares[i] >= 0.0 && shares[i] <= 1.0;
+    good = good && fractions[i] >= 0.0 && fractions[i] <= 1.0;
   good = good && r.numbers.axis < 3u && r.numbers.channel < 3u &&
-         (r.hits <= most_probe_hits || r.hits == assumed_hits);
+         (r.hits <= max_probe_hits || r.hits == assumed_hits);
   if (good)
     return r;
   return no_reservoir(r.confidence);

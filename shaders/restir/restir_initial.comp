@@ -21,11 +21,11 @@ void main() {
   scatter_domain domain = domain_of(pixel);
   random_state random = random_of(pixel, random_numbers_of_samples);
   reservoir_stream stream = stream_begin();
-  float share = 1.0 / float(settings.samples); // MIS weight of equal techniques
+  float fraction = 1.0 / float(settings.samples); // MIS weight of equal techniques
   for (int i = 0; i < settings.samples; ++i) {
     reservoir drawn = draw_initial(domain, random);
     float target = has_sample(drawn) ? target_of(domain, surface_of(drawn), drawn) : 0.0;
-    stream_add(stream, drawn, target, share * target * drawn.weight, share, random_unit(random));
+    stream_add(stream, drawn, target, fraction * target * drawn.weight, fraction, random_unit(random));
   }
   packed_reservoir packed = pack_reservoir(stream_end(stream));
   for (uint i = 0u; i < 4u; ++i)

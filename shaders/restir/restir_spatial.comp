@@ -11,7 +11,7 @@
 #include "restir/rays.glsl"
 #include "restir/reuse.glsl"
 
-const uint most_neighbours = 8u;
+const uint max_neighbours = 8u;
 
 reservoir reservoir_of(ivec2 pixel) {
   packed_reservoir packed;
@@ -40,7 +40,7 @@ void main() {
   vec2 footprint = pixel_footprint(view_depth(texelFetch(depth_image, texel_of(pixel), 0).r)) / mm_per_world_unit();
   float radius = search_radius(domain.d, min(footprint.x, footprint.y));
 
-  ivec2 neighbours[most_neighbours];
+  ivec2 neighbours[max_neighbours];
   uint count = 0u;
   float confidences = 0.0;
   for (int i = 0; i < settings.neighbours && domain.medium != 0u; ++i) {

@@ -127,11 +127,11 @@ void spatial_add(reuse_settings settings, scatter_domain domain, inout spatial_m
   reservoir other = both.path[1];
   shifted_path back = both.image[0], here = both.image[1];
   float own_confidence = spatial.own.confidence;
-  float share = restir_part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
-  spatial.own_mis += share * restir_part(own_confidence * spatial.own_target,
+  float fraction = restir_part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
+  spatial.own_mis += fraction * restir_part(own_confidence * spatial.own_target,
                                          spatial.neighbours * back.target * back.jacobian);
   float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
-  float mis = share * restir_part(spatial.neighbours * there, own_confidence * here.target);
+  float mis = fraction * restir_part(spatial.neighbours * there, own_confidence * here.target);
   stream_add(spatial.stream, here.path, here.target, mis * here.target * other.weight * here.jacobian,
              other.confidence, random_unit(random));
 }

@@ -13,7 +13,7 @@ struct surface_point {
   uint medium;
 };
 
-// All hits with surfaces of the medium, front and back, in order of distance; the nearest most_probe_hits. A ray query
+// All hits with surfaces of the medium, front and back, in order of distance; the nearest max_probe_hits. A ray query
 // meets candidates in any order: sort them.
 void trace_probe(probe_ray ray, uint medium, out probe_hits hits);
 surface_point surface_at(uint instance, uint primitive, vec2 barycentrics);

@@ -31,9 +31,9 @@ uint shift_of_stage(uint shift, uint stage) {
 }
 
 bool connectable(scatter_domain domain, vec3 position, vec3 normal) {
-  float most = max(domain.d.r, max(domain.d.g, domain.d.b));
+  float maximum = max(domain.d.r, max(domain.d.g, domain.d.b));
   return dot(domain.normal, normal) <= connectable_cosine ||
-         length(position - domain.position) >= connectable_distance_in_d * most;
+         length(position - domain.position) >= connectable_distance_in_d * maximum;
 }
 
 bool replays(uint shift, scatter_domain domain, surface_point x2) {

@@ -16,12 +16,12 @@ vec3 world_position(ray_instance one, uint vertex) {
 
 surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
   ray_instance one = instances_data[instance];
-  vec3 share = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
+  vec3 fraction = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
   vec3 p[3], normal = vec3(0.0);
   for (uint i = 0u; i < 3u; ++i) {
     uint vertex = indices_data[one.place.y + 3u * primitive + i];
     p[i] = world_position(one, vertex);
-    normal += share[i] * vertices_data[2u * (one.place.x + vertex) + 1u].xyz;
+    normal += fraction[i] * vertices_data[2u * (one.place.x + vertex) + 1u].xyz;
   }
   vec3 geometric = normalize(cross(p[1] - p[0], p[2] - p[0]));
   vec3 x = one.world_from_object[0].xyz, y = one.world_from_object[1].xyz, z = one.world_from_object[2].xyz;
@@ -31,7 +31,7 @@ surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
     shading = -shading;
   }
   float square = dot(shading, shading);
-  return surface_point(share.x * p[0] + share.y * p[1] + share.z * p[2], geometric,
+  return surface_point(fraction.x * p[0] + fraction.y * p[1] + fraction.z * p[2], geometric,
                        square > 0.0 ? shading * inversesqrt(square) : geometric, one.place.z);
 }
 

@@ -1,4 +1,4 @@
-// The surface-aware pyramid (SAP): what its kernels share. tests/passes/sap/cpu/sap_twin.cpp mirrors these functions.
+// The surface-aware pyramid (SAP): what its kernels share. tests/passes/sap/cpu/sap_cpu.cpp mirrors these functions.
 #ifndef DERMIS_SAP_GLSL
 #define DERMIS_SAP_GLSL
 
@@ -62,8 +62,8 @@ uvec4 sap_pack_scattered_full(sap_scattered t) {
   return uvec4(floatBitsToUint(t.light), packUnorm4x8(vec4(t.mass, t.confidence)));
 }
 sap_scattered sap_unpack_scattered_full(uvec4 bits) {
-  vec4 shares = unpackUnorm4x8(bits.w);
-  return sap_scattered(uintBitsToFloat(bits.xyz), shares.a, shares.rgb);
+  vec4 fractions = unpackUnorm4x8(bits.w);
+  return sap_scattered(uintBitsToFloat(bits.xyz), fractions.a, fractions.rgb);
 }
 
 // Geometric mean of a pixel's sides at a depth, mm.
@@ -101,8 +101,8 @@ float sap_lookup(int table, int row, float d_px) {
   int node = min(int(clamped), sap_nodes - 2);
   float value = mix(sap_table[first + node], sap_table[first + node + 1], clamped - float(node));
   // Below the first node all but the centre fades.
-  float share = position < 0.0 ? d_px / exp2(sap_log2_d_first) : 1.0;
-  return row == 0 ? 1.0 - share * (1.0 - value) : row == 1 ? share * value : value;
+  float fraction = position < 0.0 ? d_px / exp2(sap_log2_d_first) : 1.0;
+  return row == 0 ? 1.0 - fraction * (1.0 - value) : row == 1 ? fraction * value : value;
 }
 // Per channel; a profile with tables of its own has one a channel.
 vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {

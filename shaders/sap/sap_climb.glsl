@@ -6,22 +6,22 @@ const int block_width = 2, block_height = 2, coarse_width = 2, coarse_height = 2
 const ivec2 odd_first = ivec2(1);
 #include "sap/sap_up.glsl"
 
-const float least_share = 0.004; // below it the tent is not worth its time
+const float min_fraction = 0.004; // below it the tent is not worth its time
 
 // Bits of the texel at hand, whose place has parity `odd`, blended with what the coarser level hands down. `layers`: how
 // many are looked at.
 uvec4 climb(ivec2 odd, int level, sap_texel own, vec3 light, int layers, bool smooth_level, bool last) {
-  vec3 share = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
+  vec3 fraction = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
   sap_sum here = sap_sum(light, vec3(own.mass));
-  if (smooth_level && max(share.r, max(share.g, share.b)) >= least_share)
+  if (smooth_level && max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction)
     here = sap_tent(level, own, layers);
   float confidence = 0.0;
   sap_sum rest = sap_sum(here.light, vec3(0.0));
   if (!last)
     rest = sap_from_coarser(odd, level, own, here.light, layers, confidence);
-  rest.mass *= max(1.0 - share, vec3(0.0));
-  sap_sum blend = sap_blend(share * here.mass, here.light, vec3(0.0), here.light, rest);
-  float widest = share[profiles[min(own.id, 255u)].widest];
+  rest.mass *= max(1.0 - fraction, vec3(0.0));
+  sap_sum blend = sap_blend(fraction * here.mass, here.light, vec3(0.0), here.light, rest);
+  float widest = fraction[profiles[min(own.id, 255u)].widest];
   float sure = mix(confidence, here.mass.r, widest);
   return settings.storage == STORAGE_FULL
              ? sap_pack_scattered_full(sap_scattered(blend.light, sure, blend.mass))

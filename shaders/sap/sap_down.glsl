@@ -10,8 +10,8 @@ const int block_width = 2, block_height = 2;
 #include "sap/sap_tiles.glsl"
 
 const float hysteresis = 1.02;    // the first of equals stays the seed
-const float nearest_share = 0.25; // a plane is not extrapolated nearer than this share of its depth
-const float least_seed_part = 0.9; // what has less left is no seed of the second layer: it lies on the first one's surface, bent
+const float nearest_fraction = 0.25; // a plane is not extrapolated nearer than this share of its depth
+const float min_seed_part = 0.9; // what has less left is no seed of the second layer: it lies on the first one's surface, bent
 
 #ifdef SAP_BOX
 const int children_across = 2;
@@ -19,14 +19,14 @@ const int children_across = 2;
 const int children_across = 4;
 #endif
 #ifdef SAP_SECOND
-const int most_layers = 2;
+const int max_layers = 2;
 #else
-const int most_layers = 1;
+const int max_layers = 1;
 #endif
 const int children_a_layer = children_across * children_across;
-sap_texel children[most_layers * children_a_layer]; // one layer behind the other
-vec4 child_light[most_layers * children_a_layer];
-float child_left[most_layers * children_a_layer]; // what no layer of the parent has taken yet
+sap_texel children[max_layers * children_a_layer]; // one layer behind the other
+vec4 child_light[max_layers * children_a_layer];
+float child_left[max_layers * children_a_layer]; // what no layer of the parent has taken yet
 
 // A block's parents share their children.
 const int side = block_width * 2 + children_across - 2;
@@ -70,7 +70,7 @@ void begin_parent(int layers) {
   [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
     child_left[c] = 1.0;
 }
-bool may_seed(int child) { return children[child].id != 0u && child_left[child] >= least_seed_part; }
+bool may_seed(int child) { return children[child].id != 0u && child_left[child] >= min_seed_part; }
 // Whether another layer has a seed.
 bool remains(int layers) {
   bool any_seed = false;
@@ -91,12 +91,12 @@ float binomial(int child) {
 #endif
 }
 float at_parent(sap_texel child, vec2 offset) {
-  return max(child.depth - sap_rise(child.depth, child.slope, offset), nearest_share * child.depth);
+  return max(child.depth - sap_rise(child.depth, child.slope, offset), nearest_fraction * child.depth);
 }
 
 struct seed_search {
   sap_texel best;
-  float most;
+  float maximum;
   int child;
 };
 // Central child 0 to 3 of the first layer, 4 to 7 of the second.
@@ -127,9 +127,9 @@ sap_texel find_seed(float spacing, int layers) {
     sap_texel seed = children[c];
     seed.depth = at_parent(seed, offset_of(c, spacing));
     float support = support_of(seed, spacing, layers);
-    if (may_seed(c) && (found.best.id == 0u || support > hysteresis * found.most)) {
+    if (may_seed(c) && (found.best.id == 0u || support > hysteresis * found.maximum)) {
       found.best = seed;
-      found.most = support;
+      found.maximum = support;
     }
   }
 #ifndef SAP_BOX
@@ -137,10 +137,10 @@ sap_texel find_seed(float spacing, int layers) {
     return found.best;
   [[unroll]] for (int a = 0; a < layers * children_a_layer; ++a) {
     float weight = may_seed(a) ? binomial(a) * children[a].mass : 0.0;
-    if (weight > hysteresis * found.most) {
+    if (weight > hysteresis * found.maximum) {
       found.best = children[a];
       found.child = a;
-      found.most = weight;
+      found.maximum = weight;
     }
   }
   found.best.depth = at_parent(found.best, offset_of(found.child, spacing));
@@ -193,7 +193,7 @@ void reduce(float spacing, int layers, out vec4 light, out uvec4 bits) {
   if (sum.total > sap_negligible) {
     light = vec4(sum.light / sum.total, sum.total / sum.mass);
     vec3 rounded = round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
-    bits = sap_pack(sap_texel(max(sum.mean_depth / sum.total_flat, nearest_share * seed.depth), rounded.xy, rounded.z,
+    bits = sap_pack(sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy, rounded.z,
                               round_to_half(min(sum.mass / sum.all_weight, 1.0)), seed.id));
   }
 }

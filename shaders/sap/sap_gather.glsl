@@ -6,7 +6,7 @@ const int block_width = 4, block_height = 2, coarse_width = 4, coarse_height = 3
 const ivec2 odd_first = ivec2(0);
 #include "sap/sap_up.glsl"
 
-const float least_share = 0.002; // below it the tent is not worth its time
+const float min_fraction = 0.002; // below it the tent is not worth its time
 
 // Of the texel at hand, whose place has parity `odd`.
 vec4 gather(ivec2 odd, sap_texel own) {
@@ -14,7 +14,7 @@ vec4 gather(ivec2 odd, sap_texel own) {
   vec3 d_px = sap_d_px(own) * inversesqrt(near_light[near_centre].a); // a tilted pixel keeps more of its own light
   vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
   sap_sum near = sap_sum(light, vec3(own.mass));
-  if (max(tent.r, max(tent.g, tent.b)) >= least_share)
+  if (max(tent.r, max(tent.g, tent.b)) >= min_fraction)
     near = sap_tent(0, own, 1);
   float confidence;
   sap_sum rest = sap_from_coarser(odd, 0, own, light, SAP_COARSE_LAYERS, confidence);

@@ -52,13 +52,13 @@ void main() {
       int k = findLSB(layered);
       ivec2 at = first + ivec2(k % block_width, k / block_width);
       read_children(block, at, finer);
-      begin_parent(most_layers);
+      begin_parent(max_layers);
       uvec4 first_bits = uvec4(0u);
-      int layer = 0, layers = layered != 0u ? most_layers : 1;
+      int layer = 0, layers = layered != 0u ? max_layers : 1;
       [[dont_unroll]] do {
         vec4 light;
         uvec4 bits;
-        reduce(spacing, most_layers, light, bits);
+        reduce(spacing, max_layers, light, bits);
         if (layer == 0) {
           first_bits = bits;
           imageStore(coarse_light_image, sap_address(at, level), stored(light));

@@ -55,8 +55,8 @@ vec3 axis_pass(ivec2 pixel, uint id, float depth, scatter_profile profile, uint 
     float below = floor(tap.w);
     float part = tap.w - below;
     for (int k = 0; k < 4; ++k) { // two sides, two texels of the linear interpolation
-      float share = (k & 1) == 0 ? 1.0 - part : part;
-      if (share <= 0.0)
+      float fraction = (k & 1) == 0 ? 1.0 - part : part;
+      if (fraction <= 0.0)
         continue;
       float distance_px = below + float(k & 1);
       int offset = int(min(distance_px, 32768.0)) * (k < 2 ? -1 : 1);
@@ -74,7 +74,7 @@ vec3 axis_pass(ivec2 pixel, uint id, float depth, scatter_profile profile, uint 
       vec3 nearness = abs(rise) > 1e-4 * across ? profile_falloff(profile, sqrt(across * across + rise * rise)) /
                                                       max(profile_falloff(profile, across), vec3(1e-37))
                                                 : vec3(1.0);
-      vec3 w = tap.rgb * share * nearness;
+      vec3 w = tap.rgb * fraction * nearness;
       sum += w * (vertical ? texelFetch(blurred_image, texel, 0).rgb : texelFetch(light_image, texel, 0).rgb);
       total += w;
     }

@@ -3,7 +3,7 @@
 
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/serial/plan_file.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "tests/framegraph/random_graph.hpp"
 
 #include <fmt/format.h>
@@ -29,18 +29,18 @@ bool print_digest(const std::string& name, const CompileInput& input) {
 }
 
 bool digest_file(const std::filesystem::path& path) {
-  static const KindRegistry kinds = subsurface::make_kinds();
+  static const PassTypeRegistry pass_types = subsurface::make_pass_types();
   static const DeviceProfile device = generic_profile();
   Diagnostics diagnostics;
   const auto document = read_document(path.string(), diagnostics);
-  const auto graph = document ? read_graph(*document, kinds, diagnostics) : std::nullopt;
+  const auto graph = document ? read_graph(*document, pass_types, diagnostics) : std::nullopt;
   if (!graph) {
     fmt::print(stderr, "{}\n", format_as_json(diagnostics));
     return false;
   }
   CompileInput input;
   input.graph = &*graph;
-  input.kinds = &kinds;
+  input.pass_types = &pass_types;
   input.device = &device;
   input.view_width = 1920;
   input.view_height = 1080;
@@ -53,7 +53,7 @@ bool digest_file(const std::filesystem::path& path) {
   return good;
 }
 
-bool digest_drawn(uint64_t seed) {
+bool digest_random(uint64_t seed) {
   const testing::GraphBuilder builder = testing::random_graph(seed);
   CompileInput input = builder.input();
   input.packing = static_cast<PackingLevel>(seed % 3);
@@ -79,6 +79,6 @@ int main(int argc, char** argv) {
     good = digest_file(file) && good;
   const uint64_t drawn = std::strtoull(argv[2], nullptr, 10);
   for (uint64_t seed = 0; seed < drawn; ++seed)
-    good = digest_drawn(seed) && good;
+    good = digest_random(seed) && good;
   return good ? 0 : 1;
 }

@@ -22,7 +22,7 @@ TEST(RandomGraphs, EveryPlanIsAcceptedByTheVerifier) {
     barriers += plan.barriers.size();
     histories += plan.histories.size();
     for (const PlanBarrier& barrier : plan.barriers)
-      aliases += barrier.why == PlanBarrier::Why::alias;
+      aliases += barrier.why == PlanBarrier::ReasonKind::alias;
   }
   // The generator reaches what the law is about.
   EXPECT_GT(passes, 5 * seeds);
@@ -36,7 +36,7 @@ TEST(RandomGraphs, NoBarrierCanBeDropped) {
     const auto builder = random_graph(seed);
     const auto whole = compiled(builder);
     for (uint32_t b = 0; b < whole.plan.barriers.size(); ++b)
-      EXPECT_FALSE(verify(without_barrier(whole.plan, b)).objections.empty())
+      EXPECT_FALSE(verify(without_barrier(whole.plan, b)).violations.empty())
           << "seed " << seed << ", barrier " << b << ": "
           << reasons(builder, whole, Reason::About::barrier, b);
     if (HasFailure()) return;

@@ -133,7 +133,8 @@ TEST(Formats, TheFirstOneThatEveryPortAndTheDeviceCanUseIsTaken) {
   EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::b10g11r11f);
   EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
               HasSubstr("not rgba8_srgb: the device 'generic' does not support it"));
-  b.graph.passes[1].kind = b.kinds.find("test.narrow"); // reads through the same port number, rgba16f only
+  b.graph.passes[1].type =
+      b.pass_types.find("test.narrow"); // reads through the same port number, rgba16f only
   b.read(1, 0).port = 0;
   b.written(1, 0).port = 1;
   whole = compiled(b);
@@ -285,7 +286,7 @@ TEST(Packing, NumbersThatShareBitsAreFoundOnEveryProcessor) {
     uint32_t expected = 0;
     for (uint32_t i = 0; i < numbers_at_once; ++i)
       expected |= static_cast<uint32_t>((numbers[i] & mask) != 0) << i;
-    ASSERT_EQ(sharing_bits(numbers.data(), mask), expected);
+    ASSERT_EQ(any_common_bits(numbers.data(), mask), expected);
     ASSERT_EQ(sharing_bits_anywhere(numbers.data(), mask), expected);
   }
 }

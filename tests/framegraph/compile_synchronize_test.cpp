@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
-using Why = PlanBarrier::Why;
+using ReasonKind = PlanBarrier::ReasonKind;
 
 std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan, const std::string& pass) {
   for (const PlanPass& one : plan.passes)
@@ -47,7 +47,7 @@ TEST(Synchronize, AReadWaitsForTheWriteAndChangesTheLayout) {
   b.pass("finish", "test.shade", {{"a", "blurred"}}, {{"out", "result"}});
   const auto whole = compiled(b);
   const auto barrier = barrier_on(b, whole.plan, "finish", "blurred");
-  EXPECT_EQ(barrier.why, Why::read_after_write);
+  EXPECT_EQ(barrier.why, ReasonKind::read_after_write);
   EXPECT_EQ(barrier.source_stages, stage::compute_shader);
   EXPECT_EQ(barrier.source_access, access::shader_storage_write);
   EXPECT_EQ(barrier.destination_stages, stage::compute_shader);
@@ -64,7 +64,7 @@ TEST(Synchronize, ASecondReadInTheSameLayoutNeedsNoBarrier) {
   b.pass("one", "test.need", {{"a", "light"}}, {{"out", "first"}});
   b.pass("two", "test.need", {{"a", "light"}}, {{"out", "second"}});
   const auto whole = compiled(b);
-  EXPECT_EQ(barrier_on(b, whole.plan, "one", "light").why, Why::host_before);
+  EXPECT_EQ(barrier_on(b, whole.plan, "one", "light").why, ReasonKind::host_before);
   EXPECT_EQ(barrier_on(b, whole.plan, "two", "light").resource, no_instance);
 }
 
@@ -123,7 +123,7 @@ TEST(Synchronize, APureWriteAfterReadIsAnExecutionDependency) {
   b.pass("clear", "test.fill", {}, {{"target", "tiles"}});
   const auto whole = compiled(b);
   const auto barrier = barrier_on(b, whole.plan, "clear", "tiles");
-  EXPECT_EQ(barrier.why, Why::write_after_read);
+  EXPECT_EQ(barrier.why, ReasonKind::write_after_read);
   EXPECT_EQ(barrier.source_stages, stage::draw_indirect);
   EXPECT_EQ(barrier.source_access, access::none);
   EXPECT_EQ(barrier.destination_stages, usage_info(Usage::clear).stages);
@@ -175,14 +175,14 @@ TEST(Aliasing, ANewOccupantWaitsForEveryOldOneAndDiscardsItsContents) {
   // Two of four are alive at a time.
   EXPECT_EQ(whole.plan.heaps[0].size, 2 * whole.plan.placements[0].size);
   const auto barrier = barrier_on(b, whole.plan, "p3", "three");
-  EXPECT_EQ(barrier.why, Why::alias);
+  EXPECT_EQ(barrier.why, ReasonKind::alias);
   EXPECT_EQ(barrier.old_layout, Layout::undefined);
   EXPECT_EQ(barrier.source_stages, stage::compute_shader);
   // 'one' was last read by p2; across the frame boundary both are last read, so nothing is left to make
   // available.
   EXPECT_EQ(barrier.source_access, access::none);
   uint32_t index = 0;
-  while (whole.plan.barriers[index].why != Why::alias)
+  while (whole.plan.barriers[index].why != ReasonKind::alias)
     ++index;
   EXPECT_THAT(reasons(b, whole, Reason::About::barrier, index), HasSubstr("takes over memory of"));
 }
@@ -196,7 +196,7 @@ TEST(Aliasing, TheFirstOccupantOfAFrameWaitsForTheLastOnesOfTheFrameBefore) {
   b.pass("scatter", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}}, {{"out", "result"}});
   const auto whole = compiled(b);
   const auto barrier = barrier_on(b, whole.plan, "list", "tiles");
-  EXPECT_EQ(barrier.why, Why::first_use);
+  EXPECT_EQ(barrier.why, ReasonKind::first_use);
   EXPECT_EQ(barrier.source_stages, stage::compute_shader | stage::draw_indirect);
 }
 
@@ -259,7 +259,7 @@ TEST(InPlace, TheVerifierRefusesARaceInsideAPass) {
   ASSERT_THAT(plan.accesses, SizeIs(2));
   EXPECT_TRUE(plan.accesses[0].own_texels);
   plan.accesses[0].own_texels = false;
-  EXPECT_THAT(verify(plan).objections, ::testing::Contains(HasSubstr("not texel by texel")));
+  EXPECT_THAT(verify(plan).violations, ::testing::Contains(HasSubstr("not texel by texel")));
   EXPECT_NE(first_hazard(plan), "");
 }
 
@@ -318,10 +318,10 @@ TEST(History, TheVerifierRefusesAFrameThatIsWrittenOverTooEarly) {
   Plan freely = compiled(blend("own")).plan;
   for (PlanAccess& access : freely.accesses)
     access.own_texels = false;
-  EXPECT_FALSE(verify(freely).objections.empty());
+  EXPECT_FALSE(verify(freely).violations.empty());
   Plan flat = compiled(blend("a")).plan;
   flat.resources[flat.histories.at(0).resource].instance_count = 1;
-  EXPECT_FALSE(verify(flat).objections.empty());
+  EXPECT_FALSE(verify(flat).violations.empty());
 }
 
 TEST(History, ItsValidityNeverChangesThePacking) {
@@ -357,13 +357,13 @@ TEST(History, TheFirstReadWaitsForTheFrameBeforeAndTheNewestReusesTheOldest) {
   b.pass("show", "test.need", {{"a", "sum@-1"}}, {{"out", "result"}});
   const auto whole = compiled(b);
   const auto past = barrier_on(b, whole.plan, "accumulate", "sum", 1);
-  EXPECT_EQ(past.why, Why::history);
+  EXPECT_EQ(past.why, ReasonKind::history);
   EXPECT_EQ(past.source_access, access::shader_storage_write);
   EXPECT_EQ(past.old_layout, Layout::general);
   EXPECT_EQ(past.new_layout, Layout::shader_read_only);
   EXPECT_EQ(whole.plan.history_layouts[1], Layout::general);
   const auto newest = barrier_on(b, whole.plan, "accumulate", "sum", 0);
-  EXPECT_EQ(newest.why, Why::history);
+  EXPECT_EQ(newest.why, ReasonKind::history);
   EXPECT_EQ(newest.old_layout, Layout::undefined);
   EXPECT_EQ(newest.source_stages, stage::compute_shader); // last read in the frame before
   EXPECT_EQ(newest.source_access, access::none);
@@ -396,11 +396,11 @@ TEST(Verify, AReaderThatMayBeLeftOutShowsAWriterNothing) {
     plan.barriers[pass.first_barrier].source_access = plan.barriers[pass.first_barrier].destination_access =
         0;
   }
-  EXPECT_FALSE(verify(plan).objections.empty());
+  EXPECT_FALSE(verify(plan).violations.empty());
   EXPECT_NE(first_hazard(plan), "");
   for (PlanAccess& access : plan.accesses) // were it always read, that would do
     access.when = ReadWhen::always;
-  EXPECT_TRUE(verify(plan).objections.empty());
+  EXPECT_TRUE(verify(plan).violations.empty());
   EXPECT_EQ(first_hazard(plan), "");
 }
 

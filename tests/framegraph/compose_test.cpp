@@ -38,12 +38,12 @@ Composed put_together(const std::string& graph, const std::vector<std::string>& 
                                 : FileText{std::string(name), found->second, ""};
   };
   out.composition = compose(std::move(*document), std::move(read), open, out.diagnostics);
-  if (out.composition) out.graph = read_graph(out.composition->document, kinds(), out.diagnostics);
+  if (out.composition) out.graph = read_graph(out.composition->document, pass_types(), out.diagnostics);
   return out;
 }
 
 std::string overlay(const std::string& edits) {
-  return "{ \"dermis_overlay\": 1, \"edits\": [\n" + edits + " ] }";
+  return "{ \"dermis_overlay\": 2, \"edits\": [\n" + edits + " ] }";
 }
 
 std::vector<std::string> pass_names(const Composed& composed) {
@@ -74,7 +74,7 @@ void expect_one(const Composed& composed, Id id, const std::string& place,
 }
 
 constexpr const char* copy_pass =
-    R"({ "pass": "again", "kind": "test.blur", "read": { "source": "half" }, "write": { "target": "fixed" } })";
+    R"({ "pass": "again", "type": "test.blur", "read": { "source": "half" }, "write": { "target": "fixed" } })";
 
 TEST(Compose, AGraphWithoutIncludesAndOverlaysIsLeftAsItIs) {
   const Composed composed = put_together(whole_graph(), {});
@@ -84,7 +84,7 @@ TEST(Compose, AGraphWithoutIncludesAndOverlaysIsLeftAsItIs) {
 }
 
 TEST(Overlay, PassesAreInsertedReplacedAndRemovedByName) {
-  const std::string fresh = R"({ "pass": "fresh", "kind": "test.list", "read": { "mask": "material" }, )"
+  const std::string fresh = R"({ "pass": "fresh", "type": "test.list", "read": { "mask": "material" }, )"
                             R"("write": { "tiles": "list" } })";
   EXPECT_EQ(pass_names(put_together(whole_graph(), {overlay(R"({ "remove": "/passes/copy" },
       { "set": "/resources/fixed", "to": { "format": "rgba16f", "size": "view" } },
@@ -166,9 +166,9 @@ TEST(Overlay, AnEditNamesWhatIsThere) {
 }
 
 TEST(Overlay, MayAddTheFirstSettingAndMembersOfAPass) {
-  const std::string graph = R"({ "dermis": 1, "name": "plain",
+  const std::string graph = R"({ "dermis": 2, "name": "plain",
   "resources": { "a": { "format": "rgba16f", "size": "view" } },
-  "passes": [ { "pass": "copy", "kind": "test.blur", "read": { "source": "light" }, "write": { "target": "a" } } ] })";
+  "passes": [ { "pass": "copy", "type": "test.blur", "read": { "source": "light" }, "write": { "target": "a" } } ] })";
   const Composed composed =
       put_together(graph, {overlay(R"({ "set": "/settings/wide", "to": { "real": 3, "min": 0, "max": 8 } },
                          { "set": "/imports/light", "to": { "format": "rgba16f", "size": "view" } },
@@ -189,9 +189,9 @@ TEST(Overlay, WhatAnEarlierOneRemovedIsNamed) {
 }
 
 TEST(Overlay, ItsOwnMistakesAreToldOnceEach) {
-  expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 2, \"edits\": [] }"}),
+  expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 3, \"edits\": [] }"}),
              Id::unsupported_version, "overlay0.json:1:21", {});
-  expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 1, \"edit\": [] }"}), Id::unknown_key,
+  expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 2, \"edit\": [] }"}), Id::unknown_key,
              "overlay0.json:1:24", {"did you mean 'edits'?"});
   expect_one(put_together(whole_graph(), {overlay("{ \"sett\": \"/name\", \"to\": 1 }")}), Id::unknown_key,
              "overlay0.json:2:3", {"did you mean 'set'?"});
@@ -215,17 +215,17 @@ TEST(Overlay, NestingStaysInsideTheLimitHoweverManyEditsBuildIt) {
              {"64 deep"});
 }
 
-constexpr const char* tiles_fragment = R"({ "dermis_fragment": 1, "note": "finds tiles",
+constexpr const char* tiles_fragment = R"({ "dermis_fragment": 2, "note": "finds tiles",
   "imports": { "material": { "size": "view", "format": "r8_uint", "note": "the same in other words" } },
   "resources": { "list": { "buffer": { "stride": 4, "count": "view/8", "extra": 4 } } },
-  "passes": [ { "pass": "find", "kind": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } } ] })";
+  "passes": [ { "pass": "find", "type": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } } ] })";
 
 // whole_graph with its first pass and its buffer in a fragment.
 std::string including_graph(const std::string& include = R"({ "include": "parts/tiles.json" })") {
   std::string text = damaged(
       ",\n    \"list\": { \"buffer\": { \"stride\": 4, \"count\": \"view/8\", \"extra\": 4 } } }", " }");
   const std::string pass =
-      R"({ "pass": "find", "kind": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } })";
+      R"({ "pass": "find", "type": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } })";
   return text.replace(text.find(pass), pass.size(), include);
 }
 
@@ -240,7 +240,7 @@ TEST(Include, AFragmentsPassesStandWhereItIsIncludedAndItsOtherMembersJoin) {
 
 TEST(Include, AFileThatSeveralNeedIsThereOnce) {
   const std::string outer =
-      R"({ "dermis_fragment": 1, "passes": [ { "include": "parts/tiles.json" } ], "exports": ["light"] })";
+      R"({ "dermis_fragment": 2, "passes": [ { "include": "parts/tiles.json" } ], "exports": ["light"] })";
   const Composed composed = put_together(
       including_graph(
           R"({ "include": "a.json" }, { "include": "b.json" }, { "include": "parts/tiles.json" })"),
@@ -253,7 +253,7 @@ TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
   wrong.replace(wrong.find("view/8"), 6, "vieww/8");
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", wrong}}), Id::unknown_resource,
              "parts/tiles.json:3:", {"'vieww'"});
-  expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", "{ \"dermis\": 1 }"}}),
+  expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", "{ \"dermis\": 2 }"}}),
              Id::other_kind_of_file, "parts/tiles.json:1:3", {"dermis_fragment"});
 }
 
@@ -272,7 +272,7 @@ TEST(Include, OverlaysSeeWhatWasIncludedAndMayIncludeThemselves) {
   ASSERT_TRUE(changed.graph) << all_messages(changed.diagnostics);
   EXPECT_EQ(changed.graph->resources.back().extra_elements, 8u);
   const Composed including =
-      put_together(including_graph(R"({ "pass": "gone", "kind": "test.list" })"),
+      put_together(including_graph(R"({ "pass": "gone", "type": "test.list" })"),
                    {overlay(R"({ "replace": "gone", "passes": [{ "include": "parts/tiles.json" }] })")},
                    {{"parts/tiles.json", tiles_fragment}});
   EXPECT_EQ(pass_names(including), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
@@ -301,7 +301,7 @@ TEST(Include, AFileThatIsNotThereIsNamedAtTheInclude) {
 
 TEST(Include, CyclesAreRefusedWithTheWholeChain) {
   const auto including = [](const char* name) {
-    return fmt::format(R"({{ "dermis_fragment": 1, "passes": [ {{ "include": "{}" }} ] }})", name);
+    return fmt::format(R"({{ "dermis_fragment": 2, "passes": [ {{ "include": "{}" }} ] }})", name);
   };
   expect_one(put_together(including_graph(R"({ "include": "a.json" })"), {},
                           {{"a.json", including("b.json")}, {"b.json", including("a.json")}}),
@@ -317,8 +317,8 @@ TEST(Include, DepthAndNumberOfFilesAreLimited) {
   std::string includes;
   for (int i = 0; i < 70; ++i) {
     chain[fmt::format("{}.json", i)] =
-        fmt::format(R"({{ "dermis_fragment": 1, "passes": [ {{ "include": "{}.json" }} ] }})", i + 1);
-    many[fmt::format("{}.json", i)] = R"({ "dermis_fragment": 1 })";
+        fmt::format(R"({{ "dermis_fragment": 2, "passes": [ {{ "include": "{}.json" }} ] }})", i + 1);
+    many[fmt::format("{}.json", i)] = R"({ "dermis_fragment": 2 })";
     includes += fmt::format("{}{{ \"include\": \"{}.json\" }}", i == 0 ? "" : ", ", i);
   }
   expect_one(put_together(including_graph(R"({ "include": "0.json" })"), {}, chain), Id::limit_exceeded,
@@ -334,7 +334,7 @@ TEST(Include, AFragmentCanBeCheckedAlone) {
   auto document = parse_document("tiles.json", tiles_fragment, diagnostics);
   const auto alone = compose_fragment(std::move(*document), {}, diagnostics);
   ASSERT_TRUE(alone) << all_messages(diagnostics);
-  EXPECT_TRUE(read_graph(alone->document, kinds(), diagnostics)) << all_messages(diagnostics);
+  EXPECT_TRUE(read_graph(alone->document, pass_types(), diagnostics)) << all_messages(diagnostics);
 }
 
 } // namespace

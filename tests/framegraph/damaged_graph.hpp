@@ -9,7 +9,7 @@
 namespace dermis::testing {
 
 struct Damage {
-  const char* law; // also the name of the test
+  const char* property; // also the name of the test
   const char *from, *to;
   DiagnosticId id;
   const char* at; // the damaged text has this once, and the diagnostic points at its beginning
@@ -20,8 +20,8 @@ inline void PrintTo(const Damage& damage, std::ostream* out) {
   *out << damage.to;
 }
 
-inline std::string law_of(const ::testing::TestParamInfo<Damage>& one) {
-  return one.param.law;
+inline std::string property_of(const ::testing::TestParamInfo<Damage>& one) {
+  return one.param.property;
 }
 
 // `damage` gives one diagnostic, at its place.

@@ -35,8 +35,8 @@ GraphBuilder sample() {
 TEST(PlanJson, TheSameInputsGiveTheSameBytes) {
   for (uint64_t seed = 0; seed < 50; ++seed) {
     const auto first = random_graph(seed), second = random_graph(seed);
-    const auto one = plan_json(first.graph, first.kinds, compiled(first));
-    EXPECT_EQ(one, plan_json(second.graph, second.kinds, compiled(second)));
+    const auto one = plan_json(first.graph, first.pass_types, compiled(first));
+    EXPECT_EQ(one, plan_json(second.graph, second.pass_types, compiled(second)));
   }
 }
 
@@ -44,13 +44,13 @@ TEST(PlanJson, IsValidJsonForEveryGraph) {
   for (uint64_t seed = 0; seed < 50; ++seed) {
     const auto b = random_graph(seed);
     Diagnostics diagnostics;
-    EXPECT_TRUE(parse_document("plan", plan_json(b.graph, b.kinds, compiled(b)), diagnostics)) << seed;
+    EXPECT_TRUE(parse_document("plan", plan_json(b.graph, b.pass_types, compiled(b)), diagnostics)) << seed;
   }
 }
 
 TEST(PlanJson, NamesWhatRunsAndWhatDoesNotAndWhy) {
   const auto b = sample();
-  const auto text = plan_json(b.graph, b.kinds, compiled(b));
+  const auto text = plan_json(b.graph, b.pass_types, compiled(b));
   EXPECT_THAT(text, HasSubstr(R"("dermis_plan": 2)"));
   EXPECT_THAT(text, HasSubstr(R"({ "name": "smooth", "type": "bool", "value": true })"));
   EXPECT_THAT(text, HasSubstr(R"("mask": "0x100000000", "names": ["shader_sampled_read"])"));
@@ -63,7 +63,7 @@ TEST(PlanJson, NamesWhatRunsAndWhatDoesNotAndWhy) {
 
 TEST(PlanText, ShowsEveryPassBarrierAndPlacement) {
   const auto b = sample();
-  const auto text = plan_text(b.graph, b.kinds, compiled(b));
+  const auto text = plan_text(b.graph, b.pass_types, compiled(b));
   EXPECT_THAT(text, HasSubstr("2 of 3 passes run"));
   EXPECT_THAT(text, HasSubstr("b <- sum@-1"));
   EXPECT_THAT(text, HasSubstr("waste: culled"));
@@ -73,12 +73,12 @@ TEST(PlanText, ShowsEveryPassBarrierAndPlacement) {
 
 TEST(PlanText, SaysWhyAPassRunsAndWhyInThisOrder) {
   const auto b = sample();
-  const auto text = plan_text(b.graph, b.kinds, compiled(b));
+  const auto text = plan_text(b.graph, b.pass_types, compiled(b));
   EXPECT_THAT(text, HasSubstr("runs: 'show' reads its 'sum'"));
   EXPECT_THAT(text, HasSubstr("in the order of the file, which keeps 0 B of transients alive at once"));
   CompileInput input = b.input();
   input.order = PassOrder::program;
-  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b, input)), HasSubstr("asked for by the caller"));
+  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)), HasSubstr("asked for by the caller"));
 }
 
 TEST(PlanText, NamesTheSettingsThatSwitchAPassOff) {
@@ -86,7 +86,7 @@ TEST(PlanText, NamesTheSettingsThatSwitchAPassOff) {
   b.boolean("debug", false);
   b.image("picture");
   b.pass("draw", "test.need", {{"a", "light"}}, {{"out", "picture"}}).when = b.when("debug");
-  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b)),
+  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b)),
               HasSubstr("draw: off: its 'when' is false with debug = false"));
 }
 
@@ -100,25 +100,27 @@ TEST(PlanText, SaysForWhomABarrierStandsEarlierThanNeeded) {
   b.pass("begin", "test.need", {{"a", "light"}}, {{"out", "first"}});
   b.pass("middle", "test.need", {{"a", "first"}}, {{"out", "second"}});
   b.pass("end", "test.shade", {{"a", "shade"}, {"b", "second"}}, {{"out", "result"}});
-  const auto text = plan_text(b.graph, b.kinds, compiled(b));
+  const auto text = plan_text(b.graph, b.pass_types, compiled(b));
   EXPECT_THAT(text, HasSubstr("takes 'shade' over from the host (for 'end': in the batch"));
   CompileInput input = b.input();
   input.single_queue = false;
   b.graph.passes[1].async = true;
-  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b, input)),
+  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)),
               HasSubstr("waits for point 1 of the async queue, behind 'middle'"));
 }
 
 TEST(PlanText, SaysWhyWhatTheCallerAskedForIsSo) {
   auto b = sample();
   b.pass("watch", "test.probe", {{"a", "light"}}, {});
-  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b)), HasSubstr("runs: its kind has side effects"));
+  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b)),
+              HasSubstr("runs: its pass type has side effects"));
   CompileInput input = b.input();
   input.cull = false;
-  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b, input)), HasSubstr("runs: culling is switched off"));
+  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)),
+              HasSubstr("runs: culling is switched off"));
   input = b.input();
   input.order = PassOrder::random;
-  EXPECT_THAT(plan_text(b.graph, b.kinds, compiled(b, input)), HasSubstr("in an order drawn at random"));
+  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)), HasSubstr("in an order drawn at random"));
 }
 
 TEST(PlanText, HasWordsForEveryReasonAndNameOfRandomGraphs) {
@@ -129,7 +131,7 @@ TEST(PlanText, HasWordsForEveryReasonAndNameOfRandomGraphs) {
     drawn.order_seed = seed;
     whole.cull = false;
     for (const CompileInput& input : {b.input(), drawn, whole}) {
-      const auto json = plan_json(b.graph, b.kinds, compiled(b, input));
+      const auto json = plan_json(b.graph, b.pass_types, compiled(b, input));
       EXPECT_THAT(json, ::testing::Not(HasSubstr("\"text\": \"\""))) << seed;
       EXPECT_THAT(json, ::testing::Not(HasSubstr("unknown"))) << seed;
     }
@@ -139,8 +141,8 @@ TEST(PlanText, HasWordsForEveryReasonAndNameOfRandomGraphs) {
 TEST(PlanDot, DrawsPassesAndResourcesAndEscapesNames) {
   auto b = sample();
   b.graph.passes[0].name = "say \"hi\"";
-  EXPECT_THAT(graph_dot(b.graph, b.kinds), HasSubstr(R"(label="say \"hi\")"));
-  const auto dot = plan_dot(b.graph, b.kinds, compiled(b));
+  EXPECT_THAT(graph_dot(b.graph, b.pass_types), HasSubstr(R"(label="say \"hi\")"));
+  const auto dot = plan_dot(b.graph, b.pass_types, compiled(b));
   EXPECT_THAT(dot, HasSubstr("digraph \"test\" {"));
   EXPECT_THAT(dot, HasSubstr("style=dashed"));
   EXPECT_THAT(dot, HasSubstr("color=gray"));

@@ -41,8 +41,8 @@ constexpr Port narrow_ports[] = {{"a", Usage::sampled_image, true, "texture2D", 
 constexpr Port ids_ports[] = {{"ids", Usage::sampled_image, false, "utexture2D", ""},
                               {"out", Usage::storage_image_write, false, "image2D", ""}};
 
-PassKind kind(std::string_view name, std::span<const Port> ports) {
-  PassKind result;
+PassType type(std::string_view name, std::span<const Port> ports) {
+  PassType result;
   result.name = name;
   result.ports = ports;
   return result;
@@ -50,22 +50,22 @@ PassKind kind(std::string_view name, std::span<const Port> ports) {
 
 } // namespace
 
-KindRegistry test_kinds() {
-  KindRegistry kinds;
-  kinds.add(kind("test.shade", shade_ports));
-  kinds.add(kind("test.need", need_ports));
-  kinds.add(kind("test.update", update_ports));
-  kinds.add(kind("test.fill", fill_ports));
-  kinds.add(kind("test.list", lister_ports));
-  kinds.add(kind("test.count", count_ports));
-  kinds.add(kind("test.tiles", tiles_ports));
-  kinds.add(kind("test.narrow", narrow_ports));
-  kinds.add(kind("test.blend", blend_ports));
-  kinds.add(kind("test.ids", ids_ports));
-  PassKind probe = kind("test.probe", probe_ports);
+PassTypeRegistry test_pass_types() {
+  PassTypeRegistry pass_types;
+  pass_types.add(type("test.shade", shade_ports));
+  pass_types.add(type("test.need", need_ports));
+  pass_types.add(type("test.update", update_ports));
+  pass_types.add(type("test.fill", fill_ports));
+  pass_types.add(type("test.list", lister_ports));
+  pass_types.add(type("test.count", count_ports));
+  pass_types.add(type("test.tiles", tiles_ports));
+  pass_types.add(type("test.narrow", narrow_ports));
+  pass_types.add(type("test.blend", blend_ports));
+  pass_types.add(type("test.ids", ids_ports));
+  PassType probe = type("test.probe", probe_ports);
   probe.side_effects = true;
-  kinds.add(probe);
-  return kinds;
+  pass_types.add(probe);
+  return pass_types;
 }
 
 SourceLocation GraphBuilder::next_line() {
@@ -167,8 +167,8 @@ PassDeclaration& GraphBuilder::pass(const std::string& name, const std::string& 
                                     const Bindings& reads, const Bindings& writes) {
   PassDeclaration declared;
   declared.name = name;
-  declared.kind = kinds.find(kind_name);
-  EXPECT_TRUE(declared.kind.valid()) << kind_name;
+  declared.type = pass_types.find(kind_name);
+  EXPECT_TRUE(declared.type.valid()) << kind_name;
   declared.where = next_line();
   const auto add = [&](PortSide side, uint32_t port, const std::string& text, ReadWhen when) {
     PortBinding binding = reference(port, text);
@@ -177,7 +177,7 @@ PassDeclaration& GraphBuilder::pass(const std::string& name, const std::string& 
   };
   const auto bind = [&](PortSide side, const Bindings& from) {
     for (const auto& [port, text] : from) {
-      const int found = find_port(kinds[declared.kind], port);
+      const int found = find_port(pass_types[declared.type], port);
       EXPECT_GE(found, 0) << port;
       const auto index = static_cast<uint32_t>(found);
       const size_t condition = text.find('?');
@@ -208,7 +208,7 @@ void GraphBuilder::otherwise(PassDeclaration& pass, const std::string& output, c
 CompileInput GraphBuilder::input(uint32_t width, uint32_t height) const {
   CompileInput input;
   input.graph = &graph;
-  input.kinds = &kinds;
+  input.pass_types = &pass_types;
   input.device = &device;
   input.view_width = width;
   input.view_height = height;
@@ -226,8 +226,8 @@ CompiledPlan compiled(const GraphBuilder& builder, const CompileInput& input) {
     ADD_FAILURE() << diagnostic_info(diagnostic.id).name << ": " << diagnostic.text;
   if (!plan) return {};
   const Verdict verdict = verify(plan->plan);
-  for (const std::string& objection : verdict.objections)
-    ADD_FAILURE() << "verifier: " << objection;
+  for (const std::string& violation : verdict.violations)
+    ADD_FAILURE() << "verifier: " << violation;
   EXPECT_EQ(verdict.not_verified, "");
   EXPECT_EQ(&builder.graph, input.graph);
   return *std::move(plan);
@@ -254,7 +254,7 @@ std::string pass_names(const GraphBuilder& builder, const Plan& plan) {
 
 std::string reasons(const GraphBuilder& builder, const CompiledPlan& compiled, Reason::About about,
                     uint32_t index) {
-  return ReasonIndex(builder.graph, builder.kinds, compiled).about(about, index);
+  return ReasonIndex(builder.graph, builder.pass_types, compiled).about(about, index);
 }
 
 } // namespace dermis::testing

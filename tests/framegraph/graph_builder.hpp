@@ -19,11 +19,11 @@ using Bindings = std::vector<std::pair<std::string, std::string>>;
 // (clears target), test.list (writes buffer tiles), test.count (updates buffer tiles), test.tiles (tiles as
 // list and indirect arguments, a -> out), test.probe (reads a, has side effects), test.narrow (a -> out,
 // rgba16f only), test.blend (a, own texel by texel -> out), test.ids (ids, whole numbers -> out).
-KindRegistry test_kinds();
+PassTypeRegistry test_pass_types();
 
 struct GraphBuilder {
   Graph graph;
-  KindRegistry kinds = test_kinds();
+  PassTypeRegistry pass_types = test_pass_types();
   DeviceProfile device = generic_profile();
   uint32_t line = 0;
 
@@ -36,7 +36,7 @@ struct GraphBuilder {
   ResourceDeclaration& exported(const std::string& name); // a declared image that the host binds
   ResourceDeclaration& history(const std::string& name, uint32_t frames = 1);
   SettingDeclaration& boolean(const std::string& name, bool value);
-  PassDeclaration& pass(const std::string& name, const std::string& kind, const Bindings& reads,
+  PassDeclaration& pass(const std::string& name, const std::string& type, const Bindings& reads,
                         const Bindings& writes);
   ExpressionId when(const std::string& setting, bool wanted = true); // "setting" or "not setting"
   void otherwise(PassDeclaration& pass, const std::string& output, const std::string& instead);

@@ -23,7 +23,7 @@ struct Operation {
 inline bool same_instance(const Operation& a, const Operation& b) {
   return a.resource == b.resource && a.instance == b.instance;
 }
-inline bool same_thing(const Operation& a, const Operation& b) {
+inline bool same_subresource(const Operation& a, const Operation& b) {
   return same_instance(a, b) && a.mip == b.mip && a.layer == b.layer;
 }
 inline bool is_barrier(const Operation& o) {

@@ -131,11 +131,11 @@ struct Oracle {
   bool image(const Operation& o) const { return plan.resources[o.resource].type == ResourceType::image; }
   bool overlap(const Operation& a, const Operation& b) const {
     if (a.heap != b.heap || std::max(a.begin, b.begin) >= std::min(a.end, b.end)) return false;
-    return !same_instance(a, b) || same_thing(a, b);
+    return !same_instance(a, b) || same_subresource(a, b);
   }
   // Does the operation reach this byte of the heap that `thing` lies in, or all of the thing itself?
-  bool reaches(const Operation& o, const Operation& thing, uint64_t byte) const {
-    return overlap(o, thing) && (same_instance(o, thing) || (o.begin <= byte && byte < o.end));
+  bool reaches(const Operation& o, const Operation& subresource, uint64_t byte) const {
+    return overlap(o, subresource) && (same_instance(o, subresource) || (o.begin <= byte && byte < o.end));
   }
   // One byte of each piece of what two operations share that no placement divides.
   std::vector<uint64_t> common_bytes(const Operation& a, const Operation& b) const {
@@ -232,7 +232,7 @@ struct Oracle {
   bool read_since(size_t first, size_t second) const {
     for (size_t k = first + 1; k < second; ++k)
       if (accesses(all[k]) && all[k].access->when == ReadWhen::always && all[k].step != all[second].step &&
-          same_thing(all[k], all[first]))
+          same_subresource(all[k], all[first]))
         return true;
     return false;
   }
@@ -260,7 +260,8 @@ struct Oracle {
     if (!ordered) return "is not ordered behind an earlier operation";
     const bool made_available = p.available || (directly && (written(a) & ~b.barrier->source_access) == 0);
     if (writes(a) && writes(b) && !made_available) return "comes before an earlier write is available";
-    if (writes(a) && read(b) != 0 && same_thing(a, b) && !p.visible) return "does not see the last write";
+    if (writes(a) && read(b) != 0 && same_subresource(a, b) && !p.visible)
+      return "does not see the last write";
     if (writes(a) && written(b) != 0 && !p.visible_to_write && !read_since(first, second))
       return "is written where the last write is not visible";
     return "";
@@ -285,7 +286,7 @@ struct Oracle {
     }
     for (; k < all.size() && all[k].step == o.step; ++k)
       if (all[k].access != o.access && written(all[k]) != 0 && overlap(all[k], o) &&
-          !(own && same_thing(all[k], o)))
+          !(own && same_subresource(all[k], o)))
         return true;
     return false;
   }
@@ -295,7 +296,7 @@ struct Oracle {
     const Operation& o = all[second];
     if (!history_of(o.resource)) return true;
     for (size_t k = second; k-- > 0;)
-      if (all[k].step != o.step && same_thing(all[k], o) && written(all[k]) != 0)
+      if (all[k].step != o.step && same_subresource(all[k], o) && written(all[k]) != 0)
         return all[k].frame + o.access->frames_back == o.frame + all[k].access->frames_back;
     const uint32_t first_frames = o.access->frames_back;
     return o.frame < first_frames; // as the executor starts it
@@ -306,7 +307,7 @@ struct Oracle {
     for (size_t k = second; k-- > 0;) {
       const Operation& o = all[k];
       if (o.what == Operation::What::wait || o.step == all[second].step || !overlap(o, all[second])) continue;
-      const bool own = same_thing(o, all[second]);
+      const bool own = same_subresource(o, all[second]);
       if (o.what == Operation::What::frame_begins) {
         if (own && !keeps_oldest(o.resource))
           return host(o.resource) && plan.resources[o.resource].origin == Origin::imported;
@@ -323,23 +324,24 @@ struct Oracle {
   }
 
   // The layout of a thing just before operation `at`.
-  Layout layout(const Operation& thing, size_t at) const {
+  Layout layout(const Operation& subresource, size_t at) const {
     for (size_t k = at; k-- > 0;)
       if (transition(all[k]) && all[k].barrier->transfer != PlanBarrier::Transfer::release &&
-          same_thing(all[k], thing))
+          same_subresource(all[k], subresource))
         return all[k].barrier->new_layout;
     for (const PlanHistory& history : plan.histories)
-      for (uint32_t back = 1; history.resource == thing.resource && back <= history.frames; ++back)
-        if (instance(thing.resource, back, 0) == thing.instance) return kept_layout(history, thing, back);
+      for (uint32_t back = 1; history.resource == subresource.resource && back <= history.frames; ++back)
+        if (instance(subresource.resource, back, 0) == subresource.instance)
+          return kept_layout(history, subresource, back);
     return Layout::undefined;
   }
 
   // As the plan promises it for this mip and layer when a frame starts.
-  Layout kept_layout(const PlanHistory& history, const Operation& thing, uint32_t back) const {
+  Layout kept_layout(const PlanHistory& history, const Operation& subresource, uint32_t back) const {
     for (uint32_t part = 0; part < history.parts; ++part) {
       const SubresourceRange& range = plan.history_parts[history.first_part + part];
-      if (thing.mip >= range.first_mip && thing.mip - range.first_mip < range.mips &&
-          thing.layer >= range.first_layer && thing.layer - range.first_layer < range.layers)
+      if (subresource.mip >= range.first_mip && subresource.mip - range.first_mip < range.mips &&
+          subresource.layer >= range.first_layer && subresource.layer - range.first_layer < range.layers)
         return plan.history_layouts[history.first_layout + back * history.parts + part];
     }
     return Layout::undefined;
@@ -347,7 +349,7 @@ struct Oracle {
 
   bool with_host(size_t at) const {
     for (size_t k = at; k-- > 0;)
-      if (is_barrier(all[k]) && same_thing(all[k], all[at]) &&
+      if (is_barrier(all[k]) && same_subresource(all[k], all[at]) &&
           (all[k].barrier->from_host || all[k].barrier->to_host))
         return all[k].barrier->to_host;
     return true;
@@ -357,7 +359,7 @@ struct Oracle {
   bool handed_back(size_t at) const {
     if (all[at].frame == 0) return true;
     for (size_t k = at; k-- > 0 && all[k].frame + 1 >= all[at].frame;)
-      if (is_barrier(all[k]) && same_thing(all[k], all[at])) return all[k].barrier->to_host;
+      if (is_barrier(all[k]) && same_subresource(all[k], all[at])) return all[k].barrier->to_host;
     return false;
   }
 
@@ -369,7 +371,7 @@ struct Oracle {
   Owner owner(size_t at) const {
     for (size_t k = at; k-- > 0;) {
       const Operation& o = all[k];
-      if (!same_thing(o, all[at])) continue;
+      if (!same_subresource(o, all[at])) continue;
       if (accesses(o) && written(o) != 0) return {o.queue, nullptr};
       if (!is_barrier(o) || o.barrier->from_host) continue;
       if (o.barrier->transfer == PlanBarrier::Transfer::release) return {o.queue, o.barrier};

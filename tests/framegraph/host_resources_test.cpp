@@ -1,7 +1,7 @@
 // Buffers and acceleration structures that the host binds, and options that need what a device may lack.
 
+#include "framegraph/compile/availability.hpp"
 #include "framegraph/compile/compile.hpp"
-#include "framegraph/compile/offers.hpp"
 #include "framegraph/explain/plan_text.hpp"
 #include "framegraph/serial/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
@@ -28,10 +28,10 @@ constexpr Port copy_ports[] = {
     {"target", Usage::storage_image_write, false, "image2D", "the result"},
 };
 
-const KindRegistry& kinds_of_host() {
-  static const KindRegistry registry = [] {
-    KindRegistry out;
-    PassKind trace{"test.trace", "trace", "traces", trace_ports, {}};
+const PassTypeRegistry& pass_types_of_host() {
+  static const PassTypeRegistry registry = [] {
+    PassTypeRegistry out;
+    PassType trace{"test.trace", "trace", "traces", trace_ports, {}};
     trace.features = bit_of(Feature::ray_query);
     out.add(trace);
     out.add({"test.copy", "copy", "copies", copy_ports, {}});
@@ -40,7 +40,7 @@ const KindRegistry& kinds_of_host() {
   return registry;
 }
 
-constexpr std::string_view traced = R"({ "dermis": 1, "name": "traced",
+constexpr std::string_view traced = R"({ "dermis": 2, "name": "traced",
   "settings": { "how": { "choice": ["trace", "copy"], "default": "trace", "requires": { "trace": ["ray_query", "scene"] } } },
   "imports": {
     "light": { "format": "rgba16f", "size": "view" },
@@ -49,9 +49,9 @@ constexpr std::string_view traced = R"({ "dermis": 1, "name": "traced",
     "lights": { "buffer": { "stride": 16 }, "optional": true } },
   "resources": { "out": { "format": "rgba16f", "size": "view" } },
   "passes": [
-    { "pass": "trace", "kind": "test.trace", "when": "how == 'trace'",
+    { "pass": "trace", "type": "test.trace", "when": "how == 'trace'",
       "read": { "scene": "scene", "vertices": "vertices", "light": "light" }, "write": { "target": "out" } },
-    { "pass": "copy", "kind": "test.copy", "when": "how == 'copy'",
+    { "pass": "copy", "type": "test.copy", "when": "how == 'copy'",
       "read": { "light": "light" }, "write": { "target": "out" } } ],
   "exports": ["out"] })";
 
@@ -63,7 +63,7 @@ struct HostRead {
 HostRead read_with_host(std::string text) {
   HostRead out;
   const auto document = parse_document("graph.json", std::move(text), out.diagnostics);
-  if (document) out.graph = read_graph(*document, kinds_of_host(), out.diagnostics);
+  if (document) out.graph = read_graph(*document, pass_types_of_host(), out.diagnostics);
   return out;
 }
 
@@ -75,7 +75,7 @@ std::string with(std::string_view from, std::string_view to) {
 }
 
 struct Mistake {
-  const char* law;
+  const char* property;
   const char *from, *to;
   DiagnosticId id;
   const char* at; // first occurrence of this is where the diagnostic points
@@ -170,7 +170,7 @@ INSTANTIATE_TEST_SUITE_P(
                               Id::invalid_value,
                               "\"scene\"],\n",
                               {"ray_query"}}),
-    [](const auto& one) { return one.param.law; });
+    [](const auto& one) { return one.param.property; });
 
 struct Compiled {
   Diagnostics diagnostics;
@@ -181,7 +181,7 @@ struct Compiled {
 Compiled compiled(const Graph& graph, const DeviceProfile& device, std::vector<bool> bound = {}) {
   Compiled out;
   out.input.graph = &graph;
-  out.input.kinds = &kinds_of_host();
+  out.input.pass_types = &pass_types_of_host();
   out.input.device = &device;
   out.input.view_width = 64;
   out.input.view_height = 64;
@@ -208,7 +208,7 @@ TEST(HostResources, AreTakenOverReadAtTheComputeStageAndHandedBack) {
   const Compiled result = compiled(*loaded.graph, device);
   ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
   const Plan& plan = result.plan->plan;
-  EXPECT_TRUE(verify(plan).objections.empty());
+  EXPECT_TRUE(verify(plan).violations.empty());
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "trace");
   const auto barriers_of = [&](ResourceType type, bool from, bool to) {
     return std::count_if(plan.barriers.begin(), plan.barriers.end(), [&](const PlanBarrier& barrier) {
@@ -262,13 +262,13 @@ TEST(Options, ThatTheDeviceCannotRunGiveWayToOneThatItCan) {
   ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
   EXPECT_EQ(result.plan->plan.setting_values[0].integer, 1);
-  const std::string text = plan_text(*loaded.graph, kinds_of_host(), *result.plan, {});
+  const std::string text = plan_text(*loaded.graph, pass_types_of_host(), *result.plan, {});
   EXPECT_NE(text.find("'copy' instead of 'trace', which is not offered: the device lacks ray_query"),
             std::string::npos)
       << text;
-  tell_withheld(*loaded.graph, device, {}, result.diagnostics);
+  report_unavailable(*loaded.graph, device, {}, result.diagnostics);
   ASSERT_EQ(result.diagnostics.list.size(), 1u);
-  EXPECT_EQ(result.diagnostics.list[0].id, Id::option_withheld);
+  EXPECT_EQ(result.diagnostics.list[0].id, Id::option_unavailable);
 }
 
 TEST(Options, ThatNeedAnImportGiveWayWhereItIsNotBound) {
@@ -280,7 +280,7 @@ TEST(Options, ThatNeedAnImportGiveWayWhereItIsNotBound) {
   const Compiled result = compiled(*loaded.graph, device, bound);
   ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
-  const std::string text = plan_text(*loaded.graph, kinds_of_host(), *result.plan, {});
+  const std::string text = plan_text(*loaded.graph, pass_types_of_host(), *result.plan, {});
   EXPECT_NE(text.find("not offered: 'scene' is not bound"), std::string::npos) << text;
 }
 

@@ -13,15 +13,16 @@ namespace dermis {
 namespace {
 
 // Rooms in the order in which they may know of each other; a file belongs to the longest prefix that fits.
-constexpr std::string_view rooms[] = {"framegraph/", "framegraph/vulkan/", "passes/", "integration/",
-                                      "tests/"};
+constexpr std::string_view folders[] = {"framegraph/", "framegraph/vulkan/", "passes/", "integration/",
+                                        "tests/"};
 
 // Index into rooms; -1: no room of ours (system headers, shaders).
-int room_of(std::string_view path) {
+int folder_of(std::string_view path) {
   int best = -1;
-  for (int i = 0; i < static_cast<int>(std::size(rooms)); ++i) {
-    const std::string_view room = rooms[i];
-    if (path.substr(0, room.size()) == room && (best < 0 || room.size() > rooms[best].size())) best = i;
+  for (int i = 0; i < static_cast<int>(std::size(folders)); ++i) {
+    const std::string_view folder = folders[i];
+    if (path.substr(0, folder.size()) == folder && (best < 0 || folder.size() > folders[best].size()))
+      best = i;
   }
   return best;
 }
@@ -44,7 +45,7 @@ std::string included(std::string_view line) {
 
 // What is wrong with `path` (from the repository root) including `target`; empty: nothing.
 std::string violation(const std::string& path, const std::string& target) {
-  const int from = room_of(path), to = room_of(target);
+  const int from = folder_of(path), to = folder_of(target);
   if (from < 0) return {};
   if (to > from) return path + " includes " + target + ", which stands below it in the house";
   const bool vulkan_header =
@@ -107,8 +108,8 @@ std::string violation_within(const std::string& path, const std::string& target)
 TEST(IncludeRule, NoFileIncludesARoomBelowItsOwn) {
   const std::filesystem::path root = DERMIS_SOURCE_DIR;
   size_t files = 0, includes = 0;
-  for (const char* room : {"framegraph", "passes", "integration"}) {
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / room)) {
+  for (const char* folder : {"framegraph", "passes", "integration"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension != ".hpp" && extension != ".cpp" && extension != ".h" && extension != ".c" &&
           extension != ".def")

@@ -1,10 +1,10 @@
 // Metamorphic laws: whatever a plan is free to choose, the host gets the same pixels, and they are those that
 // the graph's declarations mean.
 
-#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/plan_mutations.hpp"
 #include "tests/framegraph/random_graph.hpp"
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 
 #include "framegraph/verify/verify.hpp"
 
@@ -17,7 +17,7 @@ constexpr uint32_t frames = 5; // each of up to four history instances is reused
 constexpr uint64_t orders = 3; // tried of each plan
 
 uint64_t random_graphs() {
-  return seeds_of_tier(1500, 10000);
+  return seeds_to_try(1500, 10000);
 }
 
 InterpretOptions options(uint64_t contents, uint64_t poison = 1, uint64_t order = 0) {
@@ -52,9 +52,9 @@ TEST(Interpreter, EveryPlanGivesThePixelsThatTheGraphMeans) {
   uint64_t compared = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     const auto builder = random_graph(seed);
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
-    ASSERT_TRUE(agrees(interpret(compiled(builder).plan, options(seed)), truth)) << "seed " << seed;
-    for (const auto& slot : truth.back())
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
+    ASSERT_TRUE(agrees(interpret(compiled(builder).plan, options(seed)), reference)) << "seed " << seed;
+    for (const auto& slot : reference.back())
       compared += slot.has_value();
   }
   EXPECT_GT(compared, random_graphs()); // at least the export that every graph has
@@ -67,11 +67,11 @@ TEST(Interpreter, CutsChangeWhatIsReadAndNothingElse) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
     const uint64_t cuts = (seed % 31 + 1) << 1u; // every set of the frames 1 .. 5 - 1
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed, cuts);
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed, cuts);
     InterpretOptions with_cuts = options(seed, seed, seed % orders);
     with_cuts.cuts = cuts;
-    ASSERT_TRUE(agrees(interpret(plan, with_cuts), truth)) << "seed " << seed;
-    changed += !agrees(interpret(plan, options(seed)), truth);
+    ASSERT_TRUE(agrees(interpret(plan, with_cuts), reference)) << "seed " << seed;
+    changed += !agrees(interpret(plan, options(seed)), reference);
     for (const PlanAccess& access : plan.accesses)
       conditional += access.when != ReadWhen::always;
   }
@@ -84,9 +84,9 @@ TEST(Interpreter, OrdersThatTheBarriersAllowAndPoisonChangeNothing) {
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
     for (uint64_t order = 1; order <= orders; ++order)
-      ASSERT_TRUE(agrees(interpret(plan, options(seed, order, order)), truth))
+      ASSERT_TRUE(agrees(interpret(plan, options(seed, order, order)), reference))
           << "seed " << seed << ", order " << order;
     moved += plan.passes.size() > 2;
   }
@@ -99,8 +99,8 @@ TEST(Interpreter, MemoryOfItsOwnForEveryResourceChangesNothing) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
     const Plan apart = without_aliasing(plan);
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
-    ASSERT_TRUE(agrees(interpret(apart, options(seed, 2, seed + 1)), truth)) << "seed " << seed;
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
+    ASSERT_TRUE(agrees(interpret(apart, options(seed, 2, seed + 1)), reference)) << "seed " << seed;
     for (size_t h = 0; h < plan.heaps.size(); ++h)
       shared += apart.heaps[h].size > plan.heaps[h].size;
   }
@@ -111,19 +111,19 @@ TEST(Interpreter, WhatIsCulledChangesNothingForTheHost) {
   uint64_t fewer = 0, more = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     GraphBuilder builder = random_graph(seed);
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
     const size_t passes = compiled(builder).plan.passes.size();
 
     const auto all = with_all_images_needed(builder);
     const Plan uncut = compiled(all).plan;
-    ASSERT_TRUE(agrees(interpret(uncut, options(seed, 1, seed + 1)), truth)) << "seed " << seed;
+    ASSERT_TRUE(agrees(interpret(uncut, options(seed, 1, seed + 1)), reference)) << "seed " << seed;
     more += uncut.passes.size() > passes + all.graph.passes.size() - builder.graph.passes.size();
 
     const std::vector<bool> bound = leave_out_exports(builder, seed);
     CompileInput input = builder.input();
     input.bound = bound;
     const Plan cut = compiled(builder, input).plan;
-    Interpretation wanted = truth;
+    Interpretation wanted = reference;
     const Interpretation found = interpret(cut, options(seed, 1, seed + 1));
     for (size_t frame = 0; frame < frames; ++frame)
       for (size_t slot = 0; slot < wanted[frame].size(); ++slot)
@@ -132,7 +132,7 @@ TEST(Interpreter, WhatIsCulledChangesNothingForTheHost) {
       const ResourceDeclaration& resource = builder.graph.resources[r];
       if (resource.origin != Origin::imported && !resource.exported) continue;
       if (bound[r]) {
-        ASSERT_EQ(wanted[0][slot].has_value(), truth[0][slot].has_value()) << "seed " << seed;
+        ASSERT_EQ(wanted[0][slot].has_value(), reference[0][slot].has_value()) << "seed " << seed;
       }
       ++slot;
     }
@@ -149,23 +149,23 @@ TEST(Interpreter, WhatIsCulledChangesNothingForTheHost) {
 TEST(Interpreter, PixelsChangeWhereAPassDoesNotWaitForWhatItReads) {
   constexpr uint64_t tries = 16; // orders of each plan
   uint64_t dropped = 0, noticed = 0;
-  for (uint64_t seed = 0; seed < seeds_of_tier(60, 300); ++seed) {
+  for (uint64_t seed = 0; seed < seeds_to_try(60, 300); ++seed) {
     const auto builder = random_graph(seed);
     const Plan plan = without_aliasing(compiled(builder).plan);
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
     for (const PlanPass& pass : plan.passes) {
       Plan mutant = plan;
       bool reads = false;
       for (uint32_t b = pass.first_barrier; b < pass.first_barrier + pass.barrier_count; ++b) {
         PlanBarrier& barrier = mutant.barriers[b];
-        if (barrier.why != PlanBarrier::Why::read_after_write) continue;
+        if (barrier.why != PlanBarrier::ReasonKind::read_after_write) continue;
         barrier.source_stages = stage::host;
         barrier.destination_stages = stage::host;
         reads = true;
       }
       bool seen = false;
       for (uint64_t order = 1; reads && order <= tries && !seen; ++order)
-        seen = !agrees(interpret(mutant, options(seed, order, order)), truth);
+        seen = !agrees(interpret(mutant, options(seed, order, order)), reference);
       dropped += reads;
       noticed += seen;
     }
@@ -176,15 +176,15 @@ TEST(Interpreter, PixelsChangeWhereAPassDoesNotWaitForWhatItReads) {
 
 TEST(Interpreter, PixelsChangeWhereMemoryIsSharedWhileBothAreAlive) {
   uint64_t moved = 0, noticed = 0;
-  for (uint64_t seed = 0; seed < seeds_of_tier(100, 1000); ++seed) {
+  for (uint64_t seed = 0; seed < seeds_to_try(100, 1000); ++seed) {
     const auto builder = random_graph(seed);
     Plan plan = compiled(builder).plan;
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
     for (Placement& placement : plan.placements)
       placement.offset = 0;
-    if (verify(plan).objections.empty()) continue;
+    if (verify(plan).violations.empty()) continue;
     ++moved;
-    noticed += !agrees(interpret(plan, options(seed)), truth);
+    noticed += !agrees(interpret(plan, options(seed)), reference);
   }
   EXPECT_GT(moved, 10u);
   EXPECT_GT(noticed * 10, moved * 9);

@@ -157,18 +157,18 @@ TEST(Expression, BrokenSettingsGiveNoSecondError) {
 }
 
 TEST(Expression, NestingAndLengthAreBounded) {
-  const size_t most = limits::expression_nesting;
+  const size_t maximum = limits::expression_nesting;
   Fixture deep;
-  EXPECT_TRUE(deep.parse(std::string(most, '(') + "flag" + std::string(most, ')')).valid())
+  EXPECT_TRUE(deep.parse(std::string(maximum, '(') + "flag" + std::string(maximum, ')')).valid())
       << all_messages(deep.diagnostics);
-  EXPECT_FALSE(deep.parse(std::string(most + 1, '(') + "flag" + std::string(most + 1, ')')).valid());
-  expect_only(deep.diagnostics, DiagnosticId::limit_exceeded, 2, static_cast<uint32_t>(most + 2));
+  EXPECT_FALSE(deep.parse(std::string(maximum + 1, '(') + "flag" + std::string(maximum + 1, ')')).valid());
+  expect_only(deep.diagnostics, DiagnosticId::limit_exceeded, 2, static_cast<uint32_t>(maximum + 2));
   Fixture negated;
   std::string many;
-  for (size_t i = 0; i <= most; ++i)
+  for (size_t i = 0; i <= maximum; ++i)
     many += "not ";
   EXPECT_FALSE(negated.parse(many + "flag").valid());
-  expect_only(negated.diagnostics, DiagnosticId::limit_exceeded, 2, static_cast<uint32_t>(4 * most + 2));
+  expect_only(negated.diagnostics, DiagnosticId::limit_exceeded, 2, static_cast<uint32_t>(4 * maximum + 2));
   Fixture long_one;
   std::string text = "flag";
   while (text.size() <= limits::expression_bytes)

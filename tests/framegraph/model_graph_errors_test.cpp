@@ -18,13 +18,13 @@ INSTANTIATE_TEST_SUITE_P(
     Root, DamagedGraph,
     ::testing::Values(
         Damage{
-            "TheVersionIsRequired", "\"dermis\": 1, ", "", Id::missing_key, "{ \"$sche", {"\"dermis\": 1"}},
+            "TheVersionIsRequired", "\"dermis\": 2, ", "", Id::missing_key, "{ \"$sche", {"\"dermis\": 2"}},
         Damage{"ANewerVersionIsRefused",
-               "\"dermis\": 1",
                "\"dermis\": 2",
+               "\"dermis\": 3",
                Id::unsupported_version,
-               "2, \"name",
-               {"version 1"}},
+               "3, \"name",
+               {"version 2"}},
         Damage{"AnUnknownKeyHasASuggestion",
                "\"imports\": {",
                "\"import\": {",
@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(
                Id::unknown_key,
                "\"overlay",
                {"'overlays'"}}),
-    law_of);
+    property_of);
 
 INSTANTIATE_TEST_SUITE_P(Settings, DamagedGraph,
                          ::testing::Values(Damage{"ASettingNeedsAType",
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(Settings, DamagedGraph,
                                                   Id::wrong_type,
                                                   "\"much\", ",
                                                   {"'real' of setting 'radius'"}}),
-                         law_of);
+                         property_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Resources, DamagedGraph,
@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
                Id::duplicate_name,
                "\"half\": { \"format\": \"r",
                {"'half'", "first declared here"}}),
-    law_of);
+    property_of);
 
 } // namespace
 } // namespace dermis

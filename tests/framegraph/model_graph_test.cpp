@@ -63,7 +63,7 @@ TEST(Graph, EveryDeclarationOfAFileArrivesWithItsNamesResolved) {
 
   ASSERT_EQ(graph.passes.size(), 4u);
   const PassDeclaration& blur = graph.passes[1];
-  EXPECT_EQ(blur.kind, (KindId{0}));
+  EXPECT_EQ(blur.type, (PassTypeId{0}));
   ASSERT_TRUE(blur.when.valid());
   ASSERT_EQ(graph.reads(blur).size(), 4u);
   EXPECT_EQ(graph.reads(blur)[3].port, 3u) << "the reading one of the two ports called history";
@@ -88,35 +88,35 @@ TEST(Graph, EveryDeclarationOfAFileArrivesWithItsNamesResolved) {
 }
 
 TEST(Graph, TheShortestGraphIsAccepted) {
-  const Read shortest = read(R"({ "dermis": 1, "name": "empty", "passes": [], "exports": [] })");
+  const Read shortest = read(R"({ "dermis": 2, "name": "empty", "passes": [], "exports": [] })");
   EXPECT_TRUE(shortest.graph) << all_messages(shortest.diagnostics);
 }
 
 TEST(Graph, ASecondPassMayUpdateWhatTheFirstWrote) {
   const Read updated =
-      read(R"({ "dermis": 1, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+      read(R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
     "resources": { "x": { "format": "rgba16f", "size": "view" } }, "passes": [
-    { "pass": "one", "kind": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } },
-    { "pass": "two", "kind": "test.mix", "read": { "source": "a" }, "write": { "target": "x" } } ], "exports": ["x"] })");
+    { "pass": "one", "type": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } },
+    { "pass": "two", "type": "test.mix", "read": { "source": "a" }, "write": { "target": "x" } } ], "exports": ["x"] })");
   EXPECT_TRUE(updated.graph) << all_messages(updated.diagnostics);
 }
 
 TEST(Graph, PassesWithConditionsMayWriteTheSameResource) {
   const Read exclusive =
-      read(R"({ "dermis": 1, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+      read(R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
     "settings": { "on": { "bool": true } }, "resources": { "x": { "format": "rgba16f", "size": "view" } }, "passes": [
-    { "pass": "one", "kind": "test.blur", "when": "on", "read": { "source": "a" }, "write": { "target": "x" } },
-    { "pass": "two", "kind": "test.blur", "when": "not on", "read": { "source": "a" }, "write": { "target": "x" } } ],
+    { "pass": "one", "type": "test.blur", "when": "on", "read": { "source": "a" }, "write": { "target": "x" } },
+    { "pass": "two", "type": "test.blur", "when": "not on", "read": { "source": "a" }, "write": { "target": "x" } } ],
     "exports": ["x"] })");
   EXPECT_TRUE(exclusive.graph) << all_messages(exclusive.diagnostics);
 }
 
 TEST(Graph, AReaderMayStandBeforeItsProducer) {
   const Read forward =
-      read(R"({ "dermis": 1, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+      read(R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
     "resources": { "x": { "format": "rgba16f", "size": "view" } }, "passes": [
-    { "pass": "late", "kind": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } },
-    { "pass": "early", "kind": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } } ], "exports": ["a"] })");
+    { "pass": "late", "type": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } },
+    { "pass": "early", "type": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } } ], "exports": ["a"] })");
   EXPECT_TRUE(forward.graph) << all_messages(forward.diagnostics);
 }
 

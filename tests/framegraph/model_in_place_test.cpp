@@ -26,9 +26,9 @@ constexpr Port ids_ports[] = {{"ids", Usage::sampled_image, false, "utexture2D",
                               {"o", Usage::storage_image_write, false, "image2D", ""}};
 constexpr Port clear_ports[] = {{"target", Usage::clear, false, "", ""}};
 
-const KindRegistry& pass_kinds() {
-  static const KindRegistry registry = [] {
-    KindRegistry out;
+const PassTypeRegistry& pass_types() {
+  static const PassTypeRegistry registry = [] {
+    PassTypeRegistry out;
     out.add({"t.blur", "", "", blur_ports, {}});
     out.add({"t.update", "", "", update_ports, {}});
     out.add({"t.list", "", "", list_ports, {}});
@@ -53,7 +53,7 @@ struct Outcome {
 
 Outcome read_passes(const char* passes) {
   Outcome out;
-  const std::string text = fmt::format(R"({{ "dermis": 1, "name": "g",
+  const std::string text = fmt::format(R"({{ "dermis": 2, "name": "g",
   "settings": {{ "sharp": {{ "bool": true }}, "soft": {{ "bool": false }},
     "mode": {{ "enum": ["off", "low", "high"], "default": "high" }},
     "n": {{ "int": 16, "min": 0, "max": 64 }}, "r": {{ "real": 1.5, "min": 0, "max": 8 }} }},
@@ -69,45 +69,45 @@ Outcome read_passes(const char* passes) {
   "exports": ["light", "out"] }})",
                                        passes);
   const auto document = parse_document("graph.json", text, out.diagnostics);
-  if (document) out.graph = read_graph(*document, pass_kinds(), out.diagnostics);
+  if (document) out.graph = read_graph(*document, pass_types(), out.diagnostics);
   return out;
 }
 
 // The last pass: only the export needs it.
 #define SHOW(resource)                                                                                       \
-  R"({ "pass": "show", "kind": "t.blur", "read": { "a": ")" resource R"(" }, "write": { "o": "out" } })"
+  R"({ "pass": "show", "type": "t.blur", "read": { "a": ")" resource R"(" }, "write": { "o": "out" } })"
 #define X_FROM_LIGHT(when)                                                                                   \
-  R"({ "pass": "make", "kind": "t.blur", "when": ")" when                                                    \
+  R"({ "pass": "make", "type": "t.blur", "when": ")" when                                                    \
   R"(", "read": { "a": "light" }, "write": { "o": "x" }, "otherwise": { "x": "light" } }, )"
 #define BLUR_X(rest)                                                                                         \
-  R"({ "pass": "blur", "kind": "t.blur", "read": { "a": "x" }, "write": { "o": "light" })" rest R"( }, )"
+  R"({ "pass": "blur", "type": "t.blur", "read": { "a": "x" }, "write": { "o": "light" })" rest R"( }, )"
 
 const Case refused[] = {
     {"Directly",
-     R"({ "pass": "blur", "kind": "t.blur", "read": { "a": "light" }, "write": { "o": "light" } }, )" SHOW(
+     R"({ "pass": "blur", "type": "t.blur", "read": { "a": "light" }, "write": { "o": "light" } }, )" SHOW(
          "light"),
      DiagnosticId::in_place_race,
      {"pass 'blur' reads 'light' through its port 'a'", "writes 'light' through 'o'"}},
     {"ThroughAnUpdate",
-     R"({ "pass": "add", "kind": "t.update", "read": { "a": "light" }, "write": { "o": "light" } }, )" SHOW(
+     R"({ "pass": "add", "type": "t.update", "read": { "a": "light" }, "write": { "o": "light" } }, )" SHOW(
          "light"),
      DiagnosticId::in_place_race,
      {"pass 'add'"}},
     {"OfABuffer",
-     R"({ "pass": "fill", "kind": "t.list", "write": { "out": "list" } },
-        { "pass": "sort", "kind": "t.list", "read": { "in": "list" }, "write": { "out": "list" } }, )" SHOW(
+     R"({ "pass": "fill", "type": "t.list", "write": { "out": "list" } },
+        { "pass": "sort", "type": "t.list", "read": { "in": "list" }, "write": { "out": "list" } }, )" SHOW(
          "light"),
      DiagnosticId::in_place_race,
      {"pass 'sort' reads 'list' through its port 'in'"}},
     {"OfAMip",
-     R"({ "pass": "clear", "kind": "t.clear", "write": { "target": "m" } },
-        { "pass": "down", "kind": "t.blur", "read": { "a": "m#0..1" }, "write": { "o": "m#1" } }, )" SHOW(
+     R"({ "pass": "clear", "type": "t.clear", "write": { "target": "m" } },
+        { "pass": "down", "type": "t.blur", "read": { "a": "m#0..1" }, "write": { "o": "m#1" } }, )" SHOW(
          "m#1[0]"),
      DiagnosticId::in_place_race,
      {"reads 'm#0..1' through its port 'a' and writes 'm#1'"}},
     {"OfALayer",
-     R"({ "pass": "clear", "kind": "t.clear", "write": { "target": "m" } },
-        { "pass": "down", "kind": "t.blur", "read": { "a": "m[1]" }, "write": { "o": "m#2[0..1]" } }, )" SHOW(
+     R"({ "pass": "clear", "type": "t.clear", "write": { "target": "m" } },
+        { "pass": "down", "type": "t.blur", "read": { "a": "m[1]" }, "write": { "o": "m#2[0..1]" } }, )" SHOW(
          "m#1[0]"),
      DiagnosticId::in_place_race,
      {"'m[1]'"}},
@@ -116,9 +116,9 @@ const Case refused[] = {
      DiagnosticId::in_place_race,
      {"pass 'blur' reads 'x', for which 'light' stands, through its port 'a' and writes 'light'"}},
     {"WhereTwoPassesAreOff",
-     X_FROM_LIGHT("sharp") R"({ "pass": "more", "kind": "t.blur", "when": "soft", "read": { "a": "x" },
+     X_FROM_LIGHT("sharp") R"({ "pass": "more", "type": "t.blur", "when": "soft", "read": { "a": "x" },
         "write": { "o": "y" }, "otherwise": { "y": "x" } },
-        { "pass": "blur", "kind": "t.blur", "read": { "a": "y" }, "write": { "o": "light" } }, )" SHOW(
+        { "pass": "blur", "type": "t.blur", "read": { "a": "y" }, "write": { "o": "light" } }, )" SHOW(
          "light"),
      DiagnosticId::in_place_race,
      {"reads 'y', for which 'light' stands,"}},
@@ -127,9 +127,9 @@ const Case refused[] = {
      DiagnosticId::in_place_race,
      {"reads 'x', for which 'light' stands,"}},
     {"WhereAHistoryIsNotValid",
-     R"({ "pass": "keep", "kind": "t.blur", "read": { "a": { "from": "h@-1", "requires": "valid", "otherwise": "light" } },
+     R"({ "pass": "keep", "type": "t.blur", "read": { "a": { "from": "h@-1", "requires": "valid", "otherwise": "light" } },
           "write": { "o": "light" } },
-        { "pass": "more", "kind": "t.blur", "read": { "a": "light" }, "write": { "o": "h" } }, )" SHOW(
+        { "pass": "more", "type": "t.blur", "read": { "a": "light" }, "write": { "o": "h" } }, )" SHOW(
          "light"),
      DiagnosticId::in_place_race,
      {"reads 'light' through its port 'a'"}},
@@ -142,8 +142,8 @@ const Case refused[] = {
      DiagnosticId::in_place_race,
      {"pass 'blur'"}},
     {"AStandInOfAnotherComponentType",
-     R"({ "pass": "clear", "kind": "t.clear", "when": "sharp", "write": { "target": "id" }, "otherwise": { "id": "mask" } },
-        { "pass": "use", "kind": "t.ids", "read": { "ids": "id" }, "write": { "o": "out" } })",
+     R"({ "pass": "clear", "type": "t.clear", "when": "sharp", "write": { "target": "id" }, "otherwise": { "id": "mask" } },
+        { "pass": "use", "type": "t.ids", "read": { "ids": "id" }, "write": { "o": "out" } })",
      DiagnosticId::format_mismatch,
      {"port 'ids' of pass 'use', for which it stands for 'id', works with 'r8_uint'",
       "'mask' declares 'r8_unorm'"}},
@@ -151,28 +151,28 @@ const Case refused[] = {
 
 const Case accepted[] = {
     {"ItsOwnTexels",
-     R"({ "pass": "blur", "kind": "t.blur", "read": { "own": "light" }, "write": { "o": "light" } }, )" SHOW(
+     R"({ "pass": "blur", "type": "t.blur", "read": { "own": "light" }, "write": { "o": "light" } }, )" SHOW(
          "light")},
     {"ItsOwnElements",
-     R"({ "pass": "fill", "kind": "t.list", "write": { "out": "list" } },
-        { "pass": "sort", "kind": "t.list", "read": { "own": "list" }, "write": { "out": "list" } }, )" SHOW(
+     R"({ "pass": "fill", "type": "t.list", "write": { "out": "list" } },
+        { "pass": "sort", "type": "t.list", "read": { "own": "list" }, "write": { "out": "list" } }, )" SHOW(
          "light")},
     {"ItsOwnTexelsWhereAPassIsOff",
-     X_FROM_LIGHT("sharp") R"({ "pass": "blur", "kind": "t.blur", "read": { "own": "x" }, "write": { "o": "light" } }, )" SHOW(
+     X_FROM_LIGHT("sharp") R"({ "pass": "blur", "type": "t.blur", "read": { "own": "x" }, "write": { "o": "light" } }, )" SHOW(
          "light")},
     {"AnUpdateOfItsOwn",
-     R"({ "pass": "add", "kind": "t.update", "read": { "a": "mask" }, "write": { "o": "light" } }, )" SHOW(
+     R"({ "pass": "add", "type": "t.update", "read": { "a": "mask" }, "write": { "o": "light" } }, )" SHOW(
          "light")},
     {"AnotherMip",
-     R"({ "pass": "base", "kind": "t.blur", "read": { "a": "light" }, "write": { "o": "m#0" } },
-        { "pass": "down", "kind": "t.blur", "read": { "a": "m#0" }, "write": { "o": "m#1" } }, )" SHOW(
+     R"({ "pass": "base", "type": "t.blur", "read": { "a": "light" }, "write": { "o": "m#0" } },
+        { "pass": "down", "type": "t.blur", "read": { "a": "m#0" }, "write": { "o": "m#1" } }, )" SHOW(
          "m#1[0]")},
     {"AnotherLayer",
-     R"({ "pass": "base", "kind": "t.blur", "read": { "a": "light" }, "write": { "o": "m#0[0]" } },
-        { "pass": "copy", "kind": "t.blur", "read": { "a": "m#0[0]" }, "write": { "o": "m#0[1]" } }, )" SHOW(
+     R"({ "pass": "base", "type": "t.blur", "read": { "a": "light" }, "write": { "o": "m#0[0]" } },
+        { "pass": "copy", "type": "t.blur", "read": { "a": "m#0[0]" }, "write": { "o": "m#0[1]" } }, )" SHOW(
          "m#0[1]")},
     {"AnotherFrame",
-     R"({ "pass": "keep", "kind": "t.blur", "read": { "a": "h@-1" }, "write": { "o": "h" } }, )" SHOW("h")},
+     R"({ "pass": "keep", "type": "t.blur", "read": { "a": "h@-1" }, "write": { "o": "h" } }, )" SHOW("h")},
     {"UnderEqualConditions", X_FROM_LIGHT("sharp") BLUR_X(R"(, "when": "sharp")") SHOW("light")},
     {"UnderNumbersThatExcludeEachOther",
      X_FROM_LIGHT("n > 4 or r <= 2.5") BLUR_X(R"(, "when": "n >= 5 and r > 2.5 or n == 5")") SHOW("light")},
@@ -181,7 +181,7 @@ const Case accepted[] = {
          SHOW("light")},
     {"WhereAnotherPassWritesIt",
      X_FROM_LIGHT(
-         "sharp") R"({ "pass": "plain", "kind": "t.blur", "when": "not sharp", "read": { "a": "light" },
+         "sharp") R"({ "pass": "plain", "type": "t.blur", "when": "not sharp", "read": { "a": "light" },
         "write": { "o": "x" } }, )" BLUR_X("") SHOW("light")},
 };
 
@@ -195,7 +195,7 @@ TEST_P(InPlace, IsJudgedInEveryStateOfTheSettings) {
     const DeviceProfile device = generic_profile();
     CompileInput input;
     input.graph = &*result.graph;
-    input.kinds = &pass_kinds();
+    input.pass_types = &pass_types();
     input.device = &device;
     input.view_width = input.view_height = 64;
     Diagnostics diagnostics;

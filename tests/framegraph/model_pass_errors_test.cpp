@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Damage{"TheKindIsRegistered",
                              "\"test.list\"",
                              "\"test.lst\"",
-                             Id::unknown_kind,
+                             Id::unknown_pass_type,
                              "\"test.ls",
                              {"pass 'find'", "did you mean 'test.list'?"}},
                       Damage{"ABufferHoldsWhatAKernelReads",
@@ -32,13 +32,13 @@ INSTANTIATE_TEST_SUITE_P(
                              "\"pass\": \"mix\"",
                              "\"pass\": \"blur\"",
                              Id::duplicate_name,
-                             "\"blur\", \"kind\": \"test.m",
+                             "\"blur\", \"type\": \"test.m",
                              {"'blur'", "first declared here"}},
                       Damage{"APassHasAName",
                              "\"pass\": \"mix\", ",
                              "",
                              Id::missing_key,
-                             "{ \"kind\"",
+                             "{ \"type\"",
                              {"pass number 4", "'pass'"}},
                       Damage{"AMisspeltPassKeyIsTheOnlyError",
                              "\"pass\": \"mix\"",
@@ -152,13 +152,13 @@ INSTANTIATE_TEST_SUITE_P(
                       Damage{"AnUnknownSettingOfTheKindHasASuggestion",
                              "\"set\": { \"samples\"",
                              "\"set\": { \"sample\"",
-                             Id::unknown_kind_setting,
+                             Id::unknown_pass_setting,
                              "\"sample\"",
                              {"'test.blur'", "did you mean 'samples'?"}},
                       Damage{"AKindWithoutSettingsSaysSo",
                              "\"write\": { \"target\": \"light\" }",
                              "\"write\": { \"target\": \"light\" }, \"set\": { \"x\": 1 }",
-                             Id::unknown_kind_setting,
+                             Id::unknown_pass_setting,
                              "\"x\": 1 }",
                              {"no settings"}},
                       Damage{"AnUnknownSettingOfTheGraphHasASuggestion",
@@ -203,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
                              Id::setting_literal,
                              "\"bset\", ",
                              {"did you mean 'best'?"}}),
-    law_of);
+    property_of);
 
 INSTANTIATE_TEST_SUITE_P(
     ValidHistories, DamagedPass,
@@ -238,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(
                Id::format_mismatch,
                "\"material\" } },",
                {"port 'history' of pass 'blur'", "'material'"}}),
-    law_of);
+    property_of);
 
 INSTANTIATE_TEST_SUITE_P(Queues, DamagedPass,
                          ::testing::Values(Damage{"AQueueIsOneOfTwo",
@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(Queues, DamagedPass,
                                                   Id::invalid_value,
                                                   "\"asink\"",
                                                   {"'queue' of pass 'mix'", "'async'"}}),
-                         law_of);
+                         property_of);
 
 TEST(Queue, OfAPassIsMainUnlessItSaysSo) {
   const Read result = read(damaged("\"pass\": \"mix\", ", "\"pass\": \"mix\", \"queue\": \"async\", "));
@@ -294,7 +294,7 @@ INSTANTIATE_TEST_SUITE_P(
                              Id::bad_reference,
                              "\"half#x\"",
                              {"'half#x'", "#1..3"}}),
-    law_of);
+    property_of);
 
 TEST(ValidHistory, APortThatMustBeBoundSaysWhatItReadsElse) {
   std::string text =
@@ -382,7 +382,7 @@ INSTANTIATE_TEST_SUITE_P(
                              Id::two_producers,
                              "\"fixed\" },\n      \"set\"",
                              {"'fixed' through two ports"}}),
-    law_of);
+    property_of);
 
 } // namespace
 } // namespace dermis

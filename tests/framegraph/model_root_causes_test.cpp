@@ -10,15 +10,15 @@ using namespace dermis::testing;
 using Id = DiagnosticId;
 
 std::string small_graph(const std::string& passes) {
-  return R"({ "dermis": 1, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+  return R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
 "resources": { "x": { "format": "rgba16f", "size": "view" } }, "exports": ["a"], "passes": [)" +
          passes + "] }";
 }
 
 TEST(GraphErrors, TwoPassesThatAlwaysRunDoNotWriteTheSameResource) {
   const Read result = read(small_graph(R"(
-{ "pass": "one", "kind": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } },
-{ "pass": "two", "kind": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } })"));
+{ "pass": "one", "type": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } },
+{ "pass": "two", "type": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } })"));
   EXPECT_FALSE(result.graph);
   expect_only(result.diagnostics, Id::two_producers, 4, 87,
               {"'one' and 'two'", "'x'", "'one' writes it here"});
@@ -26,15 +26,15 @@ TEST(GraphErrors, TwoPassesThatAlwaysRunDoNotWriteTheSameResource) {
 
 TEST(GraphErrors, WhatPassesOnlyUpdateHasNoContents) {
   const Read result = read(small_graph(R"(
-{ "pass": "one", "kind": "test.mix", "read": { "source": "a" }, "write": { "target": "x" } })"));
+{ "pass": "one", "type": "test.mix", "read": { "source": "a" }, "write": { "target": "x" } })"));
   EXPECT_FALSE(result.graph);
   expect_only(result.diagnostics, Id::no_producer, 3, 86, {"pass 'one' updates 'x'", "only update"});
 }
 
 TEST(GraphErrors, WhatNoPassWritesCannotBeRead) {
   const Read result = read(small_graph(R"(
-{ "pass": "one", "kind": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } },
-{ "pass": "two", "kind": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } })"));
+{ "pass": "one", "type": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } },
+{ "pass": "two", "type": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } })"));
   EXPECT_FALSE(result.graph);
   expect_only(result.diagnostics, Id::no_producer, 3, 58, {"pass 'one' reads 'x'", "declared here"});
 }
@@ -46,14 +46,14 @@ TEST(GraphErrors, AllRootCausesAreReportedInOneRunAndTheirConsequencesAreNot) {
     text.replace(text.find(from), from.size(), to);
   };
   also("\"int\": 16", "\"int\": 1.5");                         // "$samples" stays silent
-  also("\"kind\": \"test.list\"", "\"kind\": \"test.lisst\""); // the reader of list stays silent
+  also("\"type\": \"test.list\"", "\"type\": \"test.lisst\""); // the reader of list stays silent
   also("\"kept@-2\"", "\"keptt@-2\"");
   const Read result = read(text);
   EXPECT_FALSE(result.graph);
   ASSERT_EQ(result.diagnostics.list.size(), 4u) << all_messages(result.diagnostics);
   EXPECT_EQ(result.diagnostics.list[0].id, Id::wrong_type);
   EXPECT_EQ(result.diagnostics.list[1].id, Id::invalid_value);
-  EXPECT_EQ(result.diagnostics.list[2].id, Id::unknown_kind);
+  EXPECT_EQ(result.diagnostics.list[2].id, Id::unknown_pass_type);
   EXPECT_EQ(result.diagnostics.list[3].id, Id::unknown_resource);
 }
 
@@ -62,15 +62,15 @@ TEST(GraphErrors, AnUnknownKindIsReportedOnceWithAllItsPasses) {
   for (size_t at = 0; (at = text.find("\"test.blur\"", at)) != std::string::npos; ++at)
     text.replace(at, 11, "\"host.bloom\"");
   const size_t end = text.rfind("\"passes\": [") + 11;
-  text.insert(end, R"( { "pass": "extra", "kind": "host.bloom" },)");
+  text.insert(end, R"( { "pass": "extra", "type": "host.bloom" },)");
   const Read result = read(text);
   ASSERT_EQ(result.diagnostics.list.size(), 1u) << all_messages(result.diagnostics);
   const Diagnostic& one = result.diagnostics.list[0];
-  EXPECT_EQ(one.id, Id::unknown_kind);
+  EXPECT_EQ(one.id, Id::unknown_pass_type);
   EXPECT_NE(one.text.find("pass 'extra' and "), std::string::npos) << one.text;
   ASSERT_FALSE(one.related.empty());
-  EXPECT_EQ(one.related[0].second, "pass 'blur' is of this kind, too");
-  EXPECT_NE(std::string(diagnostic_info(one.id).hint).find("--kinds FILE"), std::string::npos);
+  EXPECT_EQ(one.related[0].second, "pass 'blur' is of this type, too");
+  EXPECT_NE(std::string(diagnostic_info(one.id).hint).find("--pass-types FILE"), std::string::npos);
 }
 
 TEST(GraphErrors, SectionsOfTheWrongTypeSilenceWhatReferredToThem) {
@@ -95,7 +95,7 @@ TEST(GraphErrors, CountsBeyondTheLimitsAreRefused) {
     many_resources += (i ? ",\"r" : "\"r") + std::to_string(i) + "\":{}";
   for (size_t i = 0; i <= limits::settings; ++i)
     many_settings += (i ? ",\"s" : "\"s") + std::to_string(i) + "\":{}";
-  const std::string start = "{ \"dermis\": 1, \"name\": \"g\", ";
+  const std::string start = "{ \"dermis\": 2, \"name\": \"g\", ";
   expect_only(read(start + "\"exports\": [],\n\"passes\": [" + many_passes + "] }").diagnostics,
               Id::limit_exceeded, 2, 11, {"4097", "4096"});
   const std::string rest = "\"exports\": [], \"passes\": [],\n";

@@ -1,5 +1,5 @@
 #pragma once
-// A small registry of pass kinds and a graph to damage.
+// A small registry of pass types and a graph to damage.
 
 #include "framegraph/model/read_graph.hpp"
 #include "tests/framegraph/text_support.hpp"
@@ -17,7 +17,7 @@ inline constexpr Port blur_ports[] = {
     {"target", Usage::storage_image_write, false, "image2D", "the result", half4},
     {"history", Usage::storage_image_write, true, "image2D", "this frame's"},
 };
-inline constexpr KindSetting blur_settings[] = {
+inline constexpr PassTypeSetting blur_settings[] = {
     {"samples", SettingType::integer, {SettingType::integer, 16, 0.0}, 1, 64, {}, "", "how many"},
     {"radius", SettingType::real, {SettingType::real, 0, 1.0}, 0, 8, {}, "px", "how far"},
     {"mode", SettingType::enumeration, {SettingType::enumeration, 0, 0.0}, 0, 0, modes, "", "how"},
@@ -38,12 +38,12 @@ inline constexpr Port add_ports[] = {
     {"target", Usage::storage_image_write, false, "image2D", "the sum"},
 };
 
-inline const KindRegistry& kinds() {
-  static const KindRegistry registry = [] {
-    KindRegistry out;
+inline const PassTypeRegistry& pass_types() {
+  static const PassTypeRegistry registry = [] {
+    PassTypeRegistry out;
     out.add({"test.blur", "blur", "blurs", blur_ports, blur_settings});
     static constexpr PortNeed list_needs[] = {{"tiles", 8, 4, 4}, {"mask", 1}, {"no_port", 1, 1000}};
-    PassKind list{"test.list", "list", "lists tiles", list_ports, {}};
+    PassType list{"test.list", "list", "lists tiles", list_ports, {}};
     list.needs = list_needs;
     out.add(list);
     out.add({"test.mix", "mix", "adds in place", mix_ports, {}});
@@ -61,13 +61,13 @@ struct Read {
 inline Read read(std::string text) {
   Read out;
   const auto document = parse_document("graph.json", std::move(text), out.diagnostics);
-  if (document) out.graph = read_graph(*document, kinds(), out.diagnostics);
+  if (document) out.graph = read_graph(*document, pass_types(), out.diagnostics);
   return out;
 }
 
 // Every feature once, one declaration a line.
 inline std::string whole_graph() {
-  return R"({ "$schema": "x", "dermis": 1, "name": "whole", "note": "all of it",
+  return R"({ "$schema": "x", "dermis": 2, "name": "whole", "note": "all of it",
   "settings": {
     "quality": { "choice": ["fast", "good", "best"], "by": "budget", "default": "good" },
     "samples": { "int": 16, "min": 4, "max": 64, "unit": "samples" },
@@ -85,16 +85,16 @@ inline std::string whole_graph() {
     "fixed": { "format": "rgba16f", "size": [64, 32], "optional": true },
     "list": { "buffer": { "stride": 4, "count": "view/8", "extra": 4 } } },
   "passes": [
-    { "pass": "find", "kind": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } },
-    { "pass": "blur", "kind": "test.blur", "when": "quality in ['good', 'best'] and not mirror == false",
+    { "pass": "find", "type": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } },
+    { "pass": "blur", "type": "test.blur", "when": "quality in ['good', 'best'] and not mirror == false",
       "read": { "source": "light", "mask": "material", "tiles": "list", "history": "kept@-2" },
       "write": { "target": "half", "history": "kept" },
       "set": { "samples": "$samples", "radius": 2, "mode": "$quality", "mirror": true },
       "otherwise": { "half": "light" } },
-    { "pass": "copy", "kind": "test.blur", "read": { "source": "half" }, "write": { "target": "fixed" },
+    { "pass": "copy", "type": "test.blur", "read": { "source": "half" }, "write": { "target": "fixed" },
       "set": { "mode": "best", "radius": "$radius" },
       "after": [{ "pass": "find", "reason": "keeps captures in order" }] },
-    { "pass": "mix", "kind": "test.mix", "read": { "source": "half" }, "write": { "target": "light" } } ],
+    { "pass": "mix", "type": "test.mix", "read": { "source": "half" }, "write": { "target": "light" } } ],
   "exports": ["light", "fixed"] })";
 }
 

@@ -1,12 +1,12 @@
 // Who notices a plan that was changed by hand? The verifier, in every case in which the exhaustive oracle
 // says that the change matters, and in no other.
 
-#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/hazard_oracle.hpp"
 #include "tests/framegraph/plan_mutations.hpp"
 #include "tests/framegraph/random_graph.hpp"
 #include "tests/framegraph/second_opinion.hpp"
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 
 #include "framegraph/verify/verify.hpp"
 
@@ -18,7 +18,7 @@ namespace dermis::testing {
 namespace {
 
 template <class Visit> void for_random_plans(uint64_t quick, uint64_t full, Visit visit) {
-  for (uint64_t seed = 0; seed < seeds_of_tier(quick, full) && !::testing::Test::HasFailure(); ++seed) {
+  for (uint64_t seed = 0; seed < seeds_to_try(quick, full) && !::testing::Test::HasFailure(); ++seed) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
     visit(builder, plan, seed);
@@ -48,7 +48,8 @@ TEST(Mutation, NoBarrierOfAThousandPlansCanBeDropped) {
   uint64_t dropped = 0;
   for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b, ++dropped)
-      ASSERT_FALSE(verify(without_barrier(plan, b)).objections.empty()) << "seed " << seed << ", barrier " << b;
+      ASSERT_FALSE(verify(without_barrier(plan, b)).violations.empty())
+          << "seed " << seed << ", barrier " << b;
   });
   EXPECT_GT(dropped, 10000u);
 }
@@ -69,11 +70,11 @@ TEST(Mutation, NoAliasDependencyCanBeLost) {
   uint64_t lost = 0;
   for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b) {
-      if (plan.barriers[b].why != PlanBarrier::Why::alias) continue;
+      if (plan.barriers[b].why != PlanBarrier::ReasonKind::alias) continue;
       Plan mutant = plan;
       mutant.barriers[b].source_stages = stage::none;
       mutant.barriers[b].source_access = access::none;
-      ASSERT_FALSE(verify(mutant).objections.empty()) << "seed " << seed << ", barrier " << b;
+      ASSERT_FALSE(verify(mutant).violations.empty()) << "seed " << seed << ", barrier " << b;
       ++lost;
     }
   });
@@ -90,12 +91,12 @@ TEST(Mutation, AFlippedHistorySlotIsRefusedOrChangesThePixels) {
     if (std::any_of(plan.accesses.begin(), plan.accesses.end(),
                     [](const PlanAccess& access) { return access.when == ReadWhen::history_invalid; }))
       return;
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, frames, seed);
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
     for_each_flipped_slot(plan, [&](const Plan& mutant, const std::string& what) {
       if (HasFatalFailure()) return;
       expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
-      if (verify(mutant).objections.empty()) {
-        EXPECT_FALSE(agrees(interpret(mutant, {frames, seed, 1, 0}), truth))
+      if (verify(mutant).violations.empty()) {
+        EXPECT_FALSE(agrees(interpret(mutant, {frames, seed, 1, 0}), reference))
             << "seed " << seed << ": " << what;
       }
     });

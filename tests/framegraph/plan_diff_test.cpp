@@ -124,7 +124,7 @@ TEST(PlanDiff, NamesEachThingThatIsChanged) {
       {"compiled_from", "single queue", [](auto& p) { p.key.single_queue = false; }},
       {"compiled_from", "kept alive", [](auto& p) { p.key.keep_alive = ResourceId{1}; }},
       {"settings", "smooth", [](auto& p) { p.names.settings[0].text = "false"; }},
-      {"passes", "mix", [](auto& p) { p.names.kinds[1] = "test.other"; }},
+      {"passes", "mix", [](auto& p) { p.names.pass_types[1] = "test.other"; }},
       {"passes", "mix", [](auto& p) { p.plan.passes[1].queue = Queue::async; }},
       {"passes", "mix", [](auto& p) { p.plan.passes[1].wait = 3; }},
       {"passes", "mix", [](auto& p) { p.plan.passes[1].signal = 3; }},

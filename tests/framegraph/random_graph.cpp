@@ -50,10 +50,10 @@ struct Draft {
     }
   }
 
-  Bindings reads(uint32_t most) {
+  Bindings reads(uint32_t maximum) {
     constexpr const char* ports[] = {"a", "b", "c"};
     Bindings result;
-    for (uint32_t i = 0; i < most; ++i) {
+    for (uint32_t i = 0; i < maximum; ++i) {
       if (!histories.empty() && random.chance(25)) {
         const auto& history = any(histories);
         const auto frames = b.graph.resources[b.resource(history).value].history.frames;

@@ -9,12 +9,12 @@
 namespace dermis::testing {
 
 void expect_same_verdict(const Plan& mutant, const std::string& what, Tally& tally) {
-  const auto objections = verify(mutant).objections;
+  const auto violations = verify(mutant).violations;
   const std::string hazard = first_hazard(mutant);
   ++tally.tried;
-  tally.refused += !objections.empty();
-  ASSERT_EQ(objections.empty(), hazard.empty())
-      << what << "\nverifier: " << (objections.empty() ? "accepts" : objections.front())
+  tally.refused += !violations.empty();
+  ASSERT_EQ(violations.empty(), hazard.empty())
+      << what << "\nverifier: " << (violations.empty() ? "accepts" : violations.front())
       << "\noracle: " << (hazard.empty() ? "accepts" : hazard);
 }
 

@@ -49,7 +49,7 @@ TEST(SavedPlan, ReadBackIsWhatWasWritten) {
     EXPECT_EQ(write_plan(*after), bytes);
     EXPECT_EQ(plan_bytes(after->plan), plan_bytes(before.plan));
     EXPECT_EQ(after->names.passes, before.names.passes);
-    EXPECT_EQ(verify(after->plan).objections, std::vector<std::string>{});
+    EXPECT_EQ(verify(after->plan).violations, std::vector<std::string>{});
   }
 }
 
@@ -119,22 +119,22 @@ TEST(SavedPlan, WithAnyByteChangedIsRefusedOrIsAnotherPlanThatCanBeFollowed) {
 TEST(SavedPlan, WhoseIndicesLeadNowhereIsRefused) {
   const GraphBuilder builder = random_graph(8);
   const SavedPlan good = saved(builder.input());
-  const auto refused_with = [&](auto&& change) {
+  const auto rejected_with = [&](auto&& change) {
     SavedPlan plan = good;
     change(plan);
     return refusal(write_plan(plan));
   };
-  EXPECT_EQ(refused_with([](SavedPlan& p) { p.names.passes.pop_back(); }),
+  EXPECT_EQ(rejected_with([](SavedPlan& p) { p.names.passes.pop_back(); }),
             "not everything in the plan has one name");
-  EXPECT_EQ(refused_with([](SavedPlan& p) { p.key.view_width += 1; }),
+  EXPECT_EQ(rejected_with([](SavedPlan& p) { p.key.view_width += 1; }),
             "key and plan were made for different views or devices");
-  EXPECT_THAT(refused_with([](SavedPlan& p) { p.plan.accesses[0].resource = 70000; }),
+  EXPECT_THAT(rejected_with([](SavedPlan& p) { p.plan.accesses[0].resource = 70000; }),
               HasSubstr("accesses a resource or an earlier frame that does not exist"));
-  EXPECT_THAT(refused_with([](SavedPlan& p) { p.plan.placements[0].heap = 77; }),
+  EXPECT_THAT(rejected_with([](SavedPlan& p) { p.plan.placements[0].heap = 77; }),
               HasSubstr("lies in no heap"));
-  EXPECT_THAT(refused_with([](SavedPlan& p) { p.plan.placements[0].last_use = 0xffffffff; }),
+  EXPECT_THAT(rejected_with([](SavedPlan& p) { p.plan.placements[0].last_use = 0xffffffff; }),
               HasSubstr("alive outside of the frame"));
-  EXPECT_THAT(refused_with([](SavedPlan& p) { p.plan.passes[0].access_count += 1; }),
+  EXPECT_THAT(rejected_with([](SavedPlan& p) { p.plan.passes[0].access_count += 1; }),
               HasSubstr("do not stand in the order of their passes"));
 }
 

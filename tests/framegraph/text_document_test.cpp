@@ -206,20 +206,20 @@ TEST(Document, WhatIsNoReadableFileIsRefused) {
 }
 
 TEST(Document, NestingBeyondTheLimitIsRefusedAtTheBracket) {
-  const size_t most = limits::nesting;
-  EXPECT_TRUE(parse(std::string(most, '[') + std::string(most, ']')).document);
+  const size_t maximum = limits::nesting;
+  EXPECT_TRUE(parse(std::string(maximum, '[') + std::string(maximum, ']')).document);
   const Parsed parsed = parse(std::string(1000000, '['));
   EXPECT_FALSE(parsed.document);
-  expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, static_cast<uint32_t>(most + 1),
+  expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, static_cast<uint32_t>(maximum + 1),
               {"nested"});
 }
 
 TEST(Document, StringsBeyondTheLimitAreRefusedAtTheirStart) {
-  const size_t most = limits::string_bytes;
-  EXPECT_TRUE(parse("[\"" + std::string(most, 'x') + "\"]").document);
+  const size_t maximum = limits::string_bytes;
+  EXPECT_TRUE(parse("[\"" + std::string(maximum, 'x') + "\"]").document);
   for (const std::string& text :
-       {"[\"" + std::string(most + 1, 'x') + "\"]", "[\"" + std::string(8u << 20, 'x'),
-        "{\"" + std::string(most + 1, 'x') + "\": 1}"}) {
+       {"[\"" + std::string(maximum + 1, 'x') + "\"]", "[\"" + std::string(8u << 20, 'x'),
+        "{\"" + std::string(maximum + 1, 'x') + "\": 1}"}) {
     const Parsed parsed = parse(text);
     EXPECT_FALSE(parsed.document);
     expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, 2);

@@ -168,7 +168,7 @@ TEST(Reader, TheVersionKeyIsRequiredAndChecked) {
   Parsed other = parse("{ \"name\": \"n\",\n  \"dermis_profile\": 1 }");
   EXPECT_FALSE(check_version(*other.document, "dermis", 1, other.diagnostics));
   expect_only(other.diagnostics, DiagnosticId::other_kind_of_file, 2, 3, {"'dermis_profile'", "'dermis'"});
-  Parsed graph = parse("{ \"dermis\": 1 }");
+  Parsed graph = parse("{ \"dermis\": 2 }");
   EXPECT_FALSE(check_version(*graph.document, "dermis_profile", 1, graph.diagnostics));
   expect_only(graph.diagnostics, DiagnosticId::other_kind_of_file, 1, 3, {"'dermis'", "'dermis_profile'"});
   Parsed newer = parse("{ \"v\": 2 }");

@@ -1,12 +1,12 @@
 // Laws of plans with an async queue: nothing that one queue needs of the other is lost, nothing waits in
 // vain, and whatever order the points allow gives the same pixels.
 
-#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/hazard_oracle.hpp"
 #include "tests/framegraph/plan_mutations.hpp"
 #include "tests/framegraph/random_graph.hpp"
 #include "tests/framegraph/second_opinion.hpp"
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 
 #include "framegraph/serial/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
@@ -42,7 +42,7 @@ uint32_t async_passes(const Plan& plan) {
 
 template <class Visit>
 void for_random_plans(uint64_t quick, uint64_t full, Visit visit, Sizes sizes = Sizes::mixed) {
-  for (uint64_t seed = 0; seed < seeds_of_tier(quick, full) && !::testing::Test::HasFailure(); ++seed) {
+  for (uint64_t seed = 0; seed < seeds_to_try(quick, full) && !::testing::Test::HasFailure(); ++seed) {
     auto builder = random_graph(seed, sizes);
     if (seed % 4 == 1) draw_orders(builder, seed);
     const Plan plan = compiled(builder, two_queues(builder)).plan;
@@ -111,7 +111,7 @@ TEST(TwoQueues, AfterIsAPointBetweenPassesOfTwoQueues) {
   Plan mutant = whole.plan;
   mutant.passes[3].wait =
       std::exchange(mutant.passes[2].wait, no_point); // nothing of `aside` is needed before
-  EXPECT_THAT(verify(mutant).objections.front(),
+  EXPECT_THAT(verify(mutant).violations.front(),
               HasSubstr("pass 2: does not come after pass 1, as it is to"));
   EXPECT_NE(first_hazard(mutant), "");
 }
@@ -124,13 +124,13 @@ TEST(TwoQueues, AfterIsNoPointBetweenPassesOfOneQueue) {
   ASSERT_EQ(plan.orderings.size(), 1u);
   Plan mutant = plan;
   std::swap(mutant.orderings[0].earlier, mutant.orderings[0].later);
-  EXPECT_THAT(verify(mutant).objections.front(), HasSubstr("does not come after"));
+  EXPECT_THAT(verify(mutant).violations.front(), HasSubstr("does not come after"));
   EXPECT_NE(first_hazard(mutant), "");
 }
 
 TEST(TwoQueues, WhateverOrderThePointsAllowKeepsWhatAfterOrders) {
   uint64_t kept = 0;
-  for (uint64_t seed = 0; seed < seeds_of_tier(400, 4000); ++seed) {
+  for (uint64_t seed = 0; seed < seeds_to_try(400, 4000); ++seed) {
     auto builder = random_graph(seed);
     draw_orders(builder, seed);
     const Plan plan = compiled(builder, two_queues(builder)).plan;
@@ -172,16 +172,16 @@ TEST(TwoQueues, TheFrameBeforeIsWaitedForAsFarAsAnyPassNeeds) {
 
 TEST(TwoQueues, WhateverOrderThePointsAllowGivesThePixelsThatTheGraphMeans) {
   for_random_plans(1500, 10000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
-    const Interpretation truth = graph_truth(builder.graph, builder.kinds, queue_frames, seed);
+    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, queue_frames, seed);
     for (uint64_t order = 0; order <= 3; ++order)
-      ASSERT_TRUE(agrees(interpret(plan, {queue_frames, seed, order + 1, order}), truth))
+      ASSERT_TRUE(agrees(interpret(plan, {queue_frames, seed, order + 1, order}), reference))
           << "seed " << seed << ", order " << order;
   });
 }
 
 void expect_no_needless_barrier(const Plan& plan, uint64_t seed) {
   for (uint32_t b = 0; b < plan.barriers.size(); ++b)
-    EXPECT_FALSE(verify(without_barrier(plan, b)).objections.empty())
+    EXPECT_FALSE(verify(without_barrier(plan, b)).violations.empty())
         << "seed " << seed << ": without barrier " << b;
 }
 
@@ -200,7 +200,7 @@ TEST(TwoQueues, WhatAWaitHasShownNeedsNoBarrierForAnotherUsageEither) {
 
 // Dropped one by one, each is refused: by the verifier in every plan, by the oracle too in the first ones.
 template <class ForEachMutant>
-void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, uint64_t least,
+void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, uint64_t minimum,
                           ForEachMutant for_each_mutant) {
   uint64_t dropped = 0;
   for (const Sizes sizes : {Sizes::one_page, Sizes::mixed})
@@ -209,14 +209,14 @@ void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, 
         [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
           for_each_mutant(plan, [&](const Plan& mutant, const std::string& what) {
             ++dropped;
-            EXPECT_FALSE(verify(mutant).objections.empty()) << "seed " << seed << ": " << what;
+            EXPECT_FALSE(verify(mutant).violations.empty()) << "seed " << seed << ": " << what;
             if (seed < judged_twice) {
               EXPECT_NE(first_hazard(mutant), "") << "seed " << seed << ": " << what;
             }
           });
         },
         sizes);
-  EXPECT_GT(dropped, least);
+  EXPECT_GT(dropped, minimum);
 }
 
 TEST(TwoQueues, NoBarrierAndNoHalfOfATransferCanBeDropped) {

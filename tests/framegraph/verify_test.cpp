@@ -39,11 +39,11 @@ GraphBuilder everything() {
   return b;
 }
 
-void expect_refused(const std::function<void(Plan&)>& mutate, const std::string& because) {
+void expect_rejected(const std::function<void(Plan&)>& mutate, const std::string& record_reason) {
   const auto b = everything();
   Plan plan = compiled(b).plan;
   mutate(plan);
-  EXPECT_THAT(verify(plan).objections, Contains(HasSubstr(because)));
+  EXPECT_THAT(verify(plan).violations, Contains(HasSubstr(record_reason)));
 }
 
 TEST(Verify, AcceptsWhatTheCompilerMakes) {
@@ -52,7 +52,7 @@ TEST(Verify, AcceptsWhatTheCompilerMakes) {
 }
 
 TEST(Verify, RefusesMemoryThatIsSharedWhileBothAreAlive) {
-  expect_refused(
+  expect_rejected(
       [](Plan& plan) {
         for (Placement& placement : plan.placements)
           placement.offset = 0;
@@ -79,7 +79,7 @@ TEST(Verify, JudgesThousandsOfPlacementsInTheSameBytes) {
   }
   EXPECT_TRUE(verify(plan).proven());
   plan.placements.back().first_use = plan.placements.back().last_use - 1;
-  EXPECT_THAT(verify(plan).objections, Contains(HasSubstr("alive at the same time share memory")));
+  EXPECT_THAT(verify(plan).violations, Contains(HasSubstr("alive at the same time share memory")));
 }
 
 // The longest chain that a graph may have. All of its images pass through the same memory, a pass each.
@@ -151,7 +151,7 @@ TEST(Verify, SaysThatItGaveUpAndObjectsToNothing) {
     }
   }
   const Verdict verdict = verify(plan);
-  EXPECT_THAT(verdict.objections, IsEmpty());
+  EXPECT_THAT(verdict.violations, IsEmpty());
   EXPECT_THAT(verdict.not_verified, HasSubstr("parts"));
   EXPECT_FALSE(verdict.proven());
 }
@@ -171,7 +171,7 @@ TEST(Verify, GivesUpWhereAPassHasTooManyAccesses) {
   plan.accesses.insert(plan.accesses.end(), more, again);
   last.access_count += more;
   const Verdict verdict = verify(plan);
-  EXPECT_THAT(verdict.objections, IsEmpty());
+  EXPECT_THAT(verdict.violations, IsEmpty());
   EXPECT_THAT(verdict.not_verified, HasSubstr("accesses meet in memory"));
 }
 
@@ -181,31 +181,31 @@ TEST(Verify, RefusesAWriteToAnEarlierFrame) {
       if ((access.access & all_write_access) != 0 && plan.resources[access.resource].instance_count > 1)
         access.frames_back = 1;
   };
-  expect_refused(redirect, "is written, but it holds an earlier frame");
+  expect_rejected(redirect, "is written, but it holds an earlier frame");
 }
 
 TEST(Verify, RefusesPlacementsOutsideTheirHeapOrMisaligned) {
-  expect_refused([](Plan& plan) { plan.heaps[0].size = 1; }, "reaches beyond its heap");
-  expect_refused([](Plan& plan) { plan.placements[0].offset = 1; }, "misaligned");
+  expect_rejected([](Plan& plan) { plan.heaps[0].size = 1; }, "reaches beyond its heap");
+  expect_rejected([](Plan& plan) { plan.placements[0].offset = 1; }, "misaligned");
 }
 
 TEST(Verify, RefusesIndicesOutOfRange) {
-  expect_refused([](Plan& plan) { plan.accesses[0].resource = 1000; }, "does not exist");
-  expect_refused([](Plan& plan) { plan.accesses[0].frames_back = 7; }, "does not exist");
-  expect_refused([](Plan& plan) { plan.barriers[0].resource = 1000; }, "does not exist");
-  expect_refused([](Plan& plan) { plan.passes[0].access_count = 1000; }, "do not exist");
-  expect_refused([](Plan& plan) { plan.passes[0].first_barrier = 0xffffffff; }, "do not exist");
-  expect_refused([](Plan& plan) { plan.histories.clear(); }, "not described once");
+  expect_rejected([](Plan& plan) { plan.accesses[0].resource = 1000; }, "does not exist");
+  expect_rejected([](Plan& plan) { plan.accesses[0].frames_back = 7; }, "does not exist");
+  expect_rejected([](Plan& plan) { plan.barriers[0].resource = 1000; }, "does not exist");
+  expect_rejected([](Plan& plan) { plan.passes[0].access_count = 1000; }, "do not exist");
+  expect_rejected([](Plan& plan) { plan.passes[0].first_barrier = 0xffffffff; }, "do not exist");
+  expect_rejected([](Plan& plan) { plan.histories.clear(); }, "not described once");
 }
 
 TEST(Verify, RefusesAWrongLayout) {
-  expect_refused([](Plan& plan) { plan.accesses.back().layout = Layout::transfer_source; },
-                 "not in the layout the access");
-  expect_refused([](Plan& plan) { plan.history_layouts[1] = Layout::transfer_source; }, "layout");
+  expect_rejected([](Plan& plan) { plan.accesses.back().layout = Layout::transfer_source; },
+                  "not in the layout the access");
+  expect_rejected([](Plan& plan) { plan.history_layouts[1] = Layout::transfer_source; }, "layout");
 }
 
 TEST(Verify, RefusesAReadOutsideItsLifetime) {
-  expect_refused(
+  expect_rejected(
       [](Plan& plan) {
         for (Placement& placement : plan.placements)
           if (!placement.persistent) placement.last_use = placement.first_use;
@@ -220,7 +220,7 @@ TEST(Verify, RefusesEveryBarrierThatLosesItsSource) {
       if (plan.barriers[i].from_host || plan.barriers[i].source_stages == 0) continue;
       Plan mutant = plan;
       mutant.barriers[i].source_stages = stage::host;
-      EXPECT_THAT(verify(mutant).objections, Not(IsEmpty())) << "seed " << seed << ", barrier " << i;
+      EXPECT_THAT(verify(mutant).violations, Not(IsEmpty())) << "seed " << seed << ", barrier " << i;
     }
     if (HasFailure()) return;
   }
@@ -233,10 +233,11 @@ TEST(Verify, RefusesEveryBarrierThatLosesAWriteItMustMakeAvailable) {
     const Plan& plan = whole.plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
       // An alias barrier names the writes of every occupant, also those that a later occupant made available.
-      if (plan.barriers[i].source_access == 0 || plan.barriers[i].why == PlanBarrier::Why::alias) continue;
+      if (plan.barriers[i].source_access == 0 || plan.barriers[i].why == PlanBarrier::ReasonKind::alias)
+        continue;
       Plan mutant = plan;
       mutant.barriers[i].source_access = 0;
-      EXPECT_THAT(verify(mutant).objections, Not(IsEmpty()))
+      EXPECT_THAT(verify(mutant).violations, Not(IsEmpty()))
           << "seed " << seed << ", barrier " << i << ": "
           << reasons(builder, whole, Reason::About::barrier, i);
     }
@@ -251,7 +252,7 @@ TEST(Verify, RefusesEveryBarrierThatDoesNotReachItsReader) {
       if (plan.barriers[i].to_host) continue;
       Plan mutant = plan;
       mutant.barriers[i].destination_stages = stage::host;
-      EXPECT_THAT(verify(mutant).objections, Not(IsEmpty())) << "seed " << seed << ", barrier " << i;
+      EXPECT_THAT(verify(mutant).violations, Not(IsEmpty())) << "seed " << seed << ", barrier " << i;
     }
     if (HasFailure()) return;
   }
@@ -264,7 +265,7 @@ TEST(Verify, RefusesSwappedPasses) {
   for (size_t p = 0; p + 1 < plan.passes.size() - 1; ++p) {
     Plan mutant = plan;
     std::swap(mutant.passes[p], mutant.passes[p + 1]);
-    EXPECT_THAT(verify(mutant).objections, Not(IsEmpty())) << p;
+    EXPECT_THAT(verify(mutant).violations, Not(IsEmpty())) << p;
   }
 }
 
@@ -278,7 +279,7 @@ TEST(Verify, RefusesAConditionOnAWriteOrOnNoHistory) {
   };
   for (const bool writes : {false, true})
     for (const ReadWhen when : {ReadWhen::history_valid, ReadWhen::history_invalid})
-      expect_refused(set_all(when, writes), "depends on a validity that it does not name");
+      expect_rejected(set_all(when, writes), "depends on a validity that it does not name");
 }
 
 } // namespace

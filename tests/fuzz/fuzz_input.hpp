@@ -16,9 +16,9 @@ inline std::string text_of(const uint8_t* data, size_t size) {
 }
 
 // Ends the run as a finding.
-inline void demand(bool holds, const char* law) {
+inline void demand(bool holds, const char* property) {
   if (holds) return;
-  std::fprintf(stderr, "broken: %s\n", law);
+  std::fprintf(stderr, "broken: %s\n", property);
   std::abort();
 }
 

@@ -3,7 +3,7 @@
 // alone.
 
 #include "framegraph/compose/compose.hpp"
-#include "framegraph/model/host_kind.hpp"
+#include "framegraph/model/host_pass_type.hpp"
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/schema/graph_schema.hpp"
 #include "integration/examples/demo_engine/scene/read_scene.hpp"
@@ -11,9 +11,9 @@
 #include "integration/tools/files/capture.hpp"
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/error_model.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "passes/common/profiles/profile.hpp"
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 #include "tests/schema/validator.hpp"
 
 #include <algorithm>
@@ -32,8 +32,8 @@ using nlohmann::json;
 constexpr DiagnosticId structural[] = {
     DiagnosticId::unknown_key,         DiagnosticId::wrong_type,     DiagnosticId::missing_key,
     DiagnosticId::out_of_range,        DiagnosticId::limit_exceeded, DiagnosticId::integer_precision,
-    DiagnosticId::unsupported_version, DiagnosticId::invalid_value,  DiagnosticId::unknown_kind,
-    DiagnosticId::unknown_port,        DiagnosticId::missing_port,   DiagnosticId::unknown_kind_setting,
+    DiagnosticId::unsupported_version, DiagnosticId::invalid_value,  DiagnosticId::unknown_pass_type,
+    DiagnosticId::unknown_port,        DiagnosticId::missing_port,   DiagnosticId::unknown_pass_setting,
     DiagnosticId::port_direction,      DiagnosticId::profile_keys,   DiagnosticId::other_kind_of_file,
 };
 
@@ -41,11 +41,11 @@ using Reader = void (*)(const std::string& text, Diagnostics& diagnostics);
 
 // Whatever is included is there and empty.
 FileText open_nothing(std::string_view name) {
-  return {std::string(name), R"({ "dermis_fragment": 1 })", ""};
+  return {std::string(name), R"({ "dermis_fragment": 2 })", ""};
 }
 void read_composition(const std::optional<Composition>& composition, Diagnostics& diagnostics) {
-  static const KindRegistry kinds = subsurface::make_kinds();
-  if (composition) read_graph(composition->document, kinds, diagnostics);
+  static const PassTypeRegistry pass_types = subsurface::make_pass_types();
+  if (composition) read_graph(composition->document, pass_types, diagnostics);
 }
 void read_graph_text(const std::string& text, Diagnostics& diagnostics) {
   if (auto document = parse_document("graph.json", text, diagnostics))
@@ -75,9 +75,9 @@ void read_calibration_text(const std::string& text, Diagnostics& diagnostics) {
   if (const auto document = parse_document("calibration.json", text, diagnostics))
     choice::read_calibration(*document, diagnostics);
 }
-void read_kinds_text(const std::string& text, Diagnostics& diagnostics) {
-  if (const auto document = parse_document("kinds.json", text, diagnostics))
-    read_host_kinds(*document, diagnostics);
+void read_pass_types_text(const std::string& text, Diagnostics& diagnostics) {
+  if (const auto document = parse_document("pass_types.json", text, diagnostics))
+    read_host_pass_types(*document, diagnostics);
 }
 void read_scene_text(const std::string& text, Diagnostics& diagnostics) {
   demo::parse_scene("scenes/scene.json", text, diagnostics);
@@ -232,7 +232,7 @@ std::vector<json> read_all(const char* folder, bool expectations = false) {
 }
 
 // Every feature of the language once, with the shipped kinds.
-constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 1, "name": "whole", "note": "all of it",
+constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 2, "name": "whole", "note": "all of it",
   "settings": {
     "quality": { "choice": ["low", "high"], "by": "budget", "default": "high" },
     "samples": { "int": 16, "min": 4, "max": 64, "unit": "samples" },
@@ -251,7 +251,7 @@ constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 1, "name": 
               "history": { "frames": 1 } },
     "classes": { "buffer": { "stride": 4, "count": "view/8" } } },
   "passes": [
-    { "pass": "classify", "kind": "subsurface.classify", "when": "mirror and samples > 8",
+    { "pass": "classify", "type": "subsurface.classify", "when": "mirror and samples > 8",
       "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" }, "set": {},
       "otherwise": { "classes": "list" }, "after": [{ "pass": "classify", "reason": "r", "note": "n" }] },
     { "include": "parts/more.json", "note": "n" } ],
@@ -261,22 +261,22 @@ TEST(Schema, OfGraphsAgreesWithTheParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/graphs");
   files.push_back(parse(every_feature));
   expect_agreement("configs/schema/graph.schema.json", read_graph_text, files,
-                   static_cast<int>(dermis::testing::seeds_of_tier(4000, 10000)));
+                   static_cast<int>(dermis::testing::seeds_to_try(4000, 10000)));
 }
 
 TEST(Schema, OfFragmentsAgreesWithTheParserOnMutatedFiles) {
   json fragment = parse(every_feature);
   fragment.erase("dermis");
   fragment.erase("name");
-  fragment["dermis_fragment"] = 1;
-  const json small = parse(R"({ "dermis_fragment": 1, "passes": [ { "include": "a.json" } ] })");
+  fragment["dermis_fragment"] = 2;
+  const json small = parse(R"({ "dermis_fragment": 2, "passes": [ { "include": "a.json" } ] })");
   expect_agreement("configs/schema/fragment.schema.json", read_fragment_text, {fragment, small}, 3000);
 }
 
 TEST(Schema, OfOverlaysAgreesWithTheParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/overlays");
-  files.push_back(parse(R"({ "$schema": "x", "dermis_overlay": 1, "note": "n", "edits": [
-    { "insert_before": "combine", "passes": [ { "pass": "a", "kind": "k" } ], "note": "n" },
+  files.push_back(parse(R"({ "$schema": "x", "dermis_overlay": 2, "note": "n", "edits": [
+    { "insert_before": "combine", "passes": [ { "pass": "a", "type": "k" } ], "note": "n" },
     { "insert_after": "combine", "passes": [ { "include": "a.json" } ] },
     { "replace": "combine", "passes": [ { "pass": "a" }, { "pass": "b" } ] },
     { "remove": "/passes/combine/otherwise" }, { "set": "/exports/-", "to": "x", "note": "n" } ] })"));
@@ -337,22 +337,23 @@ TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
 TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
   const std::vector<json> files = {
       parse(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/choice/errors.json")),
-      parse(R"({ "dermis_errors": 1, "scenes": "s", "note": "n", "unscattered": [[1, 0.1]], "techniques": [
+      parse(R"({ "dermis_errors": 2, "scenes": "s", "note": "n", "unscattered": [[1, 0.1]], "techniques": [
         { "name": "t", "note": "n", "rmse": [[1, 2], [2, 3]],
-          "kinds": [{ "kind": "k", "set": { "a": 1, "b": true, "c": "x", "d": 1.5 }, "note": "n" }] } ] })")};
+          "pass_types": [{ "type": "k", "set": { "a": 1, "b": true, "c": "x", "d": 1.5 }, "note": "n" }] } ] })")};
   expect_agreement("configs/schema/errors.schema.json", read_errors_text, files, 3000);
 }
 
 TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
   const std::vector<json> files = {
-      parse(R"({ "$schema": "x", "dermis_calibration": 1, "device": "d", "note": "n", "costs": [
+      parse(R"({ "$schema": "x", "dermis_calibration": 2, "device": "d", "note": "n", "costs": [
         { "work": "a", "base_us": 1, "group_us": 0.5, "spread": 0.1, "note": "n" },
         { "work": "b", "base_us": 0, "group_us": 0, "spread": 1 } ] })")};
   expect_agreement("configs/schema/calibration.schema.json", read_calibration_text, files, 3000);
 }
 
 TEST(Schema, OfPassKindsAgreesWithTheParserOnMutatedFiles) {
-  const std::vector<json> files = {parse(R"({ "$schema": "x", "dermis_kinds": 1, "note": "n", "kinds": [
+  const std::vector<json> files = {
+      parse(R"({ "$schema": "x", "dermis_pass_types": 2, "note": "n", "pass_types": [
         { "name": "studio.bloom", "doc": "d", "side_effects": true, "serves_scattering": true, "note": "n",
           "ports": [ { "name": "light", "usage": "sampled_image", "own_texels": true, "doc": "d", "note": "n" },
                      { "name": "glow", "usage": "storage_image_write", "optional": true } ],
@@ -360,15 +361,15 @@ TEST(Schema, OfPassKindsAgreesWithTheParserOnMutatedFiles) {
                         { "name": "taps", "type": "int", "default": 3, "min": 1, "max": 9, "note": "n" },
                         { "name": "wide", "type": "bool", "default": 1 } ] },
         { "name": "studio.count", "ports": [ { "name": "sums", "usage": "storage_buffer_update" } ] } ] })")};
-  expect_agreement("configs/schema/kinds.schema.json", read_kinds_text, files, 3000);
+  expect_agreement("configs/schema/pass_types.schema.json", read_pass_types_text, files, 3000);
 }
 
 TEST(Schema, OfGraphsIsTheOneThatTheKindsGive) {
   EXPECT_EQ(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/schema/graph.schema.json"),
-            graph_schema(subsurface::make_kinds()))
+            graph_schema(subsurface::make_pass_types()))
       << "write it again: dermis schema --out configs/schema";
   EXPECT_EQ(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/schema/fragment.schema.json"),
-            fragment_schema(subsurface::make_kinds()))
+            fragment_schema(subsurface::make_pass_types()))
       << "write it again: dermis schema --out configs/schema";
 }
 

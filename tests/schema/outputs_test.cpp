@@ -2,7 +2,7 @@
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/tools/command/expect/junit.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "tests/schema/validator.hpp"
 
 #include <gtest/gtest.h>
@@ -20,23 +20,23 @@ using nlohmann::json;
 // The messages of a graph under this file name, as SARIF.
 json sarif_of(const std::string& name, const std::string& text) {
   Diagnostics diagnostics;
-  const KindRegistry kinds = subsurface::make_kinds();
+  const PassTypeRegistry pass_types = subsurface::make_pass_types();
   if (const auto document = parse_document(name, text, diagnostics))
-    read_graph(*document, kinds, diagnostics);
+    read_graph(*document, pass_types, diagnostics);
   return json::parse(format_as_sarif(diagnostics, "1.2.3"));
 }
 
 TEST(Outputs, SarifIsWhatTheStandardAsksFor) {
   const SchemaFile schema("tests/schema/sarif.schema.json");
   const std::pair<const char*, const char*> cases[] = {
-      {"good.json", R"({ "dermis": 1, "name": "good", "passes": [], "exports": [] })"},
-      {"broken.json", "{ \"dermis\": 1,"},
-      {"a b/\xc3\xa4 [1]%.json", R"({ "dermis": 1, "nam": "x" })"},
+      {"good.json", R"({ "dermis": 2, "name": "good", "passes": [], "exports": [] })"},
+      {"broken.json", "{ \"dermis\": 2,"},
+      {"a b/\xc3\xa4 [1]%.json", R"({ "dermis": 2, "nam": "x" })"},
       {"/absolute/path.json", R"({ "dermis": 9 })"},
       {"twice.json",
-       R"({ "dermis": 1, "name": "twice", "imports": { "a": { "format": "rgba16f", "size": "view" } },
-         "resources": { "a": { "format": "rgba16f", "size": "view" } }, "passes": [ { "pass": "p", "kind": "none" },
-         { "pass": "p", "kind": "subsurface.combine", "write": { "lighting": "b" } } ], "exports": ["c"] })"}};
+       R"({ "dermis": 2, "name": "twice", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+         "resources": { "a": { "format": "rgba16f", "size": "view" } }, "passes": [ { "pass": "p", "type": "none" },
+         { "pass": "p", "type": "subsurface.combine", "write": { "lighting": "b" } } ], "exports": ["c"] })"}};
   for (const auto& [name, text] : cases) {
     const json log = sarif_of(name, text);
     EXPECT_TRUE(schema.accepts(log)) << name << "\n" << schema.first_problem(log) << log.dump(1);

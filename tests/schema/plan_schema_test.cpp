@@ -3,7 +3,7 @@
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/explain/plan_json.hpp"
 #include "framegraph/model/read_graph.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "tests/schema/validator.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
@@ -18,26 +18,26 @@ using nlohmann::json;
 
 struct PlanSchema : ::testing::Test {
   SchemaFile schema{"configs/schema/plan.schema.json"};
-  KindRegistry kinds = subsurface::make_kinds();
+  PassTypeRegistry pass_types = subsurface::make_pass_types();
   DeviceProfile device = generic_profile();
 
   // The plan as JSON, with every optional slot bound or with none.
   json plan_of(const std::string& path, bool bound) {
     Diagnostics diagnostics;
     const auto document = read_document(path, diagnostics);
-    const auto graph = document ? read_graph(*document, kinds, diagnostics) : std::nullopt;
+    const auto graph = document ? read_graph(*document, pass_types, diagnostics) : std::nullopt;
     EXPECT_TRUE(graph) << path;
     if (!graph) return {};
     CompileInput input;
     input.graph = &*graph;
-    input.kinds = &kinds;
+    input.pass_types = &pass_types;
     input.device = &device;
     input.view_width = 640;
     input.view_height = 360;
     input.bound.assign(graph->resources.size(), bound);
     const auto compiled = compile(input, diagnostics);
     EXPECT_TRUE(compiled) << path << format_as_json(diagnostics);
-    return compiled ? json::parse(plan_json(*graph, kinds, *compiled)) : json();
+    return compiled ? json::parse(plan_json(*graph, pass_types, *compiled)) : json();
   }
 };
 
@@ -80,28 +80,28 @@ void expect_closed(const SchemaFile& schema, const json& whole, json& part, cons
 
 TEST_F(PlanSchema, AcceptsThePlanOfTwoQueues) {
   Diagnostics diagnostics;
-  const auto document = parse_document("two.json", R"({ "dermis": 1, "name": "two",
+  const auto document = parse_document("two.json", R"({ "dermis": 2, "name": "two",
   "imports": { "light": { "format": "rgba16f", "size": "view" } },
   "resources": { "a": { "format": "rgba16f", "size": "view", "mips": 2 }, "b": { "format": "rgba16f", "size": "view" },
     "c": { "format": "rgba16f", "size": "view" }, "out": { "format": "rgba16f", "size": "view" } },
   "passes": [
-    { "pass": "first", "kind": "subsurface.pyramid_down", "read": { "fine": "light" }, "write": { "coarse": "b" } },
-    { "pass": "aside", "kind": "subsurface.pyramid_down", "queue": "async", "read": { "fine": "b" }, "write": { "coarse": "c" } },
-    { "pass": "part", "kind": "subsurface.pyramid_down", "read": { "fine": "c" }, "write": { "coarse": "a#1" } },
-    { "pass": "last", "kind": "subsurface.pyramid_down", "read": { "fine": "a#1" }, "write": { "coarse": "out" } } ],
+    { "pass": "first", "type": "subsurface.pyramid_down", "read": { "fine": "light" }, "write": { "coarse": "b" } },
+    { "pass": "aside", "type": "subsurface.pyramid_down", "queue": "async", "read": { "fine": "b" }, "write": { "coarse": "c" } },
+    { "pass": "part", "type": "subsurface.pyramid_down", "read": { "fine": "c" }, "write": { "coarse": "a#1" } },
+    { "pass": "last", "type": "subsurface.pyramid_down", "read": { "fine": "a#1" }, "write": { "coarse": "out" } } ],
   "exports": ["out"] })",
                                        diagnostics);
-  const auto graph = document ? read_graph(*document, kinds, diagnostics) : std::nullopt;
+  const auto graph = document ? read_graph(*document, pass_types, diagnostics) : std::nullopt;
   ASSERT_TRUE(graph) << format_as_json(diagnostics);
   CompileInput input;
   input.graph = &*graph;
-  input.kinds = &kinds;
+  input.pass_types = &pass_types;
   input.device = &device;
   input.view_width = input.view_height = 64;
   input.single_queue = false;
   const auto compiled = compile(input, diagnostics);
   ASSERT_TRUE(compiled) << format_as_json(diagnostics);
-  const json plan = json::parse(plan_json(*graph, kinds, *compiled));
+  const json plan = json::parse(plan_json(*graph, pass_types, *compiled));
   EXPECT_EQ(schema.first_problem(plan), "");
   EXPECT_EQ(plan["passes"][1]["queue"], "async");
 }

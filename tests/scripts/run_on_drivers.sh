@@ -5,7 +5,7 @@
 # driver does not pass are listed in known/DRIVER with the reason and left out; any other failure fails. Exit code 77:
 # there is no other driver.
 # usage: run_on_drivers.sh [BUILD [SUITE...]]; BUILD: build/release; SUITE: "integration_abi" for test_integration_abi and
-# so on, "laws:2/8" for the second eighth of the tests of test_laws. Without SUITE: the suites that use a device, except laws.
+# so on, "properties:2/8" for the second eighth of the tests of test_laws. Without SUITE: the suites that use a device, except properties.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
@@ -18,7 +18,7 @@ for suite in "${suites[@]}"; do
   program=$build/tests/test_${suite%%:*}
   [[ -x $program ]] || { echo "run_on_drivers.sh: there is no suite '$suite': $program is not built" >&2; exit 2; }
   [[ $suite =~ ^[a-z_]+(:[1-9][0-9]*/[1-9][0-9]*)?$ ]] ||
-    { echo "run_on_drivers.sh: '$suite' is no suite, nor a part of one such as 'laws:2/8'" >&2; exit 2; }
+    { echo "run_on_drivers.sh: '$suite' is no suite, nor a part of one such as 'properties:2/8'" >&2; exit 2; }
 done
 seconds=1800       # a suite, or a part of one
 memory=$((8 << 20)) # KiB that a suite may take: a driver gone astray must not take the machine with it

@@ -6,7 +6,7 @@
 
 namespace dermis {
 
-uint32_t Synchronizer::inherit_parts(const SyncFacts& of, const ObjectState* state, uint32_t barrier,
+uint32_t Synchronizer::inherit_parts(const ResourceSyncInfo& of, const ObjectState* state, uint32_t barrier,
                                      bool frame_before) {
   uint32_t last = 0;
   for (uint32_t part = 0; part < of.parts; ++part, ++state) {
@@ -18,7 +18,7 @@ uint32_t Synchronizer::inherit_parts(const SyncFacts& of, const ObjectState* sta
 
 inline uint32_t Synchronizer::inherit(const Segment& from, uint32_t resource, uint32_t barrier,
                                       bool frame_before) {
-  const SyncFacts& of = facts(from.resource);
+  const ResourceSyncInfo& of = info(from.resource);
   const ObjectState* state = c.states.data() + of.first_object + from.frames_back * of.parts;
   PlanBarrier& draft = c.drafts[barrier];
   uint32_t last = 0;
@@ -29,17 +29,17 @@ inline uint32_t Synchronizer::inherit(const Segment& from, uint32_t resource, ui
     last = inherit_parts(of, state, barrier, frame_before);
   }
   const bool own = from.resource == resource;
-  if (!own && roles(resource) == 1) draft.why = PlanBarrier::Why::alias;
-  because(barrier, own ? Reason::Why::behind_last_use : Reason::Why::takes_memory, from.resource,
-          frame_before ? 1 : 0);
+  if (!own && roles(resource) == 1) draft.why = PlanBarrier::ReasonKind::alias;
+  record_reason(barrier, own ? Reason::ReasonKind::behind_last_use : Reason::ReasonKind::takes_memory,
+                from.resource, frame_before ? 1 : 0);
   return last;
 }
 
 uint32_t Synchronizer::take_over(uint32_t resource, uint32_t barrier) {
-  const SyncFacts& own = facts(resource);
+  const ResourceSyncInfo& own = info(resource);
   std::vector<Segment>& segments = c.memory[own.memory];
   if (own.roles == 1) { // histories say what they wait for themselves
-    because(barrier, Reason::Why::first_use, resource);
+    record_reason(barrier, Reason::ReasonKind::first_use, resource);
     c.arrival_of[resource] = barrier;
   }
   const size_t first = behind(segments, own.begin);
@@ -114,34 +114,34 @@ void Synchronizer::wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint3
 
 void Synchronizer::find_memory() {
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
-    SyncFacts& of = c.sync_facts[r];
+    ResourceSyncInfo& of = c.sync_info[r];
     if (of.host_owned) continue;
     const Placement& place = plan.placements[plan.resources[r].first_instance];
-    const Loan& loan = c.loans[r];
+    const HistoryAlias& history_alias = c.history_aliases[r];
     of.memory = place.heap;
     of.begin = place.offset;
-    if (loan.from != no_value) {
-      of.memory = c.lent_memory[loan.from] + (loan.after ? 1 : 0);
-      of.begin = loan.offset;
-    } else if (c.lent_memory[r] != no_value) {
-      of.memory = c.lent_memory[r];
+    if (history_alias.from != no_value) {
+      of.memory = c.aliased_memory[history_alias.from] + (history_alias.after ? 1 : 0);
+      of.begin = history_alias.offset;
+    } else if (c.aliased_memory[r] != no_value) {
+      of.memory = c.aliased_memory[r];
       of.begin = 0;
     }
     of.end = of.begin + place.size;
   }
 }
 
-void Synchronizer::lend() {
+void Synchronizer::alias_into_history() {
   auto memory = static_cast<uint32_t>(plan.heaps.size());
-  c.lent_memory.assign(plan.resources.size(), no_value);
-  for (const Loan& loan : c.loans) {
-    if (loan.from == no_value || c.lent_memory[loan.from] != no_value) continue;
-    c.lent_memory[loan.from] = memory;
+  c.aliased_memory.assign(plan.resources.size(), no_value);
+  for (const HistoryAlias& history_alias : c.history_aliases) {
+    if (history_alias.from == no_value || c.aliased_memory[history_alias.from] != no_value) continue;
+    c.aliased_memory[history_alias.from] = memory;
     memory += 2;
     c.memory.resize(std::max<size_t>(c.memory.size(), memory));
-    const uint64_t size = plan.placements[plan.resources[loan.from].first_instance].size;
+    const uint64_t size = plan.placements[plan.resources[history_alias.from].first_instance].size;
     c.memory[memory - 2].assign(1, {0, size, no_value, 0});
-    c.memory[memory - 1].assign(1, {0, size, loan.from, roles(loan.from) - 1});
+    c.memory[memory - 1].assign(1, {0, size, history_alias.from, roles(history_alias.from) - 1});
   }
 }
 
@@ -149,8 +149,8 @@ void Synchronizer::settle_arrivals() {
   for (uint32_t r = 0; r < c.arrival_of.size(); ++r)
     if (c.arrival_of[r] != no_value && parts(r) == 1) inherit({0, 0, r, 0}, r, c.arrival_of[r], true);
   for (const Arrival& arrival : c.arrivals) {
-    const bool lent = arrival.memory >= plan.heaps.size(); // in the frame before, the instance beside it
-    std::vector<Segment>& segments = c.memory[arrival.memory + (lent ? 1 : 0)];
+    const bool aliased = arrival.memory >= plan.heaps.size(); // in the frame before, the instance beside it
+    std::vector<Segment>& segments = c.memory[arrival.memory + (aliased ? 1 : 0)];
     for (size_t i = behind(segments, arrival.begin); i < segments.size() && segments[i].begin < arrival.end;
          ++i)
       if (segments[i].resource != arrival.resource && segments[i].resource != no_value)
@@ -173,7 +173,7 @@ void Synchronizer::settle_parts() {
       barrier.why = first.why;
     }
     inherit(c.states[arrival.object], arrival.barrier, true);
-    because(arrival.barrier, Reason::Why::behind_last_use, arrival.resource, 1);
+    record_reason(arrival.barrier, Reason::ReasonKind::behind_last_use, arrival.resource, 1);
   }
 }
 

@@ -54,7 +54,7 @@ void merge_part_barriers(CompileContext& c) {
     if (place_of[i] != i) number[i] = number[place_of[i]];
   c.drafts.resize(kept.size());
   c.batch_of.resize(kept.size());
-  using Key = std::tuple<uint32_t, Reason::Why, uint32_t, uint32_t, uint32_t>;
+  using Key = std::tuple<uint32_t, Reason::ReasonKind, uint32_t, uint32_t, uint32_t>;
   std::set<Key> seen;
   std::vector<Reason>& reasons = c.out->reasons;
   const auto repeated = [&](Reason& reason) {

@@ -13,9 +13,9 @@ namespace {
 ResourceId tie_to_main(const CompileContext& c, uint32_t pass) {
   for (uint32_t u = c.first_use[pass]; u < c.first_use[pass + 1]; ++u) {
     const Use& use = c.uses[u];
-    if (use.trouble != Use::Trouble::none) continue;
-    const ResourceFacts& facts = c.facts[use.resource.value];
-    if (facts.host_owned || facts.history || facts.parts > 1) return use.resource;
+    if (use.bind_error != Use::BindError::none) continue;
+    const ResourceInfo& info = c.info[use.resource.value];
+    if (info.host_owned || info.history || info.parts > 1) return use.resource;
   }
   return {};
 }
@@ -30,8 +30,8 @@ void choose_queues(CompileContext& c) {
     if (!c.live[pass] || !c.graph->passes[pass].async) continue;
     const ResourceId tie = tie_to_main(c, pass);
     if (!tie.valid()) c.queue[pass] = Queue::async;
-    c.because(Reason::About::pass, pass, tie.valid() ? Reason::Why::not_beside : Reason::Why::beside,
-              tie.value);
+    c.record_reason(Reason::About::pass, pass,
+                    tie.valid() ? Reason::ReasonKind::not_beside : Reason::ReasonKind::beside, tie.value);
   }
 }
 
@@ -48,7 +48,7 @@ void keep_orderings(CompileContext& c) {
       const uint32_t earlier = position_of[after[i].after.value];
       if (earlier == no_value) continue; // does not run
       plan.orderings.push_back({earlier, later});
-      c.because(Reason::About::pass, pass, Reason::Why::behind, after[i].after.value, i);
+      c.record_reason(Reason::About::pass, pass, Reason::ReasonKind::behind, after[i].after.value, i);
       if (plan.passes[earlier].queue != plan.passes[later].queue)
         c.needs_point[later] = std::max(c.needs_point[later], earlier + 2);
     }

@@ -31,17 +31,17 @@ struct Synchronizer {
   bool emit = false;              // barriers; otherwise only how each object ends
   uint32_t last_batch = no_value; // position of the pass behind it
 
-  void because(uint32_t barrier, Reason::Why why, uint32_t resource, uint32_t b = 0) {
-    c.because(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
+  void record_reason(uint32_t barrier, Reason::ReasonKind why, uint32_t resource, uint32_t b = 0) {
+    c.record_reason(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
   }
-  const SyncFacts& facts(uint32_t resource) const { return c.sync_facts[resource]; }
-  uint32_t roles(uint32_t resource) const { return facts(resource).roles; }
-  uint32_t parts(uint32_t resource) const { return facts(resource).parts; }
+  const ResourceSyncInfo& info(uint32_t resource) const { return c.sync_info[resource]; }
+  uint32_t roles(uint32_t resource) const { return info(resource).roles; }
+  uint32_t parts(uint32_t resource) const { return info(resource).parts; }
   // This frame's and the oldest are one object where the one is written over the other.
-  static uint32_t object_of(const SyncFacts& of, uint32_t frames_back, uint32_t part = 0) {
+  static uint32_t object_of(const ResourceSyncInfo& of, uint32_t frames_back, uint32_t part = 0) {
     return of.first_object + (frames_back == 0 ? of.own_role : frames_back) * of.parts + part;
   }
-  SubresourceRange range_of(const SyncFacts& of, uint32_t resource, uint32_t part) const {
+  SubresourceRange range_of(const ResourceSyncInfo& of, uint32_t resource, uint32_t part) const {
     if (of.parts == 1) return of.whole;
     return c.parts[c.part_number(plan.resources[resource].declared, part)];
   }
@@ -150,7 +150,8 @@ struct Synchronizer {
   void wait_elsewhere(PlanBarrier& barrier, uint32_t position, uint32_t earlier, bool frame_before);
 
   // What `inherit` does of an object with parts, or where there are two queues.
-  uint32_t inherit_parts(const SyncFacts& of, const ObjectState* state, uint32_t barrier, bool frame_before);
+  uint32_t inherit_parts(const ResourceSyncInfo& of, const ObjectState* state, uint32_t barrier,
+                         bool frame_before);
 
   // Returns the position behind the last pass that touched it.
   uint32_t inherit(const Segment& from, uint32_t resource, uint32_t barrier, bool frame_before);
@@ -161,7 +162,7 @@ struct Synchronizer {
   void find_memory();
 
   // The memory that histories lend: the oldest frame has it first.
-  void lend();
+  void alias_into_history();
 
   // A resource's own last use in the frame before counts wherever the others lie: a plan whose placements are
   // moved apart stays in order.

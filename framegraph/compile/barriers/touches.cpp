@@ -18,9 +18,9 @@ void Synchronizer::collect(uint32_t first_use, uint32_t end) {
   for (uint32_t u = first_use; u < end; ++u, ++touch_number) {
     const Use& use = c.uses[u];
     *touch_number = no_value;
-    if (use.trouble != Use::Trouble::none) continue;
+    if (use.bind_error != Use::BindError::none) continue;
     const uint32_t resource = c.plan_resource[use.resource.value];
-    const SyncFacts& of = facts(resource);
+    const ResourceSyncInfo& of = info(resource);
     const uint32_t part = of.parts == 1 ? 0 : c.part_index(use);
     const uint32_t object = object_of(of, use.frames_back, part);
     uint32_t& number = c.touch_number[object];
@@ -57,12 +57,12 @@ void Synchronizer::unify_layouts(uint32_t first_use, uint32_t end) {
 // Whether the pass writes the resource, in this frame or over an earlier one.
 bool Synchronizer::writes_too(const Use& read, uint32_t first_use, uint32_t end) const {
   return std::any_of(c.uses.begin() + first_use, c.uses.begin() + end, [&](const Use& other) {
-    return other.writes && other.resource == read.resource && other.trouble == Use::Trouble::none;
+    return other.writes && other.resource == read.resource && other.bind_error == Use::BindError::none;
   });
 }
 
 void Synchronizer::add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end) {
-  const std::span<const Port> ports = c.kind(pass.declared).ports;
+  const std::span<const Port> ports = c.type(pass.declared).ports;
   pass.first_access = static_cast<uint32_t>(plan.accesses.size());
   for (uint32_t u = first_use; u < end; ++u) {
     const uint32_t touched = c.touch_of_use[u - first_use];
@@ -70,7 +70,7 @@ void Synchronizer::add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end
     const PassTouch& touch = c.touches[touched];
     const Use& use = c.uses[u];
     const UsageSet& usage = sets[size_t{1} << static_cast<uint32_t>(use.usage)];
-    const SubresourceRange range = range_of(facts(touch.resource), touch.resource, touch.part);
+    const SubresourceRange range = range_of(info(touch.resource), touch.resource, touch.part);
     if (c.graph->parts && u > first_use && use.binding == c.uses[u - 1].binding) { // a further part
       SubresourceRange& seen = plan.accesses.back().range;
       seen.mips = static_cast<uint16_t>(std::max(seen.first_mip + seen.mips, range.first_mip + range.mips) -
@@ -80,7 +80,7 @@ void Synchronizer::add_accesses(PlanPass& pass, uint32_t first_use, uint32_t end
       continue;
     }
     const Use* history = c.history_of(use);
-    const bool alone = history && history->trouble != Use::Trouble::none; // nothing to stand in for
+    const bool alone = history && history->bind_error != Use::BindError::none; // nothing to stand in for
     plan.accesses.push_back({use.port, touch.resource, use.frames_back, range, usage.stages, usage.access,
                              touch.layout,
                              ports[use.port].own_texels && !use.writes && writes_too(use, first_use, end),

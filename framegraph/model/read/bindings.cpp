@@ -22,7 +22,7 @@ class Bindings {
 public:
   Bindings(GraphReader& reader, ObjectReader& object, PassDeclaration& pass)
       : reader_(reader), object_(object), pass_(pass),
-        kind_(pass.kind.valid() ? &reader.kinds[pass.kind] : nullptr),
+        kind_(pass.type.valid() ? &reader.pass_types[pass.type] : nullptr),
         bound_(kind_ ? kind_->ports.size() : 0) {}
 
   void read_side(PortSide side) {
@@ -47,7 +47,7 @@ public:
       if (bound_[i] || port.optional) continue;
       if (side_of(port) == PortSide::write) writes_known_ = false;
       reader_.error(DiagnosticId::missing_port, pass_.where,
-                    fmt::format("{} of kind '{}' needs something at the port '{}' under \"{}\" ({})",
+                    fmt::format("{} of type '{}' needs something at the port '{}' under \"{}\" ({})",
                                 object_.what(), kind_->name, port.name,
                                 side_of(port) == PortSide::read ? "read" : "write", port.doc));
     }
@@ -63,7 +63,7 @@ private:
       if (bound_[i] && is_one_of(*kind_, i)) return;
     const Port& first = kind_->ports[static_cast<size_t>(find_port(*kind_, kind_->one_of.front()))];
     reader_.error(DiagnosticId::missing_port, pass_.where,
-                  fmt::format("{} of kind '{}' needs something at one of its ports {} under \"{}\"",
+                  fmt::format("{} of type '{}' needs something at one of its ports {} under \"{}\"",
                               object_.what(), kind_->name, list_words(kind_->one_of),
                               side_of(first) == PortSide::read ? "read" : "write"));
   }
@@ -158,7 +158,7 @@ private:
     if (const int other = find_port(*kind_, name); other >= 0) {
       bound_[static_cast<size_t>(other)] = true; // one error is enough
       reader_.error(DiagnosticId::port_direction, reader_.document.where_key(node),
-                    fmt::format("the port '{}' of kind '{}' {}; list it under \"{}\"", name, kind_->name,
+                    fmt::format("the port '{}' of type '{}' {}; list it under \"{}\"", name, kind_->name,
                                 usage_info(kind_->ports[static_cast<size_t>(other)].usage).writes
                                     ? "writes"
                                     : "only reads",
@@ -171,7 +171,7 @@ private:
     }
     Diagnostic& one = reader_.error(
         DiagnosticId::unknown_port, reader_.document.where_key(node),
-        fmt::format("{} is of kind '{}', which has no port '{}' under \"{}\"{}", object_.what(), kind_->name,
+        fmt::format("{} is of type '{}', which has no port '{}' under \"{}\"{}", object_.what(), kind_->name,
                     name, side == PortSide::read ? "read" : "write",
                     names.empty() ? std::string() : fmt::format(", but {}", list_words(names))));
     one.suggestion = did_you_mean(name, names);
@@ -300,7 +300,7 @@ private:
   GraphReader& reader_;
   ObjectReader& object_;
   PassDeclaration& pass_;
-  const PassKind* kind_;
+  const PassType* kind_;
   std::vector<bool> bound_; // by port: named by the file, rightly or not
   bool complete_ = true;    // all bindings were seen
   bool writes_known_ = true;

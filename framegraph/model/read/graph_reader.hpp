@@ -15,11 +15,11 @@
 namespace dermis {
 
 struct GraphReader {
-  GraphReader(const Document& from, const KindRegistry& registry, Diagnostics& errors)
-      : document(from), kinds(registry), diagnostics(errors) {}
+  GraphReader(const Document& from, const PassTypeRegistry& registry, Diagnostics& errors)
+      : document(from), pass_types(registry), diagnostics(errors) {}
 
   const Document& document;
-  const KindRegistry& kinds;
+  const PassTypeRegistry& pass_types;
   Diagnostics& diagnostics;
   Graph graph;
 
@@ -37,7 +37,7 @@ struct GraphReader {
   std::map<ResourceId, size_t> format_mismatches;
   // "requires" of choices: read when all imports are known.
   std::vector<std::pair<SettingId, NodeId>> option_requirements;
-  std::set<std::string, std::less<>> unknown_kinds; // reported, each with all its passes
+  std::set<std::string, std::less<>> unknown_pass_types; // reported, each with all its passes
   // Where each resource and pass is read from, by id.
   std::vector<NodeId> resource_nodes, pass_nodes;
 
@@ -46,8 +46,8 @@ struct GraphReader {
   }
 };
 
-// PortBinding::port while reading, where the kind or its port is unknown. Never in a graph that is handed
-// out.
+// PortBinding::port while reading, where the pass type or its port is unknown. Never in a graph that is
+// handed out.
 inline constexpr uint32_t unknown_port = 0xffffffffu;
 
 // In the order in which read_graph calls them. Invalid nodes (a key that is absent or mistyped) read as
@@ -67,7 +67,7 @@ void check_needs(const GraphReader& reader); // of a graph without errors
 // Parts of passes. `pass` is the object at /passes/N; `what` names it in messages.
 // read_bindings: false when something that the pass writes is not known.
 bool read_bindings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out);
-void read_kind_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out);
+void read_pass_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out);
 
 // A resource by name; invalid after an error at `where`, or silently when some names are unknown.
 ResourceId find_resource(GraphReader& reader, std::string_view name, std::string_view what,

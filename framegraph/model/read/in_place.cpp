@@ -37,12 +37,12 @@ public:
 
   void check(PassId id) {
     const PassDeclaration& pass = graph().passes[id.value];
-    if (!pass.kind.valid() || !condition_known(id)) return;
+    if (!pass.type.valid() || !condition_known(id)) return;
     for (const PortBinding& binding : graph().reads(pass)) {
       if (binding.port == unknown_port || binding.frames_back > 0) continue;
       pass_ = id;
       read_ = &binding;
-      port_ = &reader_.kinds[pass.kind].ports[binding.port];
+      port_ = &reader_.pass_types[pass.type].ports[binding.port];
       follow();
     }
   }
@@ -135,10 +135,10 @@ private:
     InPlaceRace race;
     race.pass = pass.name;
     race.reading_port = port_->name;
-    race.writing_port = reader_.kinds[pass.kind].ports[written.port].name;
+    race.writing_port = reader_.pass_types[pass.type].ports[written.port].name;
     race.read = name_of(*read_);
     race.written = name_of(written);
-    if (!steps_.empty()) race.stand_in = graph().resources[written.resource.value].name;
+    if (!steps_.empty()) race.placeholder = graph().resources[written.resource.value].name;
     Diagnostic& diagnostic =
         reader_.error(DiagnosticId::in_place_race, graph().place_of(*read_), text_of(race));
     diagnostic.related.emplace_back(graph().place_of(written),

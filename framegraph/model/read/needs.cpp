@@ -56,14 +56,14 @@ std::vector<Size> sizes_for(const Graph& graph, const Size& view) {
   return known;
 }
 
-const PortNeed* need_of(const PassKind& kind, uint32_t port) {
-  for (const PortNeed& need : kind.needs)
-    if (need.port == kind.ports[port].name) return &need;
+const PortNeed* need_of(const PassType& type, uint32_t port) {
+  for (const PortNeed& need : type.needs)
+    if (need.port == type.ports[port].name) return &need;
   return nullptr;
 }
 
 // What is missing, "" where it is large enough.
-std::string lacks(const ResourceDeclaration& resource, const PortNeed& need, const Size& size,
+std::string unmet(const ResourceDeclaration& resource, const PortNeed& need, const Size& size,
                   const Size& view) {
   const uint64_t columns = need.square > 0 ? ceil_div(view.width, need.square) : 0;
   const uint64_t rows = need.square > 0 ? ceil_div(view.height, need.square) : 0;
@@ -85,19 +85,19 @@ std::string lacks(const ResourceDeclaration& resource, const PortNeed& need, con
 
 void check_needs(const GraphReader& reader) {
   const Graph& graph = reader.graph;
-  std::vector<bool> told(graph.resources.size());
+  std::vector<bool> reported(graph.resources.size());
   for (const Size& view : tried_views) {
     const std::vector<Size> sizes = sizes_for(graph, view);
     for (const PassDeclaration& pass : graph.passes) {
-      const PassKind& kind = reader.kinds[pass.kind];
-      if (kind.needs.empty()) continue;
+      const PassType& type = reader.pass_types[pass.type];
+      if (type.needs.empty()) continue;
       for (const PortBinding& binding : graph.bindings_of(pass)) {
         const uint32_t r = binding.resource.value;
-        const PortNeed* need = need_of(kind, binding.port);
-        if (need == nullptr || told[r] || binding.part.first_mip > 0 || sizes[r].width == 0) continue;
-        const std::string missing = lacks(graph.resources[r], *need, sizes[r], view);
+        const PortNeed* need = need_of(type, binding.port);
+        if (need == nullptr || reported[r] || binding.part.first_mip > 0 || sizes[r].width == 0) continue;
+        const std::string missing = unmet(graph.resources[r], *need, sizes[r], view);
         if (missing.empty()) continue;
-        told[r] = true;
+        reported[r] = true;
         reader.diagnostics
             .add(DiagnosticId::resource_too_small, graph.resources[r].where,
                  fmt::format("the port '{}' of pass '{}' needs {}", need->port, pass.name, missing))

@@ -1,5 +1,5 @@
 // "passes": kind, condition, ordering and pass-through of each. Ports are in bindings.cpp, settings in
-// kind_settings.cpp.
+// pass_settings.cpp.
 
 #include "framegraph/model/expression.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
@@ -19,38 +19,39 @@ std::string name_of_pass(const GraphReader& reader, size_t index) {
 }
 
 // The other passes of an unknown kind: one root cause, one message.
-std::vector<size_t> passes_of_kind(const GraphReader& reader, std::string_view name) {
+std::vector<size_t> passes_of_type(const GraphReader& reader, std::string_view name) {
   std::vector<size_t> out;
   for (size_t i = 0; i < reader.pass_nodes.size(); ++i) {
     const NodeId pass = reader.pass_nodes[i];
     if (reader.document[pass].kind != NodeKind::object) continue;
-    const NodeId kind = reader.document.find(pass, "kind");
-    if (kind.valid() && reader.document[kind].kind == NodeKind::string && reader.document.text(kind) == name)
+    const NodeId type = reader.document.find(pass, "type");
+    if (type.valid() && reader.document[type].kind == NodeKind::string && reader.document.text(type) == name)
       out.push_back(i);
   }
   return out;
 }
 
-void read_kind(GraphReader& reader, ObjectReader& object, PassDeclaration& pass) {
-  const auto name = object.string("kind");
+void read_pass_type(GraphReader& reader, ObjectReader& object, PassDeclaration& pass) {
+  const auto name = object.string("type");
   if (!name) return;
-  pass.kind = reader.kinds.find(*name);
-  if (pass.kind.valid() || reader.diagnostics.full() || !reader.unknown_kinds.emplace(*name).second) return;
+  pass.type = reader.pass_types.find(*name);
+  if (pass.type.valid() || reader.diagnostics.full() || !reader.unknown_pass_types.emplace(*name).second)
+    return;
   constexpr size_t max_related = 16;
-  const std::vector<size_t> all = passes_of_kind(reader, *name);
+  const std::vector<size_t> all = passes_of_type(reader, *name);
   const std::string who = all.size() < 2 ? "is"
                                          : fmt::format("and {} other {} are", all.size() - 1,
                                                        all.size() == 2 ? "pass" : "passes");
   std::vector<std::string_view> names;
-  for (uint32_t i = 0; i < reader.kinds.size(); ++i)
-    names.push_back(reader.kinds[{i}].name);
+  for (uint32_t i = 0; i < reader.pass_types.size(); ++i)
+    names.push_back(reader.pass_types[{i}].name);
   Diagnostic& one = reader.error(
-      DiagnosticId::unknown_kind, reader.document.where(reader.document.find(object.node(), "kind")),
-      fmt::format("{} {} of the kind '{}', which is not registered", object.what(), who, *name));
+      DiagnosticId::unknown_pass_type, reader.document.where(reader.document.find(object.node(), "type")),
+      fmt::format("{} {} of the pass type '{}', which is not registered", object.what(), who, *name));
   one.suggestion = did_you_mean(*name, names);
   for (size_t i = 1; i < std::min(all.size(), max_related + 1); ++i)
-    one.related.emplace_back(reader.document.where(reader.document.find(reader.pass_nodes[all[i]], "kind")),
-                             fmt::format("{} is of this kind, too", name_of_pass(reader, all[i])));
+    one.related.emplace_back(reader.document.where(reader.document.find(reader.pass_nodes[all[i]], "type")),
+                             fmt::format("{} is of this type, too", name_of_pass(reader, all[i])));
 }
 
 void read_queue(ObjectReader& object, PassDeclaration& pass) {
@@ -70,8 +71,8 @@ void read_when(GraphReader& reader, ObjectReader& object, PassDeclaration& pass)
 void read_otherwise(GraphReader& reader, ObjectReader& object, PassDeclaration& pass, bool writes_known) {
   const NodeId list = object.object("otherwise", Need::optional);
   if (!list.valid()) return;
-  const bool serves = pass.kind.valid() && reader.kinds[pass.kind].serves_scattering;
-  if (!object.has("when") && !serves) { // kinds that serve scattering are off without a profile, too
+  const bool serves = pass.type.valid() && reader.pass_types[pass.type].serves_scattering;
+  if (!object.has("when") && !serves) { // pass types that serve scattering are off without a profile, too
     reader.error(
         DiagnosticId::bad_otherwise, reader.document.where_key(list),
         fmt::format("{} has no 'when', so it is never off and 'otherwise' never applies", object.what()));
@@ -173,12 +174,12 @@ void read_passes(GraphReader& reader) {
     }
     object.name("pass");
     pass.note = note_of(reader.document, node);
-    read_kind(reader, object, pass);
+    read_pass_type(reader, object, pass);
     read_queue(object, pass);
     read_when(reader, object, pass);
     const bool writes_known = read_bindings(reader, object, pass);
     if (!writes_known) reader.unknown_writes = true;
-    read_kind_settings(reader, object, pass);
+    read_pass_settings(reader, object, pass);
     read_otherwise(reader, object, pass, writes_known);
     read_after(reader, object, pass, {i});
     object.finish();

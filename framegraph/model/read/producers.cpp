@@ -22,7 +22,8 @@ struct Producers {
 };
 
 bool updates(const GraphReader& reader, const PassDeclaration& pass, const PortBinding& binding) {
-  return binding.port != unknown_port && usage_info(reader.kinds[pass.kind].ports[binding.port].usage).reads;
+  return binding.port != unknown_port &&
+         usage_info(reader.pass_types[pass.type].ports[binding.port].usage).reads;
 }
 
 bool reads_now(std::span<const PortBinding> reads, const PortBinding& written) {

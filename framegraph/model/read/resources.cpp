@@ -128,10 +128,10 @@ bool read_buffer(GraphReader& reader, NodeId node, ResourceId id, ResourceDeclar
         fmt::format("'stride' of {} is {}; it must be a multiple of {}", buffer.what(), *stride, word));
   }
   out.stride = static_cast<uint32_t>(stride.value_or(word));
-  const bool least = out.origin != Origin::imported || buffer.has("count"); // hosts may bind any number
+  const bool minimum = out.origin != Origin::imported || buffer.has("count"); // hosts may bind any number
   out.extra_elements =
       static_cast<uint64_t>(buffer.integer("extra", 0, limits::buffer_elements, Need::optional).value_or(0));
-  if (least)
+  if (minimum)
     ok &= read_size(reader, buffer, "count", id, out.size);
   else
     out.size.base = SizeExpression::Base::fixed; // one element

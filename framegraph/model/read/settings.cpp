@@ -18,54 +18,54 @@ constexpr SettingType types[] = {SettingType::boolean, SettingType::integer, Set
                                  SettingType::enumeration, SettingType::choice};
 
 // Settings reach kernels as 32-bit push constants.
-constexpr int64_t least_integer = std::numeric_limits<int32_t>::min();
-constexpr int64_t greatest_integer = std::numeric_limits<int32_t>::max();
-constexpr double greatest_real = std::numeric_limits<float>::max();
+constexpr int64_t min_integer = std::numeric_limits<int32_t>::min();
+constexpr int64_t max_integer = std::numeric_limits<int32_t>::max();
+constexpr double max_real = std::numeric_limits<float>::max();
 
 // Does least <= value <= greatest hold? Each by itself is good already.
 template <class Number>
-bool check_range(GraphReader& reader, const ObjectReader& object, std::string_view key, Number least,
-                 Number greatest, Number value) {
+bool check_range(GraphReader& reader, const ObjectReader& object, std::string_view key, Number minimum,
+                 Number maximum, Number value) {
   const auto where = [&](std::string_view which) {
     return reader.document.where(reader.document.find(object.node(), which));
   };
-  if (least > greatest) {
+  if (minimum > maximum) {
     reader
         .error(DiagnosticId::setting_range, where("max"),
-               fmt::format("{} ends at {}, before it begins at {}", object.what(), greatest, least))
+               fmt::format("{} ends at {}, before it begins at {}", object.what(), maximum, minimum))
         .related.emplace_back(where("min"), "it begins here");
     return false;
   }
-  if (value >= least && value <= greatest) return true;
+  if (value >= minimum && value <= maximum) return true;
   reader
       .error(DiagnosticId::setting_range, where(key),
              fmt::format("the default of {} is {}, outside its own range {} .. {}", object.what(), value,
-                         least, greatest))
-      .related.emplace_back(where(value < least ? "min" : "max"),
-                            value < least ? "the range begins here" : "the range ends here");
+                         minimum, maximum))
+      .related.emplace_back(where(value < minimum ? "min" : "max"),
+                            value < minimum ? "the range begins here" : "the range ends here");
   return false;
 }
 
 bool read_integer_setting(GraphReader& reader, ObjectReader& object, SettingDeclaration& out) {
-  const auto least = object.integer("min", least_integer, greatest_integer);
-  const auto greatest = object.integer("max", least_integer, greatest_integer);
-  const auto value = object.integer("int", least_integer, greatest_integer);
-  if (!least || !greatest || !value) return false;
-  out.minimum = static_cast<double>(*least);
-  out.maximum = static_cast<double>(*greatest);
+  const auto minimum = object.integer("min", min_integer, max_integer);
+  const auto maximum = object.integer("max", min_integer, max_integer);
+  const auto value = object.integer("int", min_integer, max_integer);
+  if (!minimum || !maximum || !value) return false;
+  out.minimum = static_cast<double>(*minimum);
+  out.maximum = static_cast<double>(*maximum);
   out.default_value = {SettingType::integer, *value, 0.0};
-  return check_range(reader, object, "int", *least, *greatest, *value);
+  return check_range(reader, object, "int", *minimum, *maximum, *value);
 }
 
 bool read_real_setting(GraphReader& reader, ObjectReader& object, SettingDeclaration& out) {
-  const auto least = object.number("min", -greatest_real, greatest_real);
-  const auto greatest = object.number("max", -greatest_real, greatest_real);
-  const auto value = object.number("real", -greatest_real, greatest_real);
-  if (!least || !greatest || !value) return false;
-  out.minimum = *least;
-  out.maximum = *greatest;
+  const auto minimum = object.number("min", -max_real, max_real);
+  const auto maximum = object.number("max", -max_real, max_real);
+  const auto value = object.number("real", -max_real, max_real);
+  if (!minimum || !maximum || !value) return false;
+  out.minimum = *minimum;
+  out.maximum = *maximum;
   out.default_value = {SettingType::real, 0, *value};
-  return check_range(reader, object, "real", *least, *greatest, *value);
+  return check_range(reader, object, "real", *minimum, *maximum, *value);
 }
 
 bool read_default(GraphReader& reader, ObjectReader& object, std::string_view key, SettingDeclaration& out) {

@@ -225,7 +225,7 @@ uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t 
 }
 
 void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
-                     std::span<const uint32_t> writable_stand_ins) noexcept {
+                     std::span<const uint32_t> writable_placeholders) noexcept {
   Batch batch;
   Takeover takeover;
   for (uint32_t i = first; i < first + count; ++i) {
@@ -265,13 +265,13 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
   // A shader does not write to a port that is not bound, but only it knows that.
   constexpr Scopes in_order{
       compute, compute, shader_write, shader_write, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL};
-  for (const uint32_t index : writable_stand_ins) {
-    const StandIn& stand_in = state.stand_ins[index];
-    if (stand_in.image != VK_NULL_HANDLE)
+  for (const uint32_t index : writable_placeholders) {
+    const StandIn& placeholder = state.placeholders[index];
+    if (placeholder.image != VK_NULL_HANDLE)
       state.image_barriers[batch.images++] =
-          image_barrier(stand_in.image, VK_IMAGE_ASPECT_COLOR_BIT, in_order);
+          image_barrier(placeholder.image, VK_IMAGE_ASPECT_COLOR_BIT, in_order);
     else
-      state.buffer_barriers[batch.buffers++] = buffer_barrier(stand_in.buffer, in_order);
+      state.buffer_barriers[batch.buffers++] = buffer_barrier(placeholder.buffer, in_order);
   }
   submit_batch(state, frame.command_buffer, batch);
 }

@@ -12,8 +12,9 @@ Error argument(std::string text) {
 }
 
 Error check_input(const ExecutorInput& input) {
-  if (input.device == nullptr || input.graph == nullptr || input.kinds == nullptr || input.plan == nullptr)
-    return argument("device, graph, kinds and plan are needed");
+  if (input.device == nullptr || input.graph == nullptr || input.pass_types == nullptr ||
+      input.plan == nullptr)
+    return argument("device, graph, pass types and plan are needed");
   if (input.frames_in_flight < 1 || input.frames_in_flight > max_frames_in_flight)
     return argument(fmt::format("{} frames in flight, 1 to {} are possible", input.frames_in_flight,
                                 max_frames_in_flight));
@@ -63,32 +64,32 @@ void make_passes(State& state, const ExecutorInput& input) {
   state.passes.resize(state.plan.passes.size());
   for (size_t p = 0; p < state.passes.size(); ++p) {
     const PlanPass& planned = state.plan.passes[p];
-    const PassKind& kind = (*input.kinds)[planned.kind];
+    const PassType& type = (*input.pass_types)[planned.type];
     Pass& pass = state.passes[p];
     pass.name = input.graph->passes[planned.declared.value].name;
-    if (kind.dispatch == DispatchShape::host) pass.host = planned.kind;
-    pass.ports.resize(kind.ports.size());
+    if (type.dispatch == DispatchShape::host) pass.host = planned.type;
+    pass.ports.resize(type.ports.size());
     for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a)
       bind_port(state.plan, pass, a);
   }
 }
 
-// What a kind without kernel clears, and that an indirect dispatch has its arguments, known before the first
-// frame.
-Error check_passes(State& state, const KindRegistry& kinds) {
+// What a pass type without kernel clears, and that an indirect dispatch has its arguments, known before the
+// first frame.
+Error check_passes(State& state, const PassTypeRegistry& pass_types) {
   for (size_t p = 0; p < state.passes.size(); ++p) {
     const PlanPass& planned = state.plan.passes[p];
     Pass& pass = state.passes[p];
-    const PassKind& kind = kinds[planned.kind];
+    const PassType& type = pass_types[planned.type];
     constexpr size_t mask_bits = 32;
-    if (kind.ports.size() > mask_bits)
-      return argument(fmt::format("kind '{}' has {} ports, the port mask holds {}", kind.name,
-                                  kind.ports.size(), mask_bits));
+    if (type.ports.size() > mask_bits)
+      return argument(fmt::format("pass type '{}' has {} ports, the port mask holds {}", type.name,
+                                  type.ports.size(), mask_bits));
     if (pass.kernel != no_index) {
       const Kernel& kernel = *state.kernels[pass.kernel];
       if (kernel.dispatch == DispatchShape::over_tiles && pass.ports[kernel.indirect_port].access == no_index)
         return argument(fmt::format("pass '{}' dispatches over tiles, but its port '{}' is not bound",
-                                    pass.name, kind.ports[kernel.indirect_port].name));
+                                    pass.name, type.ports[kernel.indirect_port].name));
       if (kernel.dispatch == DispatchShape::over_tiles) {
         const PlanAccess& access = state.plan.accesses[pass.ports[kernel.indirect_port].access];
         pass.indirect_entries = state.plan.resources[access.resource].bytes / indirect_entry_bytes;
@@ -138,16 +139,16 @@ void make_histories(State& state, const ExecutorInput& input) {
 // Room for everything that recording needs, so that it never allocates.
 void reserve_for_recording(State& state) {
   size_t largest = std::max<size_t>(state.plan.final_barrier_count, state.slot_resource.size());
-  size_t most_settings = 0;
+  size_t max_settings = 0;
   for (size_t p = 0; p < state.passes.size(); ++p)
     largest =
-        std::max(largest, state.plan.passes[p].barrier_count + state.passes[p].writable_stand_ins.size());
+        std::max(largest, state.plan.passes[p].barrier_count + state.passes[p].writable_placeholders.size());
   for (const auto& kernel : state.kernels)
-    most_settings = std::max<size_t>(most_settings, kernel->push_bytes / sizeof(uint32_t));
+    max_settings = std::max<size_t>(max_settings, kernel->push_bytes / sizeof(uint32_t));
   state.image_barriers.resize(largest);
   state.buffer_barriers.resize(largest);
   state.memory_barriers.resize(largest + 1); // and one for memory that is taken over
-  state.push_constants.resize(most_settings);
+  state.push_constants.resize(max_settings);
   state.before_frame.histories.resize(state.histories.size());
   state.before_frame.ready.resize(state.instances.size());
 }
@@ -158,7 +159,7 @@ Executor::State::~State() {
   if (device == nullptr) return;
   destroy_descriptors(*this);
   destroy_environment(*this);
-  destroy_stand_ins(*this);
+  destroy_placeholders(*this);
   destroy_rescaling(*this);
   destroy_memory(*this);
   device->vk.vkDestroyQueryPool(device->device, timestamps.pool, device->allocator);
@@ -178,12 +179,12 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   make_histories(*state, input);
   if (Error error = create_environment(*state, input.environment, input.tables)) return error;
   if (Error error = create_kernels(*state, input)) return error;
-  if (Error error = check_passes(*state, *input.kinds)) return error;
+  if (Error error = check_passes(*state, *input.pass_types)) return error;
   if (Error error = check_host_passes(*state, input)) return error;
   if (Error error = create_memory(*state, *input.graph)) return error;
   if (Error error = create_rescaling(*state, input)) return error;
-  if (Error error = create_descriptors(*state, *input.kinds)) return error;
-  if (Error error = create_stand_ins(*state)) return error;
+  if (Error error = create_descriptors(*state, *input.pass_types)) return error;
+  if (Error error = create_placeholders(*state)) return error;
   if (Error error = create_timestamps(*state)) return error;
   reserve_for_recording(*state);
   executor.reset(new Executor(std::move(state)));

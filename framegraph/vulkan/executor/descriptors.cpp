@@ -8,7 +8,7 @@
 namespace dermis::vulkan {
 namespace {
 
-void list_ports(State& state, const KindRegistry& kinds) {
+void list_ports(State& state, const PassTypeRegistry& pass_types) {
   for (uint32_t p = 0; p < state.passes.size(); ++p) {
     Pass& pass = state.passes[p];
     if (pass.kernel == no_index) continue;
@@ -19,11 +19,11 @@ void list_ports(State& state, const KindRegistry& kinds) {
       write.pass = p;
       write.port = port;
       if ((pass.port_mask >> port & 1u) == 0) {
-        const bool writes = usage_info(kinds[kernel.kind].ports[port].usage).writes;
-        write.stand_in = stand_in_for(state, kernel.ports[port], writes);
-        if (writes && std::find(pass.writable_stand_ins.begin(), pass.writable_stand_ins.end(),
-                                write.stand_in) == pass.writable_stand_ins.end())
-          pass.writable_stand_ins.push_back(write.stand_in);
+        const bool writes = usage_info(pass_types[kernel.type].ports[port].usage).writes;
+        write.placeholder = placeholder_for(state, kernel.ports[port], writes);
+        if (writes && std::find(pass.writable_placeholders.begin(), pass.writable_placeholders.end(),
+                                write.placeholder) == pass.writable_placeholders.end())
+          pass.writable_placeholders.push_back(write.placeholder);
       }
       state.descriptors.ports.push_back(write);
     }
@@ -100,8 +100,8 @@ Error create_sets(State& state) {
 
 } // namespace
 
-Error create_descriptors(State& state, const KindRegistry& kinds) {
-  list_ports(state, kinds);
+Error create_descriptors(State& state, const PassTypeRegistry& pass_types) {
+  list_ports(state, pass_types);
   prepare_writes(state);
   return create_sets(state);
 }
@@ -118,9 +118,9 @@ void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& fram
     d.writes[i].dstSet = d.sets[frame_slot * state.passes.size() + port.pass];
     const uint32_t index = access_now(state, state.passes[port.pass].ports[port.port]);
     if (index == no_index) {
-      d.images[i].imageView = state.stand_ins[port.stand_in].view;
+      d.images[i].imageView = state.placeholders[port.placeholder].view;
       d.images[i].imageLayout = VK_IMAGE_LAYOUT_GENERAL; // stand-ins rest in it
-      d.buffers[i].buffer = state.stand_ins[port.stand_in].buffer;
+      d.buffers[i].buffer = state.placeholders[port.placeholder].buffer;
       continue;
     }
     const PlanAccess& access = state.plan.accesses[index];

@@ -18,17 +18,17 @@ Error check_bindings(const Device& device, std::span<const EnvironmentBinding> b
   for (size_t i = 0; i < bindings.size(); ++i) {
     const EnvironmentBinding& binding = bindings[i];
     if (binding.type == EnvironmentType::linear_sampler) continue;
-    const uint64_t most = binding.type == EnvironmentType::uniform_buffer ? limits.maxUniformBufferRange
-                                                                          : limits.maxStorageBufferRange;
+    const uint64_t maximum = binding.type == EnvironmentType::uniform_buffer ? limits.maxUniformBufferRange
+                                                                             : limits.maxStorageBufferRange;
     const bool second = binding.type == EnvironmentType::counters && ++counters > 1;
     if (second || (binding.type == EnvironmentType::counters && binding.bytes % sizeof(uint32_t) != 0))
       return {
           ErrorKind::argument, VK_SUCCESS,
           fmt::format("environment binding {}: counters are 32-bit words, and one binding holds them", i)};
-    if (binding.bytes == 0 || binding.bytes > most)
-      return {
-          ErrorKind::argument, VK_SUCCESS,
-          fmt::format("environment binding {} has {} bytes, 1 to {} are possible", i, binding.bytes, most)};
+    if (binding.bytes == 0 || binding.bytes > maximum)
+      return {ErrorKind::argument, VK_SUCCESS,
+              fmt::format("environment binding {} has {} bytes, 1 to {} are possible", i, binding.bytes,
+                          maximum)};
     if (binding.contents.size() > binding.bytes)
       return {ErrorKind::argument, VK_SUCCESS,
               fmt::format("environment binding {} has {} bytes, its contents {}", i, binding.bytes,

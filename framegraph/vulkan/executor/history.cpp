@@ -103,7 +103,7 @@ void remember_before_frame(State& state) noexcept {
     before.histories[h] = {state.histories[h].age, state.histories[h].reason, state.histories[h].lost};
   for (size_t i = 0; i < state.instances.size(); ++i)
     before.ready[i] = state.instances[i].ready;
-  before.stand_ins_ready = state.stand_ins_ready;
+  before.placeholders_ready = state.placeholders_ready;
   before.previous_rectangle = state.previous_rectangle;
   before.last_frame_index = state.last_frame_index;
   before.known = true;
@@ -121,7 +121,7 @@ bool Executor::discard_frame(uint64_t frame_index) noexcept {
   }
   for (size_t i = 0; i < state.instances.size(); ++i)
     state.instances[i].ready = before.ready[i] != 0;
-  state.stand_ins_ready = before.stand_ins_ready;
+  state.placeholders_ready = before.placeholders_ready;
   state.previous_rectangle = before.previous_rectangle;
   state.last_frame_index = before.last_frame_index;
   state.frame_of_slot[frame_slot] = 0; // recording cleared the counters of the frame before it there

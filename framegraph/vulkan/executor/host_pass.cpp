@@ -68,10 +68,10 @@ Error check_host_passes(State& state, const ExecutorInput& input) {
     if (input.host_pass == nullptr)
       return {ErrorKind::argument, VK_SUCCESS,
               fmt::format("pass '{}' is recorded by the host, which gives no function for it", pass.name)};
-    const PassKind& kind = (*input.kinds)[pass.host];
-    pass.host_settings = static_cast<uint32_t>(kind.settings.size());
-    ports = std::max(ports, kind.ports.size());
-    settings = std::max(settings, kind.settings.size());
+    const PassType& type = (*input.pass_types)[pass.host];
+    pass.host_settings = static_cast<uint32_t>(type.settings.size());
+    ports = std::max(ports, type.ports.size());
+    settings = std::max(settings, type.settings.size());
   }
   state.host_pass = input.host_pass;
   state.host_pass_user = input.host_pass_user;
@@ -92,7 +92,7 @@ void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectan
   for (uint32_t i = 0; i < pass.host_settings; ++i)
     state.host_settings[i] = value_of(state, frame, planned, i);
   HostPass call;
-  call.kind = pass.host;
+  call.type = pass.host;
   call.pass = pass.name.c_str();
   call.command_buffer = frame.command_buffer;
   call.ports = {state.host_ports.data(), pass.ports.size()};

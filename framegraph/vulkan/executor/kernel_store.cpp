@@ -8,16 +8,16 @@
 
 namespace dermis::vulkan {
 
-std::shared_ptr<const Kernel> KernelStore::find(KindId kind, uint64_t version) const {
+std::shared_ptr<const Kernel> KernelStore::find(PassTypeId type, uint64_t version) const {
   {
     const std::lock_guard lock(mutex_);
     for (const std::shared_ptr<const Kernel>& kernel : kept_)
-      if (kernel->kind == kind && kernel->version == version) return kernel;
+      if (kernel->type == type && kernel->version == version) return kernel;
     for (const InUse& one : in_use_)
-      if (one.kind == kind && one.version == version)
+      if (one.type == type && one.version == version)
         if (std::shared_ptr<const Kernel> kernel = one.kernel.lock()) return kernel;
   }
-  return shared_ != nullptr ? shared_->find(kind, version) : nullptr;
+  return shared_ != nullptr ? shared_->find(type, version) : nullptr;
 }
 
 void KernelStore::add(std::shared_ptr<const Kernel> kernel) {
@@ -41,10 +41,10 @@ void KernelStore::take(std::vector<std::shared_ptr<const Kernel>>& kernels) {
   in_use_.reserve(in_use_.size() + kernels.size());
   for (std::shared_ptr<const Kernel>& kernel : kernels) {
     const auto is_same = [&](const std::shared_ptr<const Kernel>& other) {
-      return other->kind == kernel->kind;
+      return other->type == kernel->type;
     };
     if (kernel->version != 0)
-      in_use_.push_back({kernel->kind, kernel->version, kernel});
+      in_use_.push_back({kernel->type, kernel->version, kernel});
     else if (std::none_of(kept_.begin(), kept_.end(), is_same)) // another thread may have made it as well
       kept_.push_back(std::move(kernel));
   }

@@ -1,4 +1,4 @@
-// Pipelines of the pass kinds that the plan runs: layouts from the signature, checked against the kernel's
+// Pipelines of the pass types that the plan runs: layouts from the signature, checked against the kernel's
 // SPIR-V.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
@@ -68,7 +68,7 @@ std::string join_lines(const std::vector<std::string>& lines) {
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
-Error create_set_layout(State& state, const PassKind& kind, Kernel& kernel) {
+Error create_set_layout(State& state, const PassType& type, Kernel& kernel) {
   const Device& device = *state.device;
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < kernel.ports.size(); ++i)
@@ -81,10 +81,10 @@ Error create_set_layout(State& state, const PassKind& kind, Kernel& kernel) {
   const VkResult result =
       device.vk.vkCreateDescriptorSetLayout(device.device, &info, device.allocator, &kernel.set_layout);
   if (result != VK_SUCCESS) kernel.set_layout = VK_NULL_HANDLE;
-  return call_error(result, "vkCreateDescriptorSetLayout", fmt::format("kind '{}'", kind.name));
+  return call_error(result, "vkCreateDescriptorSetLayout", fmt::format("pass type '{}'", type.name));
 }
 
-Error create_layout(State& state, const PassKind& kind, Kernel& kernel) {
+Error create_layout(State& state, const PassType& type, Kernel& kernel) {
   const Device& device = *state.device;
   const VkDescriptorSetLayout sets[] = {kernel.set_layout, state.environment.set_layout};
   const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, kernel.push_bytes};
@@ -97,54 +97,54 @@ Error create_layout(State& state, const PassKind& kind, Kernel& kernel) {
   const VkResult result =
       device.vk.vkCreatePipelineLayout(device.device, &info, device.allocator, &kernel.layout);
   if (result != VK_SUCCESS) kernel.layout = VK_NULL_HANDLE;
-  return call_error(result, "vkCreatePipelineLayout", fmt::format("kind '{}'", kind.name));
+  return call_error(result, "vkCreatePipelineLayout", fmt::format("pass type '{}'", type.name));
 }
 
-auto find_code(const ExecutorInput& input, const PassKind& kind) {
+auto find_code(const ExecutorInput& input, const PassType& type) {
   return std::find_if(input.kernels.begin(), input.kernels.end(),
-                      [&](const KernelCode& candidate) { return candidate.shader == kind.shader; });
+                      [&](const KernelCode& candidate) { return candidate.shader == type.shader; });
 }
 
-Error create_kernel(State& state, const ExecutorInput& input, KindId id, Kernel& kernel) {
-  const PassKind& kind = (*input.kinds)[id];
-  const auto code = find_code(input, kind);
+Error create_kernel(State& state, const ExecutorInput& input, PassTypeId id, Kernel& kernel) {
+  const PassType& type = (*input.pass_types)[id];
+  const auto code = find_code(input, type);
   if (code == input.kernels.end())
     return {ErrorKind::shader, VK_SUCCESS,
-            fmt::format("kernel '{}' of kind '{}' is not among the {} given", kind.shader, kind.name,
+            fmt::format("kernel '{}' of type '{}' is not among the {} given", type.shader, type.name,
                         input.kernels.size())};
   std::string problem;
   const std::optional<Reflection> reflection = reflect(code->spirv, problem);
   if (!reflection)
     return {ErrorKind::shader, VK_SUCCESS,
-            fmt::format("kernel '{}' cannot be read: {}", kind.shader, problem)};
-  const std::vector<std::string> mismatches = check_signature(kind, input.environment, *reflection);
+            fmt::format("kernel '{}' cannot be read: {}", type.shader, problem)};
+  const std::vector<std::string> mismatches = check_signature(type, input.environment, *reflection);
   if (!mismatches.empty()) return {ErrorKind::shader, VK_SUCCESS, join_lines(mismatches)};
-  kernel.kind = id;
+  kernel.type = id;
   kernel.version = code->version;
-  kernel.dispatch = kind.dispatch;
+  kernel.dispatch = type.dispatch;
   for (const ShaderBinding& binding : reflection->bindings)
     kernel.counts = kernel.counts || (binding.set == 1 && binding.binding < input.environment.size() &&
                                       input.environment[binding.binding].type == EnvironmentType::counters);
-  kernel.ports.resize(kind.ports.size());
-  for (uint32_t p = 0; p < kind.ports.size(); ++p) {
-    kernel.ports[p].type = descriptor_type(kind.ports[p].usage);
-    if (kind.ports[p].usage == Usage::indirect_arguments) kernel.indirect_port = p;
+  kernel.ports.resize(type.ports.size());
+  for (uint32_t p = 0; p < type.ports.size(); ++p) {
+    kernel.ports[p].type = descriptor_type(type.ports[p].usage);
+    if (type.ports[p].usage == Usage::indirect_arguments) kernel.indirect_port = p;
     for (const ShaderBinding& binding : reflection->bindings)
       if (binding.set == 0 && binding.binding == p)
-        kernel.ports[p].stand_in = stand_in_format(kind.ports[p], binding);
-    if (kernel.ports[p].stand_in == VK_FORMAT_UNDEFINED)
-      kernel.ports[p].stand_in = VK_FORMAT_R16G16B16A16_SFLOAT;
+        kernel.ports[p].placeholder = stand_in_format(type.ports[p], binding);
+    if (kernel.ports[p].placeholder == VK_FORMAT_UNDEFINED)
+      kernel.ports[p].placeholder = VK_FORMAT_R16G16B16A16_SFLOAT;
   }
-  if (kind.dispatch == DispatchShape::over_tiles && kernel.indirect_port == no_index)
+  if (type.dispatch == DispatchShape::over_tiles && kernel.indirect_port == no_index)
     return {ErrorKind::shader, VK_SUCCESS,
-            fmt::format("kind '{}' dispatches over tiles but has no port with usage indirect_arguments",
-                        kind.name)};
-  if (!kind.arguments_entry.empty())
-    kernel.entry_setting = static_cast<uint32_t>(find_setting(kind, kind.arguments_entry));
-  kernel.push_bytes = static_cast<uint32_t>(sizeof(uint32_t) * (1 + kind.settings.size()));
-  if (Error error = create_set_layout(state, kind, kernel)) return error;
-  if (Error error = create_layout(state, kind, kernel)) return error;
-  return create_pipeline(*state.device, fmt::format("kernel '{}'", kind.shader), std::string(kind.name),
+            fmt::format("pass type '{}' dispatches over tiles but has no port with usage indirect_arguments",
+                        type.name)};
+  if (!type.arguments_entry.empty())
+    kernel.entry_setting = static_cast<uint32_t>(find_setting(type, type.arguments_entry));
+  kernel.push_bytes = static_cast<uint32_t>(sizeof(uint32_t) * (1 + type.settings.size()));
+  if (Error error = create_set_layout(state, type, kernel)) return error;
+  if (Error error = create_layout(state, type, kernel)) return error;
+  return create_pipeline(*state.device, fmt::format("kernel '{}'", type.shader), std::string(type.name),
                          code->spirv, input.pipeline_cache, kernel);
 }
 
@@ -156,20 +156,20 @@ Kernel::~Kernel() {
   device->vk.vkDestroyDescriptorSetLayout(device->device, set_layout, device->allocator);
 }
 
-Error create_pipeline(const Device& device, const std::string& thing, const std::string& label,
+Error create_pipeline(const Device& device, const std::string& subresource, const std::string& label,
                       std::span<const uint32_t> spirv, VkPipelineCache cache, Kernel& kernel) {
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  std::vector<uint32_t> mended;
+  std::vector<uint32_t> refined;
   if (unrolls_without_end(device.properties)) {
-    mended = without_unrolling(spirv);
-    spirv = mended;
+    refined = without_unrolling(spirv);
+    spirv = refined;
   }
   module_info.codeSize = spirv.size_bytes();
   module_info.pCode = spirv.data();
   VkShaderModule module = VK_NULL_HANDLE;
   VkResult result = device.vk.vkCreateShaderModule(device.device, &module_info, device.allocator, &module);
-  if (result != VK_SUCCESS) return call_error(result, "vkCreateShaderModule", thing);
+  if (result != VK_SUCCESS) return call_error(result, "vkCreateShaderModule", subresource);
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
   info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -182,7 +182,7 @@ Error create_pipeline(const Device& device, const std::string& thing, const std:
   device.vk.vkDestroyShaderModule(device.device, module, device.allocator);
   if (result != VK_SUCCESS) {
     kernel.pipeline = VK_NULL_HANDLE;
-    return call_error(result, "vkCreateComputePipelines", thing);
+    return call_error(result, "vkCreateComputePipelines", subresource);
   }
   name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(kernel.pipeline), label.c_str());
   return {};
@@ -190,20 +190,20 @@ Error create_pipeline(const Device& device, const std::string& thing, const std:
 
 Error create_kernels(State& state, const ExecutorInput& input) {
   for (uint32_t p = 0; p < state.passes.size(); ++p) {
-    const KindId kind = state.plan.passes[p].kind;
-    const DispatchShape dispatch = (*input.kinds)[kind].dispatch;
+    const PassTypeId type = state.plan.passes[p].type;
+    const DispatchShape dispatch = (*input.pass_types)[type].dispatch;
     if (dispatch == DispatchShape::none || dispatch == DispatchShape::host) continue;
-    const auto code = find_code(input, (*input.kinds)[kind]);
+    const auto code = find_code(input, (*input.pass_types)[type]);
     const uint64_t version = code != input.kernels.end() ? code->version : 0;
-    const auto runs = [&](const auto& kernel) { return kernel->kind == kind && kernel->version == version; };
+    const auto runs = [&](const auto& kernel) { return kernel->type == type && kernel->version == version; };
     const auto existing = std::find_if(state.kernels.begin(), state.kernels.end(), runs);
     state.passes[p].kernel = static_cast<uint32_t>(existing - state.kernels.begin());
     if (existing != state.kernels.end()) continue;
     std::shared_ptr<const Kernel> kernel;
-    if (input.kernel_store != nullptr) kernel = input.kernel_store->find(kind, version);
+    if (input.kernel_store != nullptr) kernel = input.kernel_store->find(type, version);
     if (kernel == nullptr) {
       const auto added = std::make_shared<Kernel>(*state.device);
-      if (Error error = create_kernel(state, input, kind, *added)) return error;
+      if (Error error = create_kernel(state, input, type, *added)) return error;
       kernel = added;
       if (input.kernel_store != nullptr) input.kernel_store->add(kernel);
     }

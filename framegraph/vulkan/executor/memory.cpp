@@ -30,8 +30,8 @@ Error create_heaps(State& state) {
                       heap_alignment(*state.device, state.plan, h),
                       0,
                       VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
-    const std::string thing = fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
-    if (Error error = take_memory(*state.device, memory.request, thing, memory.block)) return error;
+    const std::string subresource = fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
+    if (Error error = take_memory(*state.device, memory.request, subresource, memory.block)) return error;
   }
   return {};
 }

@@ -82,7 +82,7 @@ void invalidate_for_cut(State& state) {
       state.instances[resource.first_instance + i].ready = false;
   }
   // A host may cut because it threw a recorded frame away: then what that frame initialised never was.
-  state.stand_ins_ready = false;
+  state.placeholders_ready = false;
 }
 
 void push_settings(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
@@ -303,7 +303,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
     const PlanPass& planned = state.plan.passes[p];
     begin_label(state, commands, state.passes[p].name.c_str());
     record_barriers(state, frame, planned.first_barrier, planned.barrier_count,
-                    state.passes[p].writable_stand_ins);
+                    state.passes[p].writable_placeholders);
     if (!is_left_out(frame, p)) run_pass(state, frame, frame_slot, p, rectangle);
     end_label(state, commands);
     write_timestamp(state, commands, frame_slot, static_cast<uint32_t>(p) + 1);

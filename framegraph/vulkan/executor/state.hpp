@@ -13,8 +13,7 @@ namespace dermis::vulkan {
 
 inline constexpr uint32_t no_index = 0xffffffffu;
 inline constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-inline constexpr VkAccessFlags2 all_memory =
-    VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+inline constexpr VkAccessFlags2 all_memory = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 inline constexpr uint64_t indirect_entry_bytes = 16; // group counts x, y, z and one more word
 
 struct HeapMemory { // of a plan heap
@@ -48,16 +47,16 @@ struct StandIn {                         // what an unbound optional port sees: 
 
 struct KernelPort {
   std::optional<VkDescriptorType> type;
-  VkFormat stand_in = VK_FORMAT_UNDEFINED; // format of the image an unbound port would see
+  VkFormat placeholder = VK_FORMAT_UNDEFINED; // format of the image an unbound port would see
 };
 
-struct Kernel { // one per pass kind that dispatches; shared by the executors that run it
+struct Kernel { // one per pass type that dispatches; shared by the executors that run it
   const Device* device = nullptr;
-  KindId kind;
+  PassTypeId type;
   uint64_t version = 0; // KernelCode::version
   DispatchShape dispatch = DispatchShape::none;
   uint32_t indirect_port = no_index;
-  uint32_t entry_setting = no_index; // of the kind: says which entry of the indirect arguments counts
+  uint32_t entry_setting = no_index; // of the pass type: says which entry of the indirect arguments counts
   std::vector<KernelPort> ports;
   bool counts = false; // it uses the environment's counters
   uint32_t push_bytes = 0;
@@ -109,7 +108,8 @@ struct Environment {             // descriptor set 1
 
 struct PortWrite { // one descriptor that every frame writes
   uint32_t pass = 0, port = 0;
-  uint32_t stand_in = no_index; // into State::stand_ins: where the port is not bound, or not in every frame
+  uint32_t placeholder =
+      no_index; // into State::placeholders: where the port is not bound, or not in every frame
 };
 
 struct Descriptors { // sets 0, by frame slot and pass
@@ -132,19 +132,19 @@ struct PortAccess {              // what stands at a port, into Plan::accesses
 struct Pass {
   std::string name;
   uint32_t kernel = no_index; // into State::kernels; none: clear, or the host's
-  KindId host;                // valid: the host records it
-  uint32_t host_settings = 0; // that its kind has
+  PassTypeId host;            // valid: the host records it
+  uint32_t host_settings = 0; // that its pass type has
   std::vector<PortAccess> ports;
-  uint32_t port_mask = 0;                   // ports that are bound in every frame
-  std::vector<uint32_t> conditional_ports;  // the others that may be
-  uint64_t indirect_entries = 1;            // that its indirect arguments have room for
-  std::vector<uint32_t> writable_stand_ins; // into State::stand_ins
+  uint32_t port_mask = 0;                      // ports that are bound in every frame
+  std::vector<uint32_t> conditional_ports;     // the others that may be
+  uint64_t indirect_entries = 1;               // that its indirect arguments have room for
+  std::vector<uint32_t> writable_placeholders; // into State::placeholders
 };
 
 struct HistoryRecord {
   std::string name;
-  bool written = false; // the plan writes the current instance
-  bool scales = false;  // the graph asks to rescale it, and the device can
+  bool written = false;                   // the plan writes the current instance
+  bool scales = false;                    // the graph asks to rescale it, and the device can
   uint32_t first_rescale_view = no_index; // into Rescaling::views
   uint32_t first_rescale_set = no_index;  // into Rescaling::sets, of each frame slot
   uint32_t age = 0;
@@ -177,7 +177,7 @@ struct BeforeFrame { // what recording the last frame changed: see Executor::dis
     HistoryReason lost = HistoryReason::first_frame;
   };
   bool known = false;
-  bool stand_ins_ready = false;
+  bool placeholders_ready = false;
   std::vector<History> histories; // by history
   std::vector<uint8_t> ready;     // by instance
   Rectangle previous_rectangle;
@@ -195,8 +195,8 @@ struct Executor::State {
   std::vector<PartView> part_views;
   std::vector<uint32_t> view_of_access; // by plan access: first of its part_views, one for each instance;
                                         // no_index: all of the image, or no view
-  std::vector<StandIn> stand_ins;
-  bool stand_ins_ready = false;
+  std::vector<StandIn> placeholders;
+  bool placeholders_ready = false;
   bool poison = false; // ExecutorInput::poison
   std::vector<std::shared_ptr<const Kernel>> kernels;
   Environment environment;
@@ -235,10 +235,11 @@ using State = Executor::State;
 Error create_memory(State& state, const Graph& graph); // heaps, images, buffers, views
 void destroy_memory(State& state);
 
-// ---- stand_ins.cpp
-uint32_t stand_in_for(State& state, const KernelPort& port, bool writes); // index; declares it if it is new
-Error create_stand_ins(State& state);
-void destroy_stand_ins(State& state);
+// ---- placeholders.cpp
+uint32_t placeholder_for(State& state, const KernelPort& port,
+                         bool writes); // index; declares it if it is new
+Error create_placeholders(State& state);
+void destroy_placeholders(State& state);
 
 // ---- environment.cpp
 Error create_environment(State& state, std::span<const EnvironmentBinding> bindings,
@@ -259,7 +260,7 @@ void write_frame_constants(State& state, uint32_t frame_slot, std::span<const st
 // ---- kernels.cpp
 Error create_kernels(State& state, const ExecutorInput& input);
 // Creates `kernel.pipeline` from `kernel.layout`. `thing` names it in errors, `label` in debuggers.
-Error create_pipeline(const Device& device, const std::string& thing, const std::string& label,
+Error create_pipeline(const Device& device, const std::string& subresource, const std::string& label,
                       std::span<const uint32_t> spirv, VkPipelineCache cache, Kernel& kernel);
 
 // ---- history.cpp
@@ -268,7 +269,7 @@ void remember_before_frame(State& state) noexcept;
 uint32_t access_now(const State& state, const PortAccess& port) noexcept;
 
 // ---- descriptors.cpp
-Error create_descriptors(State& state, const KindRegistry& kinds);
+Error create_descriptors(State& state, const PassTypeRegistry& pass_types);
 void destroy_descriptors(State& state);
 void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& frame) noexcept;
 
@@ -277,7 +278,7 @@ void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& fram
 uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t frames_back) noexcept;
 // One batch: the plan's barriers first .. first + count, and those that keep writes to stand-ins in order.
 void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
-                     std::span<const uint32_t> writable_stand_ins) noexcept;
+                     std::span<const uint32_t> writable_placeholders) noexcept;
 // Everything before is done and visible: other commands used the same memory.
 void record_memory_takeover(State& state, const FrameInput& frame) noexcept;
 // What passes before counted is visible to this one, which counts as well.

@@ -5,16 +5,16 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint32_t tile_side = 8; // kernels over the view or its tiles: one invocation per pixel of a tile
+constexpr uint32_t group_side = 8; // kernels over the view or its tiles: one invocation per pixel of a tile
 constexpr uint32_t tile_invocations = 64;
 
 struct Checker {
-  const PassKind& kind;
+  const PassType& type;
   std::vector<std::string> found;
 
   template <class... Arguments>
   void mismatch(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
-    found.push_back(fmt::format("kernel '{}' of kind '{}': ", kind.shader, kind.name) +
+    found.push_back(fmt::format("kernel '{}' of type '{}': ", type.shader, type.name) +
                     fmt::format(text, std::forward<Arguments>(arguments)...));
   }
 
@@ -28,10 +28,10 @@ struct Checker {
   }
 
   void check_port(const ShaderBinding& binding) {
-    if (binding.binding >= kind.ports.size())
+    if (binding.binding >= type.ports.size())
       return mismatch("the shader has '{}' at set 0 binding {}, the signature has {} ports", binding.name,
-                      binding.binding, kind.ports.size());
-    const Port& port = kind.ports[binding.binding];
+                      binding.binding, type.ports.size());
+    const Port& port = type.ports[binding.binding];
     const std::string place = fmt::format("port '{}' (set 0 binding {})", port.name, binding.binding);
     const auto type = descriptor_type(port.usage);
     if (!type)
@@ -73,21 +73,21 @@ struct Checker {
 
   void check_push_constants(const Reflection& reflection) {
     const auto& members = reflection.push_members;
-    const size_t wanted = 1 + kind.settings.size();
+    const size_t wanted = 1 + type.settings.size();
     if (!reflection.has_push_constants) {
-      if (!kind.settings.empty())
-        mismatch("the shader has no push constants, the signature has {} settings", kind.settings.size());
+      if (!type.settings.empty())
+        mismatch("the shader has no push constants, the signature has {} settings", type.settings.size());
       return;
     }
     if (members.size() != wanted)
       return mismatch("the shader pushes {} members, the signature has the port mask and {} settings",
-                      members.size(), kind.settings.size());
+                      members.size(), type.settings.size());
     for (size_t i = 0; i < members.size(); ++i) {
-      const std::string name = i == 0 ? "port mask" : fmt::format("setting '{}'", kind.settings[i - 1].name);
+      const std::string name = i == 0 ? "port mask" : fmt::format("setting '{}'", type.settings[i - 1].name);
       if (members[i].offset != 4 * i)
         mismatch("{} lies at byte {} of the push constants, '{}' of the shader at {}", name, 4 * i,
                  members[i].name, members[i].offset);
-      const bool real = i > 0 && kind.settings[i - 1].type == SettingType::real;
+      const bool real = i > 0 && type.settings[i - 1].type == SettingType::real;
       const bool fits = real ? members[i].numeric == Numeric::real
                              : members[i].numeric == Numeric::signed_integer ||
                                    members[i].numeric == Numeric::unsigned_integer;
@@ -102,10 +102,10 @@ struct Checker {
     const auto refuse = [&](const char* wanted) {
       mismatch("its workgroup is {}x{}x{}, this dispatch needs {}", size[0], size[1], size[2], wanted);
     };
-    switch (kind.dispatch) {
+    switch (type.dispatch) {
     case DispatchShape::over_view:
     case DispatchShape::over_written:
-      if (size[0] != tile_side || size[1] != tile_side || size[2] != 1) refuse("8x8x1");
+      if (size[0] != group_side || size[1] != group_side || size[2] != 1) refuse("8x8x1");
       break;
     case DispatchShape::over_tiles:
     case DispatchShape::over_tile_grid:
@@ -156,10 +156,10 @@ VkDescriptorType descriptor_type(EnvironmentType type) {
   return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 }
 
-std::vector<std::string> check_signature(const PassKind& kind,
+std::vector<std::string> check_signature(const PassType& type,
                                          std::span<const EnvironmentBinding> environment,
                                          const Reflection& reflection) {
-  Checker checker{kind, {}};
+  Checker checker{type, {}};
   for (const ShaderBinding& binding : reflection.bindings) {
     if (binding.set == 0)
       checker.check_port(binding);

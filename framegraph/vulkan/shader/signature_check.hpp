@@ -1,7 +1,7 @@
 #pragma once
 // Holds a kernel against the signature it claims to follow: bindings, push constants, workgroup size.
 
-#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/model/pass_type.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/shader/reflect.hpp"
 
@@ -18,7 +18,7 @@ std::optional<VkDescriptorType> descriptor_type(Usage usage);
 VkDescriptorType descriptor_type(EnvironmentType type);
 
 // Every disagreement, each naming kernel, port and both sides; empty: the kernel fits. Free-threaded.
-std::vector<std::string> check_signature(const PassKind& kind,
+std::vector<std::string> check_signature(const PassType& type,
                                          std::span<const EnvironmentBinding> environment,
                                          const Reflection& reflection);
 

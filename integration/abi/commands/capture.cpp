@@ -1,6 +1,6 @@
 #include "integration/abi/commands/capture.hpp"
 
-#include "integration/abi/host_kinds.hpp"
+#include "integration/abi/host_pass_types.hpp"
 
 namespace dermis::abi {
 namespace {

@@ -20,9 +20,9 @@ struct Header {
   void* user;
   size_t size, alignment; // as asked of the allocator
 };
-constexpr size_t least_alignment = alignof(std::max_align_t);
+constexpr size_t min_alignment = alignof(std::max_align_t);
 
-constexpr size_t room_for_header(size_t alignment) {
+constexpr size_t header_space(size_t alignment) {
   return (sizeof(Header) + alignment - 1) / alignment * alignment;
 }
 
@@ -43,7 +43,7 @@ void to_c_library(void* memory) {
 #endif
 
 void* take(size_t size, size_t wanted) noexcept {
-  const size_t alignment = std::max(wanted, least_alignment), front = room_for_header(alignment);
+  const size_t alignment = std::max(wanted, min_alignment), front = header_space(alignment);
   const size_t total = (front + size + alignment - 1) / alignment * alignment; // as aligned_alloc wants it
   if (total < size) return nullptr;
   const HostAllocator& host = current_allocator();
@@ -60,7 +60,7 @@ void give_back(void* given) noexcept {
   if (given == nullptr) return;
   Header header;
   std::memcpy(&header, static_cast<std::byte*>(given) - sizeof header, sizeof header);
-  void* memory = static_cast<std::byte*>(given) - room_for_header(header.alignment);
+  void* memory = static_cast<std::byte*>(given) - header_space(header.alignment);
   if (header.release == nullptr)
     to_c_library(memory);
   else

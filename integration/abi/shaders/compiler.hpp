@@ -13,7 +13,7 @@ namespace dermis::abi {
 // "glslang 12.0.0"; "" where this build has none. Free-threaded.
 std::string shader_compiler();
 
-// Compiles each kernel of `shaders` (PassKind::shader) from "NAME.comp" and from what that includes:
+// Compiles each kernel of `shaders` (PassType::shader) from "NAME.comp" and from what that includes:
 // "FILE" of `open` for #include "FILE", but for headers that come from signatures (*.bindings.glsl,
 // constants.glsl), which are the library's. Names that lead out are refused before `open` is asked. spirv[i]
 // is empty where `open` has no such kernel. False with errors of all kernels in `diagnostics`. Takes its

@@ -206,16 +206,16 @@ bool compile_shaders(std::span<const std::string> shaders, const OpenFile& open,
   // Copies, so that what stays is the host's memory.
   spirv.clear();
   bool fine = true;
-  std::vector<const Complaint*> told; // a file that many kernels include has its errors once
+  std::vector<const Complaint*> reported; // a file that many kernels include has its errors once
   for (const Answer& answer : answers) {
     spirv.emplace_back(answer.spirv.begin(), answer.spirv.end());
     for (const Complaint& one : answer.complaints) {
       fine = false;
-      const bool again = std::any_of(told.begin(), told.end(), [&](const Complaint* other) {
+      const bool again = std::any_of(reported.begin(), reported.end(), [&](const Complaint* other) {
         return other->file.name == one.file.name && other->line == one.line && other->text == one.text;
       });
       if (again) continue;
-      told.push_back(&one);
+      reported.push_back(&one);
       diagnostics.add(DiagnosticId::shader_error, {file_id(one.file, diagnostics), one.line, one.column, ""},
                       one.text);
     }

@@ -42,14 +42,14 @@ void use_shaders(RuntimeShaders& shaders, dermis_include_fn open, void* user) {
   shaders.kernels.clear();
 }
 
-bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const KindRegistry& kinds,
+bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const PassTypeRegistry& pass_types,
                      Diagnostics& diagnostics) {
   if (shaders.open == nullptr) return true;
   std::vector<std::string> missing;
   for (const PassDeclaration& pass : graph.passes) {
-    const PassKind& kind = kinds[pass.kind];
-    const std::string shader(kind.shader);
-    if (kind.dispatch == DispatchShape::none || kind.dispatch == DispatchShape::host) continue;
+    const PassType& type = pass_types[pass.type];
+    const std::string shader(type.shader);
+    if (type.dispatch == DispatchShape::none || type.dispatch == DispatchShape::host) continue;
     if (shaders.kernels.contains(shader) || std::ranges::find(missing, shader) != missing.end()) continue;
     missing.push_back(shader);
   }

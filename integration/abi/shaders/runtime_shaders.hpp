@@ -2,7 +2,7 @@
 // The kernels of one graph that come from text of the host instead of from the build.
 
 #include "framegraph/model/graph.hpp"
-#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/model/pass_type.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
 
@@ -18,7 +18,7 @@ struct RuntimeShaders { // copied with what a graph is built from: a candidate t
     std::shared_ptr<const std::vector<uint32_t>> spirv; // null: the build's
     uint64_t version = 0;                               // vulkan::KernelCode::version; 0: the build's
   };
-  using Kernels = std::map<std::string, Kernel, std::less<>>; // by PassKind::shader
+  using Kernels = std::map<std::string, Kernel, std::less<>>; // by PassType::shader
   dermis_include_fn open = nullptr;                           // null: all kernels are the build's
   void* user = nullptr;
   Kernels kernels; // that were looked at
@@ -28,8 +28,9 @@ struct RuntimeShaders { // copied with what a graph is built from: a candidate t
 // From now on kernels come from what `open` delivers, anew; null: from the build.
 void use_shaders(RuntimeShaders& shaders, dermis_include_fn open, void* user);
 
-// Compiles the kernels of all kinds that the graph names, but for those that are known. False with errors.
-bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const KindRegistry& kinds,
+// Compiles the kernels of all pass types that the graph names, but for those that are known. False with
+// errors.
+bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const PassTypeRegistry& pass_types,
                      Diagnostics& diagnostics);
 
 // For an executor; valid as long as `shaders` stays as it is.

@@ -41,14 +41,16 @@ bool queue_fits(VkPhysicalDevice device, bool& timestamps) {
 
 // What the library asks of a device by itself.
 Result<std::vector<SurveyItem>> requirements_of(VkInstance instance, VkPhysicalDevice device) {
-  std::array<dermis_requirement, 16> asked;
-  asked.fill(DERMIS_REQUIREMENT_INIT);
-  auto count = static_cast<uint32_t>(asked.size());
-  if (dermis_query_requirements(vkGetInstanceProcAddr, instance, device, &count, asked.data()) != DERMIS_OK)
+  std::array<dermis_requirement, 16> requested;
+  requested.fill(DERMIS_REQUIREMENT_INIT);
+  auto count = static_cast<uint32_t>(requested.size());
+  if (dermis_query_requirements(vkGetInstanceProcAddr, instance, device, &count, requested.data()) !=
+      DERMIS_OK)
     return Error{ErrorKind::internal, dermis_last_error()};
   std::vector<SurveyItem> items;
   for (uint32_t i = 0; i < count; ++i)
-    items.push_back({asked[i].name, asked[i].present != 0, asked[i].required != 0, asked[i].why});
+    items.push_back(
+        {requested[i].name, requested[i].present != 0, requested[i].required != 0, requested[i].why});
   return items;
 }
 

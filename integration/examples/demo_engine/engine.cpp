@@ -14,8 +14,8 @@
 namespace demo {
 namespace {
 
-constexpr uint32_t most_pixels_a_side = 16384;
-constexpr uint32_t most_frames = 1000000;
+constexpr uint32_t max_pixels_per_side = 16384;
+constexpr uint32_t max_frames = 1000000;
 
 using Clock = std::chrono::steady_clock;
 
@@ -24,15 +24,15 @@ double seconds_since(Clock::time_point start) {
 }
 
 Result<> check(const RenderOptions& options) {
-  if (options.width < 1 || options.height < 1 || options.width > most_pixels_a_side ||
-      options.height > most_pixels_a_side)
+  if (options.width < 1 || options.height < 1 || options.width > max_pixels_per_side ||
+      options.height > max_pixels_per_side)
     return Error{ErrorKind::usage,
                  fmt::format("the size is {}x{}; expected 1x1 to {}x{} pixels", options.width, options.height,
-                             most_pixels_a_side, most_pixels_a_side)};
-  if (options.frames < 1 || options.frames > most_frames || options.first_frame > most_frames)
+                             max_pixels_per_side, max_pixels_per_side)};
+  if (options.frames < 1 || options.frames > max_frames || options.first_frame > max_frames)
     return Error{ErrorKind::usage,
                  fmt::format("{} frames from frame {} were asked for; expected 1 to {}, from 0 to {}",
-                             options.frames, options.first_frame, most_frames, most_frames)};
+                             options.frames, options.first_frame, max_frames, max_frames)};
   return success();
 }
 
@@ -243,8 +243,8 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
     auto made = create_dermis_host(host,
                                    {options.graph, info.profiles, options.settings, options.width,
                                     options.height, options.overlays, options.include, options.shaders,
-                                    options.budget_ms, options.metered, options.calibration, options.sampling,
-                                    options.skips, options.hooks},
+                                    options.budget_ms, options.deterministic, options.calibration,
+                                    options.sampling, options.skips, options.hooks},
                                    &stage.slots);
     if (!made) return made.error();
     dermis = made.take();
@@ -276,7 +276,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
         auto taken = reload_graph(*dermis, text);
         if (!taken) return taken.error();
         ++summary.reloads;
-        summary.refused_reloads += *taken ? 0 : 1;
+        summary.rejected_reloads += *taken ? 0 : 1;
       }
     const uint32_t number = options.first_frame + i;
     Wanted wanted;

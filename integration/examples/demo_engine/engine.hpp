@@ -59,8 +59,8 @@ struct RenderOptions {
   std::optional<CameraPlace> camera;
   double zoom = 1.0; // how many times larger the camera shows things: its field of view shrinks; > 0
   std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text
-  double budget_ms = 0; // of device time for the graph's choices, a frame; 0: their defaults
-  bool metered = false; // judge times by the calibration alone: the same choices on every machine
+  double budget_ms = 0;       // of device time for the graph's choices, a frame; 0: their defaults
+  bool deterministic = false; // judge times by the calibration alone: the same choices on every machine
   // Texts that the graph is reloaded with before a frame, one after the other; those with errors leave it as
   // it is. May be empty. The graph must include nothing.
   std::function<std::vector<std::string>(uint32_t frame)> reloads = {};
@@ -124,14 +124,14 @@ struct FrameChoice {
          predicted_rmse = 0;
   double next_better_missing_ms = 0, mean_d_px = 0;
   uint32_t outcomes = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;
-  uint32_t flat_tiles = 0, dispatches = 0;
+  uint32_t uniform_tiles = 0, dispatches = 0;
   uint64_t groups = 0;
-  std::array<uint32_t, 3> sampled_tiles{};     // of the scattering ones, with 8, 16 and 32 samples a pixel
-  uint32_t sample_units = 0, wanted_units = 0; // taken; that would be without a budget
-  uint32_t probed_tiles = 0;                   // 0: the frame's error is not known
+  std::array<uint32_t, 3> sampled_tiles{};      // of the scattering ones, with 8, 16 and 32 samples a pixel
+  uint32_t sample_units = 0, sample_demand = 0; // taken; that would be without a budget
+  uint32_t probed_tiles = 0;                    // 0: the frame's error is not known
   double probed_rmse = 0, probed_rmse_low = 0, probed_rmse_high = 0;
-  double through_rms = 0; // light through thin parts, exposed; 0: none, or not counted
-  std::string miss;       // why it took longer than the budget; "": it did not
+  double transmitted_rms = 0; // light through thin parts, exposed; 0: none, or not counted
+  std::string miss;           // why it took longer than the budget; "": it did not
 };
 
 // What a history of the graph holds after the frame.
@@ -177,7 +177,7 @@ struct RenderInfo {
 
 struct RenderSummary {
   uint32_t frames = 0;
-  uint32_t reloads = 0, refused_reloads = 0; // refused: among `reloads`
+  uint32_t reloads = 0, rejected_reloads = 0; // refused: among `reloads`
   std::string calibration; // what the graph learned of the device's times, JSON; "" without Dermis
   std::vector<std::string> validation_messages; // empty unless validation found something
 };

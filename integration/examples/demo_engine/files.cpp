@@ -7,7 +7,7 @@
 
 namespace demo {
 
-Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_t most) {
+Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_t maximum) {
   std::error_code problem;
   const auto status = std::filesystem::status(path, problem);
   if (problem || !std::filesystem::exists(status))
@@ -16,9 +16,9 @@ Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_
     return Error{ErrorKind::input, fmt::format("{}: this is not a regular file", path)};
   const uint64_t size = std::filesystem::file_size(path, problem);
   if (problem) return Error{ErrorKind::input, fmt::format("{}: {}", path, problem.message())};
-  if (size > most)
+  if (size > maximum)
     return Error{ErrorKind::input,
-                 fmt::format("{}: the file has {} bytes; at most {} are read", path, size, most)};
+                 fmt::format("{}: the file has {} bytes; at most {} are read", path, size, maximum)};
   std::ifstream stream(path, std::ios::binary);
   std::vector<std::byte> bytes(size);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
@@ -27,8 +27,8 @@ Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_
 }
 
 Result<std::string> read_text_file(const std::string& path) {
-  constexpr uint64_t most = uint64_t{16} << 20;
-  auto bytes = read_binary_file(path, most);
+  constexpr uint64_t maximum = uint64_t{16} << 20;
+  auto bytes = read_binary_file(path, maximum);
   if (!bytes) return bytes.error();
   return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }

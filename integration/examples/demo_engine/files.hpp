@@ -11,7 +11,7 @@
 namespace demo {
 
 // Errors: input (absent, not a regular file, larger than `most` bytes, unreadable).
-Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_t most);
+Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_t maximum);
 // At most 16 MiB, as the library itself accepts.
 Result<std::string> read_text_file(const std::string& path);
 

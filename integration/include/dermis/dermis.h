@@ -148,16 +148,16 @@ DERMIS_API const char* DERMIS_CALL dermis_result_name(dermis_result result);
 
 /* ---- before the device exists ---------------------------------------------------------------- */
 
-typedef enum dermis_requirement_kind {
+typedef enum dermis_requirement_type {
   DERMIS_REQUIREMENT_API_VERSION = 0,      /* `version` holds VK_API_VERSION_1_2 */
   DERMIS_REQUIREMENT_FEATURE = 1,          /* a VkBool32 in a VkPhysicalDevice...Features struct */
   DERMIS_REQUIREMENT_DEVICE_EXTENSION = 2,
-  DERMIS_REQUIREMENT_KIND_FORCE_32BIT = 0x7fffffff
-} dermis_requirement_kind;
+  DERMIS_REQUIREMENT_TYPE_FORCE_32BIT = 0x7fffffff
+} dermis_requirement_type;
 
 typedef struct dermis_requirement {
   size_t struct_size;
-  dermis_requirement_kind kind;
+  dermis_requirement_type type;
   uint32_t version;
   const char* name;  /* static string */
   uint32_t required; /* 1: dermis_context_create fails without it; 0: used if enabled */
@@ -599,7 +599,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph
 
 /* Uses only times of the calibration, never timestamps: the same frames give the same choices on
  * every machine. */
-#define DERMIS_BUDGET_METER 0x1u
+#define DERMIS_BUDGET_DETERMINISTIC 0x1u
 
 /* Device time that a frame of one view may take. Each record then chooses the settings declared
  * with "by": "budget": the least expected error whose expected time fits. All plans that this
@@ -627,7 +627,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
 #define DERMIS_SKIP_NO_BOUNDS 0x2u    /* empty bounds: no kernel that scatters ran */
 #define DERMIS_SKIP_NOTHING_SEEN 0x4u /* no pixel with subsurface: 0 groups are dispatched */
 #define DERMIS_SKIP_SUBPIXEL 0x8u     /* tiles that scatter less than a pixel were copied */
-#define DERMIS_SKIP_FLAT_LIGHT 0x10u  /* tiles in uniform light were copied */
+#define DERMIS_SKIP_UNIFORM_LIGHT 0x10u  /* tiles in uniform light were copied */
 #define DERMIS_SKIP_HISTORY 0x20u     /* history was invalid, so it was not read */
 
 /* The configuration chosen for a frame, and the result. Strings live until the next reload, resize,
@@ -653,14 +653,14 @@ typedef struct dermis_choice {
   uint32_t copied_tiles;        /* tiles that scatter less than a pixel */
   uint32_t switches;            /* since the graph was created */
   uint32_t reserved;            /* 0 */
-  uint32_t flat_tiles;          /* tiles in uniform light */
+  uint32_t uniform_tiles;          /* tiles in uniform light */
   uint32_t skips;               /* DERMIS_SKIP_... */
   uint32_t dispatches;          /* recorded */
   uint32_t reserved_too;        /* 0 */
   uint64_t groups;              /* workgroups of all dispatches */
   uint32_t sampled_tiles[3];    /* scattering tiles with 8, 16 and 32 samples per pixel */
   uint32_t sample_units;        /* samples taken, in units of 8 samples per pixel of a tile */
-  uint32_t wanted_units;        /* the same without a budget */
+  uint32_t sample_demand;        /* the same without a budget */
   uint32_t reserved_three;      /* 0 */
   /* Static string: why times deviate from the prediction; "" if they do not. */
   const char* miss;
@@ -669,9 +669,9 @@ typedef struct dermis_choice {
   float probed_rmse;            /* of this frame: linear luminance times dermis_frame.exposure */
   float probed_rmse_low;        /* lower end of the 95 % confidence interval */
   float probed_rmse_high;       /* upper end; infinity if one tile was probed */
-  /* Light through thin parts, by subsurface.thin_parts: root mean square over tiles with
+  /* Light through thin parts, by subsurface.transmission_stats: root mean square over tiles with
    * subsurface, linear luminance times dermis_frame.exposure. 0: none, or not counted. */
-  float through_rms;
+  float transmitted_rms;
   uint32_t reserved_four;       /* 0 */
 } dermis_choice;
 #define DERMIS_CHOICE_INIT \
@@ -719,25 +719,25 @@ typedef struct dermis_port {
 } dermis_port;
 #define DERMIS_PORT_INIT {sizeof(dermis_port), NULL, NULL, DERMIS_PORT_SAMPLED_IMAGE, 0, 0}
 
-typedef enum dermis_kind_setting_type {
-  DERMIS_KIND_SETTING_BOOL = 0,
-  DERMIS_KIND_SETTING_INT = 1,
-  DERMIS_KIND_SETTING_REAL = 2,
-  DERMIS_KIND_SETTING_TYPE_FORCE_32BIT = 0x7fffffff
-} dermis_kind_setting_type;
+typedef enum dermis_pass_setting_type {
+  DERMIS_PASS_SETTING_BOOL = 0,
+  DERMIS_PASS_SETTING_INT = 1,
+  DERMIS_PASS_SETTING_REAL = 2,
+  DERMIS_PASS_SETTING_TYPE_FORCE_32BIT = 0x7fffffff
+} dermis_pass_setting_type;
 
-typedef struct dermis_kind_setting {
+typedef struct dermis_pass_setting {
   size_t struct_size;
   const char* name;        /* key in "set" of a pass */
   const char* unit;        /* "px"; NULL or "": none */
   const char* doc;         /* may be NULL */
-  dermis_kind_setting_type type;
+  dermis_pass_setting_type type;
   uint32_t per_frame;      /* 1: may differ between frames and views; 0: one value per graph */
   double default_value;    /* bool: 0 or 1 */
   double minimum, maximum; /* inclusive; of int and real */
-} dermis_kind_setting;
-#define DERMIS_KIND_SETTING_INIT \
-  {sizeof(dermis_kind_setting), NULL, NULL, NULL, DERMIS_KIND_SETTING_BOOL, 0, 0, 0, 0}
+} dermis_pass_setting;
+#define DERMIS_PASS_SETTING_INIT \
+  {sizeof(dermis_pass_setting), NULL, NULL, NULL, DERMIS_PASS_SETTING_BOOL, 0, 0, 0, 0}
 
 /* The image, buffer or acceleration structure at a port while a pass of the host is recorded;
  * all null if the port is unbound. */
@@ -780,36 +780,36 @@ typedef struct dermis_pass_call {
  * Must not call Dermis or throw. */
 typedef void(DERMIS_CALL* dermis_pass_fn)(void* user, const dermis_pass_call* call);
 
-typedef struct dermis_pass_kind {
+typedef struct dermis_pass_type {
   size_t struct_size;
   const char* name;       /* "studio.bloom": contains a dot, does not begin with "subsurface." */
   const char* doc;        /* may be NULL */
   const dermis_port* ports;
-  const dermis_kind_setting* settings;
+  const dermis_pass_setting* settings;
   uint32_t port_count;    /* 1..32 */
   uint32_t setting_count; /* 0..32 */
-  uint32_t side_effects;  /* 1: passes of this kind run even if nothing reads their output */
+  uint32_t side_effects;  /* 1: passes of this pass type run even if nothing reads their output */
   /* 1: left out where nothing scatters: without profiles, and in frames with empty bounds. 0:
    * also runs there, unless a required input is written only by passes that are left out. */
   uint32_t serves_scattering;
   dermis_pass_fn record;
   void* user;             /* passed to `record` */
-} dermis_pass_kind;
-#define DERMIS_PASS_KIND_INIT \
-  {sizeof(dermis_pass_kind), NULL, NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL}
+} dermis_pass_type;
+#define DERMIS_PASS_TYPE_INIT \
+  {sizeof(dermis_pass_type), NULL, NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL}
 
 /* Registers a kind of pass for the graphs of a context, so that the host's own passes are part
  * of the graph, with the same barriers, aliased memory and history. Copied, except `record` and
  * `user`, which are used as long as the context lives. Call before the context creates its first
  * graph. Thread: any, while no other thread uses the context. Errors: ARGUMENT (also for a name
  * that exists, or if there are graphs), VERSION, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_register_pass_kind(dermis_context context,
-                                                               const dermis_pass_kind* kind);
-/* Returns the registered kinds as a JSON file for `dermis validate --kinds FILE`, so that graphs
+DERMIS_API dermis_result DERMIS_CALL dermis_register_pass_type(dermis_context context,
+                                                               const dermis_pass_type* type);
+/* Returns the registered pass types as a JSON file for `dermis validate --pass-types FILE`, so that graphs
  * with them can be checked without the host. *size in: capacity of `text`; out: bytes needed
  * with the final
  * 0. text may be NULL. Thread: any. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_kinds(dermis_context context, size_t* size,
+DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_types(dermis_context context, size_t* size,
                                                               char* text);
 
 /* ---- each frame ------------------------------------------------------------------------------ */

@@ -58,9 +58,9 @@ std::optional<ChildAnswer> run_child(const std::vector<std::string>& words, std:
     return std::nullopt;
   }
   int status = 0;
-  bool asked = false;
+  bool requested = false;
   while (waitpid(child, &status, WNOHANG) == 0) {
-    if (interrupted() && !asked) asked = kill(child, SIGINT) == 0;
+    if (interrupted() && !requested) requested = kill(child, SIGINT) == 0;
     std::this_thread::sleep_for(nap);
   }
   ChildAnswer answer;

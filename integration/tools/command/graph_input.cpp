@@ -4,7 +4,7 @@
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
 #include "integration/tools/files/roots.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <fmt/format.h>
 
@@ -91,13 +91,14 @@ std::string unknown(std::string_view what, std::string_view name, const Declarat
 }
 
 std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
-                                         std::span<const std::string> kind_files, Diagnostics& diagnostics) {
+                                         std::span<const std::string> pass_type_files,
+                                         Diagnostics& diagnostics) {
   if (!composed) return std::nullopt;
-  std::optional<LoadedGraph> known = load_kinds(kind_files, diagnostics);
+  std::optional<LoadedGraph> known = load_pass_types(pass_type_files, diagnostics);
   if (!known) return std::nullopt;
   LoadedGraph& loaded = *known;
   loaded.changes = std::move(composed->changes);
-  std::optional<Graph> graph = read_graph(composed->document, loaded.kinds, diagnostics);
+  std::optional<Graph> graph = read_graph(composed->document, loaded.pass_types, diagnostics);
   if (!graph) return std::nullopt;
   loaded.graph = std::move(*graph);
   return known;
@@ -105,22 +106,22 @@ std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
 
 } // namespace
 
-std::optional<LoadedGraph> load_kinds(std::span<const std::string> files, Diagnostics& diagnostics) {
-  LoadedGraph loaded{subsurface::make_kinds(), nullptr, {}, {}, {}};
-  const auto host = std::make_shared<HostKinds>();
+std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files, Diagnostics& diagnostics) {
+  LoadedGraph loaded{subsurface::make_pass_types(), nullptr, {}, {}, {}};
+  const auto host = std::make_shared<HostPassTypes>();
   const uint32_t errors = diagnostics.count(Severity::error);
   for (const std::string& file : files) {
     const std::optional<Document> document = read_document(file, diagnostics);
-    auto kinds = document ? read_host_kinds(*document, diagnostics) : std::nullopt;
-    if (!kinds) continue;
-    for (HostKindDeclaration& kind : *kinds) {
-      const std::string name = kind.name;
-      if (!host->add(std::move(kind), loaded.kinds).valid())
+    auto pass_types = document ? read_host_pass_types(*document, diagnostics) : std::nullopt;
+    if (!pass_types) continue;
+    for (HostPassTypeDeclaration& type : *pass_types) {
+      const std::string name = type.name;
+      if (!host->add(std::move(type), loaded.pass_types).valid())
         diagnostics.add(DiagnosticId::duplicate_name, document->where(document->root()),
-                        fmt::format("there is a kind '{}' already", name));
+                        fmt::format("there is a pass type '{}' already", name));
     }
   }
-  loaded.host_kinds = host;
+  loaded.host_pass_types = host;
   return diagnostics.count(Severity::error) == errors ? std::optional(std::move(loaded)) : std::nullopt;
 }
 
@@ -149,25 +150,27 @@ std::optional<LoadedGraph> load_graph(const std::string& path, const GraphParts&
   auto overlays = read_overlays(parts.overlays, diagnostics);
   if (!document || !overlays) return std::nullopt;
   return load_graph(std::move(*document), std::move(*overlays), open_beside(path, parts.roots), diagnostics,
-                    parts.kinds);
+                    parts.pass_types);
 }
 
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
-                                      Diagnostics& diagnostics, std::span<const std::string> kind_files) {
+                                      Diagnostics& diagnostics,
+                                      std::span<const std::string> pass_type_files) {
   std::vector<std::pair<std::string, std::string>> texts;
   for (const Document& overlay : overlays) {
     const SourceFile& file = diagnostics.files[overlay.file.value];
     texts.emplace_back(file.name, file.text);
   }
   auto loaded = read_composed(compose(std::move(document), std::move(overlays), open, diagnostics),
-                              kind_files, diagnostics);
+                              pass_type_files, diagnostics);
   if (loaded) loaded->overlays = std::move(texts);
   return loaded;
 }
 
 std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics,
-                                         std::span<const std::string> kind_files) {
-  return read_composed(compose_fragment(std::move(document), open, diagnostics), kind_files, diagnostics);
+                                         std::span<const std::string> pass_type_files) {
+  return read_composed(compose_fragment(std::move(document), open, diagnostics), pass_type_files,
+                       diagnostics);
 }
 
 CompileChoices read_choices(const Graph& graph, std::span<const NamedValue> settings,
@@ -212,7 +215,7 @@ CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& devic
                            const CompileChoices& choices) {
   CompileInput input;
   input.graph = &loaded.graph;
-  input.kinds = &loaded.kinds;
+  input.pass_types = &loaded.pass_types;
   input.device = &device;
   input.view_width = size.width;
   input.view_height = size.height;

@@ -3,7 +3,7 @@
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/compose/compose.hpp"
-#include "framegraph/model/host_kind.hpp"
+#include "framegraph/model/host_pass_type.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/tools/command/verbs.hpp"
 
@@ -15,8 +15,8 @@
 namespace dermis::tools {
 
 struct LoadedGraph {
-  KindRegistry kinds;
-  std::shared_ptr<const HostKinds> host_kinds; // that some of `kinds` live in
+  PassTypeRegistry pass_types;
+  std::shared_ptr<const HostPassTypes> host_pass_types; // that some of `pass_types` live in
   Graph graph;
   std::vector<Change> changes;                               // what included files and overlays did
   std::vector<std::pair<std::string, std::string>> overlays; // name and text of each, for the C interface
@@ -24,16 +24,17 @@ struct LoadedGraph {
 
 inline constexpr Size default_size{1920, 1080}; // where nobody says one
 
-// The library's kinds and those of the files, without a graph; nullopt with errors in `diagnostics`.
-std::optional<LoadedGraph> load_kinds(std::span<const std::string> files, Diagnostics& diagnostics);
+// The library's pass types and those of the files, without a graph; nullopt with errors in `diagnostics`.
+std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files, Diagnostics& diagnostics);
 // `path` "-" is standard input. nullopt with errors in `diagnostics`.
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics);
 // Opens what graph files may include: below the folder of `path`, then below each of `roots`.
 OpenFile open_beside(const std::string& path, const std::vector<std::string>& roots);
-// The graph of a document or file with its overlays and included files. `kind_files` hold pass kinds of the
-// host.
+// The graph of a document or file with its overlays and included files. `pass_type_files` hold pass types of
+// the host.
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
-                                      Diagnostics& diagnostics, std::span<const std::string> kind_files = {});
+                                      Diagnostics& diagnostics,
+                                      std::span<const std::string> pass_type_files = {});
 // Overlay files by their paths; nullopt when one of them cannot be read.
 std::optional<std::vector<Document>> read_overlays(const std::vector<std::string>& paths,
                                                    Diagnostics& diagnostics);
@@ -41,7 +42,7 @@ std::optional<LoadedGraph> load_graph(const std::string& path, const GraphParts&
                                       Diagnostics& diagnostics);
 // A fragment as a graph of its own.
 std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics,
-                                         std::span<const std::string> kind_files = {});
+                                         std::span<const std::string> pass_type_files = {});
 
 // What --set and --unbound say, in the graph's terms. `problem` not empty: a usage error, nothing else is
 // filled.

@@ -7,11 +7,11 @@ namespace dermis::tools {
 namespace {
 
 // A signal handler can reach nothing but a global.
-std::atomic<bool> asked_to_stop{false};
+std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void note_interrupt(int signal) {
-  asked_to_stop.store(true);
+  stop_requested.store(true);
   std::signal(signal, SIG_DFL);
 }
 
@@ -23,7 +23,7 @@ void listen_for_interrupts() {
 }
 
 bool interrupted() {
-  return asked_to_stop.load(std::memory_order_relaxed);
+  return stop_requested.load(std::memory_order_relaxed);
 }
 
 } // namespace dermis::tools

@@ -22,7 +22,7 @@ using NamedValue = std::pair<std::string, std::string>;
 struct GraphParts {
   std::vector<std::string> overlays; // files, applied in this order
   std::vector<std::string> roots; // folders that files may be read from which others name, beside their own
-  std::vector<std::string> kinds; // files of the host's pass kinds
+  std::vector<std::string> pass_types; // files of the host's pass types
 };
 
 struct ValidateOptions {
@@ -50,7 +50,7 @@ struct ExplainOptions {
   bool frame = false;               // what was chosen for a frame of `scene`, instead of the plan
   std::string scene = shipped("configs/scenes/bust.json");
   double budget_ms = 0; // of that frame; 0: none
-  bool metered = false;
+  bool deterministic = false;
   std::string out = "-";
 };
 ExitCode explain(const Session& session, const ExplainOptions& options);
@@ -99,11 +99,11 @@ struct PlanVerifyOptions {
 ExitCode plan_verify(const Session& session, const PlanVerifyOptions& options);
 
 struct TestOptions {
-  std::vector<std::string> paths; // expectation files, or folders that hold some at any depth
-  bool update = false;            // state what is observed instead of comparing
-  std::string junit;              // file for results; "": none
-  std::vector<std::string> roots; // folders of included files and of overlays that cases name
-  std::vector<std::string> kinds; // files of the host's pass kinds
+  std::vector<std::string> paths;      // expectation files, or folders that hold some at any depth
+  bool update = false;                 // state what is observed instead of comparing
+  std::string junit;                   // file for results; "": none
+  std::vector<std::string> roots;      // folders of included files and of overlays that cases name
+  std::vector<std::string> pass_types; // files of the host's pass types
 };
 ExitCode test(const Session& session, const TestOptions& options);
 
@@ -129,10 +129,10 @@ struct RenderOptions {
   std::vector<NamedValue> settings;
   GraphParts parts;
   ModelOptions model;
-  double budget_ms = 0;    // of device time for the graph's choices; 0: their defaults
-  bool metered = false;    // judge times by the calibration alone
-  std::string calibration; // file of dermis calibrate; "": the library's own
-  bool taa = false;        // temporal anti-aliasing in the engine
+  double budget_ms = 0;       // of device time for the graph's choices; 0: their defaults
+  bool deterministic = false; // judge times by the calibration alone
+  std::string calibration;    // file of dermis calibrate; "": the library's own
+  bool taa = false;           // temporal anti-aliasing in the engine
   enum class Debug : uint8_t {
     none,
     samples,
@@ -188,7 +188,7 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options);
 struct SheetOptions {
   std::string scene = shipped("configs/scenes/bust.json"), out;
   std::vector<std::string> graphs, profiles; // files; empty: those that ship
-  std::vector<std::string> kinds;            // files of the host's pass kinds
+  std::vector<std::string> pass_types;       // files of the host's pass types
   std::vector<std::string> roots;            // folders that the scene may read from, beside its own
   Size size{320, 180};                       // of one picture
 };
@@ -218,28 +218,28 @@ struct CompareOptions {
   std::string a, b;
   std::vector<PictureRegion> regions;
   std::string heat;              // file for a picture of the differences; "": none
-  double least_psnr = 0;         // dB; fail below
+  double min_psnr = 0;           // dB; fail below
   bool flip = false;             // also FLIP
   std::string flip_map;          // file for a picture of it; "": none
   double pixels_per_degree = 67; // of the reader's view, for FLIP
-  double most_flip = 1;          // mean FLIP; fail above
+  double max_flip = 1;           // mean FLIP; fail above
 };
 ExitCode compare(const Session& session, const CompareOptions& options);
 
 struct BenchCompileOptions {
   std::string shapes = shipped("tests/benchmark/shapes.json");
-  std::string graphs;             // folder of graph files to measure instead; "": none
-  std::vector<std::string> kinds; // files of the host's pass kinds
-  std::string json, html;         // files to write; "": none
-  bool optimize = false;          // also the level that takes seconds a graph
-  bool quick = false;             // smaller and fewer, to see that it runs: in the suites below as well
+  std::string graphs;                  // folder of graph files to measure instead; "": none
+  std::vector<std::string> pass_types; // files of the host's pass types
+  std::string json, html;              // files to write; "": none
+  bool optimize = false;               // also the level that takes seconds a graph
+  bool quick = false;                  // smaller and fewer, to see that it runs: in the suites below as well
 };
 ExitCode bench_compile(const Session& session, const BenchCompileOptions& options);
 
 struct BenchRecordOptions {
   std::string graphs = shipped("configs/graphs"), profile = shipped("configs/profiles/skin.json");
-  std::vector<std::string> kinds; // files of the host's pass kinds
-  std::string json, html;         // files to write; "": none
+  std::vector<std::string> pass_types; // files of the host's pass types
+  std::string json, html;              // files to write; "": none
   Size size{1280, 720};
 };
 ExitCode bench_record(const Session& session, const BenchRecordOptions& options);
@@ -268,12 +268,12 @@ struct BenchErrorTimeOptions {
 };
 ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& options);
 
-struct BenchTruthOptions {
+struct BenchReferenceOptions {
   std::string file = shipped("tests/benchmark/truth.json"); // techniques and tolerances
   std::string json, csv, html;                              // files to write; "": none
   bool quick = false;
 };
-ExitCode bench_truth(const Session& session, const BenchTruthOptions& options);
+ExitCode bench_reference(const Session& session, const BenchReferenceOptions& options);
 
 struct BenchDynamicOptions {
   std::string file = shipped("tests/benchmark/dynamic.json"); // what is measured
@@ -311,7 +311,7 @@ struct BenchBudgetOptions {
   uint32_t frames = 32;                    // judged, of each run
   uint32_t repetitions = 3;                // timed runs of a budget
   std::string head;                        // folder of the head scan, for scenes that show it; "": none
-  std::vector<std::string> kinds;          // files of the host's pass kinds
+  std::vector<std::string> pass_types;     // files of the host's pass types
   std::string json, html;                  // files to write; "": none
   std::string cache = "build/bench_truth"; // folder for references; "": none is kept
   bool quick = false;
@@ -322,8 +322,8 @@ struct BenchSkipOptions {
   std::string graph = shipped("configs/graphs/skin.json"), profile = shipped("configs/profiles/skin.json");
   Size size{1280, 720}; // of a small view the fixed cost of 22 dispatches is a large share
   uint32_t repetitions = 31;
-  std::vector<std::string> kinds; // files of the host's pass kinds
-  std::string json, html;         // files to write; "": none
+  std::vector<std::string> pass_types; // files of the host's pass types
+  std::string json, html;              // files to write; "": none
   bool quick = false;
 };
 ExitCode bench_skip(const Session& session, const BenchSkipOptions& options);

@@ -29,13 +29,13 @@ struct CaptureProfile {
 };
 
 // The largest half float: graphs take brighter light for this much.
-inline constexpr float most_light = 65504;
+inline constexpr float max_light = 65504;
 
-// What was mended while reading, in pixels with a profile (others do not matter).
+// What was repaired while reading, in pixels with a profile (others do not matter).
 struct SanitisedCounts {
   uint64_t not_finite = 0; // NaN or infinite, now 0
   uint64_t negative = 0;   // negative light, depth, albedo or scatter_scale, now 0
-  uint64_t too_bright = 0; // pixels with light above most_light, which is kept; graphs clamp it
+  uint64_t too_bright = 0; // pixels with light above max_light, which is kept; graphs clamp it
   float brightest = 0;     // the largest such value
 };
 
@@ -84,7 +84,7 @@ std::vector<std::filesystem::path> find_frames(const std::filesystem::path& fold
                                                FileRoots roots = {});
 
 // Reads and checks one frame. A profile's "file" is looked up below the folder of frame.json, or, where it is
-// a plain name, as <profile_folder>/<name>.json. Damaged values are mended, counted and reported as a
+// a plain name, as <profile_folder>/<name>.json. Damaged values are repaired, counted and reported as a
 // warning. Empty with located errors if anything else is wrong.
 std::optional<CapturedFrame> read_frame(const std::filesystem::path& folder,
                                         const std::filesystem::path& profile_folder, Diagnostics& diagnostics,

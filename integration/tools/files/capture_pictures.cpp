@@ -75,7 +75,8 @@ void check_profiles_known(const Document& document, const CapturedFrame& frame, 
                       first[id] / frame.description.width));
 }
 
-void mend(Image& image, bool signed_values, const std::vector<uint8_t>& profile, SanitisedCounts& counts) {
+void refine_tiles(Image& image, bool signed_values, const std::vector<uint8_t>& profile,
+                  SanitisedCounts& counts) {
   for (size_t i = 0; i < image.values.size(); ++i) {
     float& value = image.values[i];
     const bool finite = std::isfinite(value);
@@ -92,8 +93,8 @@ void count_too_bright(const CapturedFrame& frame, SanitisedCounts& counts) {
     for (const Image* light : {&frame.lighting, &frame.back_lighting})
       for (size_t c = 0; c < 3 && frame.profile[i] != 0 && !light->values.empty(); ++c)
         brightest = std::max(brightest, light->values[3 * i + c]);
-    if (brightest > most_light) ++counts.too_bright;
-    counts.brightest = std::max(counts.brightest, brightest > most_light ? brightest : 0);
+    if (brightest > max_light) ++counts.too_bright;
+    counts.brightest = std::max(counts.brightest, brightest > max_light ? brightest : 0);
   }
 }
 
@@ -101,7 +102,7 @@ void count_too_bright(const CapturedFrame& frame, SanitisedCounts& counts) {
 
 const std::vector<PictureKind>& picture_kinds() {
   using Names = std::vector<ChannelNames>;
-  static const std::vector<PictureKind> kinds = {
+  static const std::vector<PictureKind> pass_types = {
       {"lighting", &CapturedFrame::lighting, true, false, Names{{"R", "G", "B"}}},
       {"depth", &CapturedFrame::depth, true, false, Names{{"Z"}, {"Y"}, {"R"}, {"*"}}},
       {"albedo", &CapturedFrame::albedo, false, false, Names{{"R", "G", "B"}}},
@@ -112,7 +113,7 @@ const std::vector<PictureKind>& picture_kinds() {
       {"thickness", &CapturedFrame::thickness, false, false, Names{{"Y"}, {"R"}, {"*"}}},
       {"back_lighting", &CapturedFrame::back_lighting, false, false, Names{{"R", "G", "B"}}},
   };
-  return kinds;
+  return pass_types;
 }
 
 const std::vector<ChannelNames>& profile_channels() {
@@ -137,7 +138,7 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
     if (!kind.required && !fs::exists(path, code)) continue;
     auto image = read_sized(path, kind.channels, document, frame.description, readable, diagnostics);
     if (!image || !ids) continue;
-    mend(*image, kind.signed_values, frame.profile, frame.sanitised);
+    refine_tiles(*image, kind.signed_values, frame.profile, frame.sanitised);
     frame.*kind.image = std::move(*image);
   }
   std::error_code code;
@@ -160,7 +161,7 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
         DiagnosticId::capture_sanitised, document.where(document.root()),
         fmt::format("light of {} subsurface pixels is above {}, at most {}; graphs clamp it to {}: scale the "
                     "light down before it is captured (pre-exposure)",
-                    counts.too_bright, most_light, counts.brightest, most_light));
+                    counts.too_bright, max_light, counts.brightest, max_light));
 }
 
 } // namespace dermis::tools

@@ -1,6 +1,6 @@
 #pragma once
 // The pictures of one captured frame: which there are, what their channels are called, how they are read and
-// mended.
+// repaired.
 
 #include "framegraph/text/document.hpp"
 #include "integration/tools/files/capture.hpp"

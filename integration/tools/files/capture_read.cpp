@@ -64,15 +64,15 @@ subsurface::CameraMatrices read_matrices(ObjectReader& reader, bool has_pitch) {
 void read_projection(const Document& document, ObjectReader& reader, CapturedFrame& captured,
                      subsurface::Handedness& handedness, Diagnostics& diagnostics) {
   FrameDescription& frame = captured.description;
-  constexpr std::string_view kinds[] = {"perspective", "orthographic"};
+  constexpr std::string_view pass_types[] = {"perspective", "orthographic"};
   constexpr std::string_view spaces[] = {"right_handed", "left_handed"};
-  frame.perspective = reader.word("projection", kinds).value_or(0) == 0;
+  frame.perspective = reader.word("projection", pass_types).value_or(0) == 0;
   std::optional<subsurface::Handedness> declared;
   if (const auto space = reader.word("view_space", spaces, Need::optional))
     declared = *space == 1 ? subsurface::Handedness::left : subsurface::Handedness::right;
-  constexpr double least = 1e-12, greatest = 1e12; // lengths, metres
-  frame.pixel_pitch_m = reader.number("pixel_pitch_m", least, greatest, Need::optional);
-  frame.metres_per_unit = reader.number("metres_per_unit", least, greatest, Need::optional).value_or(1);
+  constexpr double minimum = 1e-12, maximum = 1e12; // lengths, metres
+  frame.pixel_pitch_m = reader.number("pixel_pitch_m", minimum, maximum, Need::optional);
+  frame.metres_per_unit = reader.number("metres_per_unit", minimum, maximum, Need::optional).value_or(1);
   reader.numbers("jitter_px", frame.jitter_px, -1, 1, Need::optional);
   subsurface::CameraMatrices camera = read_matrices(reader, frame.pixel_pitch_m.has_value());
   const auto refuse = [&](std::string_view key, std::string text) {

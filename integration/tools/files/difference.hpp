@@ -29,7 +29,7 @@ Image encoded(const Image& linear);
 
 // The luminance of 3 channels, or the one channel there is, times `exposure`.
 Image exposed_luminance(const Image& light, double exposure);
-// The factor that puts the 99.9th percentile of a picture's luminance at 1; 1 where that is below least_light
+// The factor that puts the 99.9th percentile of a picture's luminance at 1; 1 where that is below min_light
 // (metrics.hpp). `mask`, if there is one, as below.
 double exposure_of(const Image& light, const Image* mask = nullptr);
 

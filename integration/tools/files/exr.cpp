@@ -154,11 +154,12 @@ std::string check_sizes(const Imf::Header& header, bool tiled, size_t wanted, si
   uint64_t pixel_bytes = 0, channels = 0;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c, ++channels)
     pixel_bytes += c.channel().type == Imf::HALF ? 2 : 4;
-  const uint64_t most = std::min(max_image_bytes, std::max(always_read, max_packing * uint64_t{file_bytes}));
-  if (pixel_bytes > most || data.pixels() > most / pixel_bytes)
-    return fmt::format("its {} channels hold more than {} bytes", channels, most);
-  if (display.pixels() > most / (wanted * sizeof(float)))
-    return fmt::format("its display window holds more than {} bytes", most);
+  const uint64_t maximum =
+      std::min(max_image_bytes, std::max(always_read, max_packing * uint64_t{file_bytes}));
+  if (pixel_bytes > maximum || data.pixels() > maximum / pixel_bytes)
+    return fmt::format("its {} channels hold more than {} bytes", channels, maximum);
+  if (display.pixels() > maximum / (wanted * sizeof(float)))
+    return fmt::format("its display window holds more than {} bytes", maximum);
   uint64_t chunk = static_cast<uint64_t>(data.width) *
                    std::min(static_cast<uint64_t>(data.height),
                             uint64_t{methods[static_cast<size_t>(header.compression())].lines});

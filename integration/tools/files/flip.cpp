@@ -194,8 +194,8 @@ Plane feature_difference(const Plane& a, const Plane& b, Shape shape, double pix
   const Plane points_a = strength(a, point), points_b = strength(b, point);
   Plane out(a.size());
   for (size_t i = 0; i < out.size(); ++i) {
-    const double most = std::max(std::abs(edges_a[i] - edges_b[i]), std::abs(points_a[i] - points_b[i]));
-    out[i] = std::pow(most / std::numbers::sqrt2, exponent);
+    const double maximum = std::max(std::abs(edges_a[i] - edges_b[i]), std::abs(points_a[i] - points_b[i]));
+    out[i] = std::pow(maximum / std::numbers::sqrt2, exponent);
   }
   return out;
 }
@@ -243,18 +243,18 @@ std::pair<double, double> exposure_range(const std::vector<Color>& reference) {
     if (const double y = rec709[0] * color[0] + rec709[1] * color[1] + rec709[2] * color[2]; y > 0)
       luminance.push_back(y); // what is black stays so at any exposure
   if (luminance.empty()) return {0, 0};
-  const double most = *std::max_element(luminance.begin(), luminance.end());
+  const double maximum = *std::max_element(luminance.begin(), luminance.end());
   const auto middle = luminance.begin() + static_cast<std::ptrdiff_t>(luminance.size() / 2);
   std::nth_element(luminance.begin(), middle, luminance.end());
-  return {std::log2(x / most), std::log2(x / *middle)};
+  return {std::log2(x / maximum), std::log2(x / *middle)};
 }
 
-std::vector<Color> colors_of(const Image& image, double most) {
+std::vector<Color> colors_of(const Image& image, double maximum) {
   std::vector<Color> colors(size_t{image.width} * image.height);
   for (size_t i = 0; i < colors.size(); ++i)
     for (size_t c = 0; c < 3; ++c) {
       const float value = image.values[i * image.channels + (image.channels == 3 ? c : 0)];
-      colors[i][c] = std::isfinite(value) ? std::clamp(static_cast<double>(value), 0.0, most) : 0.0;
+      colors[i][c] = std::isfinite(value) ? std::clamp(static_cast<double>(value), 0.0, maximum) : 0.0;
     }
   return colors;
 }
@@ -274,8 +274,8 @@ std::vector<float> flip(const Image& reference, const Image& test, bool high_ran
                         double pixels_per_degree) {
   const Shape shape{reference.width, reference.height};
   constexpr double largest_float = 3.4e38;
-  const double most = high_range ? largest_float : 1.0;
-  const std::vector<Color> a = colors_of(reference, most), b = colors_of(test, most);
+  const double maximum = high_range ? largest_float : 1.0;
+  const std::vector<Color> a = colors_of(reference, maximum), b = colors_of(test, maximum);
   if (!high_range) return low_range(a, b, shape, pixels_per_degree);
   const auto [start, stop] = exposure_range(a);
   const auto count = std::max(2, static_cast<int>(std::ceil(stop - start)));

@@ -8,7 +8,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double least = -4, most = -1; // log10 of the error at both ends of the scale
+constexpr double minimum = -4, maximum = -1; // log10 of the error at both ends of the scale
 
 } // namespace
 
@@ -18,7 +18,8 @@ std::array<uint8_t, 3> heat_color(double error) {
                                  {235, 95, 60}, {252, 180, 60}, {252, 250, 190}};
   constexpr size_t last = std::size(stops) - 1;
   const double t =
-      std::clamp((std::log10(std::max(error, 1e-30)) - least) / (most - least), 0.0, 1.0) * double(last);
+      std::clamp((std::log10(std::max(error, 1e-30)) - minimum) / (maximum - minimum), 0.0, 1.0) *
+      double(last);
   const size_t k = std::min(static_cast<size_t>(t), last - 1);
   std::array<uint8_t, 3> rgb{};
   for (size_t c = 0; c < 3; ++c)

@@ -9,8 +9,8 @@ namespace dermis::tools {
 namespace {
 
 // Nearest rank: the smallest value that at least `share` of all do not exceed. Reorders `values`.
-template <class T> T percentile(std::vector<T>& values, double share) {
-  const auto rank = static_cast<size_t>(std::ceil(share * double(values.size())));
+template <class T> T percentile(std::vector<T>& values, double fraction) {
+  const auto rank = static_cast<size_t>(std::ceil(fraction * double(values.size())));
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank > 0 ? rank - 1 : 0);
   std::nth_element(values.begin(), at, values.end());
   return *at;
@@ -34,14 +34,14 @@ double ExposureMeter::result() const {
   if (luminance.empty()) return 1;
   std::vector<float> values = luminance;
   const double bright = percentile(values, 0.999);
-  return bright >= least_light ? 1 / bright : 1;
+  return bright >= min_light ? 1 / bright : 1;
 }
 
 double psnr_from_mse(double mse) {
   return mse > 0 ? std::min(max_psnr_db, -10 * std::log10(mse)) : max_psnr_db;
 }
 
-ErrorFigures measure_error(std::span<const float> image, std::span<const double> truth,
+ErrorFigures measure_error(std::span<const float> image, std::span<const double> reference,
                            std::span<const uint32_t> pixels, double exposure, uint64_t population) {
   ErrorFigures figures;
   figures.pixels = pixels.size();
@@ -53,7 +53,7 @@ ErrorFigures measure_error(std::span<const float> image, std::span<const double>
   for (size_t i = 0; i < pixels.size(); ++i) {
     std::array<double, 3> e{};
     for (size_t c = 0; c < 3; ++c) {
-      e[c] = (double{image[size_t{3} * pixels[i] + c]} - truth[3 * i + c]) * exposure;
+      e[c] = (double{image[size_t{3} * pixels[i] + c]} - reference[3 * i + c]) * exposure;
       if (std::isnan(e[c])) e[c] = std::numeric_limits<double>::infinity();
       squares_rgb[c] += e[c] * e[c];
     }

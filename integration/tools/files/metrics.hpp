@@ -21,7 +21,7 @@ inline constexpr double max_psnr_db = 100;
 
 // Light below the smallest half float is black: graphs cannot hold it, and rounding leaves as much of
 // nothing.
-inline constexpr double least_light = 1.0 / (1 << 24);
+inline constexpr double min_light = 1.0 / (1 << 24);
 
 struct ErrorFigures {
   double rmse = 0, psnr_db = max_psnr_db;
@@ -32,7 +32,7 @@ struct ErrorFigures {
 };
 
 // The factor that puts the 99.9th percentile (nearest rank) of B's luminance over pixels with profile != 0
-// at 1. Several frames: call add for each, then result. 1 if that luminance is below least_light.
+// at 1. Several frames: call add for each, then result. 1 if that luminance is below min_light.
 struct ExposureMeter {
   std::vector<float> luminance;
 
@@ -44,7 +44,7 @@ struct ExposureMeter {
 // Compares `image` (3 values for every pixel of the frame) with `truth` (3 values for each of `pixels`, in
 // order). `population`: how many pixels the listed ones stand for (profile != 0 in the frame); at least
 // pixels.size(). A non-finite value of `image` counts as an infinite error.
-ErrorFigures measure_error(std::span<const float> image, std::span<const double> truth,
+ErrorFigures measure_error(std::span<const float> image, std::span<const double> reference,
                            std::span<const uint32_t> pixels, double exposure, uint64_t population);
 
 // -10 log10(mse), capped.

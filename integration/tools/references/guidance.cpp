@@ -12,7 +12,7 @@ double wanted_samples(double variance, double mean_count, const GuidanceSettings
 }
 
 int clamped_samples(double wanted, const GuidanceSettings& settings) {
-  return static_cast<int>(std::lround(std::clamp(wanted, settings.least, settings.most)));
+  return static_cast<int>(std::lround(std::clamp(wanted, settings.min_samples, settings.max_samples)));
 }
 
 double control_weight(const MovingCovariance& moments, double eps_alpha) {

@@ -13,13 +13,13 @@ struct GuidanceSettings {
   double kappa = 0.2;          // how fast a change is followed
   double eta = 0.2, eta_cv = 0.005;
   double eps_alpha = 1e-6;
-  double least = 8, most = 64; // samples
+  double min_samples = 8, max_samples = 64; // samples
 };
 
 // Equations 8 to 10 (A4): kappa * Delta + E, not clamped. `variance` of one frame's estimate by `mean_count`
 // samples.
 double wanted_samples(double variance, double mean_count, const GuidanceSettings& settings);
-// A6: a whole number within [least, most].
+// A6: a whole number within [min_samples, max_samples].
 int clamped_samples(double wanted, const GuidanceSettings& settings);
 // Algorithm 2 (C10): (cov + eps) / (var + eps) within [0, (mean_f + mean_g) / mean_g]; 1 where all is dark,
 // as the bound says nothing there.

@@ -1,6 +1,6 @@
 #include "integration/tools/references/image_reads.hpp"
 
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "passes/sap/sap_weights.hpp"
 #include "passes/separable/separable_kernel.hpp"
 
@@ -11,19 +11,19 @@ namespace dermis::subsurface {
 
 namespace {
 
-int64_t setting(const PassKind& kind, const ReadsQuestion& question, std::string_view name) {
-  const int index = find_setting(kind, name);
+int64_t setting(const PassType& type, const ReadsQuestion& question, std::string_view name) {
+  const int index = find_setting(type, name);
   return index < 0 ? 0 : question.settings[static_cast<size_t>(index)].integer;
 }
 
 // 1 where an optional port is bound.
-double one_if(const PassKind& kind, const ReadsQuestion& question, std::string_view port, PortSide side) {
-  const int index = find_port(kind, port, side);
+double one_if(const PassType& type, const ReadsQuestion& question, std::string_view port, PortSide side) {
+  const int index = find_port(type, port, side);
   return index >= 0 && question.bound[static_cast<size_t>(index)] ? 1 : 0;
 }
 
-double scale_read(const PassKind& kind, const ReadsQuestion& question) {
-  return one_if(kind, question, "scatter_scale", PortSide::read);
+double scale_read(const PassType& type, const ReadsQuestion& question) {
+  return one_if(type, question, "scatter_scale", PortSide::read);
 }
 
 // Reads of an invocation where its group of 8x8 reads `texels` once and shares them.
@@ -35,7 +35,7 @@ constexpr double shared_reads(double texels) {
 constexpr double patch_reads = shared_reads(10 * 10) * 2;
 
 // The largest of a row of the pyramid's table over the channels.
-double largest_share(const ReadsQuestion& question, int64_t variant, uint32_t row) {
+double largest_fraction(const ReadsQuestion& question, int64_t variant, uint32_t row) {
   constexpr size_t table = size_t{sap_table_rows} * sap_node_count;
   if (question.sap_tables.size() < sap_variant_count * table) return 1;
   const auto values = question.sap_tables.subspan(static_cast<size_t>(variant) * table, table);
@@ -46,28 +46,28 @@ double largest_share(const ReadsQuestion& question, int64_t variant, uint32_t ro
 }
 
 // Material; where there is some, depth; where it scatters and light is looked at, that and what scales it.
-ImageReads classify(const PassKind& kind, const ReadsQuestion& question) {
-  const double ranged = one_if(kind, question, "lighting", PortSide::read) *
-                        one_if(kind, question, "light_range", PortSide::write);
-  const bool textured = setting(kind, question, "texturing") != 0;
-  const double light = 1 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0);
-  return {1 + question.subsurface_share * (1 + scale_read(kind, question)) +
-          question.scattering_share * ranged * light};
+ImageReads classify(const PassType& type, const ReadsQuestion& question) {
+  const double ranged = one_if(type, question, "lighting", PortSide::read) *
+                        one_if(type, question, "light_range", PortSide::write);
+  const bool textured = setting(type, question, "texturing") != 0;
+  const double light = 1 + (textured ? one_if(type, question, "albedo", PortSide::read) : 0);
+  return {1 + question.subsurface_fraction * (1 + scale_read(type, question)) +
+          question.scattering_fraction * ranged * light};
 }
 
-ImageReads none(const PassKind&, const ReadsQuestion&) {
+ImageReads none(const PassType&, const ReadsQuestion&) {
   return {};
 }
 
 // Lighting, and what scales it.
-double light_reads(const PassKind& kind, const ReadsQuestion& question) {
-  const bool textured = setting(kind, question, "texturing") != 0;
-  return 1 + scale_read(kind, question) + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0);
+double light_reads(const PassType& type, const ReadsQuestion& question) {
+  const bool textured = setting(type, question, "texturing") != 0;
+  return 1 + scale_read(type, question) + (textured ? one_if(type, question, "albedo", PortSide::read) : 0);
 }
 
 // common/subsurface_setup.comp: light, the patch.
-ImageReads setup(const PassKind& kind, const ReadsQuestion& question) {
-  return {light_reads(kind, question) + patch_reads};
+ImageReads setup(const PassType& type, const ReadsQuestion& question) {
+  return {light_reads(type, question) + patch_reads};
 }
 
 // An invocation of the pyramid's kernels computes a block of texels and reads what they need once.
@@ -76,238 +76,239 @@ constexpr double block_reads(double texels, double width, double height) {
 }
 
 // sap/subsurface_sap_setup.comp: light; material and depth of a block of 4x2 and a ring without corners.
-ImageReads sap_setup(const PassKind& kind, const ReadsQuestion& question) {
-  return {light_reads(kind, question) + 2 * block_reads(6 * 4 - 4, 4, 2)};
+ImageReads sap_setup(const PassType& type, const ReadsQuestion& question) {
+  return {light_reads(type, question) + 2 * block_reads(6 * 4 - 4, 4, 2)};
 }
 
 // Material, light, depth; a sample reads material, depth, light and slope.
-ImageReads burley(const PassKind& kind, const ReadsQuestion& question) {
-  const auto samples = static_cast<double>(setting(kind, question, "samples"));
-  return {3 + scale_read(kind, question) + 4 * samples, samples};
+ImageReads burley(const PassType& type, const ReadsQuestion& question) {
+  const auto samples = static_cast<double>(setting(type, question, "samples"));
+  return {3 + scale_read(type, question) + 4 * samples, samples};
 }
 
 // As burley, and nothing more for the direct radius: it needs no image.
-ImageReads fixed(const PassKind& kind, const ReadsQuestion& question) {
-  return burley(kind, question);
+ImageReads fixed(const PassType& type, const ReadsQuestion& question) {
+  return burley(type, question);
 }
 
 // Material, light, depth and, on the second axis, the first one's result; at each offset two sides, each
 // interpolated between two texels, of which one has no share at a whole offset; a texel's material, depth and
 // light. Offsets are those of the node below d and, but for the share that lies on it, of the node above.
-ImageReads separable(const PassKind& kind, const ReadsQuestion& question) {
-  const uint32_t taps = separable_taps[static_cast<size_t>(setting(kind, question, "taps"))];
+ImageReads separable(const PassType& type, const ReadsQuestion& question) {
+  const uint32_t taps = separable_taps[static_cast<size_t>(setting(type, question, "taps"))];
   const double sides = double(taps - 1) / 2;
-  return {3 + scale_read(kind, question) + one_if(kind, question, "blurred", PortSide::read) +
+  return {3 + scale_read(type, question) + one_if(type, question, "blurred", PortSide::read) +
           sides * 2 * 2 * 3};
 }
 
-// sap/subsurface_sap_halve.comp: material, depth and light of the 4x4 pixels of 2x2 texels.
-ImageReads sap_halve(const PassKind& kind, const ReadsQuestion& question) {
-  return {4 * (light_reads(kind, question) + 2)};
+// sap/subsurface_sap_setup_half_res.comp: material, depth and light of the 4x4 pixels of 2x2 texels.
+ImageReads sap_halve(const PassType& type, const ReadsQuestion& question) {
+  return {4 * (light_reads(type, question) + 2)};
 }
 
 // Those of a block of 4x2 pixels; surface and scattered light of the texels of level 1 on which they lie.
-ImageReads sap_gather_half(const PassKind& kind, const ReadsQuestion& question) {
+ImageReads sap_gather_half(const PassType& type, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
-  const double own = light_reads(kind, question) + 2;
+  const double own = light_reads(type, question) + 2;
   return {widest < copy_below_d_px ? own : own + 2 * block_reads(4 * 3, 4, 2)};
 }
 
 // sap/subsurface_sap_down.comp: surface and light of the 6x6 children of 2x2 parents. Second layers, here and
 // below, are read where there are some: nowhere on a surface that covers the view.
-ImageReads sap_down(const PassKind&, const ReadsQuestion&) {
+ImageReads sap_down(const PassType&, const ReadsQuestion&) {
   return {2 * block_reads(6 * 6, 2, 2)};
 }
 
 // sap_up.glsl: surface and light of a block's texels, with a ring around them where a tent is wanted; surface
 // and scattered light of the texels of the coarser level on which they lie.
-ImageReads sap_up(const PassKind& kind, const ReadsQuestion& question) {
-  const auto variant = static_cast<SapVariant>(setting(kind, question, "variant"));
-  const bool tent = setting(kind, question, "level") <= int64_t{sap_last_tent(variant)};
-  const bool last = one_if(kind, question, "coarse_scattered", PortSide::read) == 0;
+ImageReads sap_up(const PassType& type, const ReadsQuestion& question) {
+  const auto variant = static_cast<SapVariant>(setting(type, question, "variant"));
+  const bool tent = setting(type, question, "level") <= int64_t{sap_last_tent(variant)};
+  const bool last = one_if(type, question, "coarse_scattered", PortSide::read) == 0;
   return {2 * block_reads(tent ? 4 * 4 : 2 * 2, 2, 2) + (last ? 0 : 2 * block_reads(2 * 2, 2, 2))};
 }
 
 // Surface and light alone where no pixel scatters further than itself.
-ImageReads sap_gather(const PassKind&, const ReadsQuestion& question) {
+ImageReads sap_gather(const PassType&, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
   return {widest < copy_below_d_px ? 2 : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2)};
 }
 
 // As fixed; a sample reads its levels beside that, two of them or one.
-ImageReads afis(const PassKind& kind, const ReadsQuestion& question) {
-  ImageReads reads = burley(kind, question);
+ImageReads afis(const PassType& type, const ReadsQuestion& question) {
+  ImageReads reads = burley(type, question);
   constexpr double levels[] = {2, 1, 0}; // trilinear, whole, none
-  reads.per_invocation += levels[setting(kind, question, "mips")] * reads.samples;
+  reads.per_invocation += levels[setting(type, question, "mips")] * reads.samples;
   return reads;
 }
 
 // In tiles that were given samples, twice as many as the first step gives: material, depth, light of both
 // techniques; a sample as in afis.
-ImageReads afis_tiles(const PassKind& kind, const ReadsQuestion& question) {
-  ImageReads reads = afis(kind, question);
+ImageReads afis_tiles(const PassType& type, const ReadsQuestion& question) {
+  ImageReads reads = afis(type, question);
   constexpr double steps = 2;
-  const double each = reads.per_invocation - 3 - scale_read(kind, question);
-  reads.per_invocation = 4 + scale_read(kind, question) + steps * each * question.sampled_share;
+  const double each = reads.per_invocation - 3 - scale_read(type, question);
+  reads.per_invocation = 4 + scale_read(type, question) + steps * each * question.sampled_fraction;
   reads.samples *= steps;
   return reads;
 }
 
 // Material, light, depth, slope; what history keeps at four places; a sample reads six texels as in afis.
-ImageReads guided(const PassKind& kind, const ReadsQuestion& question) {
-  const double samples = question.sampled_share * static_cast<double>(setting(kind, question, "most"));
+ImageReads guided(const PassType& type, const ReadsQuestion& question) {
+  const double samples =
+      question.sampled_fraction * static_cast<double>(setting(type, question, "max_samples"));
   const double kept =
-      1 + one_if(kind, question, "place", PortSide::read) + one_if(kind, question, "control", PortSide::read);
+      1 + one_if(type, question, "place", PortSide::read) + one_if(type, question, "control", PortSide::read);
   constexpr double levels[] = {2, 1, 0}; // trilinear, whole, none
-  return {4 + scale_read(kind, question) + one_if(kind, question, "velocity", PortSide::read) + 4 * kept +
-              (4 + levels[setting(kind, question, "mips")]) * samples,
+  return {4 + scale_read(type, question) + one_if(type, question, "velocity", PortSide::read) + 4 * kept +
+              (4 + levels[setting(type, question, "mips")]) * samples,
           samples};
 }
 
 // Light; where it is unsure the pixel's own surface and light, and a sample reads its surface and the surface
 // and light of its level.
-ImageReads blend(const PassKind& kind, const ReadsQuestion& question) {
-  const double samples = question.sampled_share * static_cast<double>(setting(kind, question, "samples"));
-  return {1 + 2 * question.sampled_share + 3 * samples, samples};
+ImageReads blend(const PassType& type, const ReadsQuestion& question) {
+  const double samples = question.sampled_fraction * static_cast<double>(setting(type, question, "samples"));
+  return {1 + 2 * question.sampled_fraction + 3 * samples, samples};
 }
 
 // One pixel of 64: surface, light, the velocity, four kept places twice.
-ImageReads brightness(const PassKind& kind, const ReadsQuestion& question) {
-  return {(2 + one_if(kind, question, "velocity", PortSide::read) + 4 * 2) / 64.0};
+ImageReads brightness(const PassType& type, const ReadsQuestion& question) {
+  return {(2 + one_if(type, question, "velocity", PortSide::read) + 4 * 2) / 64.0};
 }
 
 // As blend; and the velocity, four kept places, ratios and patterns, how bright all is.
-ImageReads residual(const PassKind& kind, const ReadsQuestion& question) {
-  ImageReads reads = blend(kind, question);
-  reads.per_invocation += 1 + one_if(kind, question, "velocity", PortSide::read) + 4 * 3 + 1;
+ImageReads residual(const PassType& type, const ReadsQuestion& question) {
+  ImageReads reads = blend(type, question);
+  reads.per_invocation += 1 + one_if(type, question, "velocity", PortSide::read) + 4 * 3 + 1;
   return reads;
 }
 
 // near_light.glsl: material, light, scattered light and depth of the group's pixels and a ring of four;
 // scattered light of the group and a ring of one and of 3x3 pixels once more, and what a pixel has of its
 // own; of the frame before one texel where the camera rests, its surface twice.
-ImageReads accumulate(const PassKind& kind, const ReadsQuestion& question) {
-  return {shared_reads(16 * 16) * (3 + light_reads(kind, question) - scale_read(kind, question)) +
-          shared_reads(10 * 10) * (1 + scale_read(kind, question)) + 9 + 3 +
-          one_if(kind, question, "velocity", PortSide::read) + 3};
+ImageReads accumulate(const PassType& type, const ReadsQuestion& question) {
+  return {shared_reads(16 * 16) * (3 + light_reads(type, question) - scale_read(type, question)) +
+          shared_reads(10 * 10) * (1 + scale_read(type, question)) + 9 + 3 +
+          one_if(type, question, "velocity", PortSide::read) + 3};
 }
 
 // afis/subsurface_pyramid_setup.comp: material, light, and the materials around if profiles are kept apart.
-ImageReads pyramid_setup(const PassKind& kind, const ReadsQuestion& question) {
-  const bool textured = setting(kind, question, "texturing") != 0;
-  return {2 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0) +
-          (setting(kind, question, "profiles") != 0 ? 9 : 0)};
+ImageReads pyramid_setup(const PassType& type, const ReadsQuestion& question) {
+  const bool textured = setting(type, question, "texturing") != 0;
+  return {2 + (textured ? one_if(type, question, "albedo", PortSide::read) : 0) +
+          (setting(type, question, "profiles") != 0 ? 9 : 0)};
 }
 
 // Filtered reads: four, or one of a box.
-ImageReads pyramid_down(const PassKind& kind, const ReadsQuestion& question) {
-  return {setting(kind, question, "halving") != 0 ? 1.0 : 4.0};
+ImageReads pyramid_down(const PassType& type, const ReadsQuestion& question) {
+  return {setting(type, question, "halving") != 0 ? 1.0 : 4.0};
 }
 
 // Material, depth, the pixel's own light, and four filtered reads of each level that counts.
-ImageReads pyramid_gather(const PassKind& kind, const ReadsQuestion& question) {
-  constexpr double least_share = 0.001; // papers/subsurface_pyramid_gather.comp
+ImageReads pyramid_gather(const PassType& type, const ReadsQuestion& question) {
+  constexpr double min_fraction = 0.001; // papers/subsurface_pyramid_gather.comp
   const auto variant = static_cast<int64_t>(SapVariant::plain);
-  double reads = 3 + scale_read(kind, question), left = 1;
+  double reads = 3 + scale_read(type, question), left = 1;
   for (uint32_t level = 0; level < sap_level_count; ++level) {
-    const double share = largest_share(question, variant, level + 1);
-    if ((level == 0 ? share : left * share) >= least_share) reads += 4;
-    if (level > 0) left *= 1 - share;
+    const double fraction = largest_fraction(question, variant, level + 1);
+    if ((level == 0 ? fraction : left * fraction) >= min_fraction) reads += 4;
+    if (level > 0) left *= 1 - fraction;
   }
   return {reads};
 }
 
 // Lighting, material, light behind, thickness.
-ImageReads transmission(const PassKind& kind, const ReadsQuestion& question) {
-  return {4 + scale_read(kind, question)};
+ImageReads transmission(const PassType& type, const ReadsQuestion& question) {
+  return {4 + scale_read(type, question)};
 }
 
 // Material, light behind, thickness.
-ImageReads thin_parts(const PassKind& kind, const ReadsQuestion& question) {
-  return {3 + scale_read(kind, question)};
+ImageReads transmission_stats(const PassType& type, const ReadsQuestion& question) {
+  return {3 + scale_read(type, question)};
 }
 
 // Scattered light, albedo; material only in tiles with holes.
-ImageReads combine(const PassKind& kind, const ReadsQuestion& question) {
-  return {1 + one_if(kind, question, "albedo", PortSide::read)};
+ImageReads combine(const PassType& type, const ReadsQuestion& question) {
+  return {1 + one_if(type, question, "albedo", PortSide::read)};
 }
 
 // Lighting.
-ImageReads copy(const PassKind& kind, const ReadsQuestion& question) {
-  const bool textured = setting(kind, question, "texturing") != 0;
-  return {1 + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+ImageReads copy(const PassType& type, const ReadsQuestion& question) {
+  const bool textured = setting(type, question, "texturing") != 0;
+  return {1 + (textured ? one_if(type, question, "albedo", PortSide::read) : 0)};
 }
 
 // Lighting, material, depth, scattered light.
-ImageReads light(const PassKind& kind, const ReadsQuestion& question) {
-  const bool textured = setting(kind, question, "texturing") != 0;
-  return {4 + scale_read(kind, question) + (textured ? one_if(kind, question, "albedo", PortSide::read) : 0)};
+ImageReads light(const PassType& type, const ReadsQuestion& question) {
+  const bool textured = setting(type, question, "texturing") != 0;
+  return {4 + scale_read(type, question) + (textured ? one_if(type, question, "albedo", PortSide::read) : 0)};
 }
 
 // Scattered light, material, importance.
-ImageReads doubt(const PassKind& kind, const ReadsQuestion& question) {
-  return {2 + one_if(kind, question, "importance", PortSide::read)};
+ImageReads tile_error(const PassType& type, const ReadsQuestion& question) {
+  return {2 + one_if(type, question, "importance", PortSide::read)};
 }
 
 // Light, material, importance.
-ImageReads contrast(const PassKind& kind, const ReadsQuestion& question) {
-  return {2 + one_if(kind, question, "importance", PortSide::read)};
+ImageReads contrast(const PassType& type, const ReadsQuestion& question) {
+  return {2 + one_if(type, question, "importance", PortSide::read)};
 }
 
 // In tiles that were given 16 samples: light twice, surface, and for each sample its surface, and the level's
 // surface and light.
-ImageReads mend(const PassKind&, const ReadsQuestion& question) {
+ImageReads refine_tiles(const PassType&, const ReadsQuestion& question) {
   constexpr double samples = 16;
-  return {3 + 3 * samples * question.sampled_share, samples};
+  return {3 + 3 * samples * question.sampled_fraction, samples};
 }
 
 // Material.
-ImageReads skips(const PassKind&, const ReadsQuestion&) {
+ImageReads skips(const PassType&, const ReadsQuestion&) {
   return {1};
 }
 
 // In four pixels of the tiles that are drawn: what is scattered, and of each pixel within 20 d its light and
-// patch. A group of 64 tiles draws one at most, whose share `sampled_share` is.
-ImageReads probe(const PassKind& kind, const ReadsQuestion& question) {
+// patch. A group of 64 tiles draws one at most, whose share `sampled_fraction` is.
+ImageReads probe(const PassType& type, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
   const double side = 2 * std::ceil(20 * widest) + 1, pixels = 4.0 / 64;
-  return {question.sampled_share * pixels * (light_reads(kind, question) + 3 + side * side * 11)};
+  return {question.sampled_fraction * pixels * (light_reads(type, question) + 3 + side * side * 11)};
 }
 
 // Material, depth, normal of the pixel. Rays and what they meet are in buffers: paths count as samples, not
 // as texels.
-ImageReads restir_initial(const PassKind& kind, const ReadsQuestion& question) {
-  return {3 + scale_read(kind, question), static_cast<double>(setting(kind, question, "samples"))};
+ImageReads restir_initial(const PassType& type, const ReadsQuestion& question) {
+  return {3 + scale_read(type, question), static_cast<double>(setting(type, question, "samples"))};
 }
 
 // Those of the pixel, its depth and normal once more, and the velocity; what was before is in buffers.
-ImageReads restir_temporal(const PassKind& kind, const ReadsQuestion& question) {
-  return {5 + scale_read(kind, question) + one_if(kind, question, "velocity", PortSide::read)};
+ImageReads restir_temporal(const PassType& type, const ReadsQuestion& question) {
+  return {5 + scale_read(type, question) + one_if(type, question, "velocity", PortSide::read)};
 }
 
 // Those of the pixel and its depth once more; of a neighbour its material, then all of it.
-ImageReads restir_spatial(const PassKind& kind, const ReadsQuestion& question) {
-  const auto neighbours = static_cast<double>(setting(kind, question, "neighbours"));
-  return {4 + scale_read(kind, question) + neighbours * (4 + scale_read(kind, question))};
+ImageReads restir_spatial(const PassType& type, const ReadsQuestion& question) {
+  const auto neighbours = static_cast<double>(setting(type, question, "neighbours"));
+  return {4 + scale_read(type, question) + neighbours * (4 + scale_read(type, question))};
 }
 
 // Material, what the pixel's surface is, and its light.
-ImageReads restir_resolve(const PassKind& kind, const ReadsQuestion& question) {
-  const bool textured = setting(kind, question, "texturing") != 0;
-  return {5 + scale_read(kind, question) +
-          (textured ? 2 * one_if(kind, question, "albedo", PortSide::read) : 0)};
+ImageReads restir_resolve(const PassType& type, const ReadsQuestion& question) {
+  const bool textured = setting(type, question, "texturing") != 0;
+  return {5 + scale_read(type, question) +
+          (textured ? 2 * one_if(type, question, "albedo", PortSide::read) : 0)};
 }
 
 struct Entry {
-  std::string_view kind;
-  ImageReads (*reads)(const PassKind&, const ReadsQuestion&);
+  std::string_view type;
+  ImageReads (*reads)(const PassType&, const ReadsQuestion&);
 };
 constexpr Entry entries[] = {
     {"subsurface.classify", classify},
     {"subsurface.tile_list", none},
-    {"subsurface.flat", none},
-    {"subsurface.copy", copy},
-    {"subsurface.skips", skips},
+    {"subsurface.classify_uniform_light", none},
+    {"subsurface.copy_tiles", copy},
+    {"subsurface.debug_tile_class", skips},
     {"subsurface.probe", probe},
     {"subsurface.setup", setup},
     {"subsurface.burley", burley},
@@ -317,29 +318,29 @@ constexpr Entry entries[] = {
     {"subsurface.sap_down", sap_down},
     {"subsurface.sap_up", sap_up},
     {"subsurface.sap_gather", sap_gather},
-    {"subsurface.sap_halve", sap_halve},
+    {"subsurface.sap_setup_half_res", sap_halve},
     {"subsurface.sap_gather_half", sap_gather_half},
     {"subsurface.sap_down_layered", sap_down},
     {"subsurface.sap_up_layered", sap_up},
     {"subsurface.sap_gather_layered", sap_gather},
     {"subsurface.combine", combine},
-    {"subsurface.light", light},
+    {"subsurface.export_scattered", light},
     {"subsurface.fixed", fixed},
     {"subsurface.pyramid_setup", pyramid_setup},
     {"subsurface.pyramid_down", pyramid_down},
     {"subsurface.pyramid_gather", pyramid_gather},
     {"subsurface.transmission", transmission},
-    {"subsurface.thin_parts", thin_parts},
+    {"subsurface.transmission_stats", transmission_stats},
     {"subsurface.afis", afis},
     {"subsurface.guided", guided},
-    {"subsurface.blend", blend},
-    {"subsurface.brightness", brightness},
+    {"subsurface.refine", blend},
+    {"subsurface.global_light_change", brightness},
     {"subsurface.residual", residual},
     {"subsurface.accumulate", accumulate},
-    {"subsurface.doubt", doubt},
-    {"subsurface.allot", none},
-    {"subsurface.mend", mend},
-    {"subsurface.contrast", contrast},
+    {"subsurface.tile_error_estimate", tile_error},
+    {"subsurface.allocate_samples", none},
+    {"subsurface.tile_refine", refine_tiles},
+    {"subsurface.tile_variance", contrast},
     {"subsurface.afis_tiles", afis_tiles},
     {"clear", none},
     {"restir.initial", restir_initial},
@@ -350,16 +351,16 @@ constexpr Entry entries[] = {
 
 } // namespace
 
-std::optional<ImageReads> image_reads(const PassKind& kind, const ReadsQuestion& question) {
+std::optional<ImageReads> image_reads(const PassType& type, const ReadsQuestion& question) {
   for (const Entry& entry : entries)
-    if (entry.kind == kind.name) return entry.reads(kind, question);
+    if (entry.type == type.name) return entry.reads(type, question);
   return std::nullopt;
 }
 
-std::vector<std::string_view> kinds_with_known_reads() {
+std::vector<std::string_view> pass_types_with_known_reads() {
   std::vector<std::string_view> names;
   for (const Entry& entry : entries)
-    names.push_back(entry.kind);
+    names.push_back(entry.type);
   return names;
 }
 

@@ -22,7 +22,7 @@ template <class Term> double over_gaussians(double width, Term term) {
 } // namespace
 
 double artist_width(double falloff) {
-  return artist_least_width + falloff;
+  return artist_min_width + falloff;
 }
 
 double artist_R(double r, double width) {
@@ -45,9 +45,9 @@ double artist_cdf(double r, double width) {
 }
 
 double artist_inverse_survival(double u, double width) {
-  const double share = u >= burley_min_survival ? std::min(u, 1.0) : burley_min_survival;
+  const double fraction = u >= burley_min_survival ? std::min(u, 1.0) : burley_min_survival;
   return invert_survival(
-      share, width, [&](double r) { return artist_survival(r, width); },
+      fraction, width, [&](double r) { return artist_survival(r, width); },
       [&](double r) { return artist_pdf(r, width); });
 }
 

@@ -15,7 +15,7 @@ inline constexpr std::array<ArtistGaussian, 5> artist_gaussians = {
     {{0.100, 0.0484}, {0.118, 0.187}, {0.113, 0.567}, {0.358, 1.99}, {0.078, 7.41}}};
 inline constexpr double artist_total = 0.767; // of the weights above: they are renormalised by it
 // Keeps a channel without falloff from dividing by 0.
-inline constexpr double artist_least_width = 0.001;
+inline constexpr double artist_min_width = 0.001;
 
 // The factor by which a channel's lengths grow, from the artist's falloff: .001 + falloff.
 double artist_width(double falloff);

@@ -63,9 +63,9 @@ double dipole_cdf(double r, const Dipole& dipole) {
 }
 
 double dipole_inverse_survival(double u, const Dipole& dipole) {
-  const double share = u >= burley_min_survival ? std::min(u, 1.0) : burley_min_survival;
+  const double fraction = u >= burley_min_survival ? std::min(u, 1.0) : burley_min_survival;
   return invert_survival(
-      share, dipole.z_real, [&](double r) { return dipole_survival(r, dipole); },
+      fraction, dipole.z_real, [&](double r) { return dipole_survival(r, dipole); },
       [&](double r) { return dipole_pdf(r, dipole); });
 }
 

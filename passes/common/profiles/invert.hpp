@@ -21,9 +21,9 @@ double invert_survival(double u, double guess, Survival survival, Density densit
   const double target = std::log(u);
   double r = 0.5 * (low + high);
   for (int i = 0; i < steps && high - low > precise * high; ++i) {
-    const double share = survival(r);
-    (share > u ? low : high) = r;
-    const double next = r + (std::log(share) - target) * share / density(r);
+    const double fraction = survival(r);
+    (fraction > u ? low : high) = r;
+    const double next = r + (std::log(fraction) - target) * fraction / density(r);
     const double before = r;
     r = next > low && next < high ? next : 0.5 * (low + high);
     if (std::abs(r - before) <= precise * r) break;

@@ -81,8 +81,8 @@ bool read_numbers_into(const Document& document, ObjectReader& reader, Profile& 
     read_burley(document, reader, profile, diagnostics);
     break;
   case ProfileModel::dipole:
-    reader.numbers("sigma_a_per_mm", profile.sigma_a, least_coefficient, largest_coefficient);
-    reader.numbers("sigma_s_prime_per_mm", profile.sigma_s_prime, least_coefficient, largest_coefficient);
+    reader.numbers("sigma_a_per_mm", profile.sigma_a, min_coefficient, largest_coefficient);
+    reader.numbers("sigma_s_prime_per_mm", profile.sigma_s_prime, min_coefficient, largest_coefficient);
     profile.eta = reader.number("eta", 1.0, largest_eta, Need::optional).value_or(dipole_default_eta);
     break;
   case ProfileModel::artist:

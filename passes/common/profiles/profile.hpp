@@ -28,7 +28,7 @@ struct Profile {
 
 inline constexpr double largest_dmfp_mm = 1e6; // a kilometre: beyond any use, inside fp32
 inline constexpr double largest_mfp_mm = 1e4;
-inline constexpr double least_coefficient = 1e-5, largest_coefficient = 1e5; // of the dipole, 1/mm
+inline constexpr double min_coefficient = 1e-5, largest_coefficient = 1e5; // of the dipole, 1/mm
 inline constexpr double largest_eta = 3;
 inline constexpr double largest_falloff = 1000;
 inline constexpr int64_t profile_format_version = 1;

@@ -41,7 +41,7 @@ std::vector<RadialRow> make_radial_rows(const ProfileShape& shape, int widest) {
     for (size_t c = 0; c < 3; ++c) {
       const double value = shape[c].d > 0 ? 2 * std::numbers::pi * shape_R(shape[c], r) : 0.0;
       first[c] =
-          static_cast<float>(value > 0 ? std::max(std::log2(value), radial_least_log2) : radial_least_log2);
+          static_cast<float>(value > 0 ? std::max(std::log2(value), radial_min_log2) : radial_min_log2);
       second[c] = static_cast<float>(shape_survival(shape[c], r));
     }
     const double root = i / radial_inverse_nodes_per_unit;
@@ -74,13 +74,13 @@ std::array<float, 3> radial_survival(std::span<const RadialRow> rows, float d_mm
 
 RadialSample radial_sample(std::span<const RadialRow> rows, float u) {
   // u in (0, 1]; the root is kept from 0, where its derivative is infinite and the radius 0.
-  const float share = std::clamp(u, static_cast<float>(burley_min_survival), 1.0f);
-  const float root = std::sqrt(std::max(-std::log2(share), 1e-7f));
+  const float fraction = std::clamp(u, static_cast<float>(burley_min_survival), 1.0f);
+  const float root = std::sqrt(std::max(-std::log2(fraction), 1e-7f));
   const Place at = place_at(root * static_cast<float>(radial_inverse_nodes_per_unit));
   const float low = rows[at.low][3], high = rows[at.low + 1][3];
   // r is linear in the root q = sqrt(-log2 u): dr/du = dr/dq / (2 q u ln 2).
   const float slope = (high - low) * static_cast<float>(radial_inverse_nodes_per_unit);
-  return {mix(low, high, at.part), 2 * root * share * std::numbers::ln2_v<float> / slope};
+  return {mix(low, high, at.part), 2 * root * fraction * std::numbers::ln2_v<float> / slope};
 }
 
 } // namespace dermis::subsurface

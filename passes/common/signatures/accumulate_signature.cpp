@@ -33,7 +33,7 @@ constexpr Port ports[] = {
     {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
 };
 
-constexpr KindSetting settings[] = {
+constexpr PassTypeSetting settings[] = {
     setting::per_frame(setting::real("weight", 0.1, 0.001, 1, "", "of a new frame, at least")),
     setting::per_frame(setting::real(
         "clip", 1.5, 0, 64, "standard deviations",
@@ -45,7 +45,7 @@ constexpr HistoryWeight accumulate_mixes[] = {{"past_out", "weight"}};
 
 } // namespace
 
-const PassKind accumulate_kind{
+const PassType accumulate_type{
     .name = "subsurface.accumulate",
     .shader = "common/subsurface_accumulate",
     .doc = "Mixes scattered light with that of earlier frames, found again along surfaces.",

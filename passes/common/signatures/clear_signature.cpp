@@ -8,7 +8,7 @@ namespace {
 constexpr Port ports[] = {{"target", Usage::clear, false, "", "an image or buffer, whole", {}}};
 } // namespace
 
-const PassKind clear_kind{
+const PassType clear_type{
     .name = "clear",
     .shader = "",
     .doc = "Fills an image or buffer with zeros. No kernel.",

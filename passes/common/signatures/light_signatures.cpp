@@ -22,7 +22,7 @@ constexpr Port setup_ports[] = {
     {"slope", Usage::storage_image_write, true, "image2D",
      "change of depth from pixel to pixel over the pixel's size, x and y", port::way_formats},
 };
-constexpr KindSetting setup_settings[] = {setting::texturing};
+constexpr PassTypeSetting setup_settings[] = {setting::texturing};
 
 constexpr std::string_view copied_options[] = {"unscattered", "scattered"};
 constexpr Port combine_ports[] = {
@@ -40,7 +40,7 @@ constexpr Port combine_ports[] = {
      "written where there is subsurface, untouched elsewhere; alpha becomes 1 there", port::color_formats},
 };
 constexpr std::string_view combined[] = {"scattered", "unscattered"};
-constexpr KindSetting combine_settings[] = {
+constexpr PassTypeSetting combine_settings[] = {
     setting::texturing,
     setting::choice(
         "result", result_options,
@@ -60,7 +60,7 @@ constexpr Port copy_ports[] = {
     {"scattered", Usage::storage_image_update, false, "image2D",
      "written where no tile scatters, else left as it is", scattered_formats},
 };
-constexpr KindSetting copy_settings[] = {setting::texturing};
+constexpr PassTypeSetting copy_settings[] = {setting::texturing};
 
 constexpr Port light_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
@@ -82,7 +82,7 @@ constexpr Port light_ports[] = {
      "scattered light before albedo; the input light where nothing scatters, in full precision",
      port::color_formats},
 };
-constexpr KindSetting light_settings[] = {setting::texturing};
+constexpr PassTypeSetting light_settings[] = {setting::texturing};
 
 constexpr Port back_lighting_port{
     "back_lighting",
@@ -110,7 +110,7 @@ constexpr Port transmission_ports[] = {
 
 } // namespace
 
-const PassKind setup_kind{
+const PassType setup_type{
     .name = "subsurface.setup",
     .shader = "common/subsurface_setup",
     .doc = "Takes the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to "
@@ -121,7 +121,7 @@ const PassKind setup_kind{
     .side_effects = false,
 };
 
-const PassKind transmission_kind{
+const PassType transmission_type{
     .name = "subsurface.transmission",
     .shader = "common/subsurface_transmission",
     .doc =
@@ -133,9 +133,9 @@ const PassKind transmission_kind{
     .side_effects = false,
 };
 
-const PassKind thin_parts_kind{
-    .name = "subsurface.thin_parts",
-    .shader = "common/subsurface_thin_parts",
+const PassType transmission_stats_type{
+    .name = "subsurface.transmission_stats",
+    .shader = "common/subsurface_transmission_stats",
     .doc = "Counts the light that comes through thin parts, so that the choice knows what screen space does "
            "not see.",
     .ports = thin_parts_ports,
@@ -144,7 +144,7 @@ const PassKind thin_parts_kind{
     .side_effects = true, // it tells the host
 };
 
-const PassKind combine_kind{
+const PassType combine_type{
     .name = "subsurface.combine",
     .shader = "common/subsurface_combine",
     .doc = "Puts scattered light back into the host's lighting. Specular stays with the host.",
@@ -155,9 +155,9 @@ const PassKind combine_kind{
     .one_of = combined,
 };
 
-const PassKind copy_kind{
-    .name = "subsurface.copy",
-    .shader = "common/subsurface_copy",
+const PassType copy_tiles_type{
+    .name = "subsurface.copy_tiles",
+    .shader = "common/subsurface_copy_tiles",
     .doc =
         "Passes light on as it is, where no tile of the screen scatters, for passes that want all tiles in "
         "one picture.",
@@ -167,9 +167,9 @@ const PassKind copy_kind{
     .side_effects = false,
 };
 
-const PassKind light_kind{
-    .name = "subsurface.light",
-    .shader = "common/subsurface_light",
+const PassType export_scattered_type{
+    .name = "subsurface.export_scattered",
+    .shader = "common/subsurface_export_scattered",
     .doc = "Hands out scattered light before albedo for every pixel, for tools and hosts that texture later.",
     .ports = light_ports,
     .settings = light_settings,

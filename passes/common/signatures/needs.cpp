@@ -14,8 +14,8 @@ constexpr PortNeed needs[] = {
     // Buffers first: needs_of() gives them alone for steps of a pyramid.
     {"classes", tile, word},
     {"tiles", tile, word, word},
-    {"doubts", tile, word},
-    {"shares", tile, word},
+    {"tile_errors", tile, word},
+    {"samples_per_tile", tile, word},
     {"before", tile, word},
     {"reservoirs", pixel, reservoir},
     {"reservoirs_before", pixel, reservoir},
@@ -54,7 +54,7 @@ constexpr PortNeed needs[] = {
     {"unscattered", pixel},
     {"blurred", pixel},
     {"blended", pixel},
-    {"mended", pixel},
+    {"refined", pixel},
     {"accumulated", pixel},
     {"sampling", pixel},
     {"skips", pixel},
@@ -98,10 +98,10 @@ static_assert(needs[buffers].port == "lighting");
 } // namespace
 
 std::span<const PortNeed> needs_of(std::string_view kind) {
-  if (kind == clear_kind.name) return {};
-  const bool step = kind == sap_halve_kind.name || kind == sap_down_kind.name || kind == sap_up_kind.name ||
-                    kind == pyramid_down_kind.name || kind == sap_down_layered_kind.name ||
-                    kind == sap_up_layered_kind.name;
+  if (kind == clear_type.name) return {};
+  const bool step = kind == sap_setup_half_res_type.name || kind == sap_down_type.name ||
+                    kind == sap_up_type.name || kind == pyramid_down_type.name ||
+                    kind == sap_down_layered_type.name || kind == sap_up_layered_type.name;
   return std::span(needs).first(step ? buffers : std::size(needs));
 }
 

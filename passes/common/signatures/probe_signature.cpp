@@ -19,7 +19,7 @@ constexpr Port probe_ports[] = {
     port::albedo,
     {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
 };
-constexpr KindSetting probe_settings[] = {
+constexpr PassTypeSetting probe_settings[] = {
     setting::texturing,
     {.name = "tiles",
      .type = SettingType::integer,
@@ -33,7 +33,7 @@ constexpr KindSetting probe_settings[] = {
 
 } // namespace
 
-const PassKind probe_kind{
+const PassType probe_type{
     .name = "subsurface.probe",
     .shader = "common/subsurface_probe",
     .doc = "Computes the reference at pixels of a few tiles, drawn with known probabilities: the frame's "

@@ -2,33 +2,35 @@
 // One signature a kernel; kinds.cpp lists them. Split by what they serve: tiles, light in and out,
 // scattering.
 
-#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/model/pass_type.hpp"
 
 namespace dermis::subsurface {
 
-extern const PassKind classify_kind, flat_kind, tile_list_kind, skips_kind; // tile_signatures.cpp
-extern const PassKind setup_kind, combine_kind, light_kind, copy_kind, transmission_kind,
-    thin_parts_kind;                                           // light_signatures.cpp
-extern const PassKind burley_kind;                             // burley_signature.cpp
-extern const PassKind separable_kind;                          // separable_signature.cpp
-extern const PassKind fixed_kind;                              // papers/fixed_signature.cpp
-extern const PassKind afis_kind, guided_kind, afis_tiles_kind; // afis_signatures.cpp
-extern const PassKind pyramid_setup_kind, pyramid_down_kind;   // pyramid_signatures.cpp
-extern const PassKind pyramid_gather_kind;                     // papers/pyramid_gather_signature.cpp
-extern const PassKind sap_tiles_kind, sap_setup_kind, sap_down_kind, sap_up_kind, sap_gather_kind,
-    sap_down_layered_kind, sap_up_layered_kind, sap_gather_layered_kind, sap_halve_kind,
-    sap_gather_half_kind;                                         // sap_signatures.cpp
-extern const PassKind blend_kind, brightness_kind, residual_kind; // residual_signatures.cpp
-extern const PassKind doubt_kind, allot_kind, mend_kind;          // allot_signatures.cpp
-extern const PassKind contrast_kind;                              // papers/contrast_signature.cpp
-extern const PassKind probe_kind;                                 // probe_signature.cpp
-extern const PassKind accumulate_kind;                            // accumulate_signature.cpp
-extern const PassKind clear_kind;                                 // clear_signature.cpp
+extern const PassType classify_type, classify_uniform_light_type, tile_list_type,
+    debug_tile_class_type; // tile_signatures.cpp
+extern const PassType setup_type, combine_type, export_scattered_type, copy_tiles_type, transmission_type,
+    transmission_stats_type;                                   // light_signatures.cpp
+extern const PassType burley_type;                             // burley_signature.cpp
+extern const PassType separable_type;                          // separable_signature.cpp
+extern const PassType fixed_type;                              // papers/fixed_signature.cpp
+extern const PassType afis_type, guided_type, afis_tiles_type; // afis_signatures.cpp
+extern const PassType pyramid_setup_type, pyramid_down_type;   // pyramid_signatures.cpp
+extern const PassType pyramid_gather_type;                     // papers/pyramid_gather_signature.cpp
+extern const PassType sap_tiles_type, sap_setup_type, sap_down_type, sap_up_type, sap_gather_type,
+    sap_down_layered_type, sap_up_layered_type, sap_gather_layered_type, sap_setup_half_res_type,
+    sap_gather_half_type;                                                   // sap_signatures.cpp
+extern const PassType refine_type, global_light_change_type, residual_type; // residual_signatures.cpp
+extern const PassType tile_error_estimate_type, allocate_samples_type,
+    tile_refine_type;                     // sample_signatures.cpp
+extern const PassType tile_variance_type; // papers/tile_variance_signature.cpp
+extern const PassType probe_type;         // probe_signature.cpp
+extern const PassType accumulate_type;    // accumulate_signature.cpp
+extern const PassType clear_type;         // clear_signature.cpp
 
-extern const PassKind restir_initial_kind, restir_temporal_kind, restir_spatial_kind,
-    restir_resolve_kind; // restir_signatures.cpp
+extern const PassType restir_initial_type, restir_temporal_type, restir_spatial_type,
+    restir_resolve_type; // restir_signatures.cpp
 
-// Ports that several kinds declare with the same meaning.
+// Ports that several pass types declare with the same meaning.
 namespace port {
 // What an image has to be for the channels that kernels read and write of it.
 inline constexpr Format color_formats[] = {Format::rgba16f, Format::rgba32f, Format::b10g11r11f,
@@ -88,12 +90,13 @@ inline constexpr Port velocity{
     way_formats};
 inline constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
                               "uint",    "as subsurface.classify writes them", {}};
-inline constexpr Port shares{"shares",
-                             Usage::storage_buffer_read,
-                             false,
-                             "uint",
-                             "by tile of the render rectangle: steps of samples it was given, 0 to 3",
-                             {}};
+inline constexpr Port samples_per_tile{
+    "samples_per_tile",
+    Usage::storage_buffer_read,
+    false,
+    "uint",
+    "by tile of the render rectangle: steps of samples it was given, 0 to 3",
+    {}};
 // Of an image that was cleared in the same frame and is written where there is subsurface: what was not
 // written reads 0 in the next frame.
 inline constexpr std::string_view part_of_cleared = "writeonly image2D";
@@ -114,7 +117,7 @@ inline constexpr Port burley_ports[] = {
     port::tiles, port::arguments, port::scattered,
 };
 inline constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format::r32f};
-inline constexpr std::string_view doubts_doc =
+inline constexpr std::string_view tile_errors_doc =
     "by tile of the render rectangle: how far off it is expected to be, 0 = not at all";
 } // namespace port
 
@@ -127,8 +130,8 @@ constexpr SettingValue option_value(int64_t index) {
 
 namespace setting {
 // One of `options`; options[standard] where a graph says nothing.
-constexpr KindSetting choice(std::string_view name, std::span<const std::string_view> options,
-                             std::string_view doc, int64_t standard = 0) {
+constexpr PassTypeSetting choice(std::string_view name, std::span<const std::string_view> options,
+                                 std::string_view doc, int64_t standard = 0) {
   return {.name = name,
           .type = SettingType::enumeration,
           .default_value = option_value(standard),
@@ -139,27 +142,27 @@ constexpr KindSetting choice(std::string_view name, std::span<const std::string_
           .doc = doc};
 }
 
-constexpr KindSetting real(std::string_view name, double standard, double least, double greatest,
-                           std::string_view unit, std::string_view doc) {
+constexpr PassTypeSetting real(std::string_view name, double standard, double minimum, double maximum,
+                               std::string_view unit, std::string_view doc) {
   return {.name = name,
           .type = SettingType::real,
           .default_value = {SettingType::real, 0, standard},
-          .minimum = least,
-          .maximum = greatest,
+          .minimum = minimum,
+          .maximum = maximum,
           .options = {},
           .unit = unit,
           .doc = doc};
 }
 
 // A view may have its own value, and each frame another one.
-constexpr KindSetting per_frame(KindSetting setting) {
+constexpr PassTypeSetting per_frame(PassTypeSetting setting) {
   setting.per_frame = true;
   return setting;
 }
 
-// Settings that several kinds declare with the same meaning.
+// Settings that several pass types declare with the same meaning.
 inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre", "demodulate"};
-inline constexpr KindSetting texturing =
+inline constexpr PassTypeSetting texturing =
     choice("texturing", texturing_options,
            "where albedo is applied: after scattering (keeps texture detail), "
            "its square root on both sides, or before; demodulate: lighting already contains albedo, which "

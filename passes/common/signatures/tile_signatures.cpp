@@ -28,7 +28,7 @@ constexpr Port classify_ports[] = {
     {"light_range", Usage::storage_buffer_write, true, "uvec4", light_range_doc, {}},
     {"light_cells", Usage::storage_buffer_write, true, "uvec4", light_cells_doc, {}},
 };
-constexpr KindSetting classify_settings[] = {setting::texturing};
+constexpr PassTypeSetting classify_settings[] = {setting::texturing};
 
 constexpr Port flat_ports[] = {
     {"light_range", Usage::storage_buffer_read, false, "uvec4", light_range_doc, {}},
@@ -47,7 +47,7 @@ constexpr Port skips_ports[] = {
      Usage::storage_buffer_read,
      false,
      "uint",
-     "as subsurface.classify and subsurface.flat write them",
+     "as subsurface.classify and subsurface.classify_uniform_light write them",
      {}},
     port::material,
     {"skips", Usage::storage_image_write, true, "image2D",
@@ -56,7 +56,7 @@ constexpr Port skips_ports[] = {
 
 } // namespace
 
-const PassKind classify_kind{
+const PassType classify_type{
     .name = "subsurface.classify",
     .shader = "common/subsurface_classify",
     .doc = "Classifies 8x8 tiles by material and projected scattering radius.",
@@ -66,9 +66,9 @@ const PassKind classify_kind{
     .side_effects = false,
 };
 
-const PassKind flat_kind{
-    .name = "subsurface.flat",
-    .shader = "common/subsurface_flat",
+const PassType classify_uniform_light_type{
+    .name = "subsurface.classify_uniform_light",
+    .shader = "common/subsurface_classify_uniform_light",
     .doc = "Leaves tiles alone whose light is the same as far as light reaches.",
     .ports = flat_ports,
     .settings = {},
@@ -76,9 +76,9 @@ const PassKind flat_kind{
     .side_effects = false,
 };
 
-const PassKind skips_kind{
-    .name = "subsurface.skips",
-    .shader = "common/subsurface_skips",
+const PassType debug_tile_class_type{
+    .name = "subsurface.debug_tile_class",
+    .shader = "common/subsurface_debug_tile_class",
     .doc = "Shows tools what each tile was left out as.",
     .ports = skips_ports,
     .settings = {},
@@ -86,7 +86,7 @@ const PassKind skips_kind{
     .side_effects = false,
 };
 
-const PassKind tile_list_kind{
+const PassType tile_list_type{
     .name = "subsurface.tile_list",
     .shader = "common/subsurface_tile_list",
     .doc = "Compacts tile classes into a list in row order and the indirect arguments for it (a scan without "

@@ -1,7 +1,7 @@
 #include "tests/framegraph/interpret/commands.hpp"
 
 #include "framegraph/verify/structure.hpp"
-#include "tests/framegraph/interpret/stand_in.hpp"
+#include "tests/framegraph/interpret/placeholder.hpp"
 
 #include <algorithm>
 #include <array>

@@ -125,7 +125,7 @@ struct Interpreter {
       uint32_t part = 0;
       for (const uint32_t piece : pieces_of(accesses[a], frame)) {
         touch(piece, pass.queue);
-        write(piece, stand_in(pass.declared.value, accesses[a].port, part++, inputs));
+        write(piece, placeholder(pass.declared.value, accesses[a].port, part++, inputs));
       }
     }
   }

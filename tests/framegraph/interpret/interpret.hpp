@@ -3,7 +3,7 @@
 // in order, memory or in what they leave out must give the host the same pixels.
 
 #include "framegraph/compile/plan.hpp"
-#include "tests/framegraph/interpret/stand_in.hpp"
+#include "tests/framegraph/interpret/placeholder.hpp"
 
 #include <optional>
 #include <vector>

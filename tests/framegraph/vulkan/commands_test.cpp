@@ -9,10 +9,10 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr size_t most_barriers = 64;
+constexpr size_t max_barriers = 64;
 
 struct Recorded { // static: functions of the driver have no user pointer
-  VkImageMemoryBarrier2 barriers[most_barriers];
+  VkImageMemoryBarrier2 barriers[max_barriers];
   size_t barrier_count = 0, batches = 0, dispatches = 0, labels = 0;
   uint32_t groups[3];
   VkMemoryBarrier2 all_memory; // the last that names no resource
@@ -28,7 +28,7 @@ void make_recording(vulkan::FunctionTable& table) {
       recorded.dispatches_before_it = recorded.dispatches;
       ++recorded.all_memory_count;
     }
-    for (uint32_t i = 0; i < info->imageMemoryBarrierCount && recorded.barrier_count < most_barriers; ++i)
+    for (uint32_t i = 0; i < info->imageMemoryBarrierCount && recorded.barrier_count < max_barriers; ++i)
       recorded.barriers[recorded.barrier_count++] = info->pImageMemoryBarriers[i];
   };
   table.vkCmdBindPipeline = [](VkCommandBuffer, VkPipelineBindPoint, VkPipeline) {};

@@ -31,7 +31,7 @@ vulkan::Error ExecutorTest::try_executor(const SmallGraph& graph, const Plan& pl
   vulkan::ExecutorInput input;
   input.device = &on;
   input.graph = &graph.graph;
-  input.kinds = &small_kinds();
+  input.pass_types = &small_pass_types();
   input.plan = &plan;
   input.kernels = small_kernels();
   input.environment = environment;

@@ -89,12 +89,12 @@ TEST_F(FailureTest, AMissingKernelIsNamed) {
   vulkan::ExecutorInput input;
   input.device = &dermis_device;
   input.graph = &g.graph;
-  input.kinds = &small_kinds();
+  input.pass_types = &small_pass_types();
   input.plan = &plan;
   std::unique_ptr<vulkan::Executor> made;
   vulkan::Error error = vulkan::Executor::create(input, made);
   EXPECT_EQ(error.kind, vulkan::ErrorKind::shader);
-  EXPECT_THAT(error.text, HasSubstr("kernel 'test_add' of kind 'test.add' is not among the 0 given"));
+  EXPECT_THAT(error.text, HasSubstr("kernel 'test_add' of type 'test.add' is not among the 0 given"));
   input.kernels = small_kernels();
   error = vulkan::Executor::create(input, made);
   EXPECT_EQ(error.kind, vulkan::ErrorKind::shader) << "the kernels read an environment that is not there";
@@ -120,7 +120,7 @@ TEST_F(FailureTest, BadInputsAreRefused) {
   EXPECT_EQ(vulkan::Executor::create(input, made).kind, vulkan::ErrorKind::argument);
   input.device = &dermis_device;
   input.graph = &g.graph;
-  input.kinds = &small_kinds();
+  input.pass_types = &small_pass_types();
   input.plan = &plan;
   input.frames_in_flight = vulkan::max_frames_in_flight + 1;
   EXPECT_THAT(vulkan::Executor::create(input, made).text,

@@ -20,7 +20,7 @@ struct Frame {
   std::vector<std::byte> constants;
 };
 
-struct RefusedFrames : ExecutorTest {
+struct RejectedFrames : ExecutorTest {
   static constexpr uint32_t side = 16;
   SmallGraph graph;
   TestImage result;
@@ -55,7 +55,7 @@ struct RefusedFrames : ExecutorTest {
   }
 };
 
-TEST_F(RefusedFrames, SayWhatIsWrongAndLeaveTheExecutorAsItWas) {
+TEST_F(RejectedFrames, SayWhatIsWrongAndLeaveTheExecutorAsItWas) {
   frame_index = 4;
   ASSERT_FALSE(frame());
   const auto light = static_cast<size_t>(graph.slot("light")),
@@ -94,7 +94,7 @@ TEST_F(RefusedFrames, SayWhatIsWrongAndLeaveTheExecutorAsItWas) {
 }
 
 // One value for each setting of the graph, or none.
-TEST_F(RefusedFrames, OfFewerSettingsThanTheGraphHasAreRefused) {
+TEST_F(RejectedFrames, OfFewerSettingsThanTheGraphHasAreRefused) {
   SmallGraph two;
   two.setting("bias", 1);
   two.setting("other", 2);
@@ -109,7 +109,7 @@ TEST_F(RefusedFrames, OfFewerSettingsThanTheGraphHasAreRefused) {
   EXPECT_THAT(refused.text, HasSubstr("settings has fewer values"));
 }
 
-TEST_F(RefusedFrames, BuffersOfTheHostAreRefusedBySizeAndPlace) {
+TEST_F(RejectedFrames, BuffersOfTheHostAreRefusedBySizeAndPlace) {
   SmallGraph with;
   ResourceDeclaration& weights = with.buffer("weights", 1);
   weights.origin = Origin::imported;
@@ -168,7 +168,7 @@ TEST_F(ExecutorTest, EnvironmentsThatNoDeviceCanBindAreRefused) {
     vulkan::ExecutorInput input;
     input.device = &dermis_device;
     input.graph = &g.graph;
-    input.kinds = &small_kinds();
+    input.pass_types = &small_pass_types();
     input.plan = &plan;
     input.kernels = small_kernels();
     input.environment = environment;

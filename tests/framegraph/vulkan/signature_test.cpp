@@ -34,16 +34,16 @@ const EnvironmentBinding environment[] = {
     {EnvironmentType::linear_sampler, 0, {}},
 };
 
-std::string problems(const PassKind& kind, const Reflection& reflection,
+std::string problems(const PassType& type, const Reflection& reflection,
                      std::span<const EnvironmentBinding> bindings = environment) {
   std::string all;
-  for (const std::string& line : check_signature(kind, bindings, reflection))
+  for (const std::string& line : check_signature(type, bindings, reflection))
     all += line + "\n";
   return all;
 }
 
-PassKind kind(const char* name) {
-  return small_kinds()[small_kinds().find(name)];
+PassType type(const char* name) {
+  return small_pass_types()[small_pass_types().find(name)];
 }
 
 TEST(Reflection, ReadsBindingsPushConstantsAndLocalSize) {
@@ -92,13 +92,13 @@ TEST(Reflection, AModuleWithRandomWordsNeverHarms) {
     }
     std::string error;
     const auto result = reflect(broken, error);
-    if (result) problems(kind("test.mark"), *result);
+    if (result) problems(type("test.mark"), *result);
   }
 }
 
 TEST(Signature, EveryTestKernelFitsItsOwn) {
-  for (uint32_t i = 0; i < small_kinds().size(); ++i) {
-    const PassKind& own = small_kinds()[KindId{i}];
+  for (uint32_t i = 0; i < small_pass_types().size(); ++i) {
+    const PassType& own = small_pass_types()[PassTypeId{i}];
     if (!own.shader.empty()) {
       EXPECT_THAT(problems(own, reflected(own.shader)), IsEmpty());
     }
@@ -106,7 +106,7 @@ TEST(Signature, EveryTestKernelFitsItsOwn) {
 }
 
 TEST(Signature, APortOfAnotherTypeIsNamedWithBothSides) {
-  PassKind changed = kind("test.add");
+  PassType changed = type("test.add");
   std::vector<Port> ports(changed.ports.begin(), changed.ports.end());
   ports[1].usage = Usage::storage_buffer_read;
   ports[2].glsl_type = "texture2D";
@@ -115,7 +115,7 @@ TEST(Signature, APortOfAnotherTypeIsNamedWithBothSides) {
   changed.ports = ports;
   const std::string text = problems(changed, reflected("test_add"));
   EXPECT_THAT(
-      text, HasSubstr("kernel 'test_add' of kind 'test.add': port 'b' (set 0 binding 1) is a buffer block in "
+      text, HasSubstr("kernel 'test_add' of type 'test.add': port 'b' (set 0 binding 1) is a buffer block in "
                       "the signature and a texture ('b') in the shader"));
   EXPECT_THAT(text,
               HasSubstr("port 'ids' (set 0 binding 2) reads as float by its type texture2D and as uint"));
@@ -125,8 +125,8 @@ TEST(Signature, APortOfAnotherTypeIsNamedWithBothSides) {
 }
 
 TEST(Signature, PushConstantsMustFollowTheSettings) {
-  PassKind changed = kind("test.fill");
-  std::vector<KindSetting> settings(changed.settings.begin(), changed.settings.end());
+  PassType changed = type("test.fill");
+  std::vector<PassTypeSetting> settings(changed.settings.begin(), changed.settings.end());
   std::swap(settings[0], settings[1]);
   changed.settings = settings;
   std::string text = problems(changed, reflected("test_fill"));
@@ -144,7 +144,7 @@ TEST(Signature, TheEnvironmentMustHoldWhatTheShaderReads) {
       {EnvironmentType::uniform_buffer, 16, {}},
       {EnvironmentType::uniform_buffer, 8, {}},
   };
-  const std::string text = problems(kind("test.fill"), reflected("test_fill"), small);
+  const std::string text = problems(type("test.fill"), reflected("test_fill"), small);
   EXPECT_THAT(text, HasSubstr("environment binding 0 has 16 bytes, 'frame' in the shader needs 20"));
   EXPECT_THAT(text,
               HasSubstr("environment binding 1 is a uniform block in the signature and a buffer block"));
@@ -152,11 +152,11 @@ TEST(Signature, TheEnvironmentMustHoldWhatTheShaderReads) {
 }
 
 TEST(Signature, TheWorkgroupMustFitTheDispatch) {
-  PassKind changed = kind("test.classes");
+  PassType changed = type("test.classes");
   changed.dispatch = DispatchShape::over_view;
   EXPECT_THAT(problems(changed, reflected("test_classes")),
               HasSubstr("its workgroup is 64x1x1, this dispatch needs 8x8x1"));
-  changed = kind("test.list");
+  changed = type("test.list");
   changed.dispatch = DispatchShape::over_tile_grid;
   EXPECT_THAT(problems(changed, reflected("test_list")),
               HasSubstr("its workgroup is 1x1x1, this dispatch needs 64"));

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Port target{"target", Usage::storage_image_write, false, "image2D", "", {}};
 constexpr Port fill_ports[] = {target};
-constexpr KindSetting fill_settings[] = {
+constexpr PassTypeSetting fill_settings[] = {
     {"value", SettingType::real, {SettingType::real, 0, 1.0}, -1e6, 1e6, {}, "", ""},
     {"slope", SettingType::integer, {SettingType::integer, 0, 0.0}, -1000, 1000, {}, "", ""},
 };
@@ -30,7 +30,7 @@ constexpr Port add_ports[] = {
     {"second", Usage::storage_image_write, true, "image2D", "", {}},
     {"weights", Usage::storage_buffer_read, true, "float", "", {}},
 };
-constexpr KindSetting add_settings[] = {
+constexpr PassTypeSetting add_settings[] = {
     {"bias", SettingType::real, {SettingType::real, 0, 0.0}, -1e6, 1e6, {}, "", ""},
 };
 constexpr Port sample_ports[] = {{"a", Usage::sampled_image, false, "texture2D", "", {}}, target};
@@ -49,7 +49,7 @@ constexpr Port stamp_ports[] = {
     {"target", Usage::storage_image_write, true, "image2D", "", {}},
     {"ids", Usage::storage_image_write, true, "uimage2D", "", {}},
 };
-constexpr KindSetting stamp_settings[] = {
+constexpr PassTypeSetting stamp_settings[] = {
     {"seed", SettingType::integer, {SettingType::integer, 0, 0.0}, 0, 1000, {}, "", ""},
 };
 constexpr Port show_ports[] = {
@@ -62,25 +62,27 @@ constexpr Port clear_ports[] = {
     {"buffer", Usage::clear, true, "", "", {}},
 };
 
-KindRegistry make_kinds() {
-  KindRegistry kinds;
-  kinds.add({"test.fill", "test_fill", "", fill_ports, fill_settings, DispatchShape::over_view, false});
-  kinds.add({"test.add", "test_add", "", add_ports, add_settings, DispatchShape::over_view, false});
-  kinds.add({"test.sample", "test_sample", "", sample_ports, {}, DispatchShape::over_view, false});
-  kinds.add({"test.classes", "test_classes", "", classes_ports, {}, DispatchShape::over_tile_grid, false});
-  kinds.add({"test.list", "test_list", "", list_ports, {}, DispatchShape::single_group, false});
-  kinds.add({"test.mark", "test_mark", "", mark_ports, {}, DispatchShape::over_tiles, false});
-  kinds.add({"test.stamp", "test_stamp", "", stamp_ports, stamp_settings, DispatchShape::over_view, false});
-  kinds.add({"test.show", "test_show", "", show_ports, {}, DispatchShape::over_view, false});
-  kinds.add({"test.clear", "", "", clear_ports, {}, DispatchShape::none, false});
-  return kinds;
+PassTypeRegistry make_pass_types() {
+  PassTypeRegistry pass_types;
+  pass_types.add({"test.fill", "test_fill", "", fill_ports, fill_settings, DispatchShape::over_view, false});
+  pass_types.add({"test.add", "test_add", "", add_ports, add_settings, DispatchShape::over_view, false});
+  pass_types.add({"test.sample", "test_sample", "", sample_ports, {}, DispatchShape::over_view, false});
+  pass_types.add(
+      {"test.classes", "test_classes", "", classes_ports, {}, DispatchShape::over_tile_grid, false});
+  pass_types.add({"test.list", "test_list", "", list_ports, {}, DispatchShape::single_group, false});
+  pass_types.add({"test.mark", "test_mark", "", mark_ports, {}, DispatchShape::over_tiles, false});
+  pass_types.add(
+      {"test.stamp", "test_stamp", "", stamp_ports, stamp_settings, DispatchShape::over_view, false});
+  pass_types.add({"test.show", "test_show", "", show_ports, {}, DispatchShape::over_view, false});
+  pass_types.add({"test.clear", "", "", clear_ports, {}, DispatchShape::none, false});
+  return pass_types;
 }
 
 } // namespace
 
-const KindRegistry& small_kinds() {
-  static const KindRegistry kinds = make_kinds();
-  return kinds;
+const PassTypeRegistry& small_pass_types() {
+  static const PassTypeRegistry pass_types = make_pass_types();
+  return pass_types;
 }
 
 std::span<const vulkan::KernelCode> small_kernels() {
@@ -133,52 +135,52 @@ ResourceDeclaration& SmallGraph::buffer(const std::string& name, uint32_t extra_
   return added;
 }
 
-PortBinding SmallGraph::binding(const PassKind& kind, const std::string& port,
+PortBinding SmallGraph::binding(const PassType& type, const std::string& port,
                                 const std::string& text) const {
   const size_t at = std::min(text.find("@-"), text.size());
   const size_t end = std::min(text.find_first_of("#["), at);
   PortBinding result;
   result.part = parse_part(text.substr(end, at - end)).value_or(ImagePart{});
-  result.port = static_cast<uint32_t>(find_port(kind, port));
+  result.port = static_cast<uint32_t>(find_port(type, port));
   result.frames_back = at == text.size() ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
   for (uint32_t i = 0; i < graph.resources.size(); ++i)
     if (graph.resources[i].name == text.substr(0, end)) result.resource = ResourceId{i};
   EXPECT_TRUE(result.resource.valid()) << text;
-  EXPECT_LT(result.port, kind.ports.size()) << port;
+  EXPECT_LT(result.port, type.ports.size()) << port;
   return result;
 }
 
-std::vector<PortBinding> SmallGraph::bindings(const PassKind& kind, const Ports& ports) const {
+std::vector<PortBinding> SmallGraph::bindings(const PassType& type, const Ports& ports) const {
   std::vector<PortBinding> result;
   for (const auto& [port, text] : ports) {
     const size_t condition = text.find('?');
-    result.push_back(binding(kind, port, text.substr(0, condition)));
+    result.push_back(binding(type, port, text.substr(0, condition)));
     if (condition == std::string::npos) continue;
     result.back().when = ReadWhen::history_valid;
     if (condition + 1 == text.size()) continue;
-    result.push_back(binding(kind, port, text.substr(condition + 1)));
+    result.push_back(binding(type, port, text.substr(condition + 1)));
     result.back().when = ReadWhen::history_invalid;
   }
   return result;
 }
 
-PassDeclaration& SmallGraph::pass(const std::string& name, const std::string& kind, const Ports& reads,
+PassDeclaration& SmallGraph::pass(const std::string& name, const std::string& type, const Ports& reads,
                                   const Ports& writes) {
   PassDeclaration& added = graph.passes.emplace_back();
   added.name = name;
-  added.kind = small_kinds().find(kind);
-  for (const PortBinding& one : bindings(small_kinds()[added.kind], reads))
+  added.type = small_pass_types().find(type);
+  for (const PortBinding& one : bindings(small_pass_types()[added.type], reads))
     graph.bind(added, PortSide::read, one, {});
-  for (const PortBinding& one : bindings(small_kinds()[added.kind], writes))
+  for (const PortBinding& one : bindings(small_pass_types()[added.type], writes))
     graph.bind(added, PortSide::write, one, {});
   return added;
 }
 
 void SmallGraph::set(PassDeclaration& pass, const std::string& setting, double value) {
-  const PassKind& kind = small_kinds()[pass.kind];
+  const PassType& type = small_pass_types()[pass.type];
   SettingBinding& added = pass.settings.emplace_back();
-  added.setting = static_cast<uint32_t>(find_setting(kind, setting));
-  added.literal = {kind.settings[added.setting].type, static_cast<int64_t>(value), value};
+  added.setting = static_cast<uint32_t>(find_setting(type, setting));
+  added.literal = {type.settings[added.setting].type, static_cast<int64_t>(value), value};
 }
 
 SettingDeclaration& SmallGraph::setting(const std::string& name, double value) {
@@ -193,7 +195,7 @@ SettingDeclaration& SmallGraph::setting(const std::string& name, double value) {
 
 void SmallGraph::follow(PassDeclaration& pass, const std::string& setting, const std::string& graph_setting) {
   SettingBinding& added = pass.settings.emplace_back();
-  added.setting = static_cast<uint32_t>(find_setting(small_kinds()[pass.kind], setting));
+  added.setting = static_cast<uint32_t>(find_setting(small_pass_types()[pass.type], setting));
   for (uint32_t i = 0; i < graph.settings.size(); ++i)
     if (graph.settings[i].name == graph_setting) added.from = SettingId{i};
 }
@@ -213,7 +215,7 @@ Plan SmallGraph::compile(const DeviceProfile& device, uint32_t width, uint32_t h
                          const std::vector<std::string>& unbound, bool poison) const {
   CompileInput input;
   input.graph = &graph;
-  input.kinds = &small_kinds();
+  input.pass_types = &small_pass_types();
   input.device = &device;
   input.view_width = width;
   input.view_height = height;

@@ -12,7 +12,7 @@ namespace dermis::testing {
 
 // test.fill, test.add, test.sample, test.classes, test.list, test.mark, test.stamp, test.show, test.clear;
 // ports as in kernels/*.comp.
-const KindRegistry& small_kinds();
+const PassTypeRegistry& small_pass_types();
 std::span<const vulkan::KernelCode> small_kernels();
 
 struct SmallFrame { // std140, kernels/frame.glsl
@@ -30,7 +30,7 @@ struct SmallGraph {
   ResourceDeclaration& image(const std::string& name, Format format = Format::r32f);
   ResourceDeclaration& history(const std::string& name, uint32_t frames = 1);
   ResourceDeclaration& buffer(const std::string& name, uint32_t extra_elements); // 4 bytes a tile and extra
-  PassDeclaration& pass(const std::string& name, const std::string& kind, const Ports& reads,
+  PassDeclaration& pass(const std::string& name, const std::string& type, const Ports& reads,
                         const Ports& writes);
   void set(PassDeclaration& pass, const std::string& setting, double value);
   SettingDeclaration& setting(const std::string& name, double value);
@@ -43,8 +43,8 @@ struct SmallGraph {
 
 private:
   ResourceDeclaration& resource(const std::string& name, Format format);
-  PortBinding binding(const PassKind& kind, const std::string& port, const std::string& text) const;
-  std::vector<PortBinding> bindings(const PassKind& kind, const Ports& ports) const;
+  PortBinding binding(const PassType& type, const std::string& port, const std::string& text) const;
+  std::vector<PortBinding> bindings(const PassType& type, const Ports& ports) const;
 };
 
 } // namespace dermis::testing

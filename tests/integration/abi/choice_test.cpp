@@ -27,7 +27,7 @@ struct Choice : DermisTest {
     make_images(graph);
   }
 
-  void set_budget(float ms, uint32_t flags = DERMIS_BUDGET_METER) {
+  void set_budget(float ms, uint32_t flags = DERMIS_BUDGET_DETERMINISTIC) {
     const std::string text = invented_times;
     const dermis_source calibration = source_of(text, "invented");
     dermis_budget budget = DERMIS_BUDGET_INIT;
@@ -271,7 +271,7 @@ TEST_F(Choice, CountsTilesAndTellsHowFarLightGoes) {
   EXPECT_NEAR(std::log2(choice.mean_d_px), std::log2(3.67 / 3.5 / 0.5), 1.0 / 16);
 }
 
-struct ThinParts : Choice {
+struct TransmissionStats : Choice {
   // Of a host that gives no scene.
   static GraphOptions without_scene() {
     GraphOptions options;
@@ -295,12 +295,12 @@ struct ThinParts : Choice {
     EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
     dermis_choice choice = DERMIS_CHOICE_INIT;
     EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
-    return double(choice.through_rms);
+    return double(choice.transmitted_rms);
   }
 };
 
 // What Burley's profile carries further than t, 1/4 e^(-t/d) + 3/4 e^(-t/3d), by channel.
-TEST_F(ThinParts, AreCountedByTheLightThatComesThroughThem) {
+TEST_F(TransmissionStats, AreCountedByTheLightThatComesThroughThem) {
   make();
   Diagnostics diagnostics;
   const auto document = parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
@@ -322,7 +322,7 @@ TEST_F(ThinParts, AreCountedByTheLightThatComesThroughThem) {
   EXPECT_LE(counted(0, 6e4f, 1e4f), 1) << "no more than the brightest light";
 }
 
-TEST_F(ThinParts, AreUnknownWhereTheHostDoesNotSayHowThickTheyAre) {
+TEST_F(TransmissionStats, AreUnknownWhereTheHostDoesNotSayHowThickTheyAre) {
   GraphOptions options = without_scene();
   options.unbound.emplace_back("thickness");
   dermis_report report = nullptr;
@@ -332,18 +332,18 @@ TEST_F(ThinParts, AreUnknownWhereTheHostDoesNotSayHowThickTheyAre) {
   EXPECT_THAT(said.all, HasSubstr("does not offer 'counted': 'thickness' is not bound"));
   EXPECT_THAT(said.all, HasSubstr("does not offer 'restir': "));
   make_images(graph);
-  EXPECT_EQ(run_frame().through_rms, 0);
+  EXPECT_EQ(run_frame().transmitted_rms, 0);
 }
 
-TEST_F(ThinParts, CountAgainstTechniquesThatDoNotSeeThem) {
+TEST_F(TransmissionStats, CountAgainstTechniquesThatDoNotSeeThem) {
   make();
-  const std::string table = R"({ "dermis_errors": 1, "scenes": "invented",
+  const std::string table = R"({ "dermis_errors": 2, "scenes": "invented",
     "unscattered": [[1, 0.001]], "unscattered_through": 2,
-    "techniques": [{ "name": "smooth", "kinds": [{ "kind": "subsurface.sap_gather" }], "rmse": [[1, 0.003]], "through": 0.5 }] })";
+    "techniques": [{ "name": "smooth", "pass_types": [{ "type": "subsurface.sap_gather" }], "rmse": [[1, 0.003]], "through": 0.5 }] })";
   const dermis_source errors = source_of(table, "invented");
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.milliseconds = 1e3f;
-  budget.flags = DERMIS_BUDGET_METER;
+  budget.flags = DERMIS_BUDGET_DETERMINISTIC;
   budget.errors = &errors;
   ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
   const double through = counted(0.8e-3f, 0.5f);
@@ -405,7 +405,7 @@ TEST_F(Choice, WrongBudgetsAreRefusedAndChangeNothing) {
   EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT);
   budget.flags = 0;
   const std::string text =
-      "{ \"dermis_errors\": 1,\n \"scenes\": \"s\", \"unscatterd\": [[1, 1]], \"techniques\": [] }";
+      "{ \"dermis_errors\": 2,\n \"scenes\": \"s\", \"unscatterd\": [[1, 1]], \"techniques\": [] }";
   const dermis_source errors = source_of(text, "errors.json");
   budget.errors = &errors;
   dermis_report report = nullptr;

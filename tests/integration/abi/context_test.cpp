@@ -26,12 +26,12 @@ TEST_F(Context, RequirementsAreListedWithTheirReasonAndPresence) {
     EXPECT_TRUE(item.required == 0 || item.present == 1) << item.name;
     EXPECT_GT(std::strlen(item.why), 10u) << item.name;
   }
-  uint32_t room = count - 1;
+  uint32_t capacity = count - 1;
   items.back().name = nullptr;
-  EXPECT_EQ(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device, &room,
+  EXPECT_EQ(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device, &capacity,
                                       items.data()),
             DERMIS_INCOMPLETE);
-  EXPECT_EQ(room, count);
+  EXPECT_EQ(capacity, count);
   EXPECT_EQ(items.back().name, nullptr) << "no element beyond the room is written";
 }
 

@@ -198,7 +198,7 @@ TEST_F(GraphLife, OverlaysApplyAtCreationAndAtEachReload) {
   EXPECT_EQ(reload_text(wide, source), DERMIS_OK);
   EXPECT_GT(transient_bytes(wide), transient_bytes(narrow));
 
-  options.overlays = {"{ \"dermis_overlay\": 1, \"edits\": [ { \"remove\": \"/passes/none\" } ] }"};
+  options.overlays = {"{ \"dermis_overlay\": 2, \"edits\": [ { \"remove\": \"/passes/none\" } ] }"};
   dermis_graph graph = nullptr;
   dermis_report report = nullptr;
   EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_ERROR_CONFIG);
@@ -222,7 +222,7 @@ TEST_F(GraphLife, IncludedFilesComeFromTheHostOncePerCreationAndReload) {
   const size_t begin = burley.find("{ \"pass\": \"classify\"");
   const size_t end = burley.find("} }", begin) + 3;
   ASSERT_LT(end, burley.size());
-  Delivery delivery{"{ \"dermis_fragment\": 1, \"passes\": [ " + burley.substr(begin, end - begin) + " ] }"};
+  Delivery delivery{"{ \"dermis_fragment\": 2, \"passes\": [ " + burley.substr(begin, end - begin) + " ] }"};
   std::string including = burley;
   including.replace(begin, end - begin, "{ \"include\": \"parts/classify.json\" }");
   GraphOptions options;

@@ -26,10 +26,10 @@ size_t use(void) {
   dermis_budget budget = DERMIS_BUDGET_INIT;
   dermis_choice choice = DERMIS_CHOICE_INIT;
   dermis_port port = DERMIS_PORT_INIT;
-  dermis_kind_setting setting = DERMIS_KIND_SETTING_INIT;
+  dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
   dermis_pass_port pass_port = DERMIS_PASS_PORT_INIT;
   dermis_pass_call call = DERMIS_PASS_CALL_INIT;
-  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
+  dermis_pass_type kind = DERMIS_PASS_TYPE_INIT;
   return context_desc.struct_size + graph_desc.struct_size + binding.struct_size + source.struct_size +
          profile.struct_size + slot_format.struct_size + message.struct_size + requirement.struct_size +
          slot.struct_size + memory.struct_size + timing.struct_size + frame.struct_size + budget.struct_size +

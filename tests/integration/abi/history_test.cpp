@@ -45,7 +45,7 @@ struct Histories : DermisTest {
       ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
     }
   }
-  static std::vector<dermis_history> told(dermis_graph graph) {
+  static std::vector<dermis_history> reported(dermis_graph graph) {
     uint32_t count = 0;
     EXPECT_EQ(dermis_graph_histories(graph, &count, nullptr), DERMIS_OK) << dermis_last_error();
     std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
@@ -60,7 +60,7 @@ struct Histories : DermisTest {
   }
   void expect(uint32_t age, dermis_history_reason reason, const char* text) const {
     std::vector<std::string> names;
-    for (const dermis_history& one : told(graph)) {
+    for (const dermis_history& one : reported(graph)) {
       if (std::strncmp(one.name, "past", 4) != 0) continue; // the graph's own
       names.emplace_back(one.name);
       EXPECT_EQ(one.valid, age > 0 ? 1u : 0u);
@@ -220,13 +220,13 @@ TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
   run(2);
   const dermis_source source = source_of(text, "graph.json");
   ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
-  const auto before = told(graph);
+  const auto before = reported(graph);
   ASSERT_EQ(before.size(), 2u); // ratio and place
   EXPECT_EQ(named(before, "ratio").valid, 0u);
   EXPECT_EQ(named(before, "ratio").reason, DERMIS_HISTORY_RELOADED);
   EXPECT_EQ(named(before, "place").age, 2u);
   run(1);
-  const auto after = told(graph);
+  const auto after = reported(graph);
   EXPECT_EQ(named(after, "ratio").age, 1u);
   EXPECT_EQ(named(after, "ratio").reason, DERMIS_HISTORY_RELOADED);
   EXPECT_EQ(named(after, "place").age, 3u);
@@ -249,7 +249,7 @@ TEST_F(Histories, OfAPlanThatDidNotRunAreInvalid) {
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.milliseconds = 1e-4f; // too little for anything: what is fastest, which keeps no light
-  budget.flags = DERMIS_BUDGET_METER;
+  budget.flags = DERMIS_BUDGET_DETERMINISTIC;
   ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
   run(1);
   expect(0, DERMIS_HISTORY_OTHER_PLAN, "another plan");
@@ -292,7 +292,7 @@ TEST_F(Histories, OfAViewAreItsOwn) {
 
 TEST_F(Histories, AGraphWithoutAnyTellsNone) {
   graph = make_graph();
-  EXPECT_TRUE(told(graph).empty());
+  EXPECT_TRUE(reported(graph).empty());
 }
 
 TEST_F(Histories, WrongArgumentsAreNamed) {

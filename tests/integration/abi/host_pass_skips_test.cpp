@@ -57,15 +57,15 @@ struct HostPassSkips : DermisTest {
       made.back().usage = port.usage;
       made.back().optional = port.optional ? 1 : 0;
     }
-    dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
-    kind.name = name;
-    kind.ports = made.data();
-    kind.port_count = static_cast<uint32_t>(made.size());
-    kind.record = keep_name;
-    kind.user = &calls;
-    kind.serves_scattering = serves ? 1 : 0;
-    kind.side_effects = side_effects ? 1 : 0;
-    ASSERT_EQ(dermis_register_pass_kind(context, &kind), DERMIS_OK) << dermis_last_error();
+    dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
+    type.name = name;
+    type.ports = made.data();
+    type.port_count = static_cast<uint32_t>(made.size());
+    type.record = keep_name;
+    type.user = &calls;
+    type.serves_scattering = serves ? 1 : 0;
+    type.side_effects = side_effects ? 1 : 0;
+    ASSERT_EQ(dermis_register_pass_type(context, &type), DERMIS_OK) << dermis_last_error();
   }
 
   // Makes a graph with `passes`, whose export is `toned`, and records a frame.
@@ -73,7 +73,7 @@ struct HostPassSkips : DermisTest {
     calls.clear();
     const std::string image = R"({ "format": "rgba16f", "size": "view" })";
     GraphOptions options;
-    options.text = R"({ "dermis": 1, "name": "skips", "imports": { "given": )" + image +
+    options.text = R"({ "dermis": 2, "name": "skips", "imports": { "given": )" + image +
                    R"( }, "resources": { "list": { "buffer": { "stride": 4, "count": [16, 1] } },
                    "usual": { "buffer": { "stride": 4, "count": [16, 1] } },
                    "kept": { "format": "rgba16f", "size": "view", "history": { "frames": 1 } },
@@ -113,13 +113,13 @@ constexpr Way nothing_scatters[] = {{false, 0}, {true, DERMIS_FRAME_BOUNDS}};
 
 TEST_F(HostPassSkips, HostPassesRunWhereNothingScatters) {
   for (const Way& way : nothing_scatters) {
-    run(R"({ "pass": "make", "kind": "studio.make", "write": { "out": "toned" } })", way.profiles, way.flags);
+    run(R"({ "pass": "make", "type": "studio.make", "write": { "out": "toned" } })", way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("make")) << way.profiles;
-    run(R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "given" }, "write": { "out": "toned" } })",
+    run(R"({ "pass": "tone", "type": "studio.tone", "read": { "from": "given" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("tone")) << way.profiles;
-    run(R"({ "pass": "count", "kind": "studio.count", "write": { "out": "lit" } },
-           { "pass": "make", "kind": "studio.make", "write": { "out": "toned" } })",
+    run(R"({ "pass": "count", "type": "studio.count", "write": { "out": "lit" } },
+           { "pass": "make", "type": "studio.make", "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("count", "make")) << "a pass with side effects";
   }
@@ -127,14 +127,14 @@ TEST_F(HostPassSkips, HostPassesRunWhereNothingScatters) {
 
 TEST_F(HostPassSkips, InputsOfSkippedPassesAreUnboundOrSkip) {
   const std::string scatter =
-      R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" } }, )";
+      R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" } }, )";
   for (const Way& way : nothing_scatters) {
     run(scatter +
-            R"({ "pass": "maybe", "kind": "studio.maybe", "read": { "from": "lit" }, "write": { "out": "toned" } })",
+            R"({ "pass": "maybe", "type": "studio.maybe", "read": { "from": "lit" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("maybe -")) << way.profiles;
     run(scatter +
-            R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })",
+            R"({ "pass": "tone", "type": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, IsEmpty()) << way.profiles;
     EXPECT_THAT(described(), HasSubstr("it reads 'lit', which only passes that"));
@@ -144,12 +144,12 @@ TEST_F(HostPassSkips, InputsOfSkippedPassesAreUnboundOrSkip) {
 
 TEST_F(HostPassSkips, OtherwiseStandsIn) {
   for (const Way& way : nothing_scatters) {
-    run(R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
-           { "pass": "tone", "kind": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })",
+    run(R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
+           { "pass": "tone", "type": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("tone")) << way.profiles;
     if (way.profiles) continue;
-    EXPECT_THAT(described(), HasSubstr("off: its kind serves scattering, and the graph has no profile"));
+    EXPECT_THAT(described(), HasSubstr("off: its pass type serves scattering, and the graph has no profile"));
   }
 }
 
@@ -157,9 +157,9 @@ TEST_F(HostPassSkips, OtherwiseStandsIn) {
 TEST_F(HostPassSkips, ARequiredExportMayWaitForBounds) {
   export_is_optional = false;
   const std::string scatter =
-      R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" } }, )";
+      R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" } }, )";
   const std::string tone =
-      R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })";
+      R"({ "pass": "tone", "type": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })";
   run(scatter + tone, true, 0);
   EXPECT_THAT(calls, ElementsAre("scatter", "tone"));
   again(DERMIS_FRAME_BOUNDS);
@@ -170,9 +170,9 @@ TEST_F(HostPassSkips, ARequiredExportMayWaitForBounds) {
 
 TEST_F(HostPassSkips, ABufferStandsInForABuffer) {
   for (const Way& way : nothing_scatters) {
-    run(R"({ "pass": "usual", "kind": "clear", "write": { "target": "usual" } },
-           { "pass": "list", "kind": "studio.scatter_list", "write": { "list": "list" }, "otherwise": { "list": "usual" } },
-           { "pass": "use", "kind": "studio.use_list", "read": { "list": "list" }, "write": { "out": "toned" } })",
+    run(R"({ "pass": "usual", "type": "clear", "write": { "target": "usual" } },
+           { "pass": "list", "type": "studio.scatter_list", "write": { "list": "list" }, "otherwise": { "list": "usual" } },
+           { "pass": "use", "type": "studio.use_list", "read": { "list": "list" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("use")) << way.profiles;
   }
@@ -180,13 +180,13 @@ TEST_F(HostPassSkips, ABufferStandsInForABuffer) {
 
 TEST_F(HostPassSkips, AnUpdateNeedsContents) {
   const std::string scatter =
-                        R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "toned" } }, )",
-                    change = R"({ "pass": "change", "kind": "studio.change", "write": { "out": "toned" } })";
+                        R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "toned" } }, )",
+                    change = R"({ "pass": "change", "type": "studio.change", "write": { "out": "toned" } })";
   for (const Way& way : nothing_scatters) {
     run(scatter + change, way.profiles, way.flags);
     EXPECT_THAT(calls, IsEmpty()) << way.profiles;
     EXPECT_THAT(described(), HasSubstr("it reads 'toned', which only passes that"));
-    run(R"({ "pass": "make", "kind": "studio.make", "write": { "out": "toned" } }, )" + change, way.profiles,
+    run(R"({ "pass": "make", "type": "studio.make", "write": { "out": "toned" } }, )" + change, way.profiles,
         way.flags);
     EXPECT_THAT(calls, ElementsAre("make", "change")) << way.profiles;
   }
@@ -194,46 +194,46 @@ TEST_F(HostPassSkips, AnUpdateNeedsContents) {
 
 TEST_F(HostPassSkips, WhatLacksItsInputLeavesOthersWithoutTheirs) {
   for (const Way& way : nothing_scatters) {
-    run(R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" } },
-           { "pass": "first", "kind": "studio.tone", "read": { "from": "lit" }, "write": { "out": "kept" } },
-           { "pass": "second", "kind": "studio.maybe", "read": { "from": "kept" }, "write": { "out": "toned" } })",
+    run(R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" } },
+           { "pass": "first", "type": "studio.tone", "read": { "from": "lit" }, "write": { "out": "kept" } },
+           { "pass": "second", "type": "studio.maybe", "read": { "from": "kept" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("second -")) << way.profiles;
   }
 }
 
 TEST_F(HostPassSkips, EachMipHasWritersOfItsOwn) {
-  const std::string chain = R"({ "pass": "make", "kind": "studio.make", "write": { "out": "chain#0" } },
-      { "pass": "scatter", "kind": "studio.scatter", "write": { "out": "chain#1" } }, )";
+  const std::string chain = R"({ "pass": "make", "type": "studio.make", "write": { "out": "chain#0" } },
+      { "pass": "scatter", "type": "studio.scatter", "write": { "out": "chain#1" } }, )";
   run(chain +
-          R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "chain#0" }, "write": { "out": "toned" } })",
+          R"({ "pass": "tone", "type": "studio.tone", "read": { "from": "chain#0" }, "write": { "out": "toned" } })",
       true, DERMIS_FRAME_BOUNDS);
   EXPECT_THAT(calls, ElementsAre("make", "tone"));
   run(chain +
-          R"({ "pass": "maybe", "kind": "studio.maybe", "read": { "from": "chain#1" }, "write": { "out": "toned" } })",
+          R"({ "pass": "maybe", "type": "studio.maybe", "read": { "from": "chain#1" }, "write": { "out": "toned" } })",
       true, DERMIS_FRAME_BOUNDS);
   EXPECT_THAT(calls, ElementsAre("maybe -"));
   for (const Way& way : nothing_scatters) {
     run(chain +
-            R"({ "pass": "maybe", "kind": "studio.maybe", "read": { "from": "chain" }, "write": { "out": "toned" } })",
+            R"({ "pass": "maybe", "type": "studio.maybe", "read": { "from": "chain" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("maybe -")) << way.profiles;
     run(chain +
-            R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "chain#1" }, "write": { "out": "toned" } })",
+            R"({ "pass": "tone", "type": "studio.tone", "read": { "from": "chain#1" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, IsEmpty()) << way.profiles;
     run(chain +
-            R"({ "pass": "tone", "kind": "studio.tone", "read": { "from": "chain" }, "write": { "out": "toned" } })",
+            R"({ "pass": "tone", "type": "studio.tone", "read": { "from": "chain" }, "write": { "out": "toned" } })",
         way.profiles, way.flags);
     EXPECT_THAT(calls, IsEmpty()) << way.profiles;
   }
 }
 
 TEST_F(HostPassSkips, ADiscardedFrameIsForgottenByBothPlans) {
-  run(R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
-         { "pass": "remember", "kind": "studio.remember", "read": { "from": "lit", "before": "kept@-1" },
+  run(R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
+         { "pass": "remember", "type": "studio.remember", "read": { "from": "lit", "before": "kept@-1" },
            "write": { "out": "kept" } },
-         { "pass": "tone", "kind": "studio.tone", "read": { "from": "kept" }, "write": { "out": "toned" } })",
+         { "pass": "tone", "type": "studio.tone", "read": { "from": "kept" }, "write": { "out": "toned" } })",
       true, 0);
   const auto age = [&] {
     uint32_t count = 1;
@@ -257,10 +257,10 @@ TEST_F(HostPassSkips, ADiscardedFrameIsForgottenByBothPlans) {
 }
 
 TEST_F(HostPassSkips, PlansTakeTurnsAndKeepTheHostsHistory) {
-  run(R"({ "pass": "scatter", "kind": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
-         { "pass": "remember", "kind": "studio.remember", "read": { "from": "lit", "before": "kept@-1" },
+  run(R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
+         { "pass": "remember", "type": "studio.remember", "read": { "from": "lit", "before": "kept@-1" },
            "write": { "out": "kept" } },
-         { "pass": "tone", "kind": "studio.tone", "read": { "from": "kept" }, "write": { "out": "toned" } })",
+         { "pass": "tone", "type": "studio.tone", "read": { "from": "kept" }, "write": { "out": "toned" } })",
       true, 0);
   for (const uint32_t flags : {0u, uint32_t{DERMIS_FRAME_BOUNDS}, uint32_t{DERMIS_FRAME_BOUNDS}, 0u, 0u}) {
     again(flags);

@@ -1,7 +1,7 @@
 // Samples by tile: the device gives them as the rule on the CPU does, and where they matter to the host.
 
-#include "passes/choice/allotment.hpp"
-#include "passes/choice/decide.hpp"
+#include "passes/choice/controller.hpp"
+#include "passes/choice/sample_allocation.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace {
 constexpr uint32_t side = 64, tiles_across = side / 8;
 
 // A unit of samples costs a microsecond, everything else nothing.
-constexpr const char* unit_times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
-  { "work": "subsurface.mend lod_bias=-1.5 below=0.8 share=0.5", "base_us": 0, "group_us": 1, "spread": 0 },
+constexpr const char* unit_times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
+  { "work": "subsurface.tile_refine lod_bias=-1.5 below=0.8 share=0.5", "base_us": 0, "group_us": 1, "spread": 0 },
   { "work": "subsurface.classify texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.flat", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.classify_uniform_light", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_tiles", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_setup texturing=post storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_down level=1 storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
@@ -24,17 +24,17 @@ constexpr const char* unit_times = R"({ "dermis_calibration": 1, "device": "inve
   { "work": "subsurface.sap_down_layered level=2 storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_up_layered level=2 variant=smooth storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_gather variant=smooth storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.doubt below=0.8", "base_us": 0, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.allot", "base_us": 0, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.light texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.tile_error_estimate below=0.8", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.allocate_samples", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.export_scattered texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.combine texturing=post result=color", "base_us": 0, "group_us": 0, "spread": 0 } ] })";
 
 // Doubts are painted, and tiles that get samples show what is painted.
-constexpr const char* painted = R"({ "dermis_overlay": 1, "edits": [
+constexpr const char* painted = R"({ "dermis_overlay": 2, "edits": [
   { "set": "/imports/painted", "to": { "format": "rgba16f", "size": "view" } },
-  { "set": "/passes/doubt/read/scattered", "to": "painted" },
-  { "remove": "/passes/doubt/read/light" },
-  { "set": "/passes/doubt/set/below", "to": 1 },
+  { "set": "/passes/estimate_tile_error/read/scattered", "to": "painted" },
+  { "remove": "/passes/estimate_tile_error/read/light" },
+  { "set": "/passes/estimate_tile_error/set/below", "to": 1 },
   { "set": "/passes/combine/read/scattered", "to": "painted" },
   { "set": "/passes/combine/read/tiles", "to": "sampled_tiles" },
   { "set": "/passes/combine/read/arguments", "to": "sampled_arguments" } ] })";
@@ -48,7 +48,7 @@ struct Hybrid : DermisTest {
     const dermis_source calibration = source_of(times, "invented");
     dermis_budget budget = DERMIS_BUDGET_INIT;
     budget.milliseconds = (static_cast<float>(units) + 0.5f) / 1000 * float(choice::entry_margin);
-    budget.flags = DERMIS_BUDGET_METER;
+    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
     budget.calibration = &calibration;
     ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
   }
@@ -82,11 +82,11 @@ struct Hybrid : DermisTest {
     set_units(units);
     for (int i = 0; i < 2; ++i) {
       paint();
-      told = run_frame();
+      reported = run_frame();
     }
     return texels("lighting");
   }
-  dermis_choice told = DERMIS_CHOICE_INIT;
+  dermis_choice reported = DERMIS_CHOICE_INIT;
 };
 
 TEST_F(Hybrid, TheDeviceGivesSamplesAsTheRuleOnTheCpuDoes) {
@@ -98,30 +98,30 @@ TEST_F(Hybrid, TheDeviceGivesSamplesAsTheRuleOnTheCpuDoes) {
   ASSERT_NE(graph, nullptr);
   make_images(graph);
   paint();
-  const auto lacks = [](uint32_t x, uint32_t y) { // of 1024; a half float holds 1 - lacks / 1024 exactly
+  const auto unmet = [](uint32_t x, uint32_t y) { // of 1024; a half float holds 1 - lacks / 1024 exactly
     const uint32_t tile = y / 8 * tiles_across + x / 8;
     return tile % 5 == 0 ? 0u : tile * 2654435761u % 509;
   };
-  std::vector<uint32_t> doubts(tiles_across * tiles_across, 0);
+  std::vector<uint32_t> tile_errors(tiles_across * tiles_across, 0);
   std::vector<float> values;
   for (uint32_t y = 0; y < side; ++y)
     for (uint32_t x = 0; x < side; ++x) {
-      doubts[y / 8 * tiles_across + x / 8] += lacks(x, y);
-      values.insert(values.end(), {1, 1, 1, 1.0f - float(lacks(x, y)) / 1024});
+      tile_errors[y / 8 * tiles_across + x / 8] += unmet(x, y);
+      values.insert(values.end(), {1, 1, 1, 1.0f - float(unmet(x, y)) / 1024});
     }
   upload("painted", values);
-  const uint32_t wanted = choice::allot(doubts, {}, UINT32_MAX).wanted;
+  const uint32_t wanted = choice::allocate_samples(tile_errors, {}, UINT32_MAX).wanted;
   std::vector<uint32_t> before;
   for (const uint32_t units : {wanted, wanted / 2, wanted / 3, 7u, 1u, 0u}) {
     fill("lighting", [](uint32_t x, uint32_t) { return x % 2 == 0 ? 0.25f : 0.5f; }); // not flat
     set_units(units);
     const dermis_choice choice = run_frame();
-    const choice::Allotment expected = choice::allot(doubts, before, units);
-    EXPECT_EQ(choice.wanted_units, wanted);
+    const choice::SampleAllocation expected = choice::allocate_samples(tile_errors, before, units);
+    EXPECT_EQ(choice.sample_demand, wanted);
     EXPECT_EQ(choice.sample_units, expected.units);
     const auto light = texels("lighting");
     std::array<uint32_t, 4> counts{};
-    for (uint32_t tile = 0; tile < doubts.size(); ++tile) {
+    for (uint32_t tile = 0; tile < tile_errors.size(); ++tile) {
       ++counts[expected.steps[tile]];
       const size_t pixel = size_t{tile / tiles_across * 8} * side + tile % tiles_across * 8;
       EXPECT_EQ(light[4 * pixel] == 1.0f, expected.steps[tile] > 0)
@@ -165,10 +165,10 @@ double rms(const std::vector<float>& a, const std::vector<float>& b, uint32_t fi
 TEST_F(Hybrid, WithHalfTheBudgetTilesThatMatterKeepTheirPictureAndOthersPay) {
   const auto none = picture(0);
   const auto all = picture(100000);
-  const dermis_choice choice = told;
-  ASSERT_GT(choice.wanted_units, 0u);
+  const dermis_choice choice = reported;
+  ASSERT_GT(choice.sample_demand, 0u);
   constexpr uint32_t matters = 3 * side / 8; // what is left of it wants less than half of all
-  const auto half = picture(choice.wanted_units / 2, matters);
+  const auto half = picture(choice.sample_demand / 2, matters);
   // All tiles that matter have the samples that the full budget gives them: their picture is the same,
   // whatever the truth is. Without the column of tiles whose share falls towards tiles that were given none.
   EXPECT_EQ(rms(half, all, 0, matters - 8), 0);
@@ -188,7 +188,8 @@ TEST_F(Hybrid, TilesWhoseLightScatteringDoesNotChangeGetNoSamples) {
     return choice.sampled_tiles[0] + choice.sampled_tiles[1] + choice.sampled_tiles[2];
   };
   const uint32_t some = sampled();
-  overlays = {R"({ "dermis_overlay": 1, "edits": [ { "remove": "/passes/doubt/read/light" } ] })"};
+  overlays = {
+      R"({ "dermis_overlay": 2, "edits": [ { "remove": "/passes/estimate_tile_error/read/light" } ] })"};
   const uint32_t all = sampled();
   EXPECT_EQ(all, 64u); // the pyramid is as unsure left as right
   EXPECT_GE(some, 16u);
@@ -227,23 +228,23 @@ void expect_no_seams(const std::vector<float>& none, const std::vector<float>& a
 
 TEST_F(Hybrid, TilesLeaveNoSeams) {
   const auto none = picture(0), all = picture(100000);
-  const dermis_choice choice = told;
-  expect_no_seams(none, all, picture(choice.wanted_units / 3));
+  const dermis_choice choice = reported;
+  expect_no_seams(none, all, picture(choice.sample_demand / 3));
 }
 
 TEST_F(Hybrid, ABudgetBetweenBuysSomeOfTheSamplesAndSaysWhatErrorIsLeft) {
   file = "configs/graphs/skin.json";
   const auto run = [&](uint32_t units) {
     picture(units);
-    return told;
+    return reported;
   };
   const dermis_choice all = run(100000);
   EXPECT_THAT(all.outcome, testing::HasSubstr("technique=hybrid"));
-  ASSERT_GT(all.wanted_units, 100u);
-  const dermis_choice some = run(all.wanted_units / 2);
+  ASSERT_GT(all.sample_demand, 100u);
+  const dermis_choice some = run(all.sample_demand / 2);
   EXPECT_THAT(some.outcome, testing::HasSubstr("technique=hybrid"));
-  EXPECT_EQ(some.sample_units, all.wanted_units / 2);
-  const dermis_choice few = run(all.wanted_units / 8);
+  EXPECT_EQ(some.sample_units, all.sample_demand / 2);
+  const dermis_choice few = run(all.sample_demand / 8);
   EXPECT_GT(few.predicted_rmse, some.predicted_rmse);
   EXPECT_GT(some.predicted_rmse, all.predicted_rmse);
 }
@@ -252,10 +253,10 @@ TEST_F(Hybrid, ABudgetBetweenBuysSomeOfTheSamplesAndSaysWhatErrorIsLeft) {
 struct Pair : Hybrid {
   Pair() {
     file = "configs/graphs/papers/hybrid_afis_separable.json";
-    times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
-      { "work": "subsurface.allot", "base_us": 0, "group_us": 0, "spread": 0 },
+    times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
+      { "work": "subsurface.allocate_samples", "base_us": 0, "group_us": 0, "spread": 0 },
       { "work": "subsurface.afis_tiles samples=16", "base_us": 0, "group_us": 1, "spread": 0 } ] })";
-    for (const char* kind : {"classify", "tile_list", "setup", "separable", "contrast", "pyramid_setup",
+    for (const char* kind : {"classify", "tile_list", "setup", "separable", "tile_variance", "pyramid_setup",
                              "pyramid_down", "light", "combine"})
       times.insert(times.rfind("] }"), std::string(", { \"work\": \"subsurface.") + kind +
                                            "\", \"base_us\": 0, \"group_us\": 0, \"spread\": 0 } ");
@@ -278,10 +279,10 @@ struct UnevenPair : Pair {
 
 TEST_F(Pair, WithoutUnitsThePictureIsSeparablesAndWithAllItIsNot) {
   const auto none = picture(0);
-  EXPECT_EQ(told.sample_units, 0u);
+  EXPECT_EQ(reported.sample_units, 0u);
   const auto all = picture(100000);
   EXPECT_NE(none, all);
-  EXPECT_EQ(told.sample_units, told.wanted_units);
+  EXPECT_EQ(reported.sample_units, reported.sample_demand);
   GraphOptions options;
   options.text = read_text("configs/graphs/separable.json");
   options.unbound = {"albedo", "scatter_scale", "scattered_light"};
@@ -300,15 +301,15 @@ TEST_F(Pair, TilesWithEvenLightGetNoSamples) {
        [](uint32_t x, uint32_t y) { return x < 32 ? 0.5f : float((x * 37 + y * 61) % 97) / 64.0f; });
   const dermis_choice choice = run_frame();
   EXPECT_EQ(choice.sampled_tiles[0] + choice.sampled_tiles[1] + choice.sampled_tiles[2], 32u);
-  EXPECT_EQ(choice.wanted_units, 4 * 32u);
+  EXPECT_EQ(choice.sample_demand, 4 * 32u);
 }
 
 TEST_F(UnevenPair, TilesLeaveNoSeams) {
   const auto none = picture(0), all = picture(100000);
-  const dermis_choice choice = told;
-  const auto some = picture(choice.wanted_units / 6); // enough for two thirds of the tiles
-  ASSERT_GT(told.sampled_tiles[0], 16u);
-  ASSERT_LT(told.sampled_tiles[0] + told.sampled_tiles[1] + told.sampled_tiles[2], 60u);
+  const dermis_choice choice = reported;
+  const auto some = picture(choice.sample_demand / 6); // enough for two thirds of the tiles
+  ASSERT_GT(reported.sampled_tiles[0], 16u);
+  ASSERT_LT(reported.sampled_tiles[0] + reported.sampled_tiles[1] + reported.sampled_tiles[2], 60u);
   expect_no_seams(none, all, some);
 }
 

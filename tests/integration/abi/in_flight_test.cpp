@@ -30,7 +30,7 @@ TEST_F(InFlight, PlansThatTakeTurnsWaitForEachOthersMemory) {
   for (uint64_t index = 1; index <= 9; ++index) {
     dermis_budget budget = DERMIS_BUDGET_INIT;
     budget.milliseconds = index % 2 == 0 ? 0.001f : 0; // the fastest outcome, or the defaults
-    budget.flags = DERMIS_BUDGET_METER;
+    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
     ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
     run(graph, bound, index);
   }

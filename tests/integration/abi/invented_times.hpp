@@ -5,7 +5,7 @@ namespace dermis::abi_test {
 
 // Times that no device has, so that what is chosen is known: 1 ms a dispatch of the pyramid, less for the
 // rest.
-inline constexpr const char* invented_times = R"({ "dermis_calibration": 1, "device": "invented", "costs": [
+inline constexpr const char* invented_times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
   { "work": "subsurface.sap_up level=1 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_up level=1 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_up_layered level=2 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },

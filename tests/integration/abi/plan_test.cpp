@@ -54,7 +54,7 @@ std::set<std::string> all_tests() {
 }
 
 // Each test that the page names behind `heading` is there, and it names at least so many.
-void expect_tests_exist(const std::string& page, const std::string& heading, uint32_t least) {
+void expect_tests_exist(const std::string& page, const std::string& heading, uint32_t minimum) {
   const std::set<std::string> tests = all_tests();
   const std::string text = read_text(page);
   size_t at = text.find(heading);
@@ -72,7 +72,7 @@ void expect_tests_exist(const std::string& page, const std::string& heading, uin
       return begins ? test.starts_with(name) : test == name;
     })) << name;
   }
-  EXPECT_GE(count, least) << "the table names that many";
+  EXPECT_GE(count, minimum) << "the table names that many";
 }
 
 TEST(InterfacePlan, NamesTestsThatExist) {

@@ -2,7 +2,7 @@
 
 #include "framegraph/text/document.hpp"
 #include "passes/common/profiles/profile.hpp"
-#include "passes/common/truth/truth.hpp"
+#include "passes/common/reference/reference.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ struct Probe : DermisTest {
     const std::vector<uint8_t> ids(size_t{probed_side} * probed_side, 1);
     const std::vector<subsurface::PerChannel> d_m = {
         {}, {skin->d_mm[0] * 1e-3, skin->d_mm[1] * 1e-3, skin->d_mm[2] * 1e-3}};
-    subsurface::TruthInput input;
+    subsurface::ReferenceInput input;
     input.width = input.height = probed_side;
     input.rays.perspective = false;
     input.rays.scale_x = input.rays.scale_y = pitch_m;
@@ -53,13 +53,13 @@ struct Probe : DermisTest {
     input.depth = depth;
     input.profile = ids;
     input.d_m = d_m;
-    const std::vector<double> truth = subsurface::truth_everywhere(input);
+    const std::vector<double> reference = subsurface::reference_everywhere(input);
     constexpr std::array luminance = {0.2126, 0.7152, 0.0722}; // Rec. 709
     double squares = 0;
     for (size_t i = 0; i < lit.size() / 3; ++i) {
       double off = 0;
       for (size_t c = 0; c < 3; ++c)
-        off += luminance[c] * (double(lit[3 * i + c]) - truth[3 * i + c]);
+        off += luminance[c] * (double(lit[3 * i + c]) - reference[3 * i + c]);
       squares += off * off;
     }
     return squares / (double(probed_side) * probed_side);

@@ -3,7 +3,7 @@
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
 #include <algorithm>
@@ -205,15 +205,15 @@ TEST_F(SetProfile, ThatIsWrongIsNamedAndChangesNothing) {
 }
 
 TEST(HistoryWeights, NamePortsAndSettingsOfTheirKinds) {
-  const KindRegistry kinds = subsurface::make_kinds();
+  const PassTypeRegistry pass_types = subsurface::make_pass_types();
   size_t mixes = 0;
-  for (uint32_t k = 0; k < kinds.size(); ++k)
-    for (const HistoryWeight& mix : kinds[KindId{k}].mixes) {
+  for (uint32_t k = 0; k < pass_types.size(); ++k)
+    for (const HistoryWeight& mix : pass_types[PassTypeId{k}].mixes) {
       ++mixes;
-      EXPECT_GE(find_port(kinds[KindId{k}], mix.port, PortSide::write), 0) << mix.port;
-      const int setting = find_setting(kinds[KindId{k}], mix.setting);
+      EXPECT_GE(find_port(pass_types[PassTypeId{k}], mix.port, PortSide::write), 0) << mix.port;
+      const int setting = find_setting(pass_types[PassTypeId{k}], mix.setting);
       ASSERT_GE(setting, 0) << mix.setting;
-      EXPECT_EQ(kinds[KindId{k}].settings[static_cast<size_t>(setting)].type, SettingType::real);
+      EXPECT_EQ(pass_types[PassTypeId{k}].settings[static_cast<size_t>(setting)].type, SettingType::real);
     }
   EXPECT_GE(mixes, 4u);
 }

@@ -82,7 +82,7 @@ TEST_F(Reload, ThatFailsLeavesTheRunningGraphBitForBit) {
     wrong[1].overlays = {"{"};
     wrong[2].formats = {{"depth", VK_FORMAT_R8_UINT}};
     wrong[3].unbound = {"lighting"};
-    wrong[4].text = "{ \"dermis\": 1 }";
+    wrong[4].text = "{ \"dermis\": 2 }";
     for (const GraphOptions& options : wrong) {
       dermis_report report = nullptr;
       EXPECT_EQ(reload_graph(graph, options, &report), DERMIS_ERROR_CONFIG);

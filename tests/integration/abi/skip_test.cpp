@@ -1,6 +1,6 @@
 // What frames do not need is not done, and the picture is the one that doing it would give.
 
-#include "passes/common/flat_light.hpp"
+#include "passes/common/uniform_light.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <cmath>
@@ -9,8 +9,8 @@ namespace dermis::abi_test {
 namespace {
 
 // What looks for flat light taken out.
-constexpr const char* without_flat = R"({ "dermis_overlay": 1, "edits": [
-  { "remove": "/passes/flat" }, { "remove": "/passes/classify/write/light_range" },
+constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits": [
+  { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
   { "remove": "/passes/classify/write/light_cells" } ] })";
 
 struct Skip : DermisTest {
@@ -21,7 +21,7 @@ struct Skip : DermisTest {
     GraphOptions options;
     options.text = read_text("configs/graphs/skin.json");
     options.profiles = profiles;
-    if (!skips) options.overlays = {without_flat};
+    if (!skips) options.overlays = {without_uniform_light};
     if (handed_out) options.unbound = {"albedo", "scatter_scale"};
     graph = make_graph(options);
     ASSERT_NE(graph, nullptr);
@@ -148,14 +148,14 @@ TEST_F(Skip, FlatLightIsCopiedAndThePictureStaysWithinTheTolerance) {
   }; // within half a step of 8 bits
   make(true, false);
   fill("lighting", light);
-  EXPECT_EQ(run_frame().flat_tiles, 0u);
+  EXPECT_EQ(run_frame().uniform_tiles, 0u);
   const auto unskipped = texels("lighting");
   make();
   fill("lighting", light);
   const dermis_choice choice = run_frame();
-  EXPECT_EQ(choice.flat_tiles, 64u);
+  EXPECT_EQ(choice.uniform_tiles, 64u);
   EXPECT_EQ(choice.scattering_tiles, 0u);
-  EXPECT_EQ(choice.skips, DERMIS_SKIP_FLAT_LIGHT);
+  EXPECT_EQ(choice.skips, DERMIS_SKIP_UNIFORM_LIGHT);
   const auto skipped = texels("lighting");
   // What differs: the tolerance, and three roundings to half floats (2^-11 each) of the pyramid's own.
   const double bound = 0.7505 * (subsurface::flat_tolerance + 3.0 / 2048);
@@ -167,7 +167,7 @@ TEST_F(Skip, FlatLightIsHandedOutAsItIs) {
   handed_out = true;
   make();
   fill("lighting", [](uint32_t, uint32_t) { return 0.75f; });
-  EXPECT_EQ(run_frame().flat_tiles, 64u);
+  EXPECT_EQ(run_frame().uniform_tiles, 64u);
   const auto out = texels("scattered_light");
   for (size_t i = 0; i < out.size(); ++i)
     if (i % 4 != 3) {
@@ -182,7 +182,7 @@ TEST_F(Skip, LightThatIsOnlyCopiedComesOutTheSameWhereverAlbedoIsApplied) {
       GraphOptions options;
       options.text = read_text("configs/graphs/skin.json");
       if (through)
-        options.overlays = {R"({ "dermis_overlay": 1, "edits": [
+        options.overlays = {R"({ "dermis_overlay": 2, "edits": [
           { "set": "/settings/copied", "to": { "enum": ["scattered"], "default": "scattered" } },
           { "set": "/passes/combine/set/copied", "to": "scattered" } ] })"};
       options.unbound = {"scatter_scale", "scattered_light"};
@@ -207,7 +207,7 @@ TEST_F(Skip, LightThatOneFarTileBreaksIsNotFlatAsFarAsItReaches) {
   fill("lighting", [](uint32_t x, uint32_t y) { return x < 8 && y < 8 ? 1.0f : 0.5f; });
   const dermis_choice choice = run_frame();
   // Skin's d is two pixels here: 20 d are five tiles, and the picture has eight.
-  EXPECT_EQ(choice.flat_tiles + choice.scattering_tiles, 64u);
+  EXPECT_EQ(choice.uniform_tiles + choice.scattering_tiles, 64u);
   const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
   EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1));
 }
@@ -222,7 +222,7 @@ TEST_F(Skip, FarLightThatDiffersInTheSameCellIsSeenExactlyAsFarAsItReaches) {
     const dermis_choice choice = run_frame();
     const uint32_t scattering = std::min(column + reach, 7u) - (column > reach ? column - reach : 0u) + 1;
     EXPECT_EQ(choice.scattering_tiles, 8 * scattering) << column;
-    EXPECT_EQ(choice.flat_tiles, 64 - 8 * scattering) << column;
+    EXPECT_EQ(choice.uniform_tiles, 64 - 8 * scattering) << column;
   }
 }
 
@@ -248,7 +248,7 @@ TEST_F(Skip, BoundsCutTilesWhereverTheyEnd) {
     make();
     const dermis_choice choice = run_frame(DERMIS_FRAME_BOUNDS, bounds);
     const auto tiles = [](uint32_t first, uint32_t count) { return (first + count - 1) / 8 - first / 8 + 1; };
-    EXPECT_EQ(choice.scattering_tiles + choice.flat_tiles,
+    EXPECT_EQ(choice.scattering_tiles + choice.uniform_tiles,
               tiles(bounds[0], bounds[2]) * tiles(bounds[1], bounds[3]));
   }
 }
@@ -263,7 +263,7 @@ TEST_F(Skip, ToolsAreShownTheClassOfEachTile) {
   fill("material", [](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.0f; });
   fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
   const dermis_choice choice = run_frame();
-  EXPECT_EQ(choice.flat_tiles, 32u);
+  EXPECT_EQ(choice.uniform_tiles, 32u);
   const auto shown = texels("skips");
   for (uint32_t y = 0; y < 64; ++y)
     for (uint32_t x = 0; x < 64; ++x) {

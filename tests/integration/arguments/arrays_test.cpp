@@ -35,7 +35,7 @@ template <class T> std::vector<std::byte> bytes_of(const T& value) {
   return {bytes, bytes + sizeof value};
 }
 
-template <class T> void expect_array_law(const std::function<dermis_result(uint32_t*, T*)>& ask) {
+template <class T> void expect_array_property(const std::function<dermis_result(uint32_t*, T*)>& ask) {
   uint32_t count = 0;
   ASSERT_EQ(ask(&count, nullptr), DERMIS_OK) << dermis_last_error();
   ASSERT_GT(count, 0u);
@@ -66,33 +66,33 @@ template <class T> void expect_array_law(const std::function<dermis_result(uint3
 }
 
 TEST_F(TwoCalls, FillNoMoreOfAnArrayThanThereIsRoomFor) {
-  expect_array_law<dermis_requirement>([&](uint32_t* count, dermis_requirement* items) {
+  expect_array_property<dermis_requirement>([&](uint32_t* count, dermis_requirement* items) {
     return dermis_query_requirements(NullDevice::loader(), host.device.instance(), host.device.physical(),
                                      count, items);
   });
-  expect_array_law<dermis_slot>(
+  expect_array_property<dermis_slot>(
       [&](uint32_t* count, dermis_slot* items) { return dermis_graph_slots(host.graph, count, items); });
-  expect_array_law<dermis_setting>([&](uint32_t* count, dermis_setting* items) {
+  expect_array_property<dermis_setting>([&](uint32_t* count, dermis_setting* items) {
     return dermis_graph_settings(host.graph, count, items);
   });
-  expect_array_law<dermis_setting>(
+  expect_array_property<dermis_setting>(
       [&](uint32_t* count, dermis_setting* items) { return dermis_view_settings(view, count, items); });
-  expect_array_law<dermis_memory_request>([&](uint32_t* count, dermis_memory_request* items) {
+  expect_array_property<dermis_memory_request>([&](uint32_t* count, dermis_memory_request* items) {
     return dermis_graph_heaps(host.graph, count, items);
   });
-  expect_array_law<dermis_pass_timing>([&](uint32_t* count, dermis_pass_timing* items) {
+  expect_array_property<dermis_pass_timing>([&](uint32_t* count, dermis_pass_timing* items) {
     return dermis_graph_timings(host.graph, 1, count, items);
   });
-  expect_array_law<dermis_pass_timing>(
+  expect_array_property<dermis_pass_timing>(
       [&](uint32_t* count, dermis_pass_timing* items) { return dermis_view_timings(view, 1, count, items); });
-  expect_array_law<dermis_history>([&](uint32_t* count, dermis_history* items) {
+  expect_array_property<dermis_history>([&](uint32_t* count, dermis_history* items) {
     return dermis_graph_histories(host.graph, count, items);
   });
-  expect_array_law<dermis_history>(
+  expect_array_property<dermis_history>(
       [&](uint32_t* count, dermis_history* items) { return dermis_view_histories(view, count, items); });
 }
 
-void expect_text_law(const std::function<dermis_result(size_t*, char*)>& ask) {
+void expect_text_property(const std::function<dermis_result(size_t*, char*)>& ask) {
   EXPECT_EQ(ask(nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("size is NULL"));
   size_t size = 0;
@@ -116,11 +116,12 @@ void expect_text_law(const std::function<dermis_result(size_t*, char*)>& ask) {
 TEST_F(TwoCalls, WriteATextWholeOrNotAtAll) {
   for (const dermis_describe_format format :
        {DERMIS_DESCRIBE_JSON, DERMIS_DESCRIBE_DOT, DERMIS_DESCRIBE_TEXT})
-    expect_text_law(
+    expect_text_property(
         [&](size_t* size, char* text) { return dermis_graph_describe(host.graph, format, size, text); });
-  expect_text_law([&](size_t* size, char* text) { return dermis_graph_calibration(host.graph, size, text); });
-  expect_text_law(
-      [&](size_t* size, char* text) { return dermis_export_pass_kinds(host.context, size, text); });
+  expect_text_property(
+      [&](size_t* size, char* text) { return dermis_graph_calibration(host.graph, size, text); });
+  expect_text_property(
+      [&](size_t* size, char* text) { return dermis_export_pass_types(host.context, size, text); });
 }
 
 TEST_F(TwoCalls, AskForFramesThatWereRecorded) {

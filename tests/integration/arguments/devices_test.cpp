@@ -68,16 +68,17 @@ uint32_t core_version_of(std::string_view name) {
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less_of_device(VkDevice device, const char* name) {
-  const std::string_view asked = name;
-  const bool khr = asked.ends_with("KHR");
-  const std::string core(asked.substr(0, asked.size() - (khr ? 3 : 0)));
+  const std::string_view requested = name;
+  const bool khr = requested.ends_with("KHR");
+  const std::string core(requested.substr(0, requested.size() - (khr ? 3 : 0)));
   if (core_version_of(core) > lack.instance_version) {
     if (!khr || !lack.extensions_enabled) return nullptr;
     return full<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr")(device, core.c_str());
   }
-  if (asked == lack.function) return nullptr;
-  const bool extended = asked.ends_with("KHR") && asked.substr(0, asked.size() - 3) == lack.renamed;
-  if (asked == lack.renamed) return nullptr;
+  if (requested == lack.function) return nullptr;
+  const bool extended =
+      requested.ends_with("KHR") && requested.substr(0, requested.size() - 3) == lack.renamed;
+  if (requested == lack.renamed) return nullptr;
   return full<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr")(device, extended ? lack.renamed : name);
 }
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less(VkInstance instance, const char* name) {
@@ -241,7 +242,7 @@ TEST_F(PoorDevice, WhoseQueueCannotComputeIsRefused) {
 TEST_F(PoorDevice, WithTheExtensionsForRaysIsAskedForTheirFeatures) {
   lack.extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_RAY_QUERY_EXTENSION_NAME};
   for (const dermis_requirement& item : requirements()) {
-    if (item.kind == DERMIS_REQUIREMENT_DEVICE_EXTENSION && item.required == 0) {
+    if (item.type == DERMIS_REQUIREMENT_DEVICE_EXTENSION && item.required == 0) {
       EXPECT_EQ(item.present, 1u) << item.name;
     }
     if (std::strcmp(item.name, "rayQuery") == 0) {

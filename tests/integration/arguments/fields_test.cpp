@@ -104,7 +104,7 @@ TEST_F(Fields, OfAGraphThatAreWrongAreNamedOneByOne) {
 
 // Sources without a name are named by what they are.
 TEST_F(Fields, OfTextsThatAreWrongAreToldByTheirPlace) {
-  const std::string broken = "{ \"dermis\": 1, }", not_a_profile = "{ \"scale\": 1 }";
+  const std::string broken = "{ \"dermis\": 2, }", not_a_profile = "{ \"scale\": 1 }";
   const std::pair<const char*, std::function<void(Description&)>> changes[] = {
       {"profile 2:1:", [&](auto& d) { d.profiles[1].source = source_of(broken, nullptr); }},
       {"profile 1:1:", [&](auto& d) { d.profiles[0].source = source_of(not_a_profile, nullptr); }},
@@ -148,7 +148,7 @@ TEST_F(Fields, OfCallsOnAGraphThatAreNullAreNamed) {
   refused(dermis_graph_choice(nullptr, 0, nullptr), "graph is NULL");
   refused(dermis_graph_calibration(nullptr, nullptr, nullptr), "graph is NULL");
   refused(dermis_graph_heaps(nullptr, nullptr, nullptr), "graph is NULL");
-  refused(dermis_register_pass_kind(host.context, nullptr), "kind is NULL");
+  refused(dermis_register_pass_type(host.context, nullptr), "kind is NULL");
   dermis_report report = nullptr;
   ASSERT_EQ(dermis_graph_set_setting(host.graph, "samples", "{}", &report), DERMIS_ERROR_CONFIG);
   refused(dermis_report_message(report, 0, nullptr), "message is NULL");
@@ -163,7 +163,7 @@ TEST_F(Fields, OfCallsOnAGraphThatAreNullAreNamed) {
 
 TEST_F(Fields, OfABudgetsTablesThatAreWrongChangeNothing) {
   ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-  const std::string broken = "{ \"dermis_errors\": 1, }";
+  const std::string broken = "{ \"dermis_errors\": 2, }";
   const dermis_source bad = source_of(broken, nullptr);
   const dermis_source empty = DERMIS_SOURCE_INIT;
   for (const dermis_source* dermis_budget::*table : {&dermis_budget::errors, &dermis_budget::calibration}) {
@@ -181,7 +181,7 @@ TEST_F(Fields, OfABudgetsTablesThatAreWrongChangeNothing) {
 
 // Each setting of a graph that has all types of them, given what it does not take.
 TEST_F(Fields, OfSettingsTakeTheirTypeAndRangeAlone) {
-  const std::string text = R"({ "dermis": 1, "name": "settings",
+  const std::string text = R"({ "dermis": 2, "name": "settings",
     "settings": { "on": { "bool": true }, "count": { "int": 4, "min": 1, "max": 9 },
                   "share": { "real": 0.5, "min": 0, "max": 1 },
                   "how": { "enum": ["fast", "good"], "default": "fast" } },

@@ -192,7 +192,7 @@ TEST(IncludedFiles, ThatCannotBeReadAreErrorsOfTheGraph) {
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   const std::string text =
-      "{ \"dermis\": 1, \"name\": \"a\", \"passes\": [ { \"include\": \"part.json\" } ] }";
+      "{ \"dermis\": 2, \"name\": \"a\", \"passes\": [ { \"include\": \"part.json\" } ] }";
   const std::pair<Delivered, const char*> cases[] = {
       {{nullptr, 3}, "the host delivers no text"},
       {{"{}", size_t{1} << 40}, "the host delivers 1099511627776 bytes, at most"},
@@ -210,39 +210,40 @@ TEST(IncludedFiles, ThatCannotBeReadAreErrorsOfTheGraph) {
 
 // ---- kinds of passes of the host
 
-TEST(HostsKinds, BeyondWhatAContextHoldsAreRefused) {
+TEST(HostsPassTypes, BeyondWhatAContextHoldsAreRefused) {
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   dermis_port port = DERMIS_PORT_INIT;
   port.name = "picture";
-  dermis_kind_setting setting = DERMIS_KIND_SETTING_INIT;
+  dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
   setting.name = "on";
-  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
-  kind.name = "studio.one";
-  kind.ports = &port;
-  kind.port_count = 1;
-  kind.record = [](void*, const dermis_pass_call*) {};
+  dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
+  type.name = "studio.one";
+  type.ports = &port;
+  type.port_count = 1;
+  type.record = [](void*, const dermis_pass_call*) {};
   const auto refused = [&](const char* said) {
-    EXPECT_EQ(dermis_register_pass_kind(host.context, &kind), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_EQ(dermis_register_pass_type(host.context, &type), DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
   };
-  kind.setting_count = 1;
+  type.setting_count = 1;
   refused("kind.settings is NULL, setting_count is 1");
-  kind.settings = &setting;
-  setting.type = static_cast<dermis_kind_setting_type>(3);
+  type.settings = &setting;
+  setting.type = static_cast<dermis_pass_setting_type>(3);
   refused("kind.settings[0].type is 3, expected 0..2");
-  kind.setting_count = 33;
+  type.setting_count = 33;
   refused("setting_count 33, at most");
-  kind.setting_count = 0;
+  type.setting_count = 0;
   dermis_result result = DERMIS_OK;
   uint32_t taken = 0;
   for (std::string name; result == DERMIS_OK && taken < 100000; taken += result == DERMIS_OK ? 1 : 0) {
     name = "studio.kind" + std::to_string(taken);
-    kind.name = name.c_str();
-    result = dermis_register_pass_kind(host.context, &kind);
+    type.name = name.c_str();
+    result = dermis_register_pass_type(host.context, &type);
   }
   EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("the context has " + std::to_string(taken) + " kinds already"));
+  EXPECT_THAT(dermis_last_error(),
+              HasSubstr("the context has " + std::to_string(taken) + " pass types already"));
 }
 
 TEST_F(Frames, MissingBindings_NameOptionalSlotsAndCure) {
@@ -252,7 +253,7 @@ TEST_F(Frames, MissingBindings_NameOptionalSlotsAndCure) {
       if (name == slot.name) return slot.id;
     return UINT32_MAX;
   };
-  const auto refused_without = [&](std::initializer_list<const char*> missing) -> std::string {
+  const auto rejected_without = [&](std::initializer_list<const char*> missing) -> std::string {
     dermis_frame frame = host.frame_at(2);
     Bindings bindings(frame.bindings, frame.bindings + frame.binding_count);
     std::erase_if(bindings, [&](const dermis_image_binding& binding) {
@@ -264,10 +265,10 @@ TEST_F(Frames, MissingBindings_NameOptionalSlotsAndCure) {
     EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
     return dermis_last_error();
   };
-  const std::string required = refused_without({"depth"});
+  const std::string required = rejected_without({"depth"});
   EXPECT_THAT(required, HasSubstr("'depth' (slot " + std::to_string(number("depth")) + ", required)"));
   EXPECT_THAT(required, Not(HasSubstr("unbound")));
-  const std::string both = refused_without({"depth", "albedo"});
+  const std::string both = rejected_without({"depth", "albedo"});
   EXPECT_THAT(both, HasSubstr("'depth' (slot " + std::to_string(number("depth")) + ", required)"));
   EXPECT_THAT(both, HasSubstr("'albedo' (slot " + std::to_string(number("albedo")) + ", optional)"));
   EXPECT_THAT(both, HasSubstr("dermis_graph_desc.unbound"));

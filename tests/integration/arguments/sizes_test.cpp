@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr size_t room = 2 * abi::largest_struct_size;
+constexpr size_t slot_bytes = 2 * abi::largest_struct_size;
 constexpr size_t newer_by = 16; // bytes of fields that a later header might add
 
 // A struct with room behind it, as a caller with a newer header has.
@@ -32,12 +32,12 @@ public:
   T* get() { return reinterpret_cast<T*>(bytes_); }
 
 private:
-  alignas(T) std::byte bytes_[room]{};
+  alignas(T) std::byte bytes_[slot_bytes]{};
 };
 
 template <class T> using Call = std::function<dermis_result(T*)>;
 
-template <class T> void expect_wrong_sizes_refused(Sized<T>& given, const Call<T>& call) {
+template <class T> void expect_wrong_sizes_rejected(Sized<T>& given, const Call<T>& call) {
   for (const size_t size : {size_t{0}, sizeof(size_t), abi::first_version_size<T> - 1,
                             abi::largest_struct_size + 1, ~size_t{0}}) {
     given.state(size);
@@ -48,9 +48,9 @@ template <class T> void expect_wrong_sizes_refused(Sized<T>& given, const Call<T
 }
 
 // A struct that the library reads.
-template <class T> void expect_input_law(const T& value, const Call<T>& call) {
+template <class T> void expect_input_property(const T& value, const Call<T>& call) {
   Sized<T> given(value);
-  expect_wrong_sizes_refused(given, call);
+  expect_wrong_sizes_rejected(given, call);
   given.state(sizeof(T) + newer_by);
   EXPECT_EQ(call(given.get()), DERMIS_OK) << dermis_last_error();
   given.tail(1);
@@ -61,9 +61,9 @@ template <class T> void expect_input_law(const T& value, const Call<T>& call) {
 }
 
 // A struct that the library fills.
-template <class T> void expect_output_law(const T& value, const Call<T>& call) {
+template <class T> void expect_output_property(const T& value, const Call<T>& call) {
   Sized<T> given(value);
-  expect_wrong_sizes_refused(given, call);
+  expect_wrong_sizes_rejected(given, call);
   given.state(sizeof(T) + newer_by);
   given.tail(0xff);
   EXPECT_EQ(call(given.get()), DERMIS_OK) << dermis_last_error();
@@ -84,7 +84,7 @@ void* DERMIS_CALL take_nothing(void*, size_t, size_t) {
 void DERMIS_CALL release_nothing(void*, void*, size_t, size_t) {}
 
 TEST_F(StructSizes, OfAContextFollowTheLaw) {
-  expect_input_law<dermis_context_desc>(host.context_desc(), [](const dermis_context_desc* desc) {
+  expect_input_property<dermis_context_desc>(host.context_desc(), [](const dermis_context_desc* desc) {
     dermis_context made = nullptr;
     const dermis_result result = dermis_context_create(desc, &made);
     dermis_context_destroy(made);
@@ -97,19 +97,19 @@ TEST_F(StructSizes, OfAGraphAViewAndABudgetFollowTheLaw) {
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
   desc.source = source_of(text, "burley.json");
   desc.width = desc.height = 16;
-  expect_input_law<dermis_graph_desc>(desc, [&](const dermis_graph_desc* given) {
+  expect_input_property<dermis_graph_desc>(desc, [&](const dermis_graph_desc* given) {
     dermis_graph made = nullptr;
     const dermis_result result = dermis_graph_create(host.context, given, &made, nullptr);
     dermis_graph_destroy(made);
     return result;
   });
-  expect_input_law<dermis_view_desc>(DERMIS_VIEW_DESC_INIT, [&](const dermis_view_desc* given) {
+  expect_input_property<dermis_view_desc>(DERMIS_VIEW_DESC_INIT, [&](const dermis_view_desc* given) {
     dermis_view made = nullptr;
     const dermis_result result = dermis_view_create(host.graph, given, &made, nullptr);
     dermis_view_destroy(made);
     return result;
   });
-  expect_input_law<dermis_budget>(DERMIS_BUDGET_INIT, [&](const dermis_budget* given) {
+  expect_input_property<dermis_budget>(DERMIS_BUDGET_INIT, [&](const dermis_budget* given) {
     return dermis_graph_set_budget(host.graph, given, nullptr);
   });
 }
@@ -119,31 +119,31 @@ TEST_F(StructSizes, OfAKindItsPortsAndItsSettingsFollowTheLaw) {
   dermis_port port = DERMIS_PORT_INIT;
   port.name = "picture";
   port.usage = DERMIS_PORT_STORAGE_IMAGE_UPDATE;
-  dermis_kind_setting setting = DERMIS_KIND_SETTING_INIT;
+  dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
   setting.name = "on";
-  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
-  kind.ports = &port;
-  kind.settings = &setting;
-  kind.port_count = kind.setting_count = 1;
-  kind.record = record_nothing;
+  dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
+  type.ports = &port;
+  type.settings = &setting;
+  type.port_count = type.setting_count = 1;
+  type.record = record_nothing;
   dermis_graph_destroy(host.graph);
   host.graph = nullptr;
   std::string name;
-  const auto add = [&](dermis_pass_kind* given) {
+  const auto add = [&](dermis_pass_type* given) {
     name = "studio.kind" + std::to_string(++number);
     given->name = name.c_str();
-    return dermis_register_pass_kind(host.context, given);
+    return dermis_register_pass_type(host.context, given);
   };
-  expect_input_law<dermis_pass_kind>(kind, add);
-  expect_input_law<dermis_port>(port, [&](const dermis_port* given) {
-    kind.ports = given;
-    const dermis_result result = add(&kind);
-    kind.ports = &port;
+  expect_input_property<dermis_pass_type>(type, add);
+  expect_input_property<dermis_port>(port, [&](const dermis_port* given) {
+    type.ports = given;
+    const dermis_result result = add(&type);
+    type.ports = &port;
     return result;
   });
-  expect_input_law<dermis_kind_setting>(setting, [&](const dermis_kind_setting* given) {
-    kind.settings = given;
-    return add(&kind);
+  expect_input_property<dermis_pass_setting>(setting, [&](const dermis_pass_setting* given) {
+    type.settings = given;
+    return add(&type);
   });
 }
 
@@ -158,7 +158,7 @@ TEST_F(StructSizes, OfAllocatorsFollowTheLaw) {
   dermis_device_allocator device = DERMIS_DEVICE_ALLOCATOR_INIT;
   device.take = [](void*, const dermis_memory_request*, dermis_memory_block*) { return VK_ERROR_UNKNOWN; };
   device.give_back = [](void*, const dermis_memory_block*) {};
-  expect_input_law<dermis_device_allocator>(device, [&](const dermis_device_allocator* given) {
+  expect_input_property<dermis_device_allocator>(device, [&](const dermis_device_allocator* given) {
     desc.device_allocator = given;
     return create();
   });
@@ -168,7 +168,7 @@ TEST_F(StructSizes, OfAllocatorsFollowTheLaw) {
   memory.release = release_nothing;
   Sized<dermis_allocator> given(memory); // with which nothing can be made: its own law stops at the refusals
   desc.allocator = given.get();
-  expect_wrong_sizes_refused<dermis_allocator>(given, [&](const dermis_allocator*) { return create(); });
+  expect_wrong_sizes_rejected<dermis_allocator>(given, [&](const dermis_allocator*) { return create(); });
   given.state(sizeof(dermis_allocator) + newer_by);
   given.tail(1);
   EXPECT_EQ(create(), DERMIS_ERROR_VERSION);
@@ -176,7 +176,7 @@ TEST_F(StructSizes, OfAllocatorsFollowTheLaw) {
 
 TEST_F(StructSizes, OfAFrameAndItsBindingsFollowTheLaw) {
   uint64_t frame_index = host.last_frame;
-  expect_input_law<dermis_frame>(host.frame_at(1), [&](dermis_frame* frame) {
+  expect_input_property<dermis_frame>(host.frame_at(1), [&](dermis_frame* frame) {
     frame->frame_index = frame_index + 1;
     frame->completed_frame_index = frame_index;
     const dermis_result result = dermis_graph_record(host.graph, frame);
@@ -190,7 +190,7 @@ TEST_F(StructSizes, OfAFrameAndItsBindingsFollowTheLaw) {
   frame.binding_count = 1;
   Sized<dermis_image_binding> given(binding);
   frame.bindings = given.get();
-  expect_wrong_sizes_refused<dermis_image_binding>(
+  expect_wrong_sizes_rejected<dermis_image_binding>(
       given, [&](dermis_image_binding*) { return dermis_graph_record(host.graph, &frame); });
   given.state(sizeof(dermis_image_binding) + newer_by);
   EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
@@ -215,7 +215,7 @@ TEST_F(StructSizes, OfSourcesProfilesAndFormatsAreThoseOfTheHeader) {
   profile.id = 1;
   profile.source = source_of(skin, "skin.json");
   desc.profile_count = 1;
-  expect_input_law<dermis_profile>(profile, [&](const dermis_profile* given) {
+  expect_input_property<dermis_profile>(profile, [&](const dermis_profile* given) {
     desc.profiles = given;
     return create();
   });
@@ -224,13 +224,13 @@ TEST_F(StructSizes, OfSourcesProfilesAndFormatsAreThoseOfTheHeader) {
   format.name = "depth";
   format.format = VK_FORMAT_R32_SFLOAT;
   desc.format_count = 1;
-  expect_input_law<dermis_slot_format>(format, [&](const dermis_slot_format* given) {
+  expect_input_property<dermis_slot_format>(format, [&](const dermis_slot_format* given) {
     desc.formats = given;
     return create();
   });
   desc.format_count = 0;
-  expect_input_law<dermis_source>(desc.source,
-                                  [](const dermis_source* given) { return dermis_validate(given, nullptr); });
+  expect_input_property<dermis_source>(
+      desc.source, [](const dermis_source* given) { return dermis_validate(given, nullptr); });
 }
 
 // A source that is a member of another struct, or that a member points to, never grows: a larger one is
@@ -295,13 +295,13 @@ TEST_F(StructSizes, OfNestedSourcesAreExact) {
 }
 
 TEST_F(StructSizes, OfWhatIsToldFollowTheLaw) {
-  expect_output_law<dermis_memory>(DERMIS_MEMORY_INIT,
-                                   [&](dermis_memory* out) { return dermis_graph_memory(host.graph, out); });
-  expect_output_law<dermis_choice>(
+  expect_output_property<dermis_memory>(
+      DERMIS_MEMORY_INIT, [&](dermis_memory* out) { return dermis_graph_memory(host.graph, out); });
+  expect_output_property<dermis_choice>(
       DERMIS_CHOICE_INIT, [&](dermis_choice* out) { return dermis_graph_choice(host.graph, 1, out); });
   dermis_report report = nullptr;
   ASSERT_EQ(dermis_graph_set_setting(host.graph, "nothing", "1", &report), DERMIS_ERROR_ARGUMENT);
-  expect_output_law<dermis_message>(
+  expect_output_property<dermis_message>(
       DERMIS_MESSAGE_INIT, [&](dermis_message* out) { return dermis_report_message(report, 0, out); });
   dermis_report_destroy(report);
 }

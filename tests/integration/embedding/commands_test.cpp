@@ -97,7 +97,7 @@ struct Commands : CameraTest {
         EXPECT_EQ(dermis_graph_resize(graph, side - 7, side - 1, nullptr), DERMIS_OK) << dermis_last_error();
       }
       dermis_budget budget = DERMIS_BUDGET_INIT;
-      budget.flags = DERMIS_BUDGET_METER;
+      budget.flags = DERMIS_BUDGET_DETERMINISTIC;
       budget.milliseconds = index >= 7 ? 0.001f : 0; // the cheapest
       EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK);
       submit(++submitted, [&](VkCommandBuffer into) {
@@ -160,25 +160,25 @@ TEST_F(Commands, NameThePassesOfTheHostAndLeaveThemToIt) {
   ports[0].name = "light";
   ports[1].name = "out";
   ports[1].usage = DERMIS_PORT_STORAGE_IMAGE_WRITE;
-  dermis_kind_setting level = DERMIS_KIND_SETTING_INIT;
+  dermis_pass_setting level = DERMIS_PASS_SETTING_INIT;
   level.name = "level";
-  level.type = DERMIS_KIND_SETTING_REAL;
+  level.type = DERMIS_PASS_SETTING_REAL;
   level.default_value = 0.25;
   level.maximum = 1;
-  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
-  kind.name = "test.tone";
-  kind.ports = ports;
-  kind.port_count = 2;
-  kind.settings = &level;
-  kind.setting_count = 1;
-  kind.record = never;
-  ASSERT_EQ(dermis_register_pass_kind(context, &kind), DERMIS_OK) << dermis_last_error();
+  dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
+  type.name = "test.tone";
+  type.ports = ports;
+  type.port_count = 2;
+  type.settings = &level;
+  type.setting_count = 1;
+  type.record = never;
+  ASSERT_EQ(dermis_register_pass_type(context, &type), DERMIS_OK) << dermis_last_error();
   GraphOptions options;
   options.width = options.height = side;
-  options.text = R"({ "dermis": 1, "name": "toned",
+  options.text = R"({ "dermis": 2, "name": "toned",
     "imports": { "lighting": { "format": "rgba16f", "size": "view" } },
     "resources": { "toned": { "format": "rgba16f", "size": "view" } },
-    "passes": [ { "pass": "tone", "kind": "test.tone", "read": { "light": "lighting" }, "write": { "out": "toned" } } ],
+    "passes": [ { "pass": "tone", "type": "test.tone", "read": { "light": "lighting" }, "write": { "out": "toned" } } ],
     "exports": ["toned"] })";
   options.unbound.clear();
   options.formats.clear();

@@ -45,9 +45,9 @@ struct Arena {
                                    dermis_memory_block* out) {
     Arena& arena = *static_cast<Arena*>(user);
     if (++arena.taken == arena.refused) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    const bool shares = arena.overlaid > 0 && request->purpose == DERMIS_MEMORY_TRANSIENT;
-    const size_t number = shares ? arena.transients++ : 0;
-    if (shares && number >= arena.overlaid) {
+    const bool fractions = arena.overlaid > 0 && request->purpose == DERMIS_MEMORY_TRANSIENT;
+    const size_t number = fractions ? arena.transients++ : 0;
+    if (fractions && number >= arena.overlaid) {
       *out = arena.first_view[number % arena.overlaid];
       EXPECT_EQ(reinterpret_cast<uintptr_t>(out->user), request->bytes) << "views ask for the same";
       ++arena.alive;
@@ -76,7 +76,7 @@ struct Arena {
     if (block.used > bytes) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     ++arena.alive;
     arena.alive_bytes[request->purpose] += request->bytes;
-    if (shares) arena.first_view.push_back(*out);
+    if (fractions) arena.first_view.push_back(*out);
     return VK_SUCCESS;
   }
   static void DERMIS_CALL give_back(void* user, const dermis_memory_block* block) {
@@ -380,7 +380,7 @@ TEST(ManyReloads, LeaveAsManyObjectsAndBytesAsThereWere) {
   settle();
   const uint64_t alive = host.device.alive(), bytes = host.device.memory_bytes();
   for (int i = 0; i < 500; ++i) {
-    ASSERT_EQ(host.reload(i % 2 == 0 ? "" : "{ \"dermis\": 1"), i % 2 == 0 ? DERMIS_OK : DERMIS_ERROR_CONFIG);
+    ASSERT_EQ(host.reload(i % 2 == 0 ? "" : "{ \"dermis\": 2"), i % 2 == 0 ? DERMIS_OK : DERMIS_ERROR_CONFIG);
     if (i % 3 == 0) {
       ASSERT_EQ(host.record(), DERMIS_OK);
     }

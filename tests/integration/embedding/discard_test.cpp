@@ -30,7 +30,7 @@ struct Seen {
 std::string text_of(const dermis_choice& choice) {
   std::ostringstream text;
   text << choice.frame_index << ": " << choice.outcome << "; " << choice.why << "; " << choice.switches
-       << " switches, " << choice.budget_ms << " ms, predicted " << choice.predicted_ms << ", metered "
+       << " switches, " << choice.budget_ms << " ms, predicted " << choice.predicted_ms << ", deterministic "
        << choice.metered_ms << ", rmse " << choice.predicted_rmse << ", skips " << choice.skips << ", tiles "
        << choice.scattering_tiles << " of " << choice.view_tiles << ", groups " << choice.groups << ", units "
        << choice.sample_units;
@@ -63,7 +63,7 @@ struct Discard : DermisTest {
     const std::string text = invented_times;
     const dermis_source calibration = source_of(text, "invented");
     dermis_budget budget = DERMIS_BUDGET_INIT;
-    budget.flags = DERMIS_BUDGET_METER;
+    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
     budget.calibration = &calibration;
     ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
   }
@@ -71,7 +71,7 @@ struct Discard : DermisTest {
   void set_budget(float ms) {
     dermis_budget budget = DERMIS_BUDGET_INIT;
     budget.milliseconds = ms;
-    budget.flags = DERMIS_BUDGET_METER;
+    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
     ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
   }
 

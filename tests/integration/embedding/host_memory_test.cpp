@@ -1,7 +1,7 @@
 // Memory from the host: all of it comes from there and goes back there, and running out of it at any
 // allocation is told and leaves nothing behind.
 
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
@@ -75,7 +75,7 @@ struct HostMemory : ::testing::Test {
 
   // Calls `change` with its first allocation refused, then its second, until it succeeds: every one of the
   // first 300, then every `step`-th.
-  void refuse_each(uint64_t step, const std::function<dermis_result()>& change,
+  void reject_each(uint64_t step, const std::function<dermis_result()>& change,
                    const std::function<void()>& after) {
     constexpr uint64_t each_until = 300;
     uint64_t refusals = 0;
@@ -101,7 +101,7 @@ struct HostMemory : ::testing::Test {
     EXPECT_FALSE(heap.misaligned);
   }
   void still_records() { ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error(); }
-  static uint64_t step() { return dermis::testing::seeds_of_tier(61, 1); }
+  static uint64_t step() { return dermis::testing::seeds_to_try(61, 1); }
 };
 
 TEST_F(HostMemory, AllOfItGoesBack) {
@@ -128,7 +128,7 @@ TEST_F(HostMemory, AllOfItGoesBack) {
 
 TEST_F(HostMemory, AContextThatCannotBeMadeLeavesNothing) {
   host.destroy();
-  refuse_each(
+  reject_each(
       1,
       [&] {
         const dermis_result result = host.make_context(with_heap());
@@ -139,40 +139,40 @@ TEST_F(HostMemory, AContextThatCannotBeMadeLeavesNothing) {
 }
 
 TEST_F(HostMemory, AGraphThatCannotBeMadeLeavesNothing) {
-  refuse_each(
+  reject_each(
       step(), [&] { return host.make_graph(); }, [&] { EXPECT_EQ(host.graph, nullptr); });
 }
 
 TEST_F(HostMemory, ARefusedReloadLeavesTheGraphAsItWas) {
   make_graph();
-  refuse_each(
+  reject_each(
       step(), [&] { return host.reload(); }, [&] { still_records(); });
 }
 
 TEST_F(HostMemory, ARefusedReloadOfShadersLeavesTheGraphAsItWas) {
   make_graph();
-  uint32_t asked = 0;
-  if (dermis_graph_reload_shaders(host.graph, open_kernel, &asked, nullptr) == DERMIS_ERROR_UNSUPPORTED)
+  uint32_t requested = 0;
+  if (dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr) == DERMIS_ERROR_UNSUPPORTED)
     GTEST_SKIP() << "this library compiles no shaders; test_shared_shaders is the one that does";
   still_records();
   ASSERT_EQ(dermis_graph_reload_shaders(host.graph, nullptr, nullptr, nullptr), DERMIS_OK);
-  refuse_each(
-      step(), [&] { return dermis_graph_reload_shaders(host.graph, open_kernel, &asked, nullptr); },
+  reject_each(
+      step(), [&] { return dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr); },
       [&] { still_records(); });
-  EXPECT_GT(asked, 0u);
+  EXPECT_GT(requested, 0u);
 }
 
 TEST_F(HostMemory, ARefusedResizeLeavesTheGraphAsItWas) {
   make_graph();
   uint32_t calls = 0;
-  refuse_each(
+  reject_each(
       step(), [&] { return dermis_graph_resize(host.graph, 32 + ++calls % 7, 32, nullptr); },
       [&] { still_records(); });
 }
 
 TEST_F(HostMemory, ARefusedSettingLeavesTheGraphAsItWas) {
   make_graph();
-  refuse_each(
+  reject_each(
       1, [&] { return dermis_graph_set_setting(host.graph, "accumulate_clip", "2", nullptr); },
       [&] { still_records(); });
 }
@@ -180,7 +180,7 @@ TEST_F(HostMemory, ARefusedSettingLeavesTheGraphAsItWas) {
 TEST_F(HostMemory, ARefusedProfileLeavesTheGraphAsItWas) {
   make_graph();
   const std::string marble = read_text("configs/profiles/marble.json");
-  refuse_each(
+  reject_each(
       1, [&] { return host.set_profile(marble); }, [&] { still_records(); });
   heap.calls = 0;
   for (int i = 0; i < 4; ++i)
@@ -193,7 +193,7 @@ TEST_F(HostMemory, ARefusedSettingOfAViewLeavesItAsItWas) {
   dermis_view view = nullptr;
   ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
   uint64_t index = 0;
-  refuse_each(
+  reject_each(
       1, [&] { return dermis_view_set_setting(view, "accumulate_weight", "0.5", nullptr); },
       [&] { ASSERT_EQ(host.record(view, ++index), DERMIS_OK) << dermis_last_error(); });
 }
@@ -210,7 +210,7 @@ TEST_F(HostMemory, ARefusedBudgetLeavesTheGraphAsItWas) {
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.milliseconds = 1;
   budget.calibration = &calibration;
-  refuse_each(
+  reject_each(
       step(), [&] { return dermis_graph_set_budget(host.graph, &budget, nullptr); },
       [&] { still_records(); });
 }
@@ -218,7 +218,7 @@ TEST_F(HostMemory, ARefusedBudgetLeavesTheGraphAsItWas) {
 TEST_F(HostMemory, AViewThatCannotBeMadeLeavesNothing) {
   make_graph();
   dermis_view view = nullptr;
-  refuse_each(
+  reject_each(
       1, [&] { return dermis_view_create(host.graph, nullptr, &view, nullptr); },
       [&] {
         EXPECT_EQ(view, nullptr);

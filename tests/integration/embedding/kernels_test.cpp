@@ -60,9 +60,9 @@ TEST(SharedKernels, OfTheHostsShadersGoWithTheLastGraphThatRunsThem) {
   const uint64_t kept = host.device.alive();
   ASSERT_EQ(host.make_graph(), DERMIS_OK);
   const uint64_t with_graph = host.device.alive();
-  uint32_t asked = 0;
+  uint32_t requested = 0;
   const dermis_result result =
-      dermis_graph_reload_shaders(host.graph, dermis::abi_test::open_kernel, &asked, nullptr);
+      dermis_graph_reload_shaders(host.graph, dermis::abi_test::open_kernel, &requested, nullptr);
   if (result == DERMIS_ERROR_UNSUPPORTED)
     GTEST_SKIP() << "this library compiles no shaders; test_shared_shaders is the one that does";
   ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();

@@ -21,13 +21,13 @@ std::string broken(const std::string& text, uint32_t number) {
   case 0:
     return text.substr(0, text.size() * (1 + number % 89) / 100); // the file was cut
   case 1:
-    return replaced(text, "\"kind\": \"subsurface.classify\"", "\"kind\": \"subsurface.clasify\"");
+    return replaced(text, "\"type\": \"subsurface.classify\"", "\"type\": \"subsurface.clasify\"");
   case 2:
     return replaced(text, "\"passes\"", "\"pases\"");
   case 3:
     return replaced(text, "\"lighting\": {", "\"lightning\": {");
   default:
-    return "{ \"dermis\": 1 }";
+    return "{ \"dermis\": 2 }";
   }
 }
 
@@ -75,9 +75,9 @@ TEST(ReloadStorm, BrokenGraphsLeaveNoTraceInThePicturesAndGoodOnesKeepTheirHisto
   });
   ASSERT_EQ(calm.colors.size(), storm_frames);
   EXPECT_EQ(refused.summary.reloads, storm_frames * reloads_a_frame / 2);
-  EXPECT_EQ(refused.summary.refused_reloads, refused.summary.reloads);
+  EXPECT_EQ(refused.summary.rejected_reloads, refused.summary.reloads);
   EXPECT_EQ(mixed.summary.reloads, storm_frames * reloads_a_frame);
-  EXPECT_EQ(mixed.summary.refused_reloads, mixed.summary.reloads / 2);
+  EXPECT_EQ(mixed.summary.rejected_reloads, mixed.summary.reloads / 2);
   EXPECT_TRUE(calm.colors == refused.colors) << "a refused reload changed a picture";
   EXPECT_TRUE(calm.colors == mixed.colors) << "a reload of the same graph lost history";
 }

@@ -16,12 +16,12 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* traced = R"({ "dermis": 1, "name": "traced",
+constexpr const char* traced = R"({ "dermis": 2, "name": "traced",
   "imports": { "scene": { "acceleration_structure": "top_level" },
                "vertices": { "buffer": { "stride": 32, "count": 3 } },
                "light": { "format": "rgba16f", "size": "view" } },
   "resources": { "out": { "format": "rgba16f", "size": "view" } },
-  "passes": [ { "pass": "trace", "kind": "studio.trace",
+  "passes": [ { "pass": "trace", "type": "studio.trace",
                 "read": { "scene": "scene", "vertices": "vertices", "light": "light" }, "write": { "out": "out" } } ],
   "exports": ["out"] })";
 
@@ -58,13 +58,13 @@ struct SceneBindings : ::testing::Test {
     ports[2].name = "light";
     ports[3].name = "out";
     ports[3].usage = DERMIS_PORT_STORAGE_IMAGE_WRITE;
-    dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
-    kind.name = "studio.trace";
-    kind.ports = ports;
-    kind.port_count = 4;
-    kind.record = keep_ports;
-    kind.user = &seen;
-    ASSERT_EQ(dermis_register_pass_kind(host.context, &kind), DERMIS_OK) << dermis_last_error();
+    dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
+    type.name = "studio.trace";
+    type.ports = ports;
+    type.port_count = 4;
+    type.record = keep_ports;
+    type.user = &seen;
+    ASSERT_EQ(dermis_register_pass_type(host.context, &type), DERMIS_OK) << dermis_last_error();
     dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
     const std::string text = traced;
     desc.source = source_of(text, "traced.json");

@@ -22,30 +22,30 @@ void DERMIS_CALL keep(void* user, const dermis_pass_call* call) {
 }
 
 // Two kinds of the host: "weight" of studio.mix may differ from frame to frame, all else may not.
-dermis_result register_kinds(dermis_context context, Calls& calls) {
+dermis_result register_pass_types(dermis_context context, Calls& calls) {
   dermis_port port = DERMIS_PORT_INIT;
   port.name = "picture";
   port.usage = DERMIS_PORT_STORAGE_IMAGE_UPDATE;
-  dermis_kind_setting values[2] = {DERMIS_KIND_SETTING_INIT, DERMIS_KIND_SETTING_INIT};
+  dermis_pass_setting values[2] = {DERMIS_PASS_SETTING_INIT, DERMIS_PASS_SETTING_INIT};
   values[0].name = "weight";
   values[0].per_frame = 1;
   values[1].name = "radius";
-  for (dermis_kind_setting& value : values) {
-    value.type = DERMIS_KIND_SETTING_REAL;
+  for (dermis_pass_setting& value : values) {
+    value.type = DERMIS_PASS_SETTING_REAL;
     value.maximum = 1;
   }
-  dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
-  kind.name = "studio.mix";
-  kind.ports = &port;
-  kind.settings = values;
-  kind.port_count = 1;
-  kind.setting_count = 2;
-  kind.record = keep;
-  kind.user = &calls;
-  return dermis_register_pass_kind(context, &kind);
+  dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
+  type.name = "studio.mix";
+  type.ports = &port;
+  type.settings = values;
+  type.port_count = 1;
+  type.setting_count = 2;
+  type.record = keep;
+  type.user = &calls;
+  return dermis_register_pass_type(context, &type);
 }
 
-const std::string graph_text = R"({ "dermis": 1, "name": "settings",
+const std::string graph_text = R"({ "dermis": 2, "name": "settings",
   "settings": {
     "on": { "bool": true },
     "count": { "int": 4, "min": 1, "max": 9, "unit": "samples", "note": "a pixel" },
@@ -56,11 +56,11 @@ const std::string graph_text = R"({ "dermis": 1, "name": "settings",
     "threshold": { "real": 0.5, "min": 0, "max": 1 } },
   "imports": { "light": { "format": "rgba16f", "size": "view" } },
   "passes": [
-    { "pass": "one", "kind": "studio.mix", "write": { "picture": "light" },
+    { "pass": "one", "type": "studio.mix", "write": { "picture": "light" },
       "set": { "weight": "$weight", "radius": "$radius" } },
-    { "pass": "two", "kind": "studio.mix", "write": { "picture": "light" },
+    { "pass": "two", "type": "studio.mix", "write": { "picture": "light" },
       "set": { "weight": "$both", "radius": "$both" } },
-    { "pass": "three", "kind": "studio.mix", "write": { "picture": "light" }, "when": "threshold > 0.1",
+    { "pass": "three", "type": "studio.mix", "write": { "picture": "light" }, "when": "threshold > 0.1",
       "set": { "weight": "$threshold" } } ],
   "exports": ["light"] })";
 
@@ -93,7 +93,7 @@ struct Settings : ::testing::Test {
     ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   }
   void make(const std::string& text) {
-    ASSERT_EQ(register_kinds(host.context, calls), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(register_pass_types(host.context, calls), DERMIS_OK) << dermis_last_error();
     dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
     desc.source = source_of(text, "graph.json");
     desc.width = desc.height = 16;

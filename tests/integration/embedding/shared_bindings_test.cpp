@@ -15,7 +15,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr const char* shared_graph = R"({ "dermis": 1, "name": "shared",
+constexpr const char* shared_graph = R"({ "dermis": 2, "name": "shared",
   "imports": { "first": { "buffer": { "stride": 16, "count": [4, 1] } },
                "second": { "buffer": { "stride": 16, "count": [4, 1] } },
                "changed": { "buffer": { "stride": 16, "count": [4, 1] } },
@@ -24,7 +24,7 @@ constexpr const char* shared_graph = R"({ "dermis": 1, "name": "shared",
                "depth": { "format": "depth", "size": "view" },
                "marks": { "format": "r8_uint", "size": "view" } },
   "resources": { "out": { "format": "rgba16f", "size": "view" } },
-  "passes": [ { "pass": "read", "kind": "studio.read_all",
+  "passes": [ { "pass": "read", "type": "studio.read_all",
                 "read": { "first": "first", "second": "second", "scene": "scene", "shadows": "shadows",
                           "depth": "depth", "marks": "marks" },
                 "write": { "out": "out", "changed": "changed" } } ],
@@ -47,7 +47,7 @@ struct SharedBindings : ::testing::Test {
   std::map<std::string, size_t> place; // in one of the three lists
   uint64_t frame_index = 0;
 
-  void add_kind() {
+  void add_pass_type() {
     const std::pair<const char*, dermis_port_usage> wanted[] = {
         {"first", DERMIS_PORT_STORAGE_BUFFER_READ},    {"second", DERMIS_PORT_STORAGE_BUFFER_READ},
         {"scene", DERMIS_PORT_ACCELERATION_STRUCTURE}, {"shadows", DERMIS_PORT_ACCELERATION_STRUCTURE},
@@ -59,12 +59,12 @@ struct SharedBindings : ::testing::Test {
       ports.back().name = name;
       ports.back().usage = usage;
     }
-    dermis_pass_kind kind = DERMIS_PASS_KIND_INIT;
-    kind.name = "studio.read_all";
-    kind.ports = ports.data();
-    kind.port_count = static_cast<uint32_t>(ports.size());
-    kind.record = ignore;
-    ASSERT_EQ(dermis_register_pass_kind(host.context, &kind), DERMIS_OK) << dermis_last_error();
+    dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
+    type.name = "studio.read_all";
+    type.ports = ports.data();
+    type.port_count = static_cast<uint32_t>(ports.size());
+    type.record = ignore;
+    ASSERT_EQ(dermis_register_pass_type(host.context, &type), DERMIS_OK) << dermis_last_error();
   }
 
   void bind_all() {
@@ -106,7 +106,7 @@ struct SharedBindings : ::testing::Test {
 
   void SetUp() override {
     ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    add_kind();
+    add_pass_type();
     const std::string text = shared_graph;
     dermis_slot_format depth = DERMIS_SLOT_FORMAT_INIT;
     depth.name = "depth";

@@ -150,18 +150,18 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
   std::vector<dermis_acceleration_structure_binding> structures;
   size_t bound = 0;
   for (const dermis_slot& slot : slots_of(host.graph)) {
-    const auto told = bind.find(slot.name);
-    EXPECT_EQ(told != bind.end(), slot.bound == 1) << slot.name;
-    if (told == bind.end()) continue;
+    const auto reported = bind.find(slot.name);
+    EXPECT_EQ(reported != bind.end(), slot.bound == 1) << slot.name;
+    if (reported == bind.end()) continue;
     ++bound;
-    if (told->second == "acceleration structure") {
+    if (reported->second == "acceleration structure") {
       auto& one = structures.emplace_back(
           dermis_acceleration_structure_binding DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT);
       one.slot = slot.id;
       one.structure = invented<VkAccelerationStructureKHR>(0x52);
       one.before = one.after = no_image;
-    } else if (told->second.starts_with("buffer, ")) {
-      EXPECT_EQ(std::stoul(told->second.substr(8)), slot.stride) << slot.name;
+    } else if (reported->second.starts_with("buffer, ")) {
+      EXPECT_EQ(std::stoul(reported->second.substr(8)), slot.stride) << slot.name;
       auto& one = buffers.emplace_back(dermis_buffer_binding DERMIS_BUFFER_BINDING_INIT);
       one.slot = slot.id;
       one.buffer = invented<VkBuffer>(0x100 + bound);
@@ -170,7 +170,7 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
     } else {
       auto& one = images.emplace_back(dermis_image_binding DERMIS_IMAGE_BINDING_INIT);
       one.slot = slot.id;
-      const std::vector<std::string> names = names_in(told->second);
+      const std::vector<std::string> names = names_in(reported->second);
       one.format = format_named(names[choice % names.size()]);
       one.width = slot.width;
       one.height = slot.height;

@@ -1,7 +1,7 @@
 // Host memory where operator new is the program's: recording takes none, and running out of it is told and
 // leaves nothing behind.
 
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/embedding/recorded_frame.hpp"
 
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ std::string shipped_graph() {
 // first 300, then some.
 void fail_each(const std::function<dermis_result()>& change, const std::function<void(uint64_t)>& after) {
   constexpr uint64_t each_until = 300;
-  const uint64_t step = dermis::testing::seeds_of_tier(61, 1);
+  const uint64_t step = dermis::testing::seeds_to_try(61, 1);
   uint64_t failures = 0;
   for (uint64_t number = 1;; number += number < each_until ? 1 : step) {
     allocations = {true, 0, number};

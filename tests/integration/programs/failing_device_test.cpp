@@ -2,7 +2,7 @@
 // nothing is left behind.
 
 #include "integration/tools/command/bench/record/counted_host.hpp"
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/abi/sources.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
@@ -15,7 +15,7 @@
 namespace dermis::test {
 namespace {
 
-constexpr uint64_t most_creations = 2000; // of one call; a graph of twenty passes makes about 200
+constexpr uint64_t max_creations = 2000; // of one call; a graph of twenty passes makes about 200
 constexpr uint32_t frames_in_flight = 2;
 
 std::string text_of(const std::string& path) {
@@ -33,14 +33,14 @@ struct FailingDevice : ::testing::TestWithParam<const char*> {
   }
   // From one failing creation to the next: a graph that is made anew fits its kernel tables at each try.
   static uint64_t step() {
-    return std::string_view(GetParam()) == "burley" ? 1 : dermis::testing::seeds_of_tier(16, 1);
+    return std::string_view(GetParam()) == "burley" ? 1 : dermis::testing::seeds_to_try(16, 1);
   }
 };
 
 // Calls `change` with its first creation failing, then its second, until none fails.
 void fail_each_creation(tools::CountedHost& host, const std::function<dermis_result()>& change) {
   uint64_t failures = 0;
-  for (uint64_t nth = 1; nth < most_creations; ++nth) {
+  for (uint64_t nth = 1; nth < max_creations; ++nth) {
     const uint64_t alive = host.device().alive(), bytes = host.device().memory_bytes();
     host.device().fail_creation(nth, VK_ERROR_OUT_OF_DEVICE_MEMORY);
     const dermis_result result = change();
@@ -53,12 +53,12 @@ void fail_each_creation(tools::CountedHost& host, const std::function<dermis_res
     EXPECT_EQ(host.record_frame(), DERMIS_OK) << "creation " << nth;
   }
   EXPECT_GT(failures, 10u);
-  EXPECT_LT(failures, most_creations - 2);
+  EXPECT_LT(failures, max_creations - 2);
 }
 
 TEST_P(FailingDevice, AGraphThatCannotBeMadeLeavesNothing) {
   uint64_t nth = 1;
-  for (; nth < most_creations; nth += step()) {
+  for (; nth < max_creations; nth += step()) {
     tools::CountedHost host;
     host.device().fail_creation(nth, VK_ERROR_OUT_OF_DEVICE_MEMORY);
     const std::string problem = host.open(input(64, 48));
@@ -68,7 +68,7 @@ TEST_P(FailingDevice, AGraphThatCannotBeMadeLeavesNothing) {
     EXPECT_EQ(host.device().memory_bytes(), 0u) << "creation " << nth;
   }
   EXPECT_GT(nth, 10u);
-  EXPECT_LT(nth, most_creations);
+  EXPECT_LT(nth, max_creations);
 }
 
 TEST_P(FailingDevice, AFailedResizeLeavesTheGraphAsItWas) {

@@ -26,7 +26,7 @@ constexpr const char* store = "vec4(round_to_half(color), 1.0)";
 struct Folder {
   std::map<std::string, std::string> changed;
   bool rest = true; // false: there is nothing but `changed`
-  std::set<std::string> asked;
+  std::set<std::string> requested;
   std::map<std::string, std::string> delivered; // as long as the call lasts
 
   std::string change(const std::string& name, const std::string& from, const std::string& to) {
@@ -39,7 +39,7 @@ struct Folder {
 
 uint32_t DERMIS_CALL open_in(void* user, const char* name, dermis_source* source) {
   auto& folder = *static_cast<Folder*>(user);
-  folder.asked.insert(name);
+  folder.requested.insert(name);
   const auto changed = folder.changed.find(name);
   std::string& text = folder.delivered[name];
   text = changed != folder.changed.end() ? changed->second
@@ -118,8 +118,8 @@ TEST_F(Shaders, OfUnchangedTextGiveTheSameLight) {
   const dermis_graph graph = make();
   light(graph);
   ASSERT_EQ(reload(graph), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(folder.asked, AllOf(Contains(combine), Contains("common/environment.glsl")));
-  EXPECT_THAT(folder.asked, Each(Not(HasSubstr("bindings")))) << "those are the library's";
+  EXPECT_THAT(folder.requested, AllOf(Contains(combine), Contains("common/environment.glsl")));
+  EXPECT_THAT(folder.requested, Each(Not(HasSubstr("bindings")))) << "those are the library's";
   expect_as_ever(graph);
 }
 
@@ -203,7 +203,7 @@ TEST_F(Shaders, OpenNothingOutsideOfTheirFolder) {
   const dermis_graph graph = make();
   for (const char* include : {"\"../secret.glsl\"", "\"/etc/passwd\"", "\"a/../../b.glsl\"",
                               "\"C:\\\\b.glsl\"", "\"./half.glsl\"", "<half.glsl>", "\"not_there.glsl\""}) {
-    folder.asked.clear();
+    folder.requested.clear();
     const std::string text =
         folder.change(combine, "#include \"common/half.glsl\"", std::string("#include ") + include);
     Said said;
@@ -211,12 +211,12 @@ TEST_F(Shaders, OpenNothingOutsideOfTheirFolder) {
     ASSERT_THAT(said.names, ElementsAre("shader_error")) << said.all;
     EXPECT_EQ(said.places[0].first, place_in(text, include).first) << said.all;
     const bool named = std::string(include) == "\"not_there.glsl\"";
-    for (const std::string& name : folder.asked)
+    for (const std::string& name : folder.requested)
       EXPECT_TRUE(name.starts_with("common/") || name.starts_with("burley/") ||
                   (named && name == "not_there.glsl"))
           << name;
-    EXPECT_EQ(folder.asked.contains("not_there.glsl"), named);
-    EXPECT_FALSE(folder.asked.contains("./half.glsl"));
+    EXPECT_EQ(folder.requested.contains("not_there.glsl"), named);
+    EXPECT_FALSE(folder.requested.contains("./half.glsl"));
   }
   expect_as_ever(graph);
 }

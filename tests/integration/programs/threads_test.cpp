@@ -38,7 +38,7 @@ struct Threads : ::testing::Test {
       EXPECT_EQ(host.reload(), DERMIS_OK);
       break;
     case 1:
-      EXPECT_EQ(host.reload("{ \"dermis\": 1"), DERMIS_ERROR_CONFIG);
+      EXPECT_EQ(host.reload("{ \"dermis\": 2"), DERMIS_ERROR_CONFIG);
       break;
     case 2:
       EXPECT_EQ(dermis_graph_resize(host.graph, 33 + static_cast<uint32_t>(number) % 20, 40, nullptr),

@@ -50,7 +50,7 @@ VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request, derm
       out->user = std::bit_cast<void*>(static_cast<uintptr_t>(request->bytes));
       ++counted.blocks;
       counted.bytes += static_cast<int64_t>(request->bytes);
-      counted.most_bytes = std::max(counted.most_bytes, counted.bytes);
+      counted.max_bytes = std::max(counted.max_bytes, counted.bytes);
       return result;
     }
   return VK_ERROR_OUT_OF_DEVICE_MEMORY;
@@ -87,8 +87,8 @@ ProcessMemory process_memory() {
   out.heap = static_cast<int64_t>(__sanitizer_get_current_allocated_bytes());
 #elif defined(__GLIBC__)
   malloc_trim(0);
-  const struct mallinfo2 told = mallinfo2();
-  out.heap = static_cast<int64_t>(told.uordblks + told.hblkhd);
+  const struct mallinfo2 reported = mallinfo2();
+  out.heap = static_cast<int64_t>(reported.uordblks + reported.hblkhd);
 #endif
 #ifndef __SANITIZE_ADDRESS__ // which keeps up to 256 MiB of blocks aside that were given back, to see them
                              // used

@@ -17,7 +17,7 @@ struct CountedHeap {
 
 struct CountedDeviceMemory {
   demo::VulkanHost& host;
-  int64_t blocks = 0, bytes = 0, most_bytes = 0;
+  int64_t blocks = 0, bytes = 0, max_bytes = 0;
   dermis_device_allocator allocator();
 };
 

@@ -19,7 +19,7 @@ void live_once(NullHost& host) {
   for (uint32_t i = 1; i <= frames; ++i) {
     if (i % reload_every == 0) {
       ASSERT_EQ(host.reload(), DERMIS_OK) << dermis_last_error();
-      ASSERT_EQ(host.reload("{ \"dermis\": 1 }"), DERMIS_ERROR_CONFIG);
+      ASSERT_EQ(host.reload("{ \"dermis\": 2 }"), DERMIS_ERROR_CONFIG);
     }
     if (i % resize_every == 0) { // and back: the images of the host keep their size
       ASSERT_EQ(dermis_graph_resize(host.graph, side / 2, side / 4, nullptr), DERMIS_OK);

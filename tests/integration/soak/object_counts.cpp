@@ -20,7 +20,7 @@ enum Kind : size_t {
 #define SOAK_KIND(name) kind_##name,
   SOAK_OBJECTS(SOAK_KIND)
 #undef SOAK_KIND
-      kind_pipeline,
+      pass_type_pipeline,
   kind_count
 };
 constexpr std::array names = {
@@ -60,7 +60,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
                                                 const VkAllocationCallbacks* allocator, VkPipeline* out) {
   const VkResult result = driver->vkCreateComputePipelines(device, cache, count, infos, allocator, out);
   for (uint32_t i = 0; i < count; ++i)
-    made[kind_pipeline] += out[i] != VK_NULL_HANDLE;
+    made[pass_type_pipeline] += out[i] != VK_NULL_HANDLE;
   return result;
 }
 
@@ -69,17 +69,17 @@ template <class Function> PFN_vkVoidFunction untyped(Function function) {
 }
 
 PFN_vkVoidFunction VKAPI_CALL counting_device_proc_addr(VkDevice device, const char* name) {
-  const std::string_view asked = name;
+  const std::string_view requested = name;
 #define SOAK_FIND(name)                                                                                      \
-  if (asked == "vkCreate" #name)                                                                             \
+  if (requested == "vkCreate" #name)                                                                         \
     return untyped(&Counted<kind_##name, &VolkDeviceTable::vkCreate##name>::call);                           \
-  if (asked == "vkDestroy" #name)                                                                            \
+  if (requested == "vkDestroy" #name)                                                                        \
     return untyped(&Counted<kind_##name, &VolkDeviceTable::vkDestroy##name>::call);
   SOAK_OBJECTS(SOAK_FIND)
 #undef SOAK_FIND
-  if (asked == "vkCreateComputePipelines") return untyped(&create_pipelines);
-  if (asked == "vkDestroyPipeline")
-    return untyped(&Counted<kind_pipeline, &VolkDeviceTable::vkDestroyPipeline>::call);
+  if (requested == "vkCreateComputePipelines") return untyped(&create_pipelines);
+  if (requested == "vkDestroyPipeline")
+    return untyped(&Counted<pass_type_pipeline, &VolkDeviceTable::vkDestroyPipeline>::call);
   return vkGetDeviceProcAddr(device, name);
 }
 
@@ -105,7 +105,7 @@ ObjectCounts object_counts() {
       fmt::format_to(std::back_inserter(out.text), "{}{} {}s", out.text.empty() ? "" : ", ", alive,
                      names[kind]);
   }
-  out.pipelines = made[kind_pipeline];
+  out.pipelines = made[pass_type_pipeline];
   if (out.text.empty()) out.text = "none";
   return out;
 }

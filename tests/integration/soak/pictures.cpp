@@ -9,7 +9,7 @@ namespace dermis::abi_test {
 namespace {
 
 constexpr size_t pixels = size_t{soak_side} * soak_side;
-constexpr float plane_m = 0.5f, half_most = 65504.0f;
+constexpr float plane_m = 0.5f, half_max = 65504.0f;
 
 } // namespace
 
@@ -74,14 +74,14 @@ Light draw_light(SplitMix64& random, bool damaged) {
                  at = static_cast<uint32_t>(random.below(soak_side));
   for (uint32_t y = 0; y < soak_side; ++y)
     for (uint32_t x = 0; x < soak_side; ++x) {
-      double share = 1.0; // even
-      if (pattern == 1) share = x < at ? 1.0 : 0.0;
-      if (pattern == 2) share = (x + y) % 2 == 0 ? 1.0 : 0.25;
-      if (pattern == 3) share = unit(random);
-      if (pattern == 4) share = x == at && y == at ? 1.0 : 0.01;
-      if (pattern == 5) share = 0.5 + 0.4 * std::sin(0.4 * x);
+      double fraction = 1.0; // even
+      if (pattern == 1) fraction = x < at ? 1.0 : 0.0;
+      if (pattern == 2) fraction = (x + y) % 2 == 0 ? 1.0 : 0.25;
+      if (pattern == 3) fraction = unit(random);
+      if (pattern == 4) fraction = x == at && y == at ? 1.0 : 0.01;
+      if (pattern == 5) fraction = 0.5 + 0.4 * std::sin(0.4 * x);
       for (size_t c = 0; c < 3; ++c)
-        light.texels[4 * (size_t{y} * soak_side + x) + c] = static_cast<float>(share * level);
+        light.texels[4 * (size_t{y} * soak_side + x) + c] = static_cast<float>(fraction * level);
     }
   light.even = pattern == 0 && !damaged;
   light.brightest = level;
@@ -92,7 +92,7 @@ Light draw_light(SplitMix64& random, bool damaged) {
     for (int i = 0; i < 5; ++i) {
       const float value = bad[random.below(bad.size())];
       light.texels[4 * random.below(pixels) + random.below(3)] = value;
-      if (value > half_most) light.brightest = half_most;
+      if (value > half_max) light.brightest = half_max;
     }
   }
   return light;

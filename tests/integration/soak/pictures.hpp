@@ -23,7 +23,7 @@ Surface draw_surface(SplitMix64& random);
 
 struct Light {
   std::vector<float> texels; // 4 a pixel
-  double brightest = 0;      // that counts: what is not finite or negative is mended
+  double brightest = 0;      // that counts: what is not finite or negative is repaired
   bool even = false;         // the same everywhere, without damage
 };
 // Even, edges, spots and noise at levels from 1e-4 to 6e4, some of it NaN, infinite or negative.

@@ -23,7 +23,7 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr size_t most_views = 3;
+constexpr size_t max_views = 3;
 const demo::ImageState between{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
 
@@ -97,7 +97,7 @@ struct Soak : DermisTest {
     stages.clear();
   }
 
-  bool chance(double share) { return unit(random) < share; }
+  bool chance(double fraction) { return unit(random) < fraction; }
   template <class List> const auto& any(const List& list) { return list[random.below(list.size())]; }
 
   // Few at a time: a driver may compile kernels anew for each.
@@ -213,7 +213,7 @@ struct Soak : DermisTest {
       const dermis_source source = source_of(text, "graph.json");
       EXPECT_EQ(reload_text(stage.graph, source), broken ? DERMIS_ERROR_CONFIG : DERMIS_OK)
           << dermis_last_error();
-      ++(broken ? totals.refused_reloads : totals.reloads);
+      ++(broken ? totals.rejected_reloads : totals.reloads);
     }
     if (chance(0.02)) {
       std::tie(stage.width, stage.height) = any(sizes);
@@ -241,11 +241,11 @@ struct Soak : DermisTest {
     if (chance(0.03)) {
       dermis_budget budget = DERMIS_BUDGET_INIT;
       budget.milliseconds = static_cast<float>(random.below(4)) * 0.5f;
-      budget.flags = chance(0.5) ? DERMIS_BUDGET_METER : 0;
+      budget.flags = chance(0.5) ? DERMIS_BUDGET_DETERMINISTIC : 0;
       EXPECT_EQ(dermis_graph_set_budget(stage.graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
       ++totals.budgets;
     }
-    if (chance(0.01) && stage.views.size() < most_views) {
+    if (chance(0.01) && stage.views.size() < max_views) {
       dermis_view view = nullptr;
       ASSERT_EQ(dermis_view_create(stage.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
       add_view(stage, view);
@@ -355,9 +355,9 @@ struct Soak : DermisTest {
           off = std::max(off, std::abs(value - view.light.brightest));
         }
       }
-    double& most = totals.brightest[stage.desc.name];
-    most = std::max(most, brightest / level);
-    EXPECT_LE(brightest / level, stage.desc.most) << stage.desc.name << ", frame " << totals.frames;
+    double& maximum = totals.brightest[stage.desc.name];
+    maximum = std::max(maximum, brightest / level);
+    EXPECT_LE(brightest / level, stage.desc.maximum) << stage.desc.name << ", frame " << totals.frames;
     if (stage.desc.keeps_history ? view.calm : view.light.even) {
       ++totals.even;
       double& worst = totals.even_error[stage.desc.name];
@@ -402,7 +402,7 @@ struct Rest {
                          // (null_soak_test.cpp judges)
 };
 
-constexpr uint64_t most_kernels = 64; // the library has not as many
+constexpr uint64_t max_kernels = 64; // the library has not as many
 
 TEST_F(Soak, FramesWithoutEndAddNothingUp) {
   const uint64_t frames = from_environment("DERMIS_SOAK_FRAMES", 300);
@@ -430,7 +430,7 @@ TEST_F(Soak, FramesWithoutEndAddNothingUp) {
     std::fflush(stdout);
     EXPECT_EQ(rest.objects.text,
               fmt::format("{0} DescriptorSetLayouts, {0} PipelineLayouts, {0} Pipelines", rest.kernels()));
-    EXPECT_LE(rest.kernels(), most_kernels);
+    EXPECT_LE(rest.kernels(), max_kernels);
     const auto more = static_cast<int64_t>(rest.kernels() - before.kernels());
     EXPECT_GE(more, 0);
     if (more == 0) {
@@ -443,11 +443,11 @@ TEST_F(Soak, FramesWithoutEndAddNothingUp) {
   fmt::print("{} frames, {} pictures: {} reloads, {} refused, {} resizes, {} settings, {} settings of "
              "views, {} profiles, {} budgets, {} cuts, {} discarded, {} views, {} graphs; {} lights damaged, "
              "{} pictures judged as even\n",
-             totals.frames, totals.pictures, totals.reloads, totals.refused_reloads, totals.resizes,
+             totals.frames, totals.pictures, totals.reloads, totals.rejected_reloads, totals.resizes,
              totals.settings, totals.view_settings, totals.profiles, totals.budgets, totals.cuts,
              totals.discards, totals.views, totals.graphs, totals.damaged, totals.even);
-  for (const auto& [name, most] : totals.brightest)
-    fmt::print("{}: brightest {:.5f} of the light, off even light {:.5f}\n", name, most,
+  for (const auto& [name, maximum] : totals.brightest)
+    fmt::print("{}: brightest {:.5f} of the light, off even light {:.5f}\n", name, maximum,
                totals.even_error[name]);
   EXPECT_EQ(totals.not_finite, 0u);
   EXPECT_GT(rounds_alike, 0u);

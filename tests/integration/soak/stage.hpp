@@ -21,7 +21,7 @@ struct StageDesc {
   bool keeps_history = false; // a frame may show light of others
   // In units of the brightest light that counts: what comes out at most, and how far from light that was
   // even.
-  double most = 1.0 + soak_rounding, even_error = soak_rounding;
+  double maximum = 1.0 + soak_rounding, even_error = soak_rounding;
 };
 std::vector<StageDesc> soak_stages();
 
@@ -37,7 +37,7 @@ struct SoakView {
 };
 
 struct SoakTotals {
-  uint64_t frames = 0, pictures = 0, reloads = 0, refused_reloads = 0, resizes = 0, settings = 0,
+  uint64_t frames = 0, pictures = 0, reloads = 0, rejected_reloads = 0, resizes = 0, settings = 0,
            view_settings = 0, profiles = 0, budgets = 0, cuts = 0, discards = 0, views = 0, graphs = 0,
            damaged = 0, even = 0, not_finite = 0;
   std::map<std::string, double> brightest, even_error; // by stage, the worst

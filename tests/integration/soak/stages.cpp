@@ -37,7 +37,7 @@ std::vector<StageDesc> soak_stages() {
        "afis_guided",
        {},
        {{"guidance", {"\"split_half\"", "\"spvg\"", "\"ccv\"", "\"ocv\"", "\"ocv_seed\""}},
-        {"most", {"8", "16", "32"}},
+        {"max_samples", {"8", "16", "32"}},
         {"kappa", {"0", "0.2", "1"}},
         {"eta", {"0.001", "0.2", "1"}}},
        true,
@@ -53,7 +53,7 @@ std::vector<StageDesc> soak_stages() {
       {"by_tile",
        "hybrid_afis_separable",
        {},
-       {{"samples", samples}, {"least", {"0", "0.01", "4"}}, {"taps", {"\"11\"", "\"25\""}}}},
+       {{"samples", samples}, {"min_contrast", {"0", "0.01", "4"}}, {"taps", {"\"11\"", "\"25\""}}}},
       {"layered", "sap_layered", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
       {"blended", "sap_blend", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
   };

@@ -145,17 +145,17 @@ TEST_F(Captures, ValuesThatAreNotFiniteAreTakenAsZeroCountedAndReported) {
 }
 
 TEST_F(Captures, WhatIsTooBrightWithoutAProfileEndsAtTheBrightestFloat) {
-  constexpr float most = std::numeric_limits<float>::max();
+  constexpr float maximum = std::numeric_limits<float>::max();
   Plane plane;
-  plane.light = filled(plane.width, plane.height, 3, most);
+  plane.light = filled(plane.width, plane.height, 3, maximum);
   plane.profile = filled(plane.width, plane.height, 1, 0);
   write_plane(path("capture"), plane);
   write_channel(path("capture"), "albedo", filled(plane.width, plane.height, 3, 65504));
-  write_channel(path("capture"), "specular", filled(plane.width, plane.height, 3, most));
+  write_channel(path("capture"), "specular", filled(plane.width, plane.height, 3, maximum));
   const Outcome outcome = apply();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const float value : picture("combined.exr").values)
-    EXPECT_EQ(value, most);
+    EXPECT_EQ(value, maximum);
 }
 
 // What is not rendered is not written by any pass: whatever the device's memory held must not come out.

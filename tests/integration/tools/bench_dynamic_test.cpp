@@ -1,6 +1,6 @@
 // What `dermis bench dynamic` measures with, and that its shipped file can be read.
 #include "integration/tools/command/bench/dynamic/accumulation.hpp"
-#include "integration/tools/command/bench/dynamic/combined_truth.hpp"
+#include "integration/tools/command/bench/dynamic/combined_reference.hpp"
 #include "integration/tools/command/bench/dynamic/dynamic_file.hpp"
 #include "integration/tools/command/bench/dynamic/figures.hpp"
 #include "integration/tools/command/bench/supplement/experiment.hpp"
@@ -51,9 +51,9 @@ TEST(BenchDynamic, AFileWithWhatIsNotKnownIsRefusedWithThePlace) {
 }
 
 // Two grey pixels a frame.
-FrameLight grey(double found_a, double found_b, double truth_a, double truth_b) {
+FrameLight grey(double found_a, double found_b, double reference_a, double reference_b) {
   return {{found_a, found_a, found_a, found_b, found_b, found_b},
-          {truth_a, truth_a, truth_a, truth_b, truth_b, truth_b}};
+          {reference_a, reference_a, reference_a, reference_b, reference_b, reference_b}};
 }
 
 TEST(BenchDynamic, AnErrorThatStaysIsNoFlickerAndAccumulatesToItself) {
@@ -141,7 +141,7 @@ TEST(BenchDynamic, TruthsOfLightThatIsASumOfOthersAreTheSumOfTheirs) {
     for (size_t i = 0; i < frame.lighting.values.size(); ++i)
       frame.lighting.values[i] = first * float(i % 7) + second * float(i / 3 % 5);
   };
-  KnownTruths known;
+  KnownReferences known;
   light(1, 0);
   ASSERT_TRUE(make_reference_of_still(quiet, frame, "truth", 64, "", known));
   light(0.5f, 2);

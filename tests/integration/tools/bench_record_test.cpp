@@ -35,7 +35,7 @@ TEST_F(BenchRecord, AFolderWithoutGraphsIsNamed) {
 }
 
 TEST_F(BenchRecord, AGraphWithErrorsIsExplained) {
-  write("broken.json", "{ \"dermis\": 1, \"nam\": \"x\" }");
+  write("broken.json", "{ \"dermis\": 2, \"nam\": \"x\" }");
   const Outcome outcome = run({"bench", "record", "--graphs", path("")});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("broken.json:1:16"));

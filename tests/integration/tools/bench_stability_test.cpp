@@ -66,18 +66,18 @@ TEST_F(BenchStability, AsksATechniqueWhatItHas) {
                                "--json", rows});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
-  std::map<std::string, std::set<std::string>> asked;
+  std::map<std::string, std::set<std::string>> requested;
   for (const auto& row : document["rows"]) {
     EXPECT_TRUE(row["holds"]) << row;
-    asked[row["technique"]].insert(row["case"]);
+    requested[row["technique"]].insert(row["case"]);
   }
   std::set<std::string> of_all{"depth_reversed_infinite_far", "size_changes_every_frame", "d_0_of_blue",
                                "anything_anywhere", "anything_under_even_light"};
-  EXPECT_EQ(asked["burley alone"], of_all);
+  EXPECT_EQ(requested["burley alone"], of_all);
   of_all.insert("velocity_nan");
-  EXPECT_EQ(asked["burley accumulated"], of_all);
+  EXPECT_EQ(requested["burley accumulated"], of_all);
   of_all.merge(std::set<std::string>{"samples_in_a_tile", "samples_under_exposure_x16"});
-  EXPECT_EQ(asked["afis_guided ccv"], of_all);
+  EXPECT_EQ(requested["afis_guided ccv"], of_all);
 }
 
 TEST_F(BenchStability, RefusesNamesThatNothingHas) {

@@ -1,5 +1,5 @@
 // dermis bench truth: rows, exit codes and messages.
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
 namespace {
@@ -7,9 +7,9 @@ namespace {
 using namespace dermis::test;
 using ::testing::HasSubstr;
 
-class BenchTruth : public CommandTest {
+class BenchReference : public CommandTest {
 protected:
-  std::string law_file(const std::string& tolerances) const {
+  std::string property_file(const std::string& tolerances) const {
     return write("laws.json", R"({ "dermis_benchmark": 1, "truth": { "white_furnace": 1e-6 }, "techniques": [
       { "technique": "separable", "setting": "taps=11", "graph": "configs/graphs/separable.json",
         "set": { "taps": "11" }, "tolerances": )" +
@@ -18,31 +18,32 @@ protected:
   }
 };
 
-TEST_F(BenchTruth, PrintsExpectedBesideMeasuredAndALawThatDoesNotHoldIsAProblem) {
+TEST_F(BenchReference, PrintsExpectedBesideMeasuredAndALawThatDoesNotHoldIsAProblem) {
   const Outcome outcome =
-      run({"bench", "truth", "--file", law_file(R"({ "white_furnace": 0.001, "edge": 1e-9 })"), "--json",
+      run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001, "edge": 1e-9 })"), "--json",
            path("out.json")}); // no fp16 picture is so exact
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("\n0 of ")));
   EXPECT_THAT(outcome.out, HasSubstr("there is no graph 'configs/graphs/none.json'"));
-  for (const char* law : {"cdf(0.5 d)", "edge at 8 d", "E[w r^2]", "harmonic 4", "edge: mean of a column",
-                          "sinusoid_45: contrast", "disc: centre", "parabola", "tilted_edge_60"})
-    EXPECT_THAT(outcome.out, HasSubstr(law)) << law;
+  for (const char* property :
+       {"cdf(0.5 d)", "edge at 8 d", "E[w r^2]", "harmonic 4", "edge: mean of a column",
+        "sinusoid_45: contrast", "disc: centre", "parabola", "tilted_edge_60"})
+    EXPECT_THAT(outcome.out, HasSubstr(property)) << property;
   EXPECT_EQ(files(), (std::vector<std::string>{"laws.json", "out.json"}));
   EXPECT_THAT(read("out.json"), HasSubstr(R"("holds": false)"));
 }
 
-TEST_F(BenchTruth, EndsWellWhenAllHolds) {
-  DERMIS_IN_FULL_TIER();
+TEST_F(BenchReference, EndsWellWhenAllHolds) {
+  DERMIS_FULL_TESTS_ONLY();
   const Outcome outcome =
-      run({"bench", "truth", "--file", law_file(R"({ "white_furnace": 0.001 })"), "--json", "-"});
+      run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001 })"), "--json", "-"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_TRUE(is_json(outcome.out));
   EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr(R"("holds": false)")));
 }
 
-TEST_F(BenchTruth, AMisspeltLawIsAnsweredWithTheNearestOne) {
-  const Outcome outcome = run({"bench", "truth", "--file", law_file(R"({ "white_furnaces": 1 })")});
+TEST_F(BenchReference, AMisspeltLawIsAnsweredWithTheNearestOne) {
+  const Outcome outcome = run({"bench", "truth", "--file", property_file(R"({ "white_furnaces": 1 })")});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("white_furnace"));
   EXPECT_THAT(outcome.err, HasSubstr("laws.json:3:"));

@@ -31,7 +31,7 @@ TEST(BudgetJudge, CountsFramesBeyondTheToleranceAndNoneOfTheFirst) {
   const SceneRun run = run_of({10, 11, 11.4, 11.6});
   EXPECT_DOUBLE_EQ(judge_times(run, budget_ms).over, 0.25);
   EXPECT_DOUBLE_EQ(judge_times(run, budget_ms).mean_ms, 11);
-  EXPECT_DOUBLE_EQ(share_over_meter(run, budget_ms), 0.75); // the meter has 5 % only
+  EXPECT_DOUBLE_EQ(fraction_over_model(run, budget_ms), 0.75); // the meter has 5 % only
 }
 
 TEST(BudgetJudge, ARunThatTheMachineSlowedDownIsNotTheMedian) {

@@ -1,5 +1,5 @@
 // Choices by budget on the command line: render, calibrate, bench budget.
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ struct Choice : CommandTest {};
 TEST_F(Choice, OfEachFrameIsToldWithWhatWasExpectedAndMeasured) {
   const Outcome outcome =
       run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "4", "--subset", "0", "--budget",
-           "1000", "--meter", "--out", path("out"), "--json"});
+           "1000", "--deterministic", "--out", path("out"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json answer = json::parse(outcome.out);
   ASSERT_EQ(answer["choices"].size(), 4u);
@@ -35,8 +35,9 @@ TEST_F(Choice, OfEachFrameIsToldWithWhatWasExpectedAndMeasured) {
 }
 
 TEST_F(Choice, IsASentenceForPeople) {
-  const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2",
-                               "--subset", "0", "--budget", "0.001", "--meter", "--out", path("out")});
+  const Outcome outcome =
+      run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0", "--budget",
+           "0.001", "--deterministic", "--out", path("out")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("frame 1: technique=off"));
   EXPECT_THAT(outcome.out, HasSubstr("budget 0.00; RMSE"));
@@ -60,7 +61,7 @@ TEST_F(Choice, CalibrateWritesWhatValidateAcceptsAndRenderTakes) {
 
 TEST_F(Choice, ACalibrationThatIsNoneIsRefusedWithItsPlace) {
   const std::string file =
-      write("calibration.json", "{ \"dermis_calibration\": 1,\n \"devise\": \"d\", \"costs\": [] }");
+      write("calibration.json", "{ \"dermis_calibration\": 2,\n \"devise\": \"d\", \"costs\": [] }");
   const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1",
                                "--subset", "0", "--calibration", file, "--out", path("out")});
   EXPECT_EQ(outcome.exit_code, 1);
@@ -70,7 +71,7 @@ TEST_F(Choice, ACalibrationThatIsNoneIsRefusedWithItsPlace) {
 
 TEST_F(Choice, ExplainTellsOfAFrame) {
   const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid.json", "--frame", "--size", "64x36",
-                               "--budget", "1000", "--meter"});
+                               "--budget", "1000", "--deterministic"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("frame 5: "));
   EXPECT_THAT(outcome.out, HasSubstr("ms predicted")); // d is .2 px: no tile is in doubt at this size
@@ -129,7 +130,7 @@ TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {
 }
 
 TEST_F(Choice, BenchSkipGivesARowForEachCase) {
-  DERMIS_IN_FULL_TIER(); // BenchAll runs it, too
+  DERMIS_FULL_TESTS_ONLY(); // BenchAll runs it, too
   const std::string file = path("skip.json");
   const Outcome outcome = run({"bench", "skip", "--size", "48x27", "--repetitions", "1", "--json", file});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -137,7 +138,7 @@ TEST_F(Choice, BenchSkipGivesARowForEachCase) {
 }
 
 TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndShare) {
-  DERMIS_IN_FULL_TIER(); // BudgetJudge judges without a device
+  DERMIS_FULL_TESTS_ONLY(); // BudgetJudge judges without a device
   const std::string file = path("budget.json");
   const Outcome outcome = run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
                                "--repetitions", "1", "--cache", "", "--json", file});

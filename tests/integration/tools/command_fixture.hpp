@@ -42,7 +42,7 @@ inline constexpr const char* burley = "configs/graphs/burley.json";
 
 // An overlay on configs/graphs/skin.json whose budget chooses among its four techniques and no steps of
 // theirs, which makes calibrating it short.
-inline constexpr const char* techniques_alone = R"({ "dermis_overlay": 1, "edits": [
+inline constexpr const char* techniques_alone = R"({ "dermis_overlay": 2, "edits": [
   { "set": "/settings/variant", "to": { "choice": ["base", "smooth", "half"], "default": "smooth" } },
   { "set": "/settings/taps", "to": { "choice": ["11", "17", "25"], "default": "25" } } ] })";
 

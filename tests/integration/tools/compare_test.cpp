@@ -96,16 +96,16 @@ TEST_F(Compare, ComparesOnlyWhatTheMaskBesideAReferenceSaysWasComputed) {
     std::fill(image.values.begin(), image.values.end(), 0.5f);
     return image;
   }();
-  tools::Image truth = ours, mask = tools::Image::sized(16, 16, 1);
+  tools::Image reference = ours, mask = tools::Image::sized(16, 16, 1);
   for (uint32_t y = 0; y < 16; ++y)
     for (uint32_t x = 0; x < 16; ++x) {
       mask.at(x, y, 0) = x < 4 ? 1.0f : 0.0f;
       for (uint32_t c = 0; c < 3; ++c)
-        truth.at(x, y, c) = x < 4 ? 0.5f : 8.0f;
+        reference.at(x, y, c) = x < 4 ? 0.5f : 8.0f;
     }
   std::string error;
   const std::vector<std::string> rgb{"R", "G", "B"};
-  ASSERT_TRUE(tools::write_exr(path("truth/reference.exr"), truth, rgb, error)) << error;
+  ASSERT_TRUE(tools::write_exr(path("truth/reference.exr"), reference, rgb, error)) << error;
   ASSERT_TRUE(tools::write_exr(path("truth/mask.exr"), mask, {"Y"}, error)) << error;
   ASSERT_TRUE(tools::write_exr(path("ours/scattered.exr"), ours, rgb, error)) << error;
   for (const auto& [a, b] : {std::pair(path("ours"), path("truth")), std::pair(path("truth"), path("ours")),

@@ -25,10 +25,10 @@ TEST_F(Docs, APageThatIsOldOrNotThereIsNamed) {
   ASSERT_EQ(run({"docs", "--out", path("pages")}).exit_code, 0);
   EXPECT_EQ(run({"docs", "--check", "--out", path("pages")}).exit_code, 0);
   EXPECT_TRUE(is_json(run({"docs", "--check", "--json", "--out", path("pages")}).out));
-  write("pages/pass_kinds.md", "old");
+  write("pages/pass_types.md", "old");
   const Outcome outcome = run({"docs", "--check", "--out", path("pages")});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("pass_kinds.md"));
+  EXPECT_THAT(outcome.err, HasSubstr("pass_types.md"));
 }
 
 TEST_F(Docs, TheTableOfSlotsIsABlockOfThePageForHosts) {

@@ -100,9 +100,9 @@ TEST_F(Examples, OfEveryVerbRunAsTheyStand) {
   size_t ran = 0;
   for (const std::string& verb : verbs) {
     if (std::find(too_long.begin(), too_long.end(), verb) != too_long.end()) continue;
-    std::vector<std::string> asked = words(verb);
-    asked.emplace_back("--help");
-    const std::string help = run(asked).out;
+    std::vector<std::string> requested = words(verb);
+    requested.emplace_back("--help");
+    const std::string help = run(requested).out;
     const std::vector<std::string> example = example_in(help);
     EXPECT_FALSE(example.empty()) << verb;
     for (const std::string& line : example) {

@@ -24,7 +24,7 @@ struct Expectations : CommandTest {
   }
 };
 
-constexpr const char* two_facts = R"({ "dermis_expect": 1, "cases": [
+constexpr const char* two_infos = R"({ "dermis_expect": 1, "cases": [
   // what the smallest host gets
   { "case": "least", "size": [64, 64], "unbound": ["albedo", "scatter_scale", "scattered_light"],
     "expect": { "passes": ["classify", "list", "setup", "scatter", "combine"], "history_bytes": 0 } } ] }
@@ -48,14 +48,14 @@ TEST_F(Expectations, EveryShippedGraphHasSomeAndMeetsThem) {
 }
 
 TEST_F(Expectations, OnlyWhatIsStatedIsHeld) {
-  beside_burley(two_facts);
+  beside_burley(two_infos);
   const Outcome outcome = run({"test", path("")});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("burley.expect.json: 1 case as expected"));
 }
 
 TEST_F(Expectations, ADifferenceIsShownLineByLine) {
-  std::string wrong = two_facts;
+  std::string wrong = two_infos;
   wrong.replace(wrong.find("\"scatter\", "), 11, "\"sharpen\", ");
   const std::string file = beside_burley(wrong);
   const Outcome outcome = run({"test", file});
@@ -68,7 +68,7 @@ TEST_F(Expectations, ADifferenceIsShownLineByLine) {
 }
 
 TEST_F(Expectations, UpdateChangesTheFactsAndNothingElse) {
-  std::string wrong = two_facts;
+  std::string wrong = two_infos;
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
   const std::string file = beside_burley(wrong);
   EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
@@ -104,7 +104,7 @@ TEST_F(Expectations, MessagesThatNobodyStatedAreShown) {
 TEST_F(Expectations, AGraphThatCannotBeReadHasMessagesOnly) {
   const std::string file = write("bad.expect.json", R"({ "dermis_expect": 1, "cases": [
   { "case": "syntax", "expect": { "diagnostics": ["D0101"] } } ] })");
-  write("bad.json", "{ \"dermis\": 1,\n \"name\": }");
+  write("bad.json", "{ \"dermis\": 2,\n \"name\": }");
   EXPECT_EQ(run({"test", file}).exit_code, 0);
 }
 
@@ -158,7 +158,7 @@ TEST_F(Expectations, NothingToCompareIsNoSuccess) {
 }
 
 TEST_F(Expectations, ResultsAreWrittenForBuildServersAndPrograms) {
-  std::string wrong = two_facts;
+  std::string wrong = two_infos;
   wrong.replace(wrong.find("\"least\""), 7, "\"a<b & c\"");
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
   const std::string file = beside_burley(wrong);
@@ -179,7 +179,7 @@ TEST_F(Expectations, OverlaysOfACaseComeFromDeclaredFoldersOnly) {
   { "case": "changed", "overlays": ["changes/less.json"], "unbound": ["scattered_light"],
     "expect": { "passes": ["classify", "list", "setup", "scatter"] } } ] })");
   std::filesystem::create_directories(path("other/changes"));
-  const std::string overlay = R"({ "dermis_overlay": 1, "edits": [ { "remove": "/passes/combine" },
+  const std::string overlay = R"({ "dermis_overlay": 2, "edits": [ { "remove": "/passes/combine" },
     { "set": "/passes/scatter/write/scattered", "to": "lighting" } ] })";
   write("other/changes/less.json", overlay);
   const Outcome nowhere = run({"test", file});

@@ -44,7 +44,7 @@ TEST_F(GraphFiles, TheShippedFilesHaveNoProblems) {
 }
 
 TEST_F(GraphFiles, MalformedJsonIsNamedWithFileLineAndColumn) {
-  const std::string bad = write("bad.json", "{ \"dermis\": 1,\n  \"name\": }\n");
+  const std::string bad = write("bad.json", "{ \"dermis\": 2,\n  \"name\": }\n");
   const Outcome outcome = run({"validate", bad});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(bad + ":2:11: error[D0101 syntax]"), HasSubstr("^")));
@@ -104,7 +104,7 @@ TEST_F(GraphFiles, AllFilesAreCheckedEvenAfterABadOne) {
 
 TEST_F(GraphFiles, AGraphIsReadFromStandardInput) {
   RunOptions options;
-  options.input = "{ \"dermis\": 2 }";
+  options.input = "{ \"dermis\": 3 }";
   const Outcome outcome = run({"validate", "-"}, options);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("<stdin>:1:13"));
@@ -199,7 +199,7 @@ TEST_F(GraphFiles, UpgradeHasNothingToDoForTheNewestVersionAndRefusesUnknownOnes
        {std::vector<std::string>{"upgrade", mine}, {"upgrade", "--check", mine}}) {
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("graph, version 1 is the newest: nothing to"));
+    EXPECT_THAT(outcome.out, HasSubstr("graph, version 2 is the newest: nothing to"));
   }
   EXPECT_THAT(files(), ::testing::ElementsAre("mine.json"));
   const std::string newer = write("newer.json", "{ \"dermis_scene\": 7 }");
@@ -207,21 +207,21 @@ TEST_F(GraphFiles, UpgradeHasNothingToDoForTheNewestVersionAndRefusesUnknownOnes
   EXPECT_EQ(refused.exit_code, 1);
   ASSERT_TRUE(is_json(refused.out));
   EXPECT_THAT(refused.out, AllOf(HasSubstr("\"kind\": \"scene\", \"version\": null"), HasSubstr("D0110"),
-                                 HasSubstr("\"kind\": \"graph\", \"version\": 1, \"changed\": false")));
+                                 HasSubstr("\"kind\": \"graph\", \"version\": 2, \"changed\": false")));
 }
 
 TEST_F(GraphFiles, OverlaysApplyInOrderAndExplainTellsWhoSetWhat) {
-  const std::string first = write("first.json", R"({ "dermis_overlay": 1, "edits": [
-    { "set": "/settings/samples/int", "to": 8 }, { "remove": "/passes/hand_out" },
+  const std::string first = write("first.json", R"({ "dermis_overlay": 2, "edits": [
+    { "set": "/settings/samples/int", "to": 8 }, { "remove": "/passes/export_scattered" },
     { "remove": "/exports/scattered_light" }, { "remove": "/resources/scattered_light" } ] })");
-  const std::string second = write("second.json", R"({ "dermis_overlay": 1, "edits": [
+  const std::string second = write("second.json", R"({ "dermis_overlay": 2, "edits": [
     { "set": "/settings/samples/int", "to": 16 } ] })");
   for (const char* verb : {"validate", "explain", "graph"}) {
     const Outcome outcome = run({verb, burley, "--overlay", first, "--overlay", second});
     EXPECT_EQ(outcome.exit_code, 0) << verb << outcome.err;
   }
   const Outcome text = run({"explain", burley, "--overlay", first, "--overlay", second});
-  EXPECT_THAT(text.out, AllOf(HasSubstr("remove   /passes/hand_out  (" + first + ":2:62)"),
+  EXPECT_THAT(text.out, AllOf(HasSubstr("remove   /passes/export_scattered  (" + first + ":2:62)"),
                               HasSubstr("set      /settings/samples/int  (" + second + ":2:14)")));
   const Outcome json = run({"explain", burley, "--json", "--overlay", second, "--overlay", first});
   ASSERT_TRUE(is_json(json.out));
@@ -232,7 +232,7 @@ TEST_F(GraphFiles, OverlaysApplyInOrderAndExplainTellsWhoSetWhat) {
 }
 
 TEST_F(GraphFiles, AMistakeOfAnOverlayIsToldInTheOverlay) {
-  const std::string wrong = write("wrong.json", R"({ "dermis_overlay": 1,
+  const std::string wrong = write("wrong.json", R"({ "dermis_overlay": 2,
   "edits": [ { "set": "/settings/samples/int", "to": 1 } ] })");
   for (const char* verb : {"validate", "explain", "graph"}) {
     const Outcome outcome = run({verb, burley, "--overlay", wrong});
@@ -247,7 +247,7 @@ TEST_F(GraphFiles, AMistakeOfAnOverlayIsToldInTheOverlay) {
 }
 
 TEST_F(GraphFiles, IncludedFilesAreReadBelowTheGraphsFolderAndDeclaredRoots) {
-  const std::string classify = R"({ "pass": "classify", "kind": "subsurface.classify",
+  const std::string classify = R"({ "pass": "classify", "type": "subsurface.classify",
       "read": { "material": "material", "depth": "depth", "scatter_scale": "scatter_scale" },
       "write": { "classes": "classes" } })";
   const std::string graph =
@@ -255,7 +255,7 @@ TEST_F(GraphFiles, IncludedFilesAreReadBelowTheGraphsFolderAndDeclaredRoots) {
   const Outcome missing = run({"validate", graph});
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.err, AllOf(HasSubstr("D0109"), HasSubstr("there is no such file in")));
-  write("shared/parts/classify.json", "{ \"dermis_fragment\": 1, \"passes\": [ " + classify + " ] }");
+  write("shared/parts/classify.json", "{ \"dermis_fragment\": 2, \"passes\": [ " + classify + " ] }");
   const Outcome good = run({"validate", graph, "--root", path("shared")});
   EXPECT_EQ(good.exit_code, 0) << good.err;
   const Outcome alone = run({"validate", path("shared/parts/classify.json")});

@@ -71,19 +71,19 @@ TEST_F(Keep, ABugReportTakesTheLastFrameOfAnEnginesCaptureAndFilesThatAGraphIncl
                  "--frames", "2"})
                 .exit_code,
             0);
-  write("graphs/parts/back.json", R"({ "dermis_fragment": 1, "passes": [
-    { "pass": "combine", "kind": "subsurface.combine", "read": { "scattered": "light", "material": "material",
+  write("graphs/parts/back.json", R"({ "dermis_fragment": 2, "passes": [
+    { "pass": "combine", "type": "subsurface.combine", "read": { "scattered": "light", "material": "material",
       "tiles": "tiles", "arguments": "arguments" }, "write": { "lighting": "lighting" } } ] })");
-  const std::string graph = write("graphs/main.json", R"({ "dermis": 1, "name": "main",
+  const std::string graph = write("graphs/main.json", R"({ "dermis": 2, "name": "main",
     "imports": { "lighting": { "format": "rgba16f", "size": "view" }, "depth": { "format": "depth", "size": "view" },
       "material": { "format": "r8_uint", "size": "view" } },
     "resources": { "classes": { "buffer": { "stride": 4, "count": "view/8" } },
       "tiles": { "buffer": { "stride": 4, "count": "view/8", "extra": 1 } },
       "arguments": { "buffer": { "stride": 4, "count": [4, 1] } }, "light": { "format": "rgba16f", "size": "view" } },
     "passes": [
-      { "pass": "classify", "kind": "subsurface.classify", "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" } },
-      { "pass": "list", "kind": "subsurface.tile_list", "read": { "classes": "classes" }, "write": { "tiles": "tiles", "arguments": "arguments" } },
-      { "pass": "setup", "kind": "subsurface.setup", "read": { "lighting": "lighting", "material": "material", "depth": "depth",
+      { "pass": "classify", "type": "subsurface.classify", "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" } },
+      { "pass": "list", "type": "subsurface.tile_list", "read": { "classes": "classes" }, "write": { "tiles": "tiles", "arguments": "arguments" } },
+      { "pass": "setup", "type": "subsurface.setup", "read": { "lighting": "lighting", "material": "material", "depth": "depth",
         "tiles": "tiles", "arguments": "arguments" }, "write": { "light": "light" } },
       { "include": "parts/back.json" } ],
     "exports": ["lighting"] })");

@@ -49,14 +49,14 @@ TEST_F(PlanFiles, TheSameGraphIsSavedAsTheSameBytesAndVerifiesAlone) {
 }
 
 TEST_F(PlanFiles, PassesDeclaredAsyncGetAQueueWhereItIsAskedFor) {
-  const std::string graph = write("two.json", R"({ "dermis": 1, "name": "two",
+  const std::string graph = write("two.json", R"({ "dermis": 2, "name": "two",
   "imports": { "light": { "format": "rgba16f", "size": "view" } },
   "resources": { "a": { "format": "rgba16f", "size": "view" }, "b": { "format": "rgba16f", "size": "view/2" },
     "out": { "format": "rgba16f", "size": "view/4" } },
   "passes": [
-    { "pass": "first", "kind": "subsurface.pyramid_down", "read": { "fine": "light" }, "write": { "coarse": "a" } },
-    { "pass": "aside", "kind": "subsurface.pyramid_down", "queue": "async", "read": { "fine": "a" }, "write": { "coarse": "b" } },
-    { "pass": "last", "kind": "subsurface.pyramid_down", "read": { "fine": "b" }, "write": { "coarse": "out" } } ],
+    { "pass": "first", "type": "subsurface.pyramid_down", "read": { "fine": "light" }, "write": { "coarse": "a" } },
+    { "pass": "aside", "type": "subsurface.pyramid_down", "queue": "async", "read": { "fine": "a" }, "write": { "coarse": "b" } },
+    { "pass": "last", "type": "subsurface.pyramid_down", "read": { "fine": "b" }, "write": { "coarse": "out" } } ],
   "exports": ["out"] })");
   const Outcome one = run({"explain", graph}), two = run({"explain", graph, "--two-queues"});
   EXPECT_EQ(two.exit_code, 0) << two.err;
@@ -95,7 +95,7 @@ TEST_F(PlanFiles, APlanWithAHazardIsRefusedWithTheNamesOfPassAndResource) {
   bad[at + 1] = '\0';
   const Outcome outcome = run({"plan", "verify", write("bad.plan", bad)});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0322 plan_refused"), HasSubstr("is '")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0322 plan_rejected"), HasSubstr("is '")));
 }
 
 // Seventeen images of a million parts together, which no graph can have.

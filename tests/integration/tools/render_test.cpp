@@ -123,7 +123,7 @@ TEST_F(Render, ASceneThatIsNotThereIsNamedAndNothingIsWritten) {
 }
 
 TEST_F(Render, AGraphWithErrorsIsRefusedBeforeAnythingIsWritten) {
-  const std::string bad = write("bad.json", "{ \"dermis\": 1, \"name\": \"x\" ");
+  const std::string bad = write("bad.json", "{ \"dermis\": 2, \"name\": \"x\" ");
   const Outcome outcome = render(bust, bad);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr(bad + ":1:"));

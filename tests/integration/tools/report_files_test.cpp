@@ -3,8 +3,8 @@
 #include "integration/tools/command/bench/report/pareto.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
 #include "integration/tools/command/bench/subject.hpp"
-#include "integration/tools/command/run/truth_run.hpp"
-#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/command/run/reference_run.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ Report small_report() {
   Report report;
   report.bench = "test";
   report.title = "Title <&>";
-  report.facts = {{"command", "dermis \"x\""}};
+  report.info = {{"command", "dermis \"x\""}};
   report.table.columns = {{"name", "name"}, {"value", "value"}, {"best", "best"}};
   report.table.rows = {{std::string("a,b \"c\""), 0.1, true}, {std::string("plain"), ReportValue(), false}};
   report.plots = {{"plot", "x", "y", {{"series", {{1, 2, "point", true}, {10, 1, "other", true}}}}}};
@@ -101,7 +101,7 @@ TEST(GeneratedScenes, ShowTheWidestChannelAtTheAskedD) {
     ASSERT_TRUE(is_generated(scene));
     for (const double d_px : {1.0, 4.0}) {
       const CapturedFrame frame = generate_scene(scene, "close", 64, 48, d_px, skin());
-      EXPECT_NEAR(median_d_px(make_truth_frame(frame).input()), d_px, 1e-6) << scene;
+      EXPECT_NEAR(median_d_px(make_reference_frame(frame).input()), d_px, 1e-6) << scene;
       for (const float light : frame.lighting.values)
         ASSERT_TRUE(std::isfinite(light) && light >= 0 && light <= 1.001f) << scene;
     }

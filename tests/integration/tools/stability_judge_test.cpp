@@ -28,67 +28,67 @@ size_t index(uint32_t x, uint32_t y, uint32_t channel = 0) {
 }
 
 TEST(StabilityJudge, SeesASinglePixelAndWhatIsNotFinite) {
-  const StabilityCase asked = white(Judged::light);
+  const StabilityCase requested = white(Judged::light);
   StabilityAnswer found = white_answer();
-  EXPECT_EQ(judge(asked, 0, found, nullptr).error, 0);
+  EXPECT_EQ(judge(requested, 0, found, nullptr).error, 0);
   found.light[index(3, 5, 1)] = 0.75f;
   found.light[index(4, 5)] = not_a_number;
-  const Judgement judgement = judge(asked, 0, found, nullptr);
+  const Judgement judgement = judge(requested, 0, found, nullptr);
   EXPECT_DOUBLE_EQ(judgement.error, 0.25);
   EXPECT_EQ(judgement.nonfinite, 1u);
 }
 
 // An error may lie within its bound and light be less than none.
 TEST(StabilityJudge, CountsPixelsBelowZeroWhereverTheyAre) {
-  StabilityCase asked = white(Judged::light);
-  asked.margin = 4;
-  asked.finite_only = true;
+  StabilityCase requested = white(Judged::light);
+  requested.margin = 4;
+  requested.finite_only = true;
   StabilityAnswer found = white_answer();
   found.light[index(0, 0, 2)] = -1e-6f;
   found.light[index(9, 9)] = found.light[index(9, 9, 1)] = -1;
   found.light[index(10, 9)] = -infinity;
   found.light[index(11, 9)] = -0.0f;
-  const Judgement judgement = judge(asked, 0, found, nullptr);
+  const Judgement judgement = judge(requested, 0, found, nullptr);
   EXPECT_EQ(judgement.negative, 2u);
   EXPECT_EQ(judgement.nonfinite, 1u);
 }
 
 TEST(StabilityJudge, LightMayBeAnythingUpToTheBrightest) {
-  StabilityCase asked = white(Judged::light_beyond);
-  asked.scale = 2;
+  StabilityCase requested = white(Judged::light_beyond);
+  requested.scale = 2;
   StabilityAnswer found = white_answer();
   found.light[index(3, 3)] = 0;
   found.light[index(4, 3)] = 2;
-  EXPECT_EQ(judge(asked, 0, found, nullptr).error, 0);
+  EXPECT_EQ(judge(requested, 0, found, nullptr).error, 0);
   found.light[index(5, 3)] = 2.5f;
-  EXPECT_DOUBLE_EQ(judge(asked, 0, found, nullptr).error, 0.25);
+  EXPECT_DOUBLE_EQ(judge(requested, 0, found, nullptr).error, 0.25);
   found.light[index(6, 3)] = -1;
-  EXPECT_DOUBLE_EQ(judge(asked, 0, found, nullptr).error, 0.5);
+  EXPECT_DOUBLE_EQ(judge(requested, 0, found, nullptr).error, 0.5);
 }
 
 TEST(StabilityJudge, LooksAtItsChannelsAndInsideOfItsMarginAlone) {
-  StabilityCase asked = white(Judged::light);
-  asked.first_channel = 2;
-  asked.margin = 4;
+  StabilityCase requested = white(Judged::light);
+  requested.first_channel = 2;
+  requested.margin = 4;
   StabilityAnswer found = white_answer();
   found.light[index(10, 10, 1)] = found.light[index(3, 10, 2)] = found.light[index(10, 44, 2)] = 0;
-  EXPECT_EQ(judge(asked, 0, found, nullptr).error, 0);
+  EXPECT_EQ(judge(requested, 0, found, nullptr).error, 0);
   found.light[index(4, 43, 2)] = 0;
-  EXPECT_EQ(judge(asked, 0, found, nullptr).error, 1);
+  EXPECT_EQ(judge(requested, 0, found, nullptr).error, 1);
 }
 
 TEST(StabilityJudge, WithoutAnythingWantedTheLightStays) {
-  StabilityCase asked = white(Judged::light);
-  asked.wanted = nullptr;
-  asked.given = [](uint32_t) { return textured_frame(); };
+  StabilityCase requested = white(Judged::light);
+  requested.wanted = nullptr;
+  requested.given = [](uint32_t) { return textured_frame(); };
   StabilityAnswer found{textured_frame().lighting.values, {}};
-  EXPECT_EQ(judge(asked, 0, found, nullptr).error, 0);
+  EXPECT_EQ(judge(requested, 0, found, nullptr).error, 0);
   found.light[index(7, 7)] += 0.125f;
-  EXPECT_NEAR(judge(asked, 0, found, nullptr).error, 0.125, 1e-6);
+  EXPECT_NEAR(judge(requested, 0, found, nullptr).error, 0.125, 1e-6);
 }
 
 TEST(StabilityJudge, AnEdgeOfEveryTileIsASeamAndAPixelOrAllOfThePictureIsNone) {
-  const StabilityCase asked = white(Judged::tile_edges);
+  const StabilityCase requested = white(Judged::tile_edges);
   StabilityAnswer all = white_answer(), pixel = white_answer(), columns = white_answer(),
                   rows = white_answer();
   for (uint32_t y = 0; y < stability_side; ++y)
@@ -99,10 +99,10 @@ TEST(StabilityJudge, AnEdgeOfEveryTileIsASeamAndAPixelOrAllOfThePictureIsNone) {
         if (y % 16 == 15) rows.light[index(x, y, c)] = 0.875f;
       }
   pixel.light[index(9, 9)] = 0.5f;
-  EXPECT_NEAR(judge(asked, 0, all, nullptr).error, 0, 1e-12);
-  EXPECT_LT(judge(asked, 0, pixel, nullptr).error, 0.002); // .5 of one of 432 values of a line
-  EXPECT_NEAR(judge(asked, 0, columns, nullptr).error, 0.125 * 7 / 8, 1e-6);
-  EXPECT_NEAR(judge(asked, 0, rows, nullptr).error, 0.125 * 15 / 16, 1e-6);
+  EXPECT_NEAR(judge(requested, 0, all, nullptr).error, 0, 1e-12);
+  EXPECT_LT(judge(requested, 0, pixel, nullptr).error, 0.002); // .5 of one of 432 values of a line
+  EXPECT_NEAR(judge(requested, 0, columns, nullptr).error, 0.125 * 7 / 8, 1e-6);
+  EXPECT_NEAR(judge(requested, 0, rows, nullptr).error, 0.125 * 15 / 16, 1e-6);
 }
 
 TEST(StabilityJudge, SamplesAreComparedByTheirMeanBesideTheEdgeAndInTheirTile) {

@@ -101,7 +101,7 @@ TEST_F(Usage, AUsageErrorIsOneJsonDocumentForPrograms) {
 }
 
 TEST_F(Usage, ColourIsUsedWhenAskedForAndNeverOnAFile) {
-  const std::string bad = write("bad.json", "{ \"dermis\": 1, }");
+  const std::string bad = write("bad.json", "{ \"dermis\": 2, }");
   EXPECT_THAT(run({"validate", bad, "--color", "always"}).err, HasSubstr("\x1b["));
   EXPECT_THAT(run({"validate", bad}).err, Not(HasSubstr("\x1b[")));
   EXPECT_EQ(run({"validate", bad, "--color", "sometimes"}).exit_code, 2);

@@ -34,7 +34,7 @@ TEST_F(View, NothingThatAFileSaysEndsAnElement) {
   const std::string plain = run({"graph", "configs/graphs/burley.json", "--html", "-"}).out;
   const std::string graph =
       write("hostile.json",
-            R"({ "dermis": 1, "name": "hostile", "note": "</script><script>hurt_the_reader()</script>",
+            R"({ "dermis": 2, "name": "hostile", "note": "</script><script>hurt_the_reader()</script>",
     "imports": { "light": { "format": "rgba16f", "size": "view", "note": "</script>" } }, "passes": [], "exports": [] })");
   const Outcome hostile = run({"graph", graph, "--html", "-"});
   ASSERT_EQ(hostile.exit_code, 0) << hostile.err;
@@ -52,7 +52,7 @@ TEST_F(View, AReportThatIsNoneIsRefusedWithItsPlaceAndNoPageIsWritten) {
 }
 
 TEST_F(View, AGraphWithErrorsHasNoPage) {
-  const std::string graph = write("broken.json", R"({ "dermis": 1, "name": "broken", "passes": 3 })");
+  const std::string graph = write("broken.json", R"({ "dermis": 2, "name": "broken", "passes": 3 })");
   EXPECT_EQ(run({"graph", graph, "--html", path("view.html")}).exit_code, 1);
   EXPECT_THAT(files(), ::testing::ElementsAre("broken.json"));
 }

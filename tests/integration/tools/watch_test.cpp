@@ -55,7 +55,7 @@ TEST_F(Watch, SaysWhatAChangedGraphDoesToThePlanAndTheError) {
 TEST_F(Watch, GoesOnBehindAFileWithErrors) {
   const std::string graph = copy("configs/graphs/burley.json", "graph.json");
   std::thread editor = after_the_first([&] {
-    write("graph.json", "{ \"dermis\": 1, ");
+    write("graph.json", "{ \"dermis\": 2, ");
     std::this_thread::sleep_for(1500ms);
     copy("configs/graphs/burley.json", "graph.json");
   });
@@ -67,7 +67,7 @@ TEST_F(Watch, GoesOnBehindAFileWithErrors) {
 }
 
 TEST_F(Watch, TellsByItsExitCodeWhetherTheLastRoundRendered) {
-  write("graph.json", "{ \"dermis\": 1, ");
+  write("graph.json", "{ \"dermis\": 2, ");
   EXPECT_EQ(run(arguments(path("graph.json"), "1")).exit_code, 1);
 }
 

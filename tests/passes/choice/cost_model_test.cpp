@@ -11,7 +11,7 @@ using namespace dermis;
 using namespace dermis::choice;
 
 // A device whose passes take .05 ms and 20 us for 100 groups.
-double truth_ms(uint64_t groups) {
+double reference_ms(uint64_t groups) {
   return 0.05 + 0.0002 * static_cast<double>(groups);
 }
 
@@ -20,10 +20,11 @@ TEST(CostModel, FindsBaseAndSlopeOfADevice) {
   const CostId id = model.add("work");
   for (uint64_t frame = 0; frame < 60; ++frame) {
     const uint64_t groups = 100 + frame * 97 % 3000;
-    model.observe(id, groups, truth_ms(groups));
+    model.observe(id, groups, reference_ms(groups));
   }
   for (const uint64_t groups : {200u, 1000u, 3000u})
-    EXPECT_NEAR(model.estimate(id, groups).ms, truth_ms(groups), 0.03 * truth_ms(groups)); // pull of prior 0
+    EXPECT_NEAR(model.estimate(id, groups).ms, reference_ms(groups),
+                0.03 * reference_ms(groups)); // pull of prior 0
   EXPECT_TRUE(model.estimate(id, 1).measured);
 }
 
@@ -32,10 +33,10 @@ TEST(CostModel, OneStrangeFrameInEightMovesTheEstimateLittle) {
   const CostId id = model.add("work");
   for (uint64_t frame = 0; frame < 200; ++frame) {
     const uint64_t groups = 100 + frame * 97 % 3000;
-    model.observe(id, groups, truth_ms(groups) * (frame % 8 == 7 ? 5 : 1));
+    model.observe(id, groups, reference_ms(groups) * (frame % 8 == 7 ? 5 : 1));
   }
   // Least squares would follow the mean, which is 1.5 times the truth.
-  EXPECT_NEAR(model.estimate(id, 1500).ms, truth_ms(1500), 0.2 * truth_ms(1500));
+  EXPECT_NEAR(model.estimate(id, 1500).ms, reference_ms(1500), 0.2 * reference_ms(1500));
 }
 
 TEST(CostModel, ForgetsADeviceThatBecameSlower) {
@@ -108,8 +109,8 @@ TEST(Calibration, ComesBackFromItsFileAsItWas) {
   const CostId b = model.add("b"), a = model.add("a");
   model.add("never run");
   for (uint64_t groups = 100; groups < 2000; groups += 100) {
-    model.observe(a, groups, truth_ms(groups));
-    model.observe(b, groups, 2 * truth_ms(groups));
+    model.observe(a, groups, reference_ms(groups));
+    model.observe(b, groups, 2 * reference_ms(groups));
   }
   const Calibration out{"a device", model.calibration()};
   ASSERT_EQ(out.costs.size(), 2u);
@@ -128,7 +129,7 @@ TEST(Calibration, ComesBackFromItsFileAsItWas) {
 TEST(Calibration, NegativeTimesAndUnknownKeysAreRefusedWithTheirPlace) {
   Diagnostics diagnostics;
   const auto document = parse_document("c.json",
-                                       "{\"dermis_calibration\": 1, \"device\": \"d\", \"costs\": [\n"
+                                       "{\"dermis_calibration\": 2, \"device\": \"d\", \"costs\": [\n"
                                        "{\"work\": \"w\", \"base_us\": -1, \"group_us\": 0, \"spred\": 0}]}",
                                        diagnostics);
   ASSERT_TRUE(document);

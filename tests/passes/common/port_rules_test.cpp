@@ -1,9 +1,9 @@
-// What the library's kinds ask of what stands at their ports, beside its size: channels, and one of several
-// ports.
+// What the library's pass types ask of what stands at their ports, beside its size: channels, and one of
+// several ports.
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/model/read_graph.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "tests/framegraph/text_support.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using namespace dermis::testing;
 using Id = DiagnosticId;
 
 struct PortRules : ::testing::Test {
-  KindRegistry kinds = subsurface::make_kinds();
+  PassTypeRegistry pass_types = subsurface::make_pass_types();
   Diagnostics diagnostics;
   std::string text;
   std::optional<Graph> graph;
@@ -40,14 +40,14 @@ struct PortRules : ::testing::Test {
   void read() {
     const auto document = parse_document("graph.json", text, diagnostics);
     ASSERT_TRUE(document) << all_messages(diagnostics);
-    graph = read_graph(*document, kinds, diagnostics);
+    graph = read_graph(*document, pass_types, diagnostics);
   }
 
   bool compiles(std::string_view unbound = "") {
     const DeviceProfile device = generic_profile();
     CompileInput input;
     input.graph = &*graph;
-    input.kinds = &kinds;
+    input.pass_types = &pass_types;
     input.device = &device;
     input.view_width = 640;
     input.view_height = 360;
@@ -114,12 +114,12 @@ TEST_F(PortRules, EachFormatOfAnImportFitsEveryPort) {
 // A port of one channel, or of an integer, takes any such format; every other one names what it takes.
 TEST_F(PortRules, EveryPortOfSeveralChannelsNamesItsFormats) {
   const std::set<std::string_view> of_one_channel{"depth", "scatter_scale", "thickness"};
-  for (uint32_t i = 0; i < kinds.size(); ++i)
-    for (const Port& port : kinds[KindId{i}].ports) {
+  for (uint32_t i = 0; i < pass_types.size(); ++i)
+    for (const Port& port : pass_types[PassTypeId{i}].ports) {
       if (!usage_info(port.usage).image || port.usage == Usage::clear || port.glsl_type.front() == 'u')
         continue;
       EXPECT_EQ(port.formats.empty(), of_one_channel.contains(port.name))
-          << kinds[KindId{i}].name << "." << port.name;
+          << pass_types[PassTypeId{i}].name << "." << port.name;
     }
 }
 
@@ -139,22 +139,22 @@ size_t count_reads(const std::string& shader, const std::string& image, bool own
 
 TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
   size_t ports = 0;
-  for (uint32_t i = 0; i < kinds.size(); ++i) {
-    const PassKind& kind = kinds[KindId{i}];
+  for (uint32_t i = 0; i < pass_types.size(); ++i) {
+    const PassType& type = pass_types[PassTypeId{i}];
     const std::string shader =
-        shader_text(std::string(kind.shader) + ".comp") + shader_text("common/pixel_light.glsl");
-    for (const Port& port : kind.ports) {
+        shader_text(std::string(type.shader) + ".comp") + shader_text("common/pixel_light.glsl");
+    for (const Port& port : type.ports) {
       if (!port.own_texels) continue;
       const std::string image = std::string(port.name) + "_image";
-      EXPECT_GT(count_reads(shader, image, true), 0u) << kind.name << "." << port.name;
+      EXPECT_GT(count_reads(shader, image, true), 0u) << type.name << "." << port.name;
       EXPECT_EQ(count_reads(shader, image, true), count_reads(shader, image, false))
-          << kind.name << "." << port.name;
-      EXPECT_NE(shader.find("ivec2 texel = texel_of(pixel);"), std::string::npos) << kind.name;
-      for (const Port& written : kind.ports) {
+          << type.name << "." << port.name;
+      EXPECT_NE(shader.find("ivec2 texel = texel_of(pixel);"), std::string::npos) << type.name;
+      for (const Port& written : type.ports) {
         if (written.usage != Usage::storage_image_write) continue;
         EXPECT_NE(shader.find("imageStore(" + std::string(written.name) + "_image, texel, "),
                   std::string::npos)
-            << kind.name << "." << written.name;
+            << type.name << "." << written.name;
       }
       ++ports;
     }
@@ -169,7 +169,7 @@ TEST_F(PortRules, LightGoesBackToTheHostFromSomewhere) {
                 "tiles")");
   read();
   EXPECT_FALSE(graph);
-  expect(Id::missing_port, R"("combine", "kind")",
+  expect(Id::missing_port, R"("combine", "type")",
          {"pass 'combine'", "one of its ports 'scattered' or 'unscattered' under \"read\""});
 }
 
@@ -186,7 +186,7 @@ TEST_F(PortRules, LightThatIsOnlyCopiedIsEnough) {
 // The file binds both ports, but with these settings nothing stands behind either: told once.
 TEST_F(PortRules, APlanWithNothingBehindAllOfSuchPortsIsRefused) {
   replace(R"("samples": { "int": 32)", R"("on": { "bool": false }, "samples": { "int": 32)");
-  replace(R"("kind": "subsurface.burley",)", R"("kind": "subsurface.burley", "when": "on",)");
+  replace(R"("type": "subsurface.burley",)", R"("type": "subsurface.burley", "when": "on",)");
   replace(R"("scattered": "scattered", "material": "material", "albedo": "albedo",
                 "tiles")",
           R"("scattered": "scattered", "unscattered": "behind", "material": "material", "albedo": "albedo",

@@ -223,14 +223,14 @@ TEST(ProfileModels, WhatIsWrittenReadsBackBitForBit) {
     ASSERT_TRUE(again) << format_as_json(diagnostics);
     EXPECT_EQ(again->d_mm, profile->d_mm);
     EXPECT_EQ(again->model, profile->model);
-    const std::string told = describe_profile(*profile);
-    EXPECT_NE(told.find(profile->name), std::string::npos);
-    EXPECT_NE(told.find(" mm"), std::string::npos);
+    const std::string reported = describe_profile(*profile);
+    EXPECT_NE(reported.find(profile->name), std::string::npos);
+    EXPECT_NE(reported.find(" mm"), std::string::npos);
   }
 }
 
 TEST(BurleySamplers, TheApproximateInverseHasItsPublishedErrors) {
-  double worst = 0, distance = 0, mean = 0, weight_mean = 0, least = 1e9;
+  double worst = 0, distance = 0, mean = 0, weight_mean = 0, minimum = 1e9;
   constexpr int n = 200000;
   for (int i = 0; i < n; ++i) {
     const double xi = (i + 0.5) / n, u = 1 - xi;
@@ -239,13 +239,13 @@ TEST(BurleySamplers, TheApproximateInverseHasItsPublishedErrors) {
     distance = std::max(distance, std::abs(burley_cdf(r, 1) - xi));
     mean += r / n;
     weight_mean += burley_approximate_weight(u) / n;
-    least = std::min(least, burley_approximate_weight(u));
+    minimum = std::min(minimum, burley_approximate_weight(u));
   }
   EXPECT_NEAR(worst, 0.045, 0.001);
   EXPECT_NEAR(distance, 0.00987, 0.0002);
   EXPECT_NEAR(mean, 2.4286, 0.001);
   EXPECT_NEAR(weight_mean, 1, 1e-4); // the tail beyond 1 - 1/n is not seen
-  EXPECT_NEAR(least, 0.945, 0.001);
+  EXPECT_NEAR(minimum, 0.945, 0.001);
 }
 
 } // namespace

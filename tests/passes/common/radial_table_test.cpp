@@ -61,9 +61,9 @@ TEST_P(RadialTable, ReturnsDensityAndSurvivalOfEveryChannel) {
     const auto falloff = radial_falloff(rows, d, static_cast<float>(r));
     const auto survival = radial_survival(rows, d, static_cast<float>(r));
     for (size_t c = 0; c < 3; ++c) {
-      const double truth = 2 * std::numbers::pi * shape_R(shape[c], r);
+      const double reference = 2 * std::numbers::pi * shape_R(shape[c], r);
       // Relative to the value or, far out, to what is left of the peak: linear steps of 1/24 octave in log R.
-      EXPECT_NEAR(falloff[c], truth, 4e-3 * truth + 1e-9) << in_d << " d, channel " << c;
+      EXPECT_NEAR(falloff[c], reference, 4e-3 * reference + 1e-9) << in_d << " d, channel " << c;
       EXPECT_NEAR(survival[c], shape_survival(shape[c], r), 2e-4) << in_d << " d, channel " << c;
     }
   }
@@ -78,7 +78,7 @@ TEST_P(RadialTable, InvertsTheDistributionWithinAThousandthOfD) {
 
 TEST_P(RadialTable, WeightsByTheSamplersOwnDensityAreUnbiased) {
   // The weight is pdf / density; its mean is 1 and that of r^2 the profile's own, within .1 %.
-  double total = 0, square = 0, least = 1e9, greatest = 0;
+  double total = 0, square = 0, minimum = 1e9, maximum = 0;
   constexpr int n = 400000;
   for (int i = 0; i < n; ++i) {
     const RadialSample drawn = radial_sample(rows, static_cast<float>((i + 0.5) / n));
@@ -86,12 +86,12 @@ TEST_P(RadialTable, WeightsByTheSamplersOwnDensityAreUnbiased) {
     const double weight = shape_pdf(shape[0], r) / static_cast<double>(drawn.density);
     total += weight / n;
     square += weight * r * r / n;
-    if (i > 0) least = std::min(least, weight), greatest = std::max(greatest, weight);
+    if (i > 0) minimum = std::min(minimum, weight), maximum = std::max(maximum, weight);
   }
   EXPECT_NEAR(total, 1, 1e-4);
   EXPECT_NEAR(square / GetParam().mean_square, 1, 1e-3);
-  EXPECT_GT(least, 0.95);
-  EXPECT_LT(greatest, 1.05);
+  EXPECT_GT(minimum, 0.95);
+  EXPECT_LT(maximum, 1.05);
 }
 
 TEST(SecondMoment, OfBurleysSamplersIsFourteenDSquared) {

@@ -3,16 +3,16 @@
 // bound, 2048 of restir; without it, of graphs with more than five such slots, all of up to two that are
 // bound and of up to two that are not.
 
-#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/hazard_oracle.hpp"
 #include "tests/framegraph/plan_mutations.hpp"
 #include "tests/framegraph/second_opinion.hpp"
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/verify/verify.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
 #include <gtest/gtest.h>
@@ -34,11 +34,11 @@ constexpr size_t few_slots = 5, few_bound = 2;
 bool tried(uint32_t unbound, size_t slots) {
   const auto missing = static_cast<size_t>(std::popcount(unbound));
   return slots <= few_slots || missing <= few_bound || slots - missing <= few_bound ||
-         seeds_of_tier(0, 1) == 1;
+         seeds_to_try(0, 1) == 1;
 }
 
 struct ShippedPlans : ::testing::Test {
-  KindRegistry kinds = subsurface::make_kinds();
+  PassTypeRegistry pass_types = subsurface::make_pass_types();
   DeviceProfile device = generic_profile();
 
   static std::vector<std::string> files() {
@@ -59,7 +59,7 @@ struct ShippedPlans : ::testing::Test {
       Diagnostics diagnostics;
       const auto document = read_document(name, diagnostics);
       ASSERT_TRUE(document);
-      const auto graph = read_graph(*document, kinds, diagnostics);
+      const auto graph = read_graph(*document, pass_types, diagnostics);
       ASSERT_TRUE(graph);
       std::vector<size_t> optional;
       for (size_t r = 0; r < graph->resources.size(); ++r)
@@ -69,7 +69,7 @@ struct ShippedPlans : ::testing::Test {
         SCOPED_TRACE(unbound);
         CompileInput input;
         input.graph = &*graph;
-        input.kinds = &kinds;
+        input.pass_types = &pass_types;
         input.device = &device;
         input.view_width = 640;
         input.view_height = 360;
@@ -87,7 +87,7 @@ struct ShippedPlans : ::testing::Test {
 
 TEST_F(ShippedPlans, AreAcceptedByVerifierAndOracle) {
   for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
-    EXPECT_EQ(verify(compiled.plan).objections, std::vector<std::string>{});
+    EXPECT_EQ(verify(compiled.plan).violations, std::vector<std::string>{});
     EXPECT_EQ(first_hazard(compiled.plan), "");
   });
 }
@@ -96,7 +96,8 @@ TEST_F(ShippedPlans, AreAcceptedByVerifierAndOracle) {
 // does.
 bool takes_over_memory(const Plan& plan, uint32_t barrier) {
   const PlanBarrier& one = plan.barriers[barrier];
-  return one.why == PlanBarrier::Why::alias && one.source_access == 0 && one.old_layout == one.new_layout;
+  return one.why == PlanBarrier::ReasonKind::alias && one.source_access == 0 &&
+         one.old_layout == one.new_layout;
 }
 
 // The plan without any of the barriers that take over memory in the batch of `barrier`.
@@ -113,9 +114,9 @@ Plan without_batch_mates(const Plan& plan, uint32_t barrier) {
 TEST_F(ShippedPlans, HaveNoBarrierThatCanBeDropped) {
   for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
     for (uint32_t b = 0; b < compiled.plan.barriers.size(); ++b) {
-      if (!verify(without_barrier(compiled.plan, b)).objections.empty()) continue;
+      if (!verify(without_barrier(compiled.plan, b)).violations.empty()) continue;
       EXPECT_TRUE(takes_over_memory(compiled.plan, b)) << "barrier " << b;
-      EXPECT_FALSE(verify(without_batch_mates(compiled.plan, b)).objections.empty()) << "barrier " << b;
+      EXPECT_FALSE(verify(without_batch_mates(compiled.plan, b)).violations.empty()) << "barrier " << b;
     }
   });
 }
@@ -124,7 +125,7 @@ TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
   Tally tally;
   for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
     // The oracle is slow: the widest plan of each graph, and the narrowest in the full tier.
-    if (bound != Bound::all && (bound == Bound::some || seeds_of_tier(0, 1) == 0)) return;
+    if (bound != Bound::all && (bound == Bound::some || seeds_to_try(0, 1) == 0)) return;
     for (const auto for_each_mutant :
          {for_each_weaker_mask, for_each_shifted_placement, for_each_flipped_slot, for_each_swap,
           for_each_moved_barrier, for_each_lost_own_texels})
@@ -139,9 +140,9 @@ TEST_F(ShippedPlans, ComputeWhatTheGraphMeansInAnyOrderThatTheBarriersAllow) {
   for_each_plan([&](const Graph& graph, const CompiledPlan& compiled, Bound bound) {
     const Interpretation recorded = interpret(compiled.plan, {frames, 1, 1, 0});
     if (bound == Bound::all) {
-      EXPECT_TRUE(agrees(recorded, graph_truth(graph, kinds, frames, 1)));
+      EXPECT_TRUE(agrees(recorded, graph_reference(graph, pass_types, frames, 1)));
     }
-    for (uint64_t seed = 1; seed <= seeds_of_tier(8, 20); ++seed) {
+    for (uint64_t seed = 1; seed <= seeds_to_try(8, 20); ++seed) {
       EXPECT_EQ(interpret(compiled.plan, {frames, 1, seed, seed}), recorded);
       EXPECT_EQ(interpret(without_aliasing(compiled.plan), {frames, 1, seed, seed}), recorded);
     }

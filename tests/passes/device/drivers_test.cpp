@@ -1,4 +1,4 @@
-// Random graphs of the real pass kinds on two drivers: both show the host the same light, but for rounding.
+// Random graphs of the real pass types on two drivers: both show the host the same light, but for rounding.
 #include "tests/passes/device/fuzz_seeds.hpp"
 #include "tests/passes/device/kept_pictures.hpp"
 #include "tests/passes/device/player.hpp"
@@ -16,14 +16,14 @@
 namespace dermis::testing {
 namespace {
 
-constexpr float half_most = 65504.0f;
-constexpr double most_parts = 3; // of a random graph
+constexpr float half_max = 65504.0f;
+constexpr double max_parts = 3; // of a random graph
 
 float brightest(const std::vector<float>& light) {
-  float most = 0;
+  float maximum = 0;
   for (size_t i = 0; i < light.size(); ++i)
-    if (i % 4 != 3 && light[i] > most) most = std::min(light[i], half_most);
-  return most;
+    if (i % 4 != 3 && light[i] > maximum) maximum = std::min(light[i], half_max);
+  return maximum;
 }
 
 class BetweenDrivers : public DevicePlayer {
@@ -55,7 +55,7 @@ protected:
   }
 
   std::vector<float> light_of_seed(uint64_t seed, std::string& name) {
-    const auto graph = random_real_graph(seed, kinds);
+    const auto graph = random_real_graph(seed, pass_types);
     if (!graph) return {};
     name = graph->name;
     const Show show = random_show(seed, graph->graph);
@@ -91,7 +91,7 @@ TEST_F(BetweenDrivers, LightOfRandomGraphsIsThatOfAnotherDriverButForRoundingAnd
     ASSERT_EQ(here.size(), there.size()) << path;
     const std::vector<double> off = differences(here, there);
     std::printf("seed\t%llu\t%s\t%s\n", static_cast<unsigned long long>(seed), name.c_str(),
-                told_percentiles(off).c_str());
+                reported_percentiles(off).c_str());
     std::fflush(stdout); // slow drivers may be stopped
     const auto parts = static_cast<double>(1 + std::count(name.begin(), name.end(), '+'));
     EXPECT_LE(percentile(off, 0.5), 4 * rounding);
@@ -101,8 +101,8 @@ TEST_F(BetweenDrivers, LightOfRandomGraphsIsThatOfAnotherDriverButForRoundingAnd
   if (kept.keep) return;
   std::sort(all.begin(), all.end());
   std::printf("pictures\t%s\t%llu random graphs\t%s\n", driver().c_str(),
-              static_cast<unsigned long long>(seeds.end - seeds.begin), told_percentiles(all).c_str());
-  EXPECT_LE(percentile(all, 0.999), 4 * rounding * most_parts);
+              static_cast<unsigned long long>(seeds.end - seeds.begin), reported_percentiles(all).c_str());
+  EXPECT_LE(percentile(all, 0.999), 4 * rounding * max_parts);
 }
 
 } // namespace

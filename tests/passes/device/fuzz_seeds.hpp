@@ -10,11 +10,11 @@ struct FuzzSeeds {
   uint64_t begin = 0, end = 0; // end: the one behind the last
 };
 
-inline FuzzSeeds fuzz_seeds(uint64_t graphs_unless_told) {
+inline FuzzSeeds fuzz_seeds(uint64_t default_graphs) {
   const char* const first = std::getenv("DERMIS_FUZZ_SEED");
   const char* const number = std::getenv("DERMIS_FUZZ_GRAPHS");
   const uint64_t begin = first != nullptr ? std::strtoull(first, nullptr, 10) : 0;
-  return {begin, begin + (number != nullptr ? std::strtoull(number, nullptr, 10) : graphs_unless_told)};
+  return {begin, begin + (number != nullptr ? std::strtoull(number, nullptr, 10) : default_graphs)};
 }
 
 } // namespace dermis::testing

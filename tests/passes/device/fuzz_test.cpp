@@ -1,9 +1,9 @@
-// Random graphs of the real pass kinds on a device: whatever the compiler decides about order and memory, the
+// Random graphs of the real pass types on a device: whatever the compiler decides about order and memory, the
 // host gets the same bits.
 #include "framegraph/model/expression.hpp"
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/verify/verify.hpp"
-#include "tests/framegraph/graph_truth.hpp"
+#include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/interpret/interpret.hpp"
 #include "tests/passes/device/fuzz_seeds.hpp"
 #include "tests/passes/device/player.hpp"
@@ -27,17 +27,18 @@ struct Decisions {
 };
 
 struct Totals {
-  uint64_t graphs = 0, passes = 0, plans = 0, other_plans = 0, frames = 0, pictures = 0, lent = 0, shared = 0,
-           cuts = 0, truths = 0;
+  uint64_t graphs = 0, passes = 0, plans = 0, other_plans = 0, frames = 0, pictures = 0, aliased = 0,
+           shared = 0, cuts = 0, references = 0;
 };
 
-bool lends(const Plan& plan, uint32_t history) {
+bool is_aliased(const Plan& plan, uint32_t history) {
   const PlanResource& resource = plan.resources[plan.histories[history].resource];
   if (resource.first_instance == no_instance) return false;
-  const Placement& lender = plan.placements[resource.first_instance];
+  const Placement& alias_target = plan.placements[resource.first_instance];
   for (const Placement& placement : plan.placements)
-    if (!placement.persistent && placement.heap == lender.heap &&
-        placement.offset < lender.offset + lender.size && lender.offset < placement.offset + placement.size)
+    if (!placement.persistent && placement.heap == alias_target.heap &&
+        placement.offset < alias_target.offset + alias_target.size &&
+        alias_target.offset < placement.offset + placement.size)
       return true;
   return false;
 }
@@ -71,7 +72,7 @@ protected:
     auto compiled = compile(input, diagnostics);
     EXPECT_TRUE(compiled) << decisions.name << ": " << format_as_json(diagnostics);
     if (!compiled) return std::nullopt;
-    EXPECT_EQ(verify(compiled->plan).objections, std::vector<std::string>{}) << decisions.name;
+    EXPECT_EQ(verify(compiled->plan).violations, std::vector<std::string>{}) << decisions.name;
     return std::move(compiled->plan);
   }
 
@@ -91,7 +92,7 @@ protected:
       all.push_back({"packed as well as can be", PassOrder::memory, 0, PackingLevel::optimize});
     const auto shipped = plan_of(graph, show, all[1]);
     for (uint32_t h = 0; shipped && h < shipped->histories.size(); ++h)
-      if (lends(*shipped, h)) {
+      if (is_aliased(*shipped, h)) {
         Decisions without = {"as it ships, a history lends nothing"};
         without.keep_alive = shipped->resources[shipped->histories[h].resource].declared;
         all.push_back(without);
@@ -101,7 +102,7 @@ protected:
   }
 
   void try_graph(uint64_t seed, Totals& totals) {
-    const auto graph = random_real_graph(seed, kinds);
+    const auto graph = random_real_graph(seed, pass_types);
     if (!graph) return;
     const Show show = random_show(seed, graph->graph);
     SCOPED_TRACE(fmt::format("seed {}: {}, {}x{}", seed, graph->name, show.width, show.height));
@@ -117,14 +118,14 @@ protected:
       const Interpretation interpreted = interpret(*plan, {random_frames, seed, seed + 1, seed});
       ++totals.plans;
       totals.frames += played.size();
-      totals.lent += decisions.keep_alive.valid();
+      totals.aliased += decisions.keep_alive.valid();
       if (!first_plan) {
         first_plan = std::move(plan);
         first = played;
         meant = interpreted;
         if (whole(graph->graph, show)) {
-          EXPECT_TRUE(agrees(meant, graph_truth(graph->graph, kinds, random_frames, seed)));
-          ++totals.truths;
+          EXPECT_TRUE(agrees(meant, graph_reference(graph->graph, pass_types, random_frames, seed)));
+          ++totals.references;
         }
         totals.passes += first_plan->passes.size();
         for (const auto& frame : first)
@@ -161,14 +162,14 @@ TEST_F(DeviceFuzz, WhatTheCompilerDecidesShowsInNoBitOfAnyRandomGraph) {
   Totals totals;
   for (uint64_t seed = seeds.begin; seed < seeds.end && !HasFailure(); ++seed)
     try_graph(seed, totals);
-  const std::string told = fmt::format(
+  const std::string reported = fmt::format(
       "{} graphs of {} passes, {} interpreted against what they mean; {} plans, {} of them unlike the "
       "first, {} with shared memory, {} without a loan; {} frames, {} cuts; {} pictures compared with "
       "those of each other plan; {}",
-      totals.graphs, totals.passes, totals.truths, totals.plans, totals.other_plans, totals.shared,
-      totals.lent, totals.frames, totals.cuts, totals.pictures, HasFailure() ? "a finding" : "no finding");
-  RecordProperty("totals", told);
-  std::printf("%s\n", told.c_str());
+      totals.graphs, totals.passes, totals.references, totals.plans, totals.other_plans, totals.shared,
+      totals.aliased, totals.frames, totals.cuts, totals.pictures, HasFailure() ? "a finding" : "no finding");
+  RecordProperty("totals", reported);
+  std::printf("%s\n", reported.c_str());
   EXPECT_EQ(totals.graphs, seeds.end - seeds.begin);
   EXPECT_GT(totals.shared, totals.graphs); // the law sees what sharing does
 }

@@ -15,7 +15,7 @@ namespace {
 class Golden : public DevicePlayer, public ::testing::WithParamInterface<std::string> {
 protected:
   Played frames(PassOrder order = PassOrder::memory, uint64_t order_seed = 0) {
-    const auto graph = shipped_graph(GetParam(), kinds);
+    const auto graph = shipped_graph(GetParam(), pass_types);
     if (!graph) return {};
     const Show show = golden_show(graph->graph);
     CompileInput input = compile_input(*graph, show);
@@ -66,12 +66,12 @@ TEST_P(Golden, FramesAreTheSameHoweverManyThreadsTheDriverHas) {
         getpid(), GetParam());
     FILE* const child = popen(command.c_str(), "r");
     ASSERT_NE(child, nullptr);
-    std::string told;
+    std::string reported;
     char text[512];
     while (std::fgets(text, sizeof text, child) != nullptr)
-      if (std::string(text).starts_with("golden\t")) told += text;
+      if (std::string(text).starts_with("golden\t")) reported += text;
     pclose(child);
-    EXPECT_EQ(told, expected) << threads << " threads";
+    EXPECT_EQ(reported, expected) << threads << " threads";
   }
 }
 
@@ -92,7 +92,8 @@ TEST_P(Golden, FramesAreThoseOfAnotherDriverButForRoundingAndFewSamples) {
   const std::vector<float> there = kept_floats(path);
   ASSERT_EQ(here.size(), there.size()) << path;
   const std::vector<double> off = differences(here, there);
-  std::printf("pictures\t%s\t%s\t%s\n", driver().c_str(), GetParam().c_str(), told_percentiles(off).c_str());
+  std::printf("pictures\t%s\t%s\t%s\n", driver().c_str(), GetParam().c_str(),
+              reported_percentiles(off).c_str());
   EXPECT_LE(percentile(off, 0.5), 4 * rounding);
   EXPECT_LE(percentile(off, 0.999), contrast / samples);
 }

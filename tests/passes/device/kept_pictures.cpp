@@ -46,11 +46,11 @@ std::vector<double> differences(const std::vector<float>& here, const std::vecto
   return off;
 }
 
-double percentile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<size_t>(share * double(sorted.size() - 1))];
+double percentile(const std::vector<double>& sorted, double fraction) {
+  return sorted[static_cast<size_t>(fraction * double(sorted.size() - 1))];
 }
 
-std::string told_percentiles(const std::vector<double>& sorted) {
+std::string reported_percentiles(const std::vector<double>& sorted) {
   return fmt::format("median {:.2g}\tp99 {:.2g}\tp99.9 {:.2g}\tmost {:.2g}", percentile(sorted, 0.5),
                      percentile(sorted, 0.99), percentile(sorted, 0.999), sorted.back());
 }

@@ -21,8 +21,8 @@ std::vector<float> kept_floats(const std::string& path); // empty where there is
 // alone is off by infinity.
 std::vector<double> differences(const std::vector<float>& here, const std::vector<float>& there);
 // Of sorted values, one at least; share: 0 .. 1.
-double percentile(const std::vector<double>& sorted, double share);
+double percentile(const std::vector<double>& sorted, double fraction);
 // "median 0 <tab> p99 0.00098 <tab> p99.9 0.0034 <tab> most 0.032"
-std::string told_percentiles(const std::vector<double>& sorted);
+std::string reported_percentiles(const std::vector<double>& sorted);
 
 } // namespace dermis::testing

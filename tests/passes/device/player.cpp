@@ -3,7 +3,7 @@
 #include "framegraph/vulkan/create_infos.hpp"
 #include "integration/examples/demo_engine/pixel_format.hpp"
 #include "passes/common/kernels.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <fmt/format.h>
 
@@ -84,7 +84,7 @@ void DevicePlayer::SetUp() {
   const vulkan::Error error = vulkan::make_device(input, dermis_device);
   ASSERT_FALSE(error) << error.text;
   profile = vulkan::device_profile(dermis_device);
-  kinds = subsurface::make_kinds();
+  pass_types = subsurface::make_pass_types();
   for (uint32_t i = 0; i < std::size(profile_files); ++i) {
     Diagnostics diagnostics;
     const auto document = read_document(
@@ -103,7 +103,7 @@ void DevicePlayer::TearDown() {
 }
 
 const subsurface::KernelTables& DevicePlayer::tables_for(const Graph& graph) {
-  const subsurface::TableUse use = subsurface::table_use(graph, kinds);
+  const subsurface::TableUse use = subsurface::table_use(graph, pass_types);
   for (const auto& tables : tables_)
     if (tables->use == use) return *tables;
   tables_.push_back(
@@ -114,7 +114,7 @@ const subsurface::KernelTables& DevicePlayer::tables_for(const Graph& graph) {
 CompileInput DevicePlayer::compile_input(const RealGraph& graph, const Show& show) const {
   CompileInput input;
   input.graph = &graph.graph;
-  input.kinds = &kinds;
+  input.pass_types = &pass_types;
   input.device = &profile;
   input.view_width = show.width;
   input.view_height = show.height;
@@ -144,7 +144,7 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
   vulkan::ExecutorInput input;
   input.device = &dermis_device;
   input.graph = &graph.graph;
-  input.kinds = &kinds;
+  input.pass_types = &pass_types;
   input.plan = &plan;
   input.kernels = kernels;
   input.environment = environment;

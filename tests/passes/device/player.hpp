@@ -1,5 +1,5 @@
 #pragma once
-// Plays a plan of the real pass kinds on a device, frame by frame, and hands out what the host gets. Under
+// Plays a plan of the real pass types on a device, frame by frame, and hands out what the host gets. Under
 // validation, as every device test.
 
 #include "framegraph/compile/compile.hpp"
@@ -35,7 +35,7 @@ protected:
 
   vulkan::Device dermis_device;
   DeviceProfile profile;
-  KindRegistry kinds;
+  PassTypeRegistry pass_types;
 
 private:
   const subsurface::KernelTables& tables_for(const Graph& graph);

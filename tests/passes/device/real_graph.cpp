@@ -22,17 +22,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int64_t most_steps = 6; // of an integer setting above its least value
+constexpr int64_t max_steps = 6; // of an integer setting above its least value
 
 Json read_shipped(const std::string& name) {
   std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
   return Json::parse(file, nullptr, true, true);
 }
 
-std::optional<RealGraph> made(std::string name, std::string text, const KindRegistry& kinds) {
+std::optional<RealGraph> made(std::string name, std::string text, const PassTypeRegistry& pass_types) {
   Diagnostics diagnostics;
   auto document = parse_document(name, text, diagnostics);
-  auto graph = document ? read_graph(*document, kinds, diagnostics) : std::nullopt;
+  auto graph = document ? read_graph(*document, pass_types, diagnostics) : std::nullopt;
   if (!graph) {
     ADD_FAILURE() << format_as_json(diagnostics) << "\n" << text;
     return std::nullopt;
@@ -42,7 +42,7 @@ std::optional<RealGraph> made(std::string name, std::string text, const KindRegi
 
 struct Draft {
   SplitMix64 random;
-  Json graph = {{"dermis", 1},
+  Json graph = {{"dermis", 2},
                 {"name", "drawn"},
                 {"settings", Json::object()},
                 {"imports", Json::object()},
@@ -56,9 +56,9 @@ struct Draft {
   // Its default becomes a value that it may have: defaults are what is compiled.
   void draw_value(Json& setting) {
     if (setting.contains("int")) {
-      const int64_t least = setting["min"], most = setting["max"];
-      const auto steps = static_cast<size_t>(std::min(most - least, most_steps));
-      setting["int"] = least + static_cast<int64_t>(random.below(steps + 1));
+      const int64_t minimum = setting["min"], maximum = setting["max"];
+      const auto steps = static_cast<size_t>(std::min(maximum - minimum, max_steps));
+      setting["int"] = minimum + static_cast<int64_t>(random.below(steps + 1));
     } else if (setting.contains("real")) {
       const Json ends[] = {setting["min"], setting["max"]};
       if (chance(30)) setting["real"] = ends[random.below(2)];
@@ -135,10 +135,10 @@ struct Draft {
     redirected["lighting"] = light;
     const bool puts_back = chance(80); // what it scatters into the host's light
     for (Json& pass : part["passes"]) {
-      const std::string kind = pass["kind"];
-      if (kind == "subsurface.combine" && !puts_back) continue;
+      const std::string type = pass["type"];
+      if (type == "subsurface.combine" && !puts_back) continue;
       // Where it comes back, light is what the host bound.
-      rename_pass(pass, prefix, kind == "subsurface.combine" ? resources : redirected, settings);
+      rename_pass(pass, prefix, type == "subsurface.combine" ? resources : redirected, settings);
       if (!graph["passes"].empty() && chance(10)) {
         const Json& earlier = graph["passes"][random.below(graph["passes"].size())];
         pass["after"] = Json::array({{{"pass", earlier["pass"]}, {"reason", "drawn"}}});
@@ -170,14 +170,14 @@ std::vector<std::string> graphs_of_images() {
   return names;
 }
 
-std::optional<RealGraph> shipped_graph(const std::string& name, const KindRegistry& kinds) {
+std::optional<RealGraph> shipped_graph(const std::string& name, const PassTypeRegistry& pass_types) {
   std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
   std::stringstream text;
   text << file.rdbuf();
-  return made(name, text.str(), kinds);
+  return made(name, text.str(), pass_types);
 }
 
-std::optional<RealGraph> random_real_graph(uint64_t seed, const KindRegistry& kinds) {
+std::optional<RealGraph> random_real_graph(uint64_t seed, const PassTypeRegistry& pass_types) {
   const std::vector<std::string> files = graphs_of_images();
   Draft draft{{seed}};
   std::string name;
@@ -187,7 +187,7 @@ std::optional<RealGraph> random_real_graph(uint64_t seed, const KindRegistry& ki
     draft.add(read_shipped(file), i == 0 ? "" : fmt::format("p{}_", i));
     name += (i == 0 ? "" : "+") + file;
   }
-  return made(name, draft.graph.dump(1), kinds);
+  return made(name, draft.graph.dump(1), pass_types);
 }
 
 } // namespace dermis::testing

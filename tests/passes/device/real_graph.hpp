@@ -1,5 +1,5 @@
 #pragma once
-// Graphs of the real pass kinds drawn from a seed: one to three shipped graphs in one file, each with
+// Graphs of the real pass types drawn from a seed: one to three shipped graphs in one file, each with
 // settings, orders and light of its own.
 
 #include "framegraph/model/graph.hpp"
@@ -21,10 +21,10 @@ struct RealGraph {
 // stands for those.
 std::vector<std::string> graphs_of_images();
 // As it ships, with the defaults of its settings. nullopt: the test has failed.
-std::optional<RealGraph> shipped_graph(const std::string& name, const KindRegistry& kinds);
+std::optional<RealGraph> shipped_graph(const std::string& name, const PassTypeRegistry& pass_types);
 // The first part keeps its names, those of the others begin with "p1_", "p2_". They share imports, and the
 // host's light: what one part leaves there the next one scatters again; some take light that an earlier one
 // hands out. Samples are few, for slow drivers. nullopt: the test has failed.
-std::optional<RealGraph> random_real_graph(uint64_t seed, const KindRegistry& kinds);
+std::optional<RealGraph> random_real_graph(uint64_t seed, const PassTypeRegistry& pass_types);
 
 } // namespace dermis::testing

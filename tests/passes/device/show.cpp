@@ -12,7 +12,7 @@ namespace {
 using abi_test::soak_side;
 using abi_test::unit;
 
-constexpr uint32_t least_side = 16, random_frames = 4, golden_frames = 6;
+constexpr uint32_t min_side = 16, random_frames = 4, golden_frames = 6;
 constexpr uint32_t golden_width = 64, golden_height = 48;
 
 // Those that the tests can fill.
@@ -44,18 +44,18 @@ std::vector<float> cropped(const std::vector<float>& square, uint32_t channels, 
   return out;
 }
 
-std::vector<float> noise(SplitMix64& random, const Show& show, uint32_t channels, double most) {
+std::vector<float> noise(SplitMix64& random, const Show& show, uint32_t channels, double maximum) {
   std::vector<float> out(size_t{show.width} * show.height * channels);
   for (float& value : out)
-    value = static_cast<float>(most * unit(random));
+    value = static_cast<float>(maximum * unit(random));
   return out;
 }
 
 // What the soak does not draw. Ways through the material are centimetres, factors on d up to 2, the rest up
 // to 1.
 std::vector<float> other_picture(SplitMix64& random, const Show& show, const std::string& name) {
-  const double most = name == "thickness" ? 0.02 : name == "scatter_scale" ? 2.0 : 1.0;
-  return noise(random, show, shown_channels(name), most);
+  const double maximum = name == "thickness" ? 0.02 : name == "scatter_scale" ? 2.0 : 1.0;
+  return noise(random, show, shown_channels(name), maximum);
 }
 
 void draw_rectangle(SplitMix64& random, const Show& show, ShownFrame& frame) {
@@ -78,8 +78,8 @@ uint32_t shown_channels(const std::string& import) {
 Show random_show(uint64_t seed, const Graph& graph) {
   SplitMix64 random{~seed};
   Show show;
-  show.width = static_cast<uint32_t>(least_side + random.below(soak_side - least_side + 1));
-  show.height = static_cast<uint32_t>(least_side + random.below(soak_side - least_side + 1));
+  show.width = static_cast<uint32_t>(min_side + random.below(soak_side - min_side + 1));
+  show.height = static_cast<uint32_t>(min_side + random.below(soak_side - min_side + 1));
   const bool all = random.below(3) == 0;
   for (const ResourceDeclaration& resource : graph.resources) {
     const bool transmission = resource.name == "thickness" || resource.name == "back_lighting"; // needs them
@@ -124,7 +124,8 @@ Show golden_show(const Graph& graph) {
     const bool light = resource.name == "lighting" || resource.name == "scattered_light";
     show.bound.push_back(!is_bound_by_host(resource) || resource.origin == Origin::imported || light);
     const auto formats = usable_formats(resource);
-    show.formats.push_back(is_bound_by_host(resource) && !formats.empty() ? formats.front() : Format::undefined);
+    show.formats.push_back(is_bound_by_host(resource) && !formats.empty() ? formats.front()
+                                                                          : Format::undefined);
   }
   SplitMix64 random{1};
   std::map<std::string, std::vector<float>> others; // the same in all frames

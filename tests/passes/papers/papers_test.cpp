@@ -166,23 +166,24 @@ double scattered_at(const ChannelShape& shape, double x, double r0) {
 
 // T14, equation 17: the artist's share that makes his form agree with the dipole's. It depends on the light,
 // so that no number of a profile can be it: at an edge it is another one at each distance.
-TEST(ArtistShare, TheOneThatAgreesWithTheDipoleIsAnotherAtEachPlace) {
+TEST(ArtistFraction, TheOneThatAgreesWithTheDipoleIsAnotherAtEachPlace) {
   const ChannelShape dipole = dipole_shape(0.032, 0.74), artist = artist_shape(1.001, 1);
   constexpr double r0 = 0.25; // mm
   const double gamma = shape_gamma(dipole, r0);
-  double least = 1e9, greatest = -1e9;
+  double minimum = 1e9, maximum = -1e9;
   for (const double x : {-8.0, -4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 4.0, 8.0}) {
     const double own = x < 0 ? 1 : 0;
     const double by_dipole = scattered_at(dipole, x, r0), by_artist = scattered_at(artist, x, 0);
-    const double share = gamma * (own - by_dipole) / (own - by_artist);
-    const double theirs = (1 - gamma) * own + gamma * by_dipole, his = (1 - share) * own + share * by_artist;
+    const double fraction = gamma * (own - by_dipole) / (own - by_artist);
+    const double theirs = (1 - gamma) * own + gamma * by_dipole,
+                 his = (1 - fraction) * own + fraction * by_artist;
     EXPECT_NEAR(his, theirs, 1e-5) << x;
-    least = std::min(least, share);
-    greatest = std::max(greatest, share);
+    minimum = std::min(minimum, fraction);
+    maximum = std::max(maximum, fraction);
   }
-  RecordProperty("least", std::to_string(least));
-  RecordProperty("greatest", std::to_string(greatest));
-  EXPECT_GT(greatest, 2 * least);
+  RecordProperty("least", std::to_string(minimum));
+  RecordProperty("greatest", std::to_string(maximum));
+  EXPECT_GT(maximum, 2 * minimum);
 }
 
 // F7: lines of 128 bytes, 16 texels of 8, that an 8x8 tile of a plane reads, each once: the least traffic

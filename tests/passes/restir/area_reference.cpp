@@ -1,6 +1,6 @@
 #include "tests/passes/restir/area_reference.hpp"
 
-#include "passes/common/truth/parallel.hpp"
+#include "passes/common/reference/parallel.hpp"
 #include "tests/passes/restir/cpu/random.hpp"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ Regions regions_of(const std::vector<Pixel>& pixels) {
   for (auto& [key, region] : found)
     all.insert(all.end(), region.begin(), region.end());
   for (auto& [key, region] : found)
-    if (region.size() >= least_pixels) regions.pixels.push_back(std::move(region));
+    if (region.size() >= min_pixels) regions.pixels.push_back(std::move(region));
   regions.pixels.push_back(std::move(all));
   return regions;
 }

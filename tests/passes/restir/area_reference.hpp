@@ -8,11 +8,11 @@
 namespace dermis::restir::testing {
 
 // Parts of the picture that are judged one by one: each instance's pixels that face a light, and those that
-// do not. Parts of fewer than least_pixels are left out.
+// do not. Parts of fewer than min_pixels are left out.
 struct Regions {
   std::vector<std::vector<uint32_t>> pixels; // indices
 };
-inline constexpr size_t least_pixels = 6;
+inline constexpr size_t min_pixels = 6;
 Regions regions_of(const std::vector<Pixel>& pixels);
 
 // Mean luminance of each region for `batches` independent batches of `points` draws for each medium; all

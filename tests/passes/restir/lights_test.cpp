@@ -32,14 +32,14 @@ std::vector<Light> some_lights() {
 TEST(Lights, ArePickedAsOftenAsTheirSharesSay) {
   const std::vector<Light> lights = some_lights();
   EXPECT_NEAR(lights.back().until, 1, 1e-12);
-  EXPECT_DOUBLE_EQ(lights[1].share, 2 * lights[2].share); // twice the area
+  EXPECT_DOUBLE_EQ(lights[1].fraction, 2 * lights[2].fraction); // twice the area
   std::vector<double> found(lights.size());
   constexpr int draws = 100000; // sd of a share below .0016
   Random random{1, 0, 0};
   for (int i = 0; i < draws; ++i)
     found[pick_light(lights, random_unit(random))] += 1.0 / draws;
   for (size_t i = 0; i < lights.size(); ++i)
-    EXPECT_NEAR(found[i], lights[i].share, 0.008);
+    EXPECT_NEAR(found[i], lights[i].fraction, 0.008);
   EXPECT_EQ(pick_light(lights, 1.5), lights.size() - 1);
 }
 
@@ -47,7 +47,7 @@ TEST(Lights, InTheDarkAreSharedEvenly) {
   std::vector<Light> dark(3);
   share_lights(dark);
   for (const Light& light : dark)
-    EXPECT_DOUBLE_EQ(light.share, 1.0 / 3);
+    EXPECT_DOUBLE_EQ(light.fraction, 1.0 / 3);
   share_lights({});
 }
 
@@ -57,7 +57,7 @@ TEST(Lights, OfAnAreaShineAsItsIntegralSays) {
   const std::vector<Light> lights = some_lights();
   const double a = 0.5, s = std::sqrt(1 + a * a);
   const double corner = (a / s * std::atan(a / s) * 2) / (2 * std::numbers::pi);
-  const double truth = 3 * std::numbers::pi * 4 * corner;
+  const double reference = 3 * std::numbers::pi * 4 * corner;
   std::vector<double> values, triangle;
   Random random{2, 0, 0};
   for (int i = 0; i < 20000; ++i) {
@@ -71,9 +71,9 @@ TEST(Lights, OfAnAreaShineAsItsIntegralSays) {
   }
   const testing::Mean mean = testing::mean_of(values), half = testing::mean_of(triangle);
   const double limit = testing::three_sigma_limit(19999, 2);
-  EXPECT_NEAR(mean.mean, truth, limit * mean.sigma);
-  EXPECT_NEAR(half.mean, truth / 2, limit * half.sigma); // the square's half by symmetry
-  EXPECT_LT(mean.sigma, 0.005 * truth);
+  EXPECT_NEAR(mean.mean, reference, limit * mean.sigma);
+  EXPECT_NEAR(half.mean, reference / 2, limit * half.sigma); // the square's half by symmetry
+  EXPECT_LT(mean.sigma, 0.005 * reference);
 }
 
 TEST(Lights, FallInFromTheFrontAlone) {

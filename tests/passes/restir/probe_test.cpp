@@ -36,7 +36,7 @@ Domain slanted_domain() {
 
 TEST(Probe, ReachesAsFarAsItsShareSays) {
   EXPECT_NEAR(reach_in_d(), 19.86022, 1e-5); // subsurface.md T5
-  EXPECT_NEAR(subsurface::burley_cdf(reach_in_d(), 1), probe_share, 1e-12);
+  EXPECT_NEAR(subsurface::burley_cdf(reach_in_d(), 1), probe_fraction, 1e-12);
 }
 
 TEST(Profile, OfAWholePlaneOfLightIsOne) {
@@ -78,7 +78,7 @@ TEST(Probe, ChoicesComeAsOftenAsTheirSharesSay) {
     }
     const double scattering = double(std::count_if(d.begin(), d.end(), [](double x) { return x > 0; }));
     for (size_t i = 0; i < 3; ++i) {
-      EXPECT_NEAR(axes[i], probe_axis_share[i], 0.006);
+      EXPECT_NEAR(axes[i], probe_axis_fraction[i], 0.006);
       EXPECT_NEAR(channels[i], d[i] > 0 ? 1 / scattering : 0, 0.006);
     }
   }
@@ -155,7 +155,7 @@ TEST(Inversion, FindsUniformNumbers) {
   const testing::TriangleScene plane = slanted_plane();
   const Scene scene = plane.access();
   const Domain domain = slanted_domain();
-  const double least_survival = 1 - subsurface::burley_cdf(0.57 * reach_in_d(), 1);
+  const double min_survival = 1 - subsurface::burley_cdf(0.57 * reach_in_d(), 1);
   std::vector<double> techniques, radii, angles, picks;
   Random random{13, 0, 0};
   while (techniques.size() < 100000) {
@@ -169,13 +169,13 @@ TEST(Inversion, FindsUniformNumbers) {
     ProbeNumbers found;
     ASSERT_TRUE(invert_point(domain, x2.position, x2.normal, random_unit(random), found));
     ASSERT_TRUE(invert_pick(hits, hit.instance, hit.primitive, random_unit(random), found.pick));
-    if (found.survival < least_survival) continue;
+    if (found.survival < min_survival) continue;
     // The third number of the supplement: of the choice's interval, a uniform place.
     double below = 0;
     for (uint32_t a = 0; a < found.axis; ++a)
-      below += probe_axis_share[a];
-    techniques.push_back(below + probe_axis_share[found.axis] * (found.channel + random_unit(random)) / 3);
-    radii.push_back((1 - found.survival) / (1 - least_survival));
+      below += probe_axis_fraction[a];
+    techniques.push_back(below + probe_axis_fraction[found.axis] * (found.channel + random_unit(random)) / 3);
+    radii.push_back((1 - found.survival) / (1 - min_survival));
     angles.push_back(found.angle);
     picks.push_back(found.pick);
   }

@@ -19,7 +19,7 @@ Reservoir some_reservoir() {
   r.light = 0xfedcba98;
   r.place = 0x87654321;
   r.numbers = {2, 1, 0.5, 0.875, 0.0625};
-  r.hits = most_probe_hits;
+  r.hits = max_probe_hits;
   r.density = 3.5;
   r.irradiance = {1, 2, 4};
   r.weight = 0.125;
@@ -29,8 +29,7 @@ Reservoir some_reservoir() {
 
 bool is_clean(const Reservoir& r) {
   return std::isfinite(r.weight) && r.weight >= 0 && std::isfinite(r.confidence) && r.confidence >= 0 &&
-         r.confidence <= most_confidence && std::isfinite(r.density) &&
-         std::isfinite(luminance(r.irradiance));
+         r.confidence <= max_confidence && std::isfinite(r.density) && std::isfinite(luminance(r.irradiance));
 }
 
 TEST(Reservoir, TravelsThroughSixtyFourBytesUnchanged) {
@@ -77,7 +76,7 @@ TEST(Reservoir, NothingThatComesInIsNaNOrInfiniteWhenItLeaves) {
       const bool confidence = member == 3;
       EXPECT_EQ(has_sample(s), confidence) << bad << " in " << member;
       if (confidence) {
-        EXPECT_EQ(s.confidence, bad > 1 ? most_confidence : 0) << bad;
+        EXPECT_EQ(s.confidence, bad > 1 ? max_confidence : 0) << bad;
       }
     }
   }
@@ -121,7 +120,7 @@ TEST(Reservoir, HoldsEachCandidateAsOftenAsItsWeightSays) {
   // Three candidates of weights 1, 2, 5; shares of 1e5 runs have sd below .0016: five of them.
   constexpr int runs = 100000;
   const double weights[] = {1, 2, 5};
-  double share[3] = {};
+  double fraction[3] = {};
   Random random{3, 4, 0};
   for (int run = 0; run < runs; ++run) {
     Stream stream;
@@ -130,10 +129,10 @@ TEST(Reservoir, HoldsEachCandidateAsOftenAsItsWeightSays) {
       r.instance = i;
       stream_add(stream, r, 1, weights[i], 1, random_unit(random));
     }
-    share[stream_end(stream).instance] += 1.0 / runs;
+    fraction[stream_end(stream).instance] += 1.0 / runs;
   }
   for (int i = 0; i < 3; ++i)
-    EXPECT_NEAR(share[i], weights[i] / 8, 0.008);
+    EXPECT_NEAR(fraction[i], weights[i] / 8, 0.008);
 }
 
 } // namespace

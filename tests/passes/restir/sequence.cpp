@@ -49,7 +49,7 @@ std::vector<Reservoir> spatial_pass(const Scene& scene, const SequenceSettings& 
 } // namespace
 
 SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettings& s, const Regions& regions,
-                            const std::vector<double>& truth, uint32_t seed,
+                            const std::vector<double>& reference, uint32_t seed,
                             const std::vector<Light>& lights) {
   Scene scene = triangles.access();
   SequenceResult result;
@@ -103,8 +103,9 @@ SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettin
         for (const uint32_t i : regions.pixels[r])
           result.region_mean[r] += estimate(i) / double(regions.pixels[r].size());
       result.last_square = 0;
-      for (uint32_t i = 0; i < truth.size(); ++i)
-        result.last_square += (estimate(i) - truth[i]) * (estimate(i) - truth[i]) / double(truth.size());
+      for (uint32_t i = 0; i < reference.size(); ++i)
+        result.last_square +=
+            (estimate(i) - reference[i]) * (estimate(i) - reference[i]) / double(reference.size());
     }
     before = std::move(kept);
   }

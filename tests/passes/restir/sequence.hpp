@@ -26,7 +26,7 @@ struct SequenceResult {
 // One sequence with an empty history. From frame judged_from on `lights` take the place of the scene's, where
 // there are any. Regions and `truth` (luminance a pixel, or empty) are those of even frames.
 SequenceResult run_sequence(const TriangleScene& scene, const SequenceSettings& settings,
-                            const Regions& regions, const std::vector<double>& truth, uint32_t seed,
+                            const Regions& regions, const std::vector<double>& reference, uint32_t seed,
                             const std::vector<Light>& lights = {});
 
 } // namespace dermis::restir::testing

@@ -8,10 +8,10 @@ namespace dermis::restir::testing {
 double kolmogorov_smirnov(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const double n = static_cast<double>(values.size());
-  double most = 0;
+  double maximum = 0;
   for (size_t i = 0; i < values.size(); ++i)
-    most = std::max({most, values[i] - double(i) / n, double(i + 1) / n - values[i]});
-  return most * std::sqrt(n);
+    maximum = std::max({maximum, values[i] - double(i) / n, double(i + 1) / n - values[i]});
+  return maximum * std::sqrt(n);
 }
 
 Mean mean_of(const std::vector<double>& values) {

@@ -7,8 +7,8 @@ namespace dermis::restir::testing {
 
 namespace {
 
-constexpr double lift = 1e-6;       // off surfaces, in a scene of size 8
-constexpr uint32_t most_in_box = 4; // triangles
+constexpr double lift = 1e-6;      // off surfaces, in a scene of size 8
+constexpr uint32_t max_in_box = 4; // triangles
 constexpr double view_half = 4;
 
 const TriangleScene& scene_of(const void* of) {
@@ -16,21 +16,21 @@ const TriangleScene& scene_of(const void* of) {
 }
 
 // Moeller & Trumbore 1997.
-bool meets(const Triangle& t, const Vector3& origin, const Vector3& direction, double most, Hit& hit) {
+bool meets(const Triangle& t, const Vector3& origin, const Vector3& direction, double maximum, Hit& hit) {
   const Vector3 p = cross(direction, t.edge_2);
   const double determinant = dot(t.edge_1, p);
   if (determinant == 0) return false;
   const Vector3 from = origin - t.corner, q = cross(from, t.edge_1);
   const double u = dot(from, p) / determinant, v = dot(direction, q) / determinant;
   const double distance = dot(t.edge_2, q) / determinant;
-  if (u < 0 || v < 0 || u + v > 1 || !(distance > 0) || !(distance < most)) return false;
+  if (u < 0 || v < 0 || u + v > 1 || !(distance > 0) || !(distance < maximum)) return false;
   hit.distance = distance;
   hit.barycentrics = {u, v};
   return true;
 }
 
-bool meets(const BoxNode& box, const Vector3& origin, const Vector3& inverse, double most) {
-  double near = 0, far = most;
+bool meets(const BoxNode& box, const Vector3& origin, const Vector3& inverse, double maximum) {
+  double near = 0, far = maximum;
   for (size_t i = 0; i < 3; ++i) {
     const double a = (box.low[i] - origin[i]) * inverse[i], b = (box.high[i] - origin[i]) * inverse[i];
     near = std::max(near, std::min(a, b)); // 0 * inf is NaN, which min and max pass over here
@@ -41,14 +41,14 @@ bool meets(const BoxNode& box, const Vector3& origin, const Vector3& inverse, do
 
 // Calls found(hit) for each hit within `most`, which it may shorten; stops where it returns false.
 template <class Found>
-void for_hits(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double& most,
+void for_hits(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double& maximum,
               Found&& found) {
   const Vector3 inverse = {1 / direction[0], 1 / direction[1], 1 / direction[2]};
   uint32_t stack[64], depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {
     const BoxNode& box = scene.boxes[stack[--depth]];
-    if (!meets(box, origin, inverse, most)) continue;
+    if (!meets(box, origin, inverse, maximum)) continue;
     if (box.count == 0) {
       stack[depth++] = box.first;
       stack[depth++] = box.first + 1;
@@ -57,7 +57,7 @@ void for_hits(const TriangleScene& scene, const Vector3& origin, const Vector3& 
     for (uint32_t i = box.first; i < box.first + box.count; ++i) {
       Hit hit;
       hit.triangle = i;
-      if (meets(scene.triangles[i], origin, direction, most, hit) && !found(hit)) return;
+      if (meets(scene.triangles[i], origin, direction, maximum, hit) && !found(hit)) return;
     }
   }
 }
@@ -65,16 +65,16 @@ void for_hits(const TriangleScene& scene, const Vector3& origin, const Vector3& 
 void trace_probe(const void* of, const ProbeRay& ray, uint32_t medium, ProbeHits& hits) {
   const TriangleScene& scene = scene_of(of);
   hits.count = 0;
-  double most = ray.length;
-  for_hits(scene, ray.origin, ray.direction, most, [&](const Hit& hit) {
+  double maximum = ray.length;
+  for_hits(scene, ray.origin, ray.direction, maximum, [&](const Hit& hit) {
     const Triangle& t = scene.triangles[hit.triangle];
     if (t.medium != medium) return true;
-    uint32_t at = std::min(hits.count, most_probe_hits - 1); // sorted in; the furthest falls out
-    if (hits.count == most_probe_hits && hits.hit[at].distance <= hit.distance) return true;
+    uint32_t at = std::min(hits.count, max_probe_hits - 1); // sorted in; the furthest falls out
+    if (hits.count == max_probe_hits && hits.hit[at].distance <= hit.distance) return true;
     for (; at > 0 && hits.hit[at - 1].distance > hit.distance; --at)
       hits.hit[at] = hits.hit[at - 1];
     hits.hit[at] = {t.instance, t.primitive, hit.barycentrics, hit.distance};
-    hits.count = std::min(hits.count + 1, most_probe_hits);
+    hits.count = std::min(hits.count + 1, max_probe_hits);
     return true;
   });
 }
@@ -88,9 +88,9 @@ SurfacePoint surface_at(const void* of, uint32_t instance, uint32_t primitive, c
 bool visible(const void* of, const SurfacePoint& from, const Vector3& target) {
   const Vector3 origin = from.position + lift * from.normal, way = target - origin;
   const double distance = length(way);
-  double most = distance - lift;
+  double maximum = distance - lift;
   bool is_free = true;
-  for_hits(scene_of(of), origin, 1 / distance * way, most, [&](const Hit&) { return is_free = false; });
+  for_hits(scene_of(of), origin, 1 / distance * way, maximum, [&](const Hit&) { return is_free = false; });
   return is_free;
 }
 
@@ -110,7 +110,7 @@ void split(TriangleScene& scene, uint32_t node, uint32_t first, uint32_t count) 
   const size_t axis = static_cast<size_t>(std::max_element(size.begin(), size.end()) - size.begin());
   box.first = first;
   box.count = count;
-  if (count > most_in_box) {
+  if (count > max_in_box) {
     const auto middle = [&](const Triangle& t) {
       return 3 * t.corner[axis] + t.edge_1[axis] + t.edge_2[axis];
     };
@@ -207,12 +207,12 @@ void finish(TriangleScene& scene) {
   share_lights(scene.lights);
 }
 
-bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double most,
+bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double maximum,
                  Hit& hit) {
   bool found = false;
-  for_hits(scene, origin, direction, most, [&](const Hit& one) {
+  for_hits(scene, origin, direction, maximum, [&](const Hit& one) {
     hit = one;
-    most = one.distance;
+    maximum = one.distance;
     return found = true;
   });
   return found;

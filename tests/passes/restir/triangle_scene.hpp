@@ -44,7 +44,7 @@ struct Hit {
   Barycentrics barycentrics{};
 };
 // The nearest from `origin` in (0, most); false for none.
-bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double most,
+bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double maximum,
                  Hit& hit);
 
 TriangleScene ear_scene();

@@ -1,7 +1,7 @@
 // Every shift that claims it converges to the reference that shares no sampler. Means of regions over
 // independent restarts, 3 sigma over all of them (Bonferroni, Student's t). DERMIS_TESTS_FULL: 64x64 pixels.
-#include "passes/common/truth/parallel.hpp"
-#include "tests/framegraph/test_tier.hpp"
+#include "passes/common/reference/parallel.hpp"
+#include "tests/framegraph/test_scale.hpp"
 #include "tests/passes/restir/sequence.hpp"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ using testing::TriangleScene;
 
 constexpr uint32_t restarts = 32, batches = 32;
 
-uint32_t tier(uint32_t quick, uint32_t full) {
-  return static_cast<uint32_t>(dermis::testing::seeds_of_tier(quick, full));
+uint32_t quality(uint32_t quick, uint32_t full) {
+  return static_cast<uint32_t>(dermis::testing::seeds_to_try(quick, full));
 }
 
 std::vector<Mean> means_of(const std::vector<std::vector<double>>& values) {
@@ -33,11 +33,11 @@ SequenceSettings settings_of(Shift shift, Reuse reuse) {
   SequenceSettings settings;
   settings.shift = shift;
   settings.reuse = reuse;
-  settings.width = settings.height = tier(16, 64);
-  settings.frames = tier(12, 8); // each stands alone
+  settings.width = settings.height = quality(16, 64);
+  settings.frames = quality(12, 8); // each stands alone
   if ((static_cast<uint32_t>(reuse) & 1u) != 0) {
-    settings.frames = tier(12, 32); // more than the confidence cap lets a history count for
-    settings.jitter = 0.4;          // else the history's path is the pixel's own
+    settings.frames = quality(12, 32); // more than the confidence cap lets a history count for
+    settings.jitter = 0.4;             // else the history's path is the pixel's own
   }
   return settings;
 }
@@ -75,7 +75,7 @@ protected:
     const SequenceSettings settings = settings_of(Shift::reconnection, Reuse::none);
     pixels = look_at(scene, settings.width, settings.height);
     regions = testing::regions_of(pixels);
-    reference = means_of(area_reference(scene, pixels, regions, batches, tier(20000, 40000), 99));
+    reference = means_of(area_reference(scene, pixels, regions, batches, quality(20000, 40000), 99));
     ASSERT_GE(regions.pixels.size(), 5u);
   }
 
@@ -120,7 +120,7 @@ TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
   after.lights[0].emission = {2, 6, 20};
   after.lights[1].emission = {8, 4, 2};
   testing::finish(after);
-  const auto truth = means_of(area_reference(after, pixels, regions, batches, 20000, 97));
+  const auto reference = means_of(area_reference(after, pixels, regions, batches, 20000, 97));
   const int tests = static_cast<int>(regions.pixels.size()) * 3;
   for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
     SequenceSettings settings = settings_of(shift, Reuse::spatiotemporal);
@@ -134,7 +134,7 @@ TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
       for (size_t r = 0; r < values.size(); ++r)
         values[r][i] = result.region_mean[r];
     });
-    const Judged judged = judge(means_of(values), truth);
+    const Judged judged = judge(means_of(values), reference);
     std::printf("lights moved, shift %u: %.2f sigma, %.2f %% off, 1 sigma is %.2f %%\n",
                 static_cast<unsigned>(shift), judged.worst, 100 * judged.largest, 100 * judged.spread);
     EXPECT_LT(judged.worst, testing::three_sigma_limit(restarts - 1, tests));
@@ -157,19 +157,19 @@ TEST_F(Unbiased, AlmostWhereIndicesAreDrawn) {
 // Mean square error of a frame late in the sequence, over pixels and restarts.
 TEST_F(Unbiased, AndNearerToTheTruthWithReuse) {
   testing::Regions each;
-  std::vector<double> truth(pixels.size());
+  std::vector<double> reference(pixels.size());
   for (uint32_t i = 0; i < pixels.size(); ++i)
     if (pixels[i].domain.medium != 0) each.pixels.push_back({i});
   const auto means = means_of(area_reference(scene, pixels, each, batches, 20000, 98));
   for (size_t r = 0; r < each.pixels.size(); ++r)
-    truth[each.pixels[r][0]] = means[r].mean;
+    reference[each.pixels[r][0]] = means[r].mean;
   const auto error = [&](Shift shift, Reuse reuse) {
     SequenceSettings settings = settings_of(shift, reuse);
     settings.frames = 13;
     std::vector<double> squares(16);
     subsurface::parallel_for(squares.size(), 1, 0, [&](size_t restart) {
       squares[restart] =
-          run_sequence(scene, settings, regions, truth, static_cast<uint32_t>(restart + 101)).last_square;
+          run_sequence(scene, settings, regions, reference, static_cast<uint32_t>(restart + 101)).last_square;
     });
     return testing::mean_of(squares).mean;
   };

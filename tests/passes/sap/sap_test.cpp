@@ -1,5 +1,5 @@
 // Laws of the surface-aware pyramid, on its CPU twin.
-#include "tests/passes/sap/cpu/sap_twin.hpp"
+#include "tests/passes/sap/cpu/sap_cpu.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ struct Scene {
         depth(size_t{w} * h, 0.5f),
         profile(size_t{w} * h, 1), d{{0, 0, 0}, {d_px[0] * 1e-3, d_px[1] * 1e-3, d_px[2] * 1e-3}} {}
 
-  TruthInput input() const { return {width, height, rays, light, depth, profile, scale, d}; }
+  ReferenceInput input() const { return {width, height, rays, light, depth, profile, scale, d}; }
   void paint(const std::function<float(uint32_t, uint32_t)>& value) {
     for (uint32_t y = 0; y < height; ++y)
       for (uint32_t x = 0; x < width; ++x)
@@ -62,16 +62,16 @@ const std::vector<float>& smooth_table() {
 struct Error {
   double rmse = 0, max = 0;
 };
-Error error_of(const std::vector<float>& light, const std::vector<double>& truth) {
+Error error_of(const std::vector<float>& light, const std::vector<double>& reference) {
   Error error;
-  for (size_t i = 0; i < truth.size(); i += 3) {
+  for (size_t i = 0; i < reference.size(); i += 3) {
     double e = 0; // Rec. 709 luminance
     for (size_t c = 0; c < 3; ++c)
-      e += std::array{.2126, .7152, .0722}[c] * (double(light[i + c]) - truth[i + c]);
+      e += std::array{.2126, .7152, .0722}[c] * (double(light[i + c]) - reference[i + c]);
     error.rmse += e * e;
     error.max = std::max(error.max, std::abs(e));
   }
-  error.rmse = std::sqrt(error.rmse / (double(truth.size()) / 3));
+  error.rmse = std::sqrt(error.rmse / (double(reference.size()) / 3));
   return error;
 }
 
@@ -95,9 +95,9 @@ TEST(Sap, ASecondLayerKeepsLightApartThatOneLayerMixesAcrossAFence) {
   const auto scattered = [&](uint32_t first_layered) {
     return sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = first_layered}).light;
   };
-  const std::vector<double> truth = truth_everywhere(scene.input());
-  const double one = error_of(scattered(sap_level_count), truth).rmse,
-               few = error_of(scattered(2), truth).rmse, two = error_of(scattered(1), truth).rmse;
+  const std::vector<double> reference = reference_everywhere(scene.input());
+  const double one = error_of(scattered(sap_level_count), reference).rmse,
+               few = error_of(scattered(2), reference).rmse, two = error_of(scattered(1), reference).rmse;
   RecordProperty("one", std::to_string(one));
   RecordProperty("few", std::to_string(few));
   RecordProperty("two", std::to_string(two));
@@ -118,8 +118,8 @@ TEST(Sap, TexturedPlaneFollowsTheTruthUpToTheBorder) {
   for (const double d : {1.0, 2.0, 4.0, 8.0, 16.0}) {
     Scene scene(256, 192, {d, d, d});
     scene.paint(texture);
-    const auto truth = truth_everywhere(scene.input());
-    const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, truth);
+    const auto reference = reference_everywhere(scene.input());
+    const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
     EXPECT_LT(error.rmse, 2.0e-3) << d; // the product's promise for this variant
     EXPECT_LT(error.max, 1.5e-2) << d;
   }
@@ -128,13 +128,13 @@ TEST(Sap, TexturedPlaneFollowsTheTruthUpToTheBorder) {
 TEST(Sap, UnequalChannelsFollowTheTruthEachWithItsOwnD) {
   Scene scene(256, 192, {8, 3, 1.5});
   scene.paint(texture);
-  const auto truth = truth_everywhere(scene.input());
+  const auto reference = reference_everywhere(scene.input());
   const auto result = sap_scatter<float>(scene.input(), smooth_table(), {}).light;
   for (size_t c = 0; c < 3; ++c) {
     double squares = 0;
-    for (size_t i = c; i < truth.size(); i += 3)
-      squares += (double(result[i]) - truth[i]) * (double(result[i]) - truth[i]);
-    EXPECT_LT(std::sqrt(squares / (double(truth.size()) / 3)), 2.0e-3) << c;
+    for (size_t i = c; i < reference.size(); i += 3)
+      squares += (double(result[i]) - reference[i]) * (double(result[i]) - reference[i]);
+    EXPECT_LT(std::sqrt(squares / (double(reference.size()) / 3)), 2.0e-3) << c;
   }
 }
 
@@ -145,8 +145,8 @@ TEST(Sap, HolesCountAsLittleAsInTheTruth) {
     for (uint32_t x = 0; x < 256; ++x)
       if ((int(x) - 150) * (int(x) - 150) + (int(y) - 90) * (int(y) - 90) > 70 * 70)
         scene.profile[y * 256 + x] = 0;
-  const auto truth = truth_everywhere(scene.input());
-  const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, truth);
+  const auto reference = reference_everywhere(scene.input());
+  const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
   // Regression bounds: they follow the product.
   EXPECT_LT(error.rmse, 3.0e-3);
   EXPECT_LT(error.max, 2.5e-2);
@@ -207,8 +207,8 @@ TEST(Sap, LightCrossesAFoldAsInTheTruth) {
   scene.paint([](uint32_t x, uint32_t) { return x < 64 ? 1.0f : 0.0f; });
   for (uint32_t i = 0; i < scene.depth.size(); ++i)
     scene.depth[i] = 0.5f - 1.7e-3f * std::abs(float(i % 128) - 63.5f);
-  const auto truth = truth_everywhere(scene.input());
-  const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, truth);
+  const auto reference = reference_everywhere(scene.input());
+  const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
   EXPECT_LT(
       error.rmse,
       0.035); // regression bound: measured .031; .050 where distance from the tangent plane alone counts

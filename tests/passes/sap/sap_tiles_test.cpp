@@ -20,9 +20,9 @@ uint32_t all_groups(uint32_t width, uint32_t height, const std::vector<uint32_t>
   return sum;
 }
 
-std::vector<uint32_t> disc(uint32_t width, uint32_t height, double share) {
+std::vector<uint32_t> disc(uint32_t width, uint32_t height, double fraction) {
   std::vector<uint32_t> classes(size_t{along(width)} * along(height), 0);
-  const double radius = std::sqrt(share * width * height / 3.14159265) / 8; // tiles
+  const double radius = std::sqrt(fraction * width * height / 3.14159265) / 8; // tiles
   for (uint32_t y = 0; y < along(height); ++y)
     for (uint32_t x = 0; x < along(width); ++x)
       if (std::hypot(double(x) + 0.5 - width / 16.0, double(y) + 0.5 - height / 16.0) < radius)

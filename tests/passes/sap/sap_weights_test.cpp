@@ -48,14 +48,14 @@ TEST_P(SapWeightsOf, AreTheSameEachTime) {
 
 TEST_P(SapWeightsOf, SharesAndWeightsSayTheSame) {
   for (const SapNode& node : fit_sap_weights(GetParam()).nodes) {
-    const SapShares shares = sap_shares(node.weights);
-    double left = 1 - shares.centre - shares.tent;
+    const SapFractions fractions = sap_fractions(node.weights);
+    double left = 1 - fractions.centre - fractions.tent;
     for (uint32_t level = 1; level < sap_level_count; ++level) {
-      EXPECT_NEAR(left * shares.share[level], node.weights[level + 1], 1e-13)
+      EXPECT_NEAR(left * fractions.fraction[level], node.weights[level + 1], 1e-13)
           << node.d_px << " level " << level;
-      left *= 1 - shares.share[level];
+      left *= 1 - fractions.fraction[level];
     }
-    EXPECT_EQ(shares.share[sap_level_count - 1], 1);
+    EXPECT_EQ(fractions.fraction[sap_level_count - 1], 1);
   }
 }
 

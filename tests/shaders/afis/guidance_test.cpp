@@ -21,9 +21,9 @@ constexpr double ulp = std::numeric_limits<float>::epsilon();
 
 struct Case { // as test_guidance.comp reads it
   float sigma2_target, kappa, eta, eps_alpha;
-  float least, most, variance, mean_count;
+  float minimum, maximum, variance, mean_count;
   float mean_f, mean_g, covariance, variance_g;
-  float f, g, eta_cv, asked;
+  float f, g, eta_cv, requested;
 
   GuidanceSettings settings() const {
     return {.sigma2_target = sigma2_target,
@@ -31,8 +31,8 @@ struct Case { // as test_guidance.comp reads it
             .eta = eta,
             .eta_cv = eta_cv,
             .eps_alpha = eps_alpha,
-            .least = least,
-            .most = most};
+            .min_samples = minimum,
+            .max_samples = maximum};
   }
   MovingCovariance moments() const { return {mean_f, mean_g, covariance, variance_g, true}; }
 };
@@ -46,16 +46,18 @@ std::vector<Case> make_cases() {
   const auto octaves = [&](double low, double high) { return std::exp2(between(low, high)); };
   std::vector<Case> made;
   for (uint32_t i = 0; i < cases; ++i) {
-    const float least = std::floor(between(1, 16)), most = least + std::floor(between(0, 100));
+    const float minimum = std::floor(between(1, 16)), maximum = minimum + std::floor(between(0, 100));
     const float variance_g = i % 5 == 0 ? 0 : octaves(-24, 4);
     // Of asked numbers some are outside of the range; none is the middle between two whole ones, which GLSL
     // lets a driver round either way.
-    const float asked = std::round(between(-20, 140)) + (i % 3 == 0 ? 0.499f : i % 3 == 1 ? -0.499f : 0.0f);
+    const float requested = std::round(between(-20, 140)) + (i % 3 == 0   ? 0.499f
+                                                             : i % 3 == 1 ? -0.499f
+                                                                          : 0.0f);
     made.push_back({octaves(-20, -6), i % 7 == 0 ? 0 : between(0, 1), between(0.01, 1), octaves(-24, -14),
-                    least, most, i % 11 == 0 ? 0 : octaves(-24, 0), between(1, 128),
+                    minimum, maximum, i % 11 == 0 ? 0 : octaves(-24, 0), between(1, 128),
                     i % 13 == 0 ? 0 : octaves(-8, 8), i % 6 == 0 ? 0 : octaves(-8, 8),
                     between(-1, 1) * octaves(-16, 4), variance_g, octaves(-8, 8), octaves(-8, 8),
-                    between(0.001, 1), asked});
+                    between(0.001, 1), requested});
   }
   made[0].mean_f = made[0].mean_g = made[0].covariance = made[0].variance_g = 0; // all is dark
   return made;
@@ -67,21 +69,21 @@ protected:
     KernelTest::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
     answers = answers_of({"test_guidance", test_guidance_spirv}, cases, rows,
-                         {.questions = std::as_bytes(std::span(asked))});
+                         {.questions = std::as_bytes(std::span(requested))});
     ASSERT_EQ(answers.size(), size_t{4} * cases * rows);
   }
   double at(size_t x, size_t row, size_t channel) const {
     return double(answers[4 * (row * cases + x) + channel]);
   }
 
-  const std::vector<Case> asked = make_cases();
+  const std::vector<Case> requested = make_cases();
   std::vector<float> answers;
 };
 
 TEST_F(GuidanceKernel, SampleNumbersEqualTheReference) {
   size_t whole = 0;
-  for (size_t i = 0; i < asked.size(); ++i) {
-    const Case& one = asked[i];
+  for (size_t i = 0; i < requested.size(); ++i) {
+    const Case& one = requested[i];
     const GuidanceSettings settings = one.settings();
     const double wanted = wanted_samples(one.variance, one.mean_count, settings);
     // Two quotients and seven sums and products.
@@ -90,7 +92,7 @@ TEST_F(GuidanceKernel, SampleNumbersEqualTheReference) {
         settings.kappa * (ratio + 1) * one.mean_count * (2 / settings.eta + 2) + ratio * one.mean_count;
     const double bound = (2 * 2.5 + 7) * ulp * magnitude;
     EXPECT_NEAR(at(i, 0, 0), wanted, bound) << i;
-    EXPECT_EQ(at(i, 0, 2), clamped_samples(one.asked, settings)) << i << ": " << one.asked;
+    EXPECT_EQ(at(i, 0, 2), clamped_samples(one.requested, settings)) << i << ": " << one.requested;
     // Where the bound does not reach the middle between two whole numbers, both decide alike.
     const int low = clamped_samples(wanted - bound, settings),
               high = clamped_samples(wanted + bound, settings);
@@ -102,8 +104,8 @@ TEST_F(GuidanceKernel, SampleNumbersEqualTheReference) {
 }
 
 TEST_F(GuidanceKernel, ControlWeightsEqualTheReference) {
-  for (size_t i = 0; i < asked.size(); ++i) {
-    const Case& one = asked[i];
+  for (size_t i = 0; i < requested.size(); ++i) {
+    const Case& one = requested[i];
     const double eps = one.eps_alpha;
     // Two sums and a quotient; the upper limit is a sum and a quotient of what is not negative.
     double magnitude = (std::abs(double(one.covariance)) + eps) / (double(one.variance_g) + eps);
@@ -114,8 +116,8 @@ TEST_F(GuidanceKernel, ControlWeightsEqualTheReference) {
 }
 
 TEST_F(GuidanceKernel, MovingMomentsEqualTheReference) {
-  for (size_t i = 0; i < asked.size(); ++i) {
-    const Case& one = asked[i];
+  for (size_t i = 0; i < requested.size(); ++i) {
+    const Case& one = requested[i];
     const double eta = one.eta_cv, f = std::abs(double(one.f) - one.mean_f),
                  g = std::abs(double(one.g) - one.mean_g);
     MovingVariance variance{one.mean_f, one.variance_g, true};

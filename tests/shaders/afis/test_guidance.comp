@@ -8,7 +8,7 @@
 #include "common/environment.glsl"
 struct guidance_settings {
   float sigma2_target, kappa, eta, eps_alpha;
-  int least, most;
+  int min_samples, max_samples;
 };
 guidance_settings settings;
 #include "afis/guidance.glsl"
@@ -20,13 +20,13 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, frame.rect.zw)))
     return;
-  vec4 set = separable_rows[4 * pixel.x], asked = separable_rows[4 * pixel.x + 1];
+  vec4 set = separable_rows[4 * pixel.x], requested = separable_rows[4 * pixel.x + 1];
   vec4 kept = separable_rows[4 * pixel.x + 2], found = separable_rows[4 * pixel.x + 3];
-  settings = guidance_settings(set.x, set.y, set.z, set.w, int(asked.x), int(asked.y));
+  settings = guidance_settings(set.x, set.y, set.z, set.w, int(requested.x), int(requested.y));
   moving_covariance moments = moving_covariance(kept.x, kept.y, kept.z, kept.w);
   vec4 answer = vec4(0.0);
   if (pixel.y == 0) {
-    float wanted = wanted_samples(asked.z, asked.w);
+    float wanted = wanted_samples(requested.z, requested.w);
     answer = vec4(wanted, clamped_samples(wanted), clamped_samples(found.w), control_weight(moments));
   }
   if (pixel.y == 1) {

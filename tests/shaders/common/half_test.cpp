@@ -27,12 +27,13 @@ TEST_F(HalfKernel, RoundsEveryFloatToTheNearestHalfAndTiesToEven) {
   size_t judged = 0, wrong = 0;
   for (uint32_t head = 0; head < width * height; ++head)
     for (size_t c = 0; c < 4; ++c) {
-      const float asked = std::bit_cast<float>(head << 13 | tails[c]);
-      if (std::isnan(asked)) continue;
+      const float requested = std::bit_cast<float>(head << 13 | tails[c]);
+      if (std::isnan(requested)) continue;
       ++judged;
-      const double wanted = asked == 0 ? 0 : nearest_half(asked);
+      const double wanted = requested == 0 ? 0 : nearest_half(requested);
       if (double(answers[4 * size_t{head} + c]) == wanted) continue;
-      if (++wrong <= 5) ADD_FAILURE() << asked << ": " << answers[4 * size_t{head} + c] << ", not " << wanted;
+      if (++wrong <= 5)
+        ADD_FAILURE() << requested << ": " << answers[4 * size_t{head} + c] << ", not " << wanted;
     }
   EXPECT_EQ(wrong, 0u);
   EXPECT_EQ(judged, 4u * 512 * 1024 - 2 * 4 * 1024 + 2) << "all but NaN";

@@ -16,7 +16,7 @@ Graph one_pass() {
   answers.exported = true;
   PassDeclaration& pass = graph.passes.emplace_back();
   pass.name = "ask";
-  pass.kind = KindId{0};
+  pass.type = PassTypeId{0};
   PortBinding target;
   target.port = 0;
   target.resource = ResourceId{0};
@@ -47,11 +47,11 @@ void KernelTest::run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t 
   ASSERT_FALSE(made) << made.text;
   const DeviceProfile profile = vulkan::device_profile(dermis_device);
   const Graph graph = one_pass();
-  KindRegistry kinds;
-  kinds.add({"test.kernel", kernel.shader, "", ports, {}, DispatchShape::over_view, false});
+  PassTypeRegistry pass_types;
+  pass_types.add({"test.kernel", kernel.shader, "", ports, {}, DispatchShape::over_view, false});
   CompileInput compiled;
   compiled.graph = &graph;
-  compiled.kinds = &kinds;
+  compiled.pass_types = &pass_types;
   compiled.device = &profile;
   compiled.view_width = width;
   compiled.view_height = height;
@@ -73,7 +73,7 @@ void KernelTest::run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t 
   vulkan::ExecutorInput input;
   input.device = &dermis_device;
   input.graph = &graph;
-  input.kinds = &kinds;
+  input.pass_types = &pass_types;
   input.plan = &plan->plan;
   input.kernels = {&kernel, 1};
   input.environment = environment;

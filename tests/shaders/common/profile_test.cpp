@@ -19,7 +19,7 @@ constexpr uint32_t height = rows * uint32_t(std::size(files));
 double radius_in_d(uint32_t x) {
   return std::exp2(x / 16.0 - 8);
 }
-double survival_asked(uint32_t x) {
+double requested_survival(uint32_t x) {
   return std::exp2(-(x / 16.0));
 }
 
@@ -59,9 +59,10 @@ TEST_F(ProfileKernel, DensityAndDistributionAreThoseOfTheShapes) {
     for (uint32_t x = 0; x < width; ++x)
       for (size_t c = 0; c < 3; ++c) {
         const double r = radius_in_d(x) * d, R = at(i, 0, x, c) / (2 * std::numbers::pi);
-        const double truth = shape_R(profile.shape_mm[c], r), most = shape_R(profile.shape_mm[c], d / 256);
+        const double reference = shape_R(profile.shape_mm[c], r),
+                     maximum = shape_R(profile.shape_mm[c], d / 256);
         // Tables are linear in log R over 1/24 octave; far out what is left of the largest value counts.
-        EXPECT_NEAR(R, truth, 4e-3 * truth + 1e-9 * most)
+        EXPECT_NEAR(R, reference, 4e-3 * reference + 1e-9 * maximum)
             << files[i] << " R at " << r << " mm, channel " << c;
         EXPECT_NEAR(2 * std::numbers::pi * r * R, shape_pdf(profile.shape_mm[c], r),
                     4e-3 * shape_pdf(profile.shape_mm[c], r) + 1e-8 / d)
@@ -80,11 +81,11 @@ TEST_F(ProfileKernel, InversesUndoTheDistribution) {
     const bool burley =
         i == 0; // a polynomial within .52 %, and exact weights; tables within a thousandth of d
     for (uint32_t x = 1; x < width; ++x) {
-      const double r = at(i, 2, x, 0), truth = shape_inverse_survival(shape, survival_asked(x));
-      EXPECT_NEAR(r, truth, (burley ? 5.2e-3 * truth : 0) + 1e-3 * shape.d)
-          << files[i] << " " << survival_asked(x);
+      const double r = at(i, 2, x, 0), reference = shape_inverse_survival(shape, requested_survival(x));
+      EXPECT_NEAR(r, reference, (burley ? 5.2e-3 * reference : 0) + 1e-3 * shape.d)
+          << files[i] << " " << requested_survival(x);
       // The density is the sampler's own: within some percent of the profile's.
-      EXPECT_NEAR(at(i, 2, x, 1) / shape_pdf(shape, r), 1, 0.05) << files[i] << " " << survival_asked(x);
+      EXPECT_NEAR(at(i, 2, x, 1) / shape_pdf(shape, r), 1, 0.05) << files[i] << " " << requested_survival(x);
     }
   }
 }

@@ -131,10 +131,10 @@ struct PlaceBounds {
   Bounded depth;
 };
 PlaceBounds still_bounds(const FrameConstants& frame, const Case& one) {
-  const double zoom = (frame.flags & 1) != 0 ? one.depth : 1, asked[] = {one.x, one.y};
+  const double zoom = (frame.flags & 1) != 0 ? one.depth : 1, requested[] = {one.x, one.y};
   double at[4] = {0, 0, -double(one.depth), 1}, size[4] = {0, 0, one.depth, 1};
   for (size_t axis = 0; axis < 2; ++axis) {
-    const double scaled = double(frame.ray_scale[axis]) * asked[axis], offset = frame.ray_offset[axis];
+    const double scaled = double(frame.ray_scale[axis]) * requested[axis], offset = frame.ray_offset[axis];
     at[axis] = (scaled + offset) * zoom;
     size[axis] = (std::abs(scaled) + std::abs(offset)) * zoom;
   }
@@ -160,13 +160,13 @@ PlaceBounds still_bounds(const FrameConstants& frame, const Case& one) {
 }
 PlaceBounds moving_bounds(const FrameConstants& frame, const Case& one) {
   PlaceBounds out = still_bounds(frame, one);
-  const double asked[] = {one.x, one.y};
+  const double requested[] = {one.x, one.y};
   for (size_t axis = 0; axis < 2; ++axis) {
     const double jitter = frame.jitter[axis],
                  ratio = double(frame.previous_rect[2 + axis]) / frame.rect[2 + axis];
-    const double steady = (asked[axis] - jitter - one.velocity[axis] + 0.5) * ratio - 0.5;
-    const double size = (asked[axis] + std::abs(jitter) + std::abs(one.velocity[axis]) + 0.5) * ratio + 0.5 +
-                        std::abs(frame.previous_jitter[axis]);
+    const double steady = (requested[axis] - jitter - one.velocity[axis] + 0.5) * ratio - 0.5;
+    const double size = (requested[axis] + std::abs(jitter) + std::abs(one.velocity[axis]) + 0.5) * ratio +
+                        0.5 + std::abs(frame.previous_jitter[axis]);
     // Five sums, a product, a quotient.
     out.pixel[axis] = {steady + frame.previous_jitter[axis], (5 + 1 + 2.5) * ulp * size};
   }
@@ -180,7 +180,7 @@ class ReprojectKernel : public dermis::testing::KernelTest {
 protected:
   struct Answers {
     FrameConstants frame;
-    std::vector<Case> asked;
+    std::vector<Case> requested;
     std::vector<float> values;
     double at(size_t x, size_t row, size_t channel) const {
       return double(values[4 * (row * cases + x) + channel]);
@@ -188,9 +188,9 @@ protected:
   };
   Answers ask(const Scene& scene) {
     Answers out{constants_of(scene), {}, {}};
-    out.asked = make_cases(out.frame);
+    out.requested = make_cases(out.frame);
     std::vector<std::byte> questions;
-    for (const auto bytes : {std::as_bytes(std::span(out.asked)), std::as_bytes(std::span(before))})
+    for (const auto bytes : {std::as_bytes(std::span(out.requested)), std::as_bytes(std::span(before))})
       questions.insert(questions.end(), bytes.begin(), bytes.end());
     out.values = answers_of({"test_reproject", test_reproject_spirv}, cases, rows,
                             {.questions = questions, .frame = &out.frame});
@@ -224,14 +224,14 @@ TEST_F(ReprojectKernel, PlacesEqualTheReference) {
     const Answers answers = ask(scene);
     if (HasFailure() || IsSkipped()) return;
     for (size_t i = 0; i < cases; ++i) {
-      const Case& one = answers.asked[i];
+      const Case& one = answers.requested[i];
       const std::string where = std::string(scene.name) + ", case " + std::to_string(i);
       EXPECT_EQ(answers.at(i, 0, 3), history_usable(answers.frame) ? 1 : 0) << where;
       const PreviousPlace still = place_before(answers.frame, one.x, one.y, one.depth);
       const PlaceBounds bounds = still_bounds(answers.frame, one);
       const PreviousPlace moving = place_before(answers.frame, one.x, one.y, one.depth,
                                                 {one.velocity[0], one.velocity[1], one.velocity[2]});
-      const double steep = std::max(reproject_depth_share * one.depth, reproject_slope_pixels * one.rise);
+      const double steep = std::max(reproject_depth_fraction * one.depth, reproject_slope_pixels * one.rise);
       EXPECT_NEAR(answers.at(i, 1, 3), steep, 2 * ulp * steep) << where; // a constant and a product
       EXPECT_EQ(answers.at(i, 0, 2) > 0, still.depth > 0) << where;
       EXPECT_EQ(answers.at(i, 1, 2) > 0, moving.depth > 0) << where;
@@ -265,7 +265,7 @@ TEST_F(ReprojectKernel, TapsEqualTheReference) {
   if (HasFailure() || IsSkipped()) return;
   size_t none = 0, some = 0, all = 0;
   for (size_t i = 0; i < cases; ++i) {
-    const Case& one = answers.asked[i];
+    const Case& one = answers.requested[i];
     const HistoryTaps taps = reference_taps(answers.frame, one);
     const auto used = std::count_if(taps.weight.begin(), taps.weight.end(), [](double w) { return w > 0; });
     const std::string where = "case " + std::to_string(i);

@@ -2,7 +2,7 @@
 #include "framegraph/vulkan/shader/signature_check.hpp"
 #include "passes/common/environment.hpp"
 #include "passes/common/kernels.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,15 +21,15 @@ TEST(Kernels, EveryKernelFitsItsSignatureAndTheEnvironment) {
       {EnvironmentType::storage_buffer, any, {}},
       {EnvironmentType::counters, sizeof(FrameCounters), {}},
   };
-  const KindRegistry kinds = make_kinds();
-  ASSERT_GT(kinds.size(), 0u);
-  for (uint32_t i = 0; i < kinds.size(); ++i) {
-    const PassKind& kind = kinds[KindId{i}];
-    if (kind.shader.empty()) continue;
+  const PassTypeRegistry pass_types = make_pass_types();
+  ASSERT_GT(pass_types.size(), 0u);
+  for (uint32_t i = 0; i < pass_types.size(); ++i) {
+    const PassType& type = pass_types[PassTypeId{i}];
+    if (type.shader.empty()) continue;
     std::string error;
-    const auto reflection = vulkan::reflect(find_kernel(kind.shader), error);
-    ASSERT_TRUE(reflection) << kind.shader << ": " << error;
-    for (const std::string& line : vulkan::check_signature(kind, environment, *reflection))
+    const auto reflection = vulkan::reflect(find_kernel(type.shader), error);
+    ASSERT_TRUE(reflection) << type.shader << ": " << error;
+    for (const std::string& line : vulkan::check_signature(type, environment, *reflection))
       ADD_FAILURE() << line;
   }
 }

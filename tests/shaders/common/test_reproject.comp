@@ -27,8 +27,8 @@ void main() {
     return;
   vec4 seen = separable_rows[rows_of_case * at.x]; // pixel, depth, rise
   vec4 moved = separable_rows[rows_of_case * at.x + 1]; // velocity, profile
-  vec4 asked = separable_rows[rows_of_case * at.x + 2]; // place, depth, tolerance
-  history_taps taps = find_history(previous_place(asked.xy, asked.z), uint(moved.w), asked.w);
+  vec4 requested = separable_rows[rows_of_case * at.x + 2]; // place, depth, tolerance
+  history_taps taps = find_history(previous_place(requested.xy, requested.z), uint(moved.w), requested.w);
   vec4 answer = taps.weight;
   if (at.y == 0) {
     previous_place place = place_before(seen.xy, seen.z);

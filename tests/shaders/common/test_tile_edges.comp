@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
 const int tile_count = 20;
-uint classes_data[tile_count], shares_data[tile_count];
+uint classes_data[tile_count], samples_per_tile_data[tile_count];
 #include "common/tile_edges.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, rgba32f) uniform writeonly image2D target;
@@ -19,7 +19,7 @@ void main() {
   for (int i = 0; i < tile_count; ++i) {
     vec4 tile = separable_rows[arrangement * tile_count + i];
     classes_data[i] = uint(tile.x);
-    shares_data[i] = uint(tile.y);
+    samples_per_tile_data[i] = uint(tile.y);
   }
   ivec2 at = ivec2(pixel.x, pixel.y % rows);
   imageStore(target, pixel, vec4(edge_weight(at, 4.0), edge_weight(at, 8.0), float(has_samples(at >> 3)),

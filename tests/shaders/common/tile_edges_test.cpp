@@ -18,7 +18,7 @@ constexpr uint32_t width = across * side, height = down * side * arrangements;
 constexpr double ramps[] = {4, 8}; // pixels
 
 struct Tile { // as test_tile_edges.comp reads it
-  float kind, samples, unused[2];
+  float type, samples, unused[2];
 };
 
 // Class 1 scatters; the others are copied or empty and blend nothing, so samples are not missed there.
@@ -29,8 +29,8 @@ std::vector<Tile> make_tiles() {
     for (uint32_t i = 0; i < across * down; ++i) {
       const bool sampled = a == 0 ? i != 6 : random() % 4 != 0; // 0: a single tile without samples
       // From arrangement 12 on, tiles of other classes and the bit of tiles that are full are among them.
-      const auto kind = static_cast<float>((a < 12 ? 1 : random() % 4) + 4 * (random() % 2));
-      tiles.push_back({kind, sampled ? static_cast<float>(1 + random() % 3) : 0.0f, {}});
+      const auto type = static_cast<float>((a < 12 ? 1 : random() % 4) + 4 * (random() % 2));
+      tiles.push_back({type, sampled ? static_cast<float>(1 + random() % 3) : 0.0f, {}});
     }
   return tiles;
 }
@@ -39,7 +39,7 @@ struct Arrangement {
   const Tile* tiles;
   bool has_samples(int x, int y) const {
     const Tile& tile = tiles[std::clamp(y, 0, down - 1) * across + std::clamp(x, 0, across - 1)];
-    return tile.samples > 0 || int(tile.kind) % 4 != 1;
+    return tile.samples > 0 || int(tile.type) % 4 != 1;
   }
   // 1 where no neighbour is without samples.
   double way_in_ramps(int x, int y, double ramp) const {

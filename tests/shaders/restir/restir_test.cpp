@@ -100,15 +100,15 @@ protected:
     q.light.edge_v = {at(x, 6, 2), at(x, 6, 3), at(x, 7, 0)};
     q.light.emission = three_at(x, 7, 1);
     q.light.area = at(x, 8, 0);
-    q.light.share = at(x, 8, 1);
+    q.light.fraction = at(x, 8, 1);
     q.place = static_cast<uint32_t>(at(x, 8, 2)) | static_cast<uint32_t>(at(x, 8, 3)) << 16;
     return q;
   }
 
-  void expect_near(uint32_t x, uint32_t row, const std::array<double, 4>& truth, double scale,
+  void expect_near(uint32_t x, uint32_t row, const std::array<double, 4>& reference, double scale,
                    double tolerance) const {
     for (size_t c = 0; c < 4; ++c)
-      EXPECT_NEAR(at(x, row, c), truth[c], tolerance * std::max(std::abs(truth[c]), scale))
+      EXPECT_NEAR(at(x, row, c), reference[c], tolerance * std::max(std::abs(reference[c]), scale))
           << "case " << x << ", row " << row << ", channel " << c;
   }
 
@@ -212,9 +212,9 @@ TEST_F(RestirKernel, MergesTheSamePaths) {
     const Reservoir last = spatial_end(spatial, random);
     // A number within rounding of a threshold may decide otherwise on the device: such cases are counted.
     bool agrees = true;
-    const auto compare = [&](uint32_t row, const std::array<double, 4>& truth) {
+    const auto compare = [&](uint32_t row, const std::array<double, 4>& reference) {
       for (size_t c = 0; c < 4; ++c)
-        agrees = agrees && std::abs(at(x, row, c) - truth[c]) <= 2e-4 * std::abs(truth[c]) + 1e-7;
+        agrees = agrees && std::abs(at(x, row, c) - reference[c]) <= 2e-4 * std::abs(reference[c]) + 1e-7;
     };
     const auto path_of = [&](const Reservoir& r) {
       const double sheet = has_sample(r) ? double(r.instance - (sheet_instance - 1)) : 0;
@@ -249,7 +249,7 @@ Reservoir packed_case(uint32_t x, const std::array<double, 4>& u, const ProbeNum
   r.light = 0xfedcba98;
   r.place = place;
   r.numbers = numbers;
-  r.hits = most_probe_hits;
+  r.hits = max_probe_hits;
   r.density = u[2];
   r.irradiance = light.emission;
   r.weight = u[3];

@@ -84,7 +84,7 @@ void main() {
   light.edge_v = three(random) - 0.5;
   light.emission = 4.0 * three(random);
   light.area = 0.5 + random_unit(random);
-  light.share = random_unit(random);
+  light.fraction = random_unit(random);
   light.until = 1.0;
   uint place = light_place(random_unit(random), random_unit(random));
 
@@ -108,7 +108,7 @@ void main() {
   if (row == 7)
     result = vec4(light.edge_v.z, light.emission);
   if (row == 8)
-    result = vec4(light.area, light.share, place & 0xffffu, place >> 16);
+    result = vec4(light.area, light.fraction, place & 0xffffu, place >> 16);
 
   if (row == 9)
     result = vec4(numbers.axis, numbers.channel, numbers.survival, numbers.angle);

@@ -27,8 +27,8 @@ struct Decoding {
   }
 
   // Both formats pack so well that a small file may ask for all memory.
-  bool has_room(uint64_t bytes) {
-    if (bytes > most_model_bytes - decoded) return false;
+  bool has_space(uint64_t bytes) {
+    if (bytes > max_model_bytes - decoded) return false;
     decoded += bytes;
     return true;
   }
@@ -54,8 +54,8 @@ size_t number_of(const tinygltf::Value& extension, const char* key, size_t other
   const tinygltf::Value& value = extension.Get(key);
   if (!value.IsNumber()) return SIZE_MAX;
   const double number = value.GetNumberAsDouble();
-  return number >= 0.0 && number <= static_cast<double>(most_model_bytes) ? static_cast<size_t>(number)
-                                                                          : SIZE_MAX;
+  return number >= 0.0 && number <= static_cast<double>(max_model_bytes) ? static_cast<size_t>(number)
+                                                                         : SIZE_MAX;
 }
 
 std::string text_of(const tinygltf::Value& extension, const char* key, const char* otherwise) {
@@ -82,7 +82,7 @@ Result<> decode_view(Decoding& decoding, size_t index, const tinygltf::Value& ex
   if (!stride_fits)
     return decoding.refuse(what, vertices ? "byteStride is not a multiple of 4 up to 256"
                                           : "byteStride is not 2 or 4");
-  if (count == 0 || count > most_model_bytes || !decoding.has_room(uint64_t{count} * stride) ||
+  if (count == 0 || count > max_model_bytes || !decoding.has_space(uint64_t{count} * stride) ||
       (triangles && count % 3 != 0))
     return decoding.refuse(what, "count is not a number of elements that can be read");
   const bool octahedral = filter == "OCTAHEDRAL", quaternion = filter == "QUATERNION";
@@ -133,7 +133,7 @@ Result<int> decode_attribute(Decoding& decoding, const std::string& what, const 
                            fmt::format("{} is attribute {}, which the compressed mesh lacks", name, id));
   const int width = name.starts_with("TEXCOORD_") ? 2 : name == "TANGENT" ? 4 : 3;
   const size_t points = mesh.num_points();
-  if (!decoding.has_room(points * static_cast<uint64_t>(width) * sizeof(float)))
+  if (!decoding.has_space(points * static_cast<uint64_t>(width) * sizeof(float)))
     return decoding.refuse(what, "the mesh is too large");
   std::vector<unsigned char> data(points * static_cast<size_t>(width) * sizeof(float));
   for (size_t i = 0; i < points; ++i) {
@@ -179,7 +179,7 @@ Result<> decode_primitive(Decoding& decoding, const std::string& what, tinygltf:
     primitive.attributes[name] = *accessor;
   }
   const size_t indices = size_t{mesh.num_faces()} * 3;
-  if (!decoding.has_room(indices * sizeof(uint32_t))) return decoding.refuse(what, "the mesh is too large");
+  if (!decoding.has_space(indices * sizeof(uint32_t))) return decoding.refuse(what, "the mesh is too large");
   std::vector<unsigned char> data(indices * sizeof(uint32_t));
   for (uint32_t face = 0; face < mesh.num_faces(); ++face)
     for (uint32_t corner = 0; corner < 3; ++corner) {

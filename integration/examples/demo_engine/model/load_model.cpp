@@ -16,7 +16,7 @@
 namespace demo {
 namespace {
 
-constexpr size_t most_vertices = size_t{1} << 25;
+constexpr size_t max_vertices = size_t{1} << 25;
 constexpr uint32_t deepest_node = 256;
 constexpr std::string_view head_scan = "LeePerrySmith";
 constexpr const char* head_scan_credit =
@@ -145,8 +145,8 @@ struct Gathering {
     auto positions = read_floats(file, path, attribute("POSITION"), TINYGLTF_TYPE_VEC3, 3);
     if (!positions) return positions.error();
     const size_t count = positions->size() / 3, first = model.mesh.vertices.size();
-    if (first + count > most_vertices)
-      return Error{ErrorKind::input, fmt::format("{}: more than {} vertices", path, most_vertices)};
+    if (first + count > max_vertices)
+      return Error{ErrorKind::input, fmt::format("{}: more than {} vertices", path, max_vertices)};
     const auto optional_floats = [&](const char* name, int type, uint32_t width,
                                      std::vector<float>& out) -> Result<> {
       if (attribute(name) < 0) return success();
@@ -327,7 +327,7 @@ Result<Model> load_model(const ModelOptions& options, const std::vector<std::str
     return Error{ErrorKind::usage,
                  fmt::format("the model's height is {}; expected more than 0 and at most {} metres",
                              options.height_metres, tallest)};
-  auto bytes = read_binary_file(options.mesh, most_model_bytes);
+  auto bytes = read_binary_file(options.mesh, max_model_bytes);
   if (!bytes) return bytes.error();
   auto file = parse_gltf(options.mesh, *bytes, roots);
   if (!file) return file.error();

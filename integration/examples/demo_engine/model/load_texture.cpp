@@ -27,8 +27,8 @@ bool other_format(std::span<const std::byte> bytes) {
 } // namespace
 
 Result<Texture> load_texture(const std::string& path) {
-  constexpr uint64_t most_bytes = uint64_t{256} << 20;
-  auto bytes = read_binary_file(path, most_bytes);
+  constexpr uint64_t max_bytes = uint64_t{256} << 20;
+  auto bytes = read_binary_file(path, max_bytes);
   if (!bytes) return bytes.error();
   return decode_texture(path, *bytes);
 }
@@ -41,9 +41,9 @@ Result<Texture> decode_texture(const std::string& name, std::span<const std::byt
       stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
     return Error{ErrorKind::input,
                  fmt::format("{}: this is not an image that can be read (PNG, JPEG, TGA, BMP)", name)};
-  if (width < 1 || height < 1 || width > most_texels_a_side || height > most_texels_a_side)
+  if (width < 1 || height < 1 || width > max_texels_per_side || height > max_texels_per_side)
     return Error{ErrorKind::input, fmt::format("{}: the image is {}x{}; maps may be 1x1 to {}x{}", name,
-                                               width, height, most_texels_a_side, most_texels_a_side)};
+                                               width, height, max_texels_per_side, max_texels_per_side)};
   constexpr int rgba = 4;
   stbi_uc* texels = stbi_load_from_memory(data, size, &width, &height, &channels, rgba);
   if (texels == nullptr)

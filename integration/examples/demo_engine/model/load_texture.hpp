@@ -9,7 +9,7 @@
 namespace demo {
 
 // Largest side of a map, in texels.
-inline constexpr int most_texels_a_side = 8192;
+inline constexpr int max_texels_per_side = 8192;
 
 // Whatever stb_image reads, as RGBA. Errors: input (unreadable, not an image, too large).
 Result<Texture> load_texture(const std::string& path);

@@ -49,7 +49,7 @@ std::string as_it_is(const std::string& name, void*) {
 bool read_whole(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user) {
   const auto& beside = *static_cast<const Beside*>(user);
   const dermis::PlacedFile placed = dermis::place_file(beside.folder, name, beside.roots);
-  auto bytes = read_binary_file(placed.path.string(), most_model_bytes);
+  auto bytes = read_binary_file(placed.path.string(), max_model_bytes);
   if (!bytes) {
     if (error != nullptr) *error += bytes.error().text;
     return false;

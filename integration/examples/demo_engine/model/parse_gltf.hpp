@@ -13,7 +13,7 @@
 
 namespace demo {
 
-inline constexpr uint64_t most_model_bytes = uint64_t{1} << 30; // of a file or a buffer beside it
+inline constexpr uint64_t max_model_bytes = uint64_t{1} << 30; // of a file or a buffer beside it
 
 // `path` names the file in messages; buffers and pictures that it names are read from its folder and from
 // below `roots` (dermis::place_file). Pictures stay encoded; one whose bytes are not there is empty. Errors:

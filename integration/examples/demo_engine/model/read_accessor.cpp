@@ -9,7 +9,7 @@
 namespace demo {
 namespace {
 
-constexpr size_t most_elements = size_t{1} << 26;
+constexpr size_t max_elements = size_t{1} << 26;
 
 struct Elements {
   const unsigned char* first = nullptr; // null: all zero, as glTF has it for accessors without a view
@@ -54,8 +54,8 @@ Result<Range> find_range(const tinygltf::Model& model, const std::string& file, 
     return refuse(file, index, "refers to a buffer that does not exist");
   const std::vector<unsigned char>& data = model.buffers[static_cast<size_t>(view.buffer)].data;
   const size_t stride = view.byteStride == 0 ? element : view.byteStride;
-  const size_t room = view.byteOffset <= data.size() ? data.size() - view.byteOffset : 0;
-  const bool view_fits = view.byteLength <= room;
+  const size_t available = view.byteOffset <= data.size() ? data.size() - view.byteOffset : 0;
+  const bool view_fits = view.byteLength <= available;
   const bool starts = offset <= view.byteLength && view.byteLength - offset >= element;
   if (!view_fits || !starts || stride < element || stride > 4096 ||
       (count - 1) > (view.byteLength - offset - element) / stride)
@@ -116,9 +116,9 @@ Result<Elements> find_elements(const tinygltf::Model& model, const std::string& 
     return refuse(file, index, fmt::format("does not exist; there are {}", model.accessors.size()));
   const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
   if (accessor.type != type) return refuse(file, index, "has another element type than its use needs");
-  if (accessor.count == 0 || accessor.count > most_elements)
+  if (accessor.count == 0 || accessor.count > max_elements)
     return refuse(file, index,
-                  fmt::format("has {} elements; expected 1 to {}", accessor.count, most_elements));
+                  fmt::format("has {} elements; expected 1 to {}", accessor.count, max_elements));
   const int components = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
   const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
   if (components <= 0 || bytes <= 0) return refuse(file, index, "has an unknown component type");

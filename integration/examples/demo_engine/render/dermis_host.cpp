@@ -154,11 +154,11 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
 }
 
 Result<> set_budget(DermisHost& host, const DermisDesc& desc) {
-  if (desc.budget_ms == 0 && !desc.metered && desc.calibration.text.empty()) return success();
+  if (desc.budget_ms == 0 && !desc.deterministic && desc.calibration.text.empty()) return success();
   const dermis_source calibration = source_of(desc.calibration.name, desc.calibration.text);
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.milliseconds = static_cast<float>(desc.budget_ms);
-  budget.flags = desc.metered ? DERMIS_BUDGET_METER : 0;
+  budget.flags = desc.deterministic ? DERMIS_BUDGET_DETERMINISTIC : 0;
   budget.calibration = desc.calibration.text.empty() ? nullptr : &calibration;
   Report report;
   const dermis_result result = dermis_graph_set_budget(host.graph, &budget, &report.handle);
@@ -417,17 +417,17 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   out.scattering_tiles = choice.scattering_tiles;
   out.copied_tiles = choice.copied_tiles;
   out.switches = choice.switches;
-  out.flat_tiles = choice.flat_tiles;
+  out.uniform_tiles = choice.uniform_tiles;
   out.dispatches = choice.dispatches;
   out.groups = choice.groups;
   std::copy(std::begin(choice.sampled_tiles), std::end(choice.sampled_tiles), out.sampled_tiles.begin());
   out.sample_units = choice.sample_units;
-  out.wanted_units = choice.wanted_units;
+  out.sample_demand = choice.sample_demand;
   out.probed_tiles = choice.probed_tiles;
   out.probed_rmse = static_cast<double>(choice.probed_rmse);
   out.probed_rmse_low = static_cast<double>(choice.probed_rmse_low);
   out.probed_rmse_high = static_cast<double>(choice.probed_rmse_high);
-  out.through_rms = static_cast<double>(choice.through_rms);
+  out.transmitted_rms = static_cast<double>(choice.transmitted_rms);
   out.miss = choice.miss;
   return out;
 }

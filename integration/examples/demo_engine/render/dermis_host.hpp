@@ -20,7 +20,7 @@ struct DermisDesc {
   std::vector<NamedText> overlays = {};
   std::function<std::optional<NamedText>(const std::string&name)> include = {}, shaders = {};
   double budget_ms = 0;
-  bool metered = false;
+  bool deterministic = false;
   NamedText calibration = {};
   bool sampling = false; // bind `sampling`, which costs the graph a write
   bool skips = false;    // the same of `skips`

@@ -2,6 +2,8 @@
 // What the shaders know; mirrors shaders/frame.glsl, object.glsl and gbuffer.frag. glm stores columns, as
 // GLSL.
 
+#include "integration/examples/demo_engine/scene/scene_state.hpp"
+
 #include <glm/glm.hpp>
 
 #include <cstddef>
@@ -10,7 +12,6 @@
 namespace demo {
 
 inline constexpr uint32_t max_lights = 8;
-inline constexpr uint32_t max_shadow_layers = 24;
 inline constexpr uint32_t max_objects = 256;
 inline constexpr uint32_t no_shadow = 0xffffffffu;
 

@@ -3,7 +3,7 @@
 namespace demo {
 namespace {
 
-constexpr uint64_t most_bytes = uint64_t{1} << 30;
+constexpr uint64_t max_bytes = uint64_t{1} << 30;
 
 // All but `shading`, which lighting alone reads, and what comes after the scene.
 constexpr std::array kept_targets = {
@@ -54,7 +54,7 @@ std::array<VkImageUsageFlags, target_count> usage_for_keeping() {
 Result<> keep_frame(KeptFrames& kept, const Renderer& renderer, uint32_t frame) {
   VulkanHost& host = *renderer.host;
   const Layout layout = layout_of(renderer);
-  if (kept.bytes + layout.bytes > most_bytes) return success();
+  if (kept.bytes + layout.bytes > max_bytes) return success();
   auto buffer = create_buffer(host, layout.bytes,
                               VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, false);
   if (!buffer) return buffer.error();

@@ -112,8 +112,8 @@ std::vector<RayLight> make_ray_lights(std::vector<RayLight> lights) {
   }
   float until = 0;
   for (RayLight& light : lights) {
-    light.share = sum > 0 ? power_of(light) / sum : 1.0f / static_cast<float>(lights.size());
-    light.until = until += light.share;
+    light.fraction = sum > 0 ? power_of(light) / sum : 1.0f / static_cast<float>(lights.size());
+    light.until = until += light.fraction;
   }
   return lights;
 }

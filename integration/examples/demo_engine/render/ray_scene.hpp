@@ -1,6 +1,6 @@
 #pragma once
 // The scene for ray queries: acceleration structures, and the buffers that graphs import beside them
-// (docs/pass_kinds.md, restir.initial). Made only where the device has VK_KHR_ray_query.
+// (docs/pass_types.md, restir.initial). Made only where the device has VK_KHR_ray_query.
 
 #include "integration/examples/demo_engine/geometry/mesh.hpp"
 #include "integration/examples/demo_engine/vulkan_image.hpp"
@@ -25,7 +25,7 @@ struct RayLight {
       0.0f};              // point: where; parallelogram: a corner; directional: unit vector towards the light
   uint32_t type = 0;      // 0 point, 1 parallelogram, 2 triangle, 3 directional
   glm::vec3 edge_u{0.0f}; // parallelogram: it shines where cross(edge_u, edge_v) points
-  float share = 1;        // probability of being picked: set by make_ray_lights
+  float fraction = 1;     // probability of being picked: set by make_ray_lights
   glm::vec3 edge_v{0.0f};
   float area = 1;           // directional: length of its shadow rays
   glm::vec3 emission{0.0f}; // point: intensity; parallelogram: radiance; directional: irradiance

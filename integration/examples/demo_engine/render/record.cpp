@@ -78,8 +78,8 @@ void draw_object(Renderer& renderer, VkCommandBuffer commands, const ProgramLayo
 
 void record_shadows(Renderer& renderer, VkCommandBuffer commands, const SceneState& state) {
   // Maps stay valid while neither lights nor objects move; only intensities may have changed.
-  if (state.shadow_from_world == renderer.drawn_shadows && state.world == renderer.drawn_world) return;
-  renderer.drawn_shadows = state.shadow_from_world;
+  if (state.shadow_from_world == renderer.rendered_shadows && state.world == renderer.drawn_world) return;
+  renderer.rendered_shadows = state.shadow_from_world;
   renderer.drawn_world = state.world;
   const VulkanHost& host = *renderer.host;
   transition(host, commands, renderer.shadow_maps, resting, depth_target);

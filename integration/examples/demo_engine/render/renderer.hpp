@@ -73,8 +73,8 @@ struct Renderer {
   VkDescriptorSet lighting_set = VK_NULL_HANDLE, composite_set = VK_NULL_HANDLE;
   OwnedQueryPool queries;
   SceneGpu gpu;
-  std::unique_ptr<RayScene> rays;                     // null: not asked for
-  std::vector<glm::dmat4> drawn_shadows, drawn_world; // what the shadow maps hold
+  std::unique_ptr<RayScene> rays;                        // null: not asked for
+  std::vector<glm::dmat4> rendered_shadows, drawn_world; // what the shadow maps hold
 
   const Image& operator[](Target target) const { return targets[static_cast<size_t>(target)]; }
 };

@@ -16,7 +16,7 @@ using dermis::NodeId;
 using dermis::NodeKind;
 using dermis::ObjectReader;
 
-constexpr size_t most_keys = 4096;
+constexpr size_t max_keys = 4096;
 
 constexpr size_t width_of(const double&) {
   return 1;
@@ -40,15 +40,15 @@ struct Reading {
 };
 
 template <class T> bool read_keys(const Reading& reading, ObjectReader& object, Curve<T>& curve) {
-  const NodeId list = object.array("keys", 1, most_keys);
+  const NodeId list = object.array("keys", 1, max_keys);
   if (!list.valid()) return false;
   std::vector<typename Curve<T>::Key> keys;
   for (const NodeId row : dermis::children(reading.document, list)) {
     std::array<double, 1 + width_of(T{})> numbers{};
-    const double least = std::min(reading.range.least, 0.0);
-    const double greatest = std::max(reading.range.greatest, longest_seconds);
+    const double minimum = std::min(reading.range.minimum, 0.0);
+    const double maximum = std::max(reading.range.maximum, longest_seconds);
     const std::string what = fmt::format("keyframe {} of {}", keys.size(), reading.what);
-    if (!dermis::read_numbers(reading.document, row, what, numbers, least, greatest, reading.diagnostics))
+    if (!dermis::read_numbers(reading.document, row, what, numbers, minimum, maximum, reading.diagnostics))
       return false;
     const auto refuse = [&](DiagnosticId id, std::string text) {
       reading.diagnostics.add(id, reading.document.where(row), std::move(text));
@@ -59,10 +59,10 @@ template <class T> bool read_keys(const Reading& reading, ObjectReader& object, 
     if (numbers[0] < 0.0 || numbers[0] > longest_seconds) return refuse(DiagnosticId::out_of_range, at);
     if (!keys.empty() && numbers[0] <= keys.back().seconds) return refuse(DiagnosticId::scene_range, at);
     for (size_t i = 1; i < numbers.size(); ++i)
-      if (numbers[i] < reading.range.least || numbers[i] > reading.range.greatest)
+      if (numbers[i] < reading.range.minimum || numbers[i] > reading.range.maximum)
         return refuse(DiagnosticId::out_of_range,
                       fmt::format("{} has the value {}; expected {} to {}", what, numbers[i],
-                                  reading.range.least, reading.range.greatest));
+                                  reading.range.minimum, reading.range.maximum));
     typename Curve<T>::Key key{numbers[0], T(0.0)};
     put(key.value, &numbers[1]);
     keys.push_back(key);
@@ -76,18 +76,18 @@ bool read_sine(const Reading& reading, ObjectReader& parent, Curve<double>& curv
   const NodeId node = parent.object("sine");
   if (!node.valid()) return false;
   ObjectReader object(reading.document, node, "'sine' of " + reading.what, reading.diagnostics);
-  const double span = reading.range.greatest - reading.range.least;
-  const auto mean = object.number("mean", reading.range.least, reading.range.greatest);
+  const double span = reading.range.maximum - reading.range.minimum;
+  const auto mean = object.number("mean", reading.range.minimum, reading.range.maximum);
   const auto amplitude = object.number("amplitude", 0.0, span);
   constexpr double fastest_hertz = 1000.0;
   const auto hertz = object.number("hertz", 0.0, fastest_hertz);
   const auto phase = object.number("phase", -1.0, 1.0, Need::optional);
   if (!object.finish()) return false;
-  if (*mean - *amplitude < reading.range.least || *mean + *amplitude > reading.range.greatest) {
+  if (*mean - *amplitude < reading.range.minimum || *mean + *amplitude > reading.range.maximum) {
     reading.diagnostics.add(DiagnosticId::scene_range, reading.document.where(node),
                             fmt::format("the sine of {} swings from {} to {}; expected {} to {}",
                                         reading.what, *mean - *amplitude, *mean + *amplitude,
-                                        reading.range.least, reading.range.greatest));
+                                        reading.range.minimum, reading.range.maximum));
     return false;
   }
   curve = Curve<double>(*mean);
@@ -118,10 +118,10 @@ void read_any(ObjectReader& object, std::string_view key, const ValueRange& rang
   std::array<double, width_of(T{})> numbers{};
   if constexpr (width_of(T{}) == 1) {
     const auto number =
-        dermis::read_number(document, node, reading.what, range.least, range.greatest, diagnostics);
+        dermis::read_number(document, node, reading.what, range.minimum, range.maximum, diagnostics);
     if (!number) return;
     numbers[0] = *number;
-  } else if (!dermis::read_numbers(document, node, reading.what, numbers, range.least, range.greatest,
+  } else if (!dermis::read_numbers(document, node, reading.what, numbers, range.minimum, range.maximum,
                                    diagnostics)) {
     return;
   }

@@ -12,7 +12,7 @@ inline constexpr double longest_seconds = 86400.0; // of a scene
 
 // Inclusive range of every value on the curve's keys.
 struct ValueRange {
-  double least, greatest;
+  double minimum, maximum;
 };
 
 // Leave `curve` untouched when the key is absent and optional, or wrong (an error was added then).

@@ -22,7 +22,7 @@ using dermis::ObjectReader;
 using std::string_view;
 
 constexpr int64_t format_version = 1;
-constexpr size_t most_lights = 8, most_objects = 256, most_profiles = 255, most_cuts = 256;
+constexpr size_t max_lights = 8, max_objects = 256, max_profiles = 255, max_cuts = 256;
 constexpr ValueRange places = {-1000.0, 1000.0}; // metres
 constexpr ValueRange degrees = {-3600.0, 3600.0};
 constexpr ValueRange intensities = {0.0, 1e6};
@@ -43,12 +43,12 @@ struct SceneReader {
   void curve(ObjectReader& object, string_view key, const ValueRange& range, Need need, auto& out) const {
     read_curve(object, key, range, need, document, diagnostics, out);
   }
-  static void color(ObjectReader& object, string_view key, double greatest, glm::dvec3& out) {
+  static void color(ObjectReader& object, string_view key, double maximum, glm::dvec3& out) {
     std::array<double, 3> rgb{};
-    if (object.numbers(key, rgb, 0.0, greatest, Need::optional)) out = {rgb[0], rgb[1], rgb[2]};
+    if (object.numbers(key, rgb, 0.0, maximum, Need::optional)) out = {rgb[0], rgb[1], rgb[2]};
   }
-  static void number(ObjectReader& object, string_view key, double least, double greatest, double& out) {
-    if (const auto value = object.number(key, least, greatest, Need::optional)) out = *value;
+  static void number(ObjectReader& object, string_view key, double minimum, double maximum, double& out) {
+    if (const auto value = object.number(key, minimum, maximum, Need::optional)) out = *value;
   }
 
   void read_profiles(NodeId list) {
@@ -122,24 +122,24 @@ struct SceneReader {
 
   void read_object(NodeId node) {
     ObjectReader object(document, node, fmt::format("object {}", scene.objects.size()), diagnostics);
-    Object thing;
-    if (const auto name = object.name("name", Need::optional)) thing.name = *name;
-    thing.shape = static_cast<Shape>(object.word("shape", shapes).value_or(0));
-    curve(object, "position", places, Need::optional, thing.position);
-    curve(object, "rotation", degrees, Need::optional, thing.rotation);
+    Object subresource;
+    if (const auto name = object.name("name", Need::optional)) subresource.name = *name;
+    subresource.shape = static_cast<Shape>(object.word("shape", shapes).value_or(0));
+    curve(object, "position", places, Need::optional, subresource.position);
+    curve(object, "rotation", degrees, Need::optional, subresource.rotation);
     std::array<double, 3> scale{1.0, 1.0, 1.0};
     object.numbers("scale", scale, 1e-4, 1e4, Need::optional);
-    thing.scale = {scale[0], scale[1], scale[2]};
-    color(object, "albedo", 1.0, thing.albedo);
-    number(object, "roughness", 0.05, 1.0, thing.roughness);
-    number(object, "reflectance", 0.0, 1.0, thing.reflectance);
-    number(object, "emission", 0.0, 16.0, thing.emission);
-    thing.pattern = static_cast<Pattern>(object.word("pattern", patterns, Need::optional).value_or(0));
-    thing.casts_shadow = object.boolean("shadow", Need::optional).value_or(true);
+    subresource.scale = {scale[0], scale[1], scale[2]};
+    color(object, "albedo", 1.0, subresource.albedo);
+    number(object, "roughness", 0.05, 1.0, subresource.roughness);
+    number(object, "reflectance", 0.0, 1.0, subresource.reflectance);
+    number(object, "emission", 0.0, 16.0, subresource.emission);
+    subresource.pattern = static_cast<Pattern>(object.word("pattern", patterns, Need::optional).value_or(0));
+    subresource.casts_shadow = object.boolean("shadow", Need::optional).value_or(true);
     if (const auto name = object.string("profile", Need::optional)) {
       for (uint32_t i = 0; i < scene.profiles.size(); ++i)
-        if (scene.profiles[i].name == *name) thing.profile = i + 1;
-      if (thing.profile == 0) {
+        if (scene.profiles[i].name == *name) subresource.profile = i + 1;
+      if (subresource.profile == 0) {
         std::string known;
         for (const SceneProfile& one : scene.profiles)
           known += fmt::format(" '{}'", one.name);
@@ -149,7 +149,7 @@ struct SceneReader {
       }
     }
     object.finish();
-    scene.objects.push_back(thing);
+    scene.objects.push_back(subresource);
   }
 
   void read_root() {
@@ -161,11 +161,11 @@ struct SceneReader {
     color(object, "background", 1000.0, scene.background);
     color(object, "sky", 1000.0, scene.sky);
     color(object, "ground", 1000.0, scene.ground);
-    const NodeId profiles = object.array("profiles", 0, most_profiles, Need::optional);
+    const NodeId profiles = object.array("profiles", 0, max_profiles, Need::optional);
     const NodeId camera = object.object("camera");
-    const NodeId cuts = object.array("cuts", 0, most_cuts, Need::optional);
-    const NodeId lights = object.array("lights", 0, most_lights, Need::optional);
-    const NodeId objects = object.array("objects", 1, most_objects);
+    const NodeId cuts = object.array("cuts", 0, max_cuts, Need::optional);
+    const NodeId lights = object.array("lights", 0, max_lights, Need::optional);
+    const NodeId objects = object.array("objects", 1, max_objects);
     object.finish();
     if (profiles.valid()) read_profiles(profiles);
     if (camera.valid()) read_camera(camera);
@@ -176,11 +176,11 @@ struct SceneReader {
     uint32_t layers = 0;
     for (const Light& light : scene.lights)
       layers += shadow_layers_of(light);
-    if (layers > most_shadow_layers)
+    if (layers > max_shadow_layers)
       diagnostics.add(
           DiagnosticId::scene_range, document.where(lights),
           fmt::format("the lights need {} shadow maps (6 a point light, 1 each other); at most {} fit",
-                      layers, most_shadow_layers));
+                      layers, max_shadow_layers));
     if (objects.valid())
       for (const NodeId node : dermis::children(document, objects))
         read_object(node);

@@ -123,7 +123,7 @@ SceneState state_at(const Scene& scene, uint32_t frame, const ViewDesc& desc) {
     state.previous_world.push_back(world_at(object, previous_seconds));
   }
   for (const Light& light : scene.lights) {
-    const bool fits = state.shadow_from_world.size() + shadow_layers_of(light) <= most_shadow_layers;
+    const bool fits = state.shadow_from_world.size() + shadow_layers_of(light) <= max_shadow_layers;
     state.first_layer.push_back(light.shadow && fits ? static_cast<uint32_t>(state.shadow_from_world.size())
                                                      : no_layer);
     if (light.shadow && fits) add_shadow_layers(light, state.seconds, state.shadow_from_world);

@@ -33,7 +33,7 @@ struct SceneState {
 };
 
 inline constexpr uint32_t no_layer = 0xffffffffu;
-inline constexpr uint32_t most_shadow_layers = 24;
+inline constexpr uint32_t max_shadow_layers = 24;
 inline constexpr uint32_t shadow_map_size = 1024; // texels a side
 
 // Number of shadow maps that a light takes.

@@ -94,7 +94,7 @@ void main() {
   if (any(greaterThanEqual(pixel, ivec2(frame.size.xy)))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
   vec3 lighting = vec3(0.0), specular = vec3(0.0), back_lighting = vec3(0.0);
-  float thickness = 0.0, most = 0.0;
+  float thickness = 0.0, maximum = 0.0;
   if (depth != frame.misc.x) {
     vec3 p = view_position(vec2(pixel) + 0.5, depth);
     vec3 v = frame.misc.w > 0.0 ? vec3(0.0, 0.0, 1.0) : normalize(-p);
@@ -124,8 +124,8 @@ void main() {
         float way = way_through(light, p, l);
         vec3 arriving = light.intensity.rgb * falloff * behind;
         float through = dot(arriving, vec3(0.2126, 0.7152, 0.0722)) * exp(-way / reach);
-        if (way >= 0.0 && through > most) {
-          most = through;
+        if (way >= 0.0 && through > maximum) {
+          maximum = through;
           thickness = way;
           back_lighting = arriving;
         }

@@ -13,7 +13,7 @@ layout(set = 0, binding = 2) uniform sampler2D velocity_image;
 layout(set = 0, binding = 3) uniform sampler2D history_image;
 layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D resolved_image;
 
-const float new_share = 0.1; // of this frame, in the long run
+const float new_fraction = 0.1; // of this frame, in the long run
 const float clip_deviations = 1.25;
 const float filter_width = -2.29; // exp(this * squared pixels) is close to a Blackman-Harris window (Karis 2014)
 const float snap = 1.0 / 256.0;   // pixels; a camera that rests must not blur
@@ -49,7 +49,7 @@ void main() {
   float weights = 0.0, count = 0.0;
   vec3 own = to_ycocg(texelFetch(color_image, pixel, 0).rgb);
   vec2 fastest = vec2(0.0);
-  float most = -1.0;
+  float maximum = -1.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
       ivec2 q = clamp(pixel + ivec2(x, y), ivec2(0), size - 1);
@@ -62,8 +62,8 @@ void main() {
       squares += color * color;
       count += 1.0;
       vec2 velocity = texelFetch(velocity_image, q, 0).xy; // the longest around takes edges along
-      if (dot(velocity, velocity) > most) {
-        most = dot(velocity, velocity);
+      if (dot(velocity, velocity) > maximum) {
+        maximum = dot(velocity, velocity);
         fastest = velocity;
       }
     }
@@ -76,13 +76,13 @@ void main() {
   bool seen = all(greaterThan(place, vec2(-0.5))) && all(lessThan(place, vec2(size) - 0.5));
   if (constants.begins == 0u && seen) {
     vec4 found = history_at(place, size);
-    vec3 history = to_ycocg(found.rgb), way = abs(history - mean), room = clip_deviations * deviation;
+    vec3 history = to_ycocg(found.rgb), way = abs(history - mean), box_half = clip_deviations * deviation;
     float keep = 1.0;
     for (int c = 0; c < 3; ++c)
-      if (way[c] > room[c]) keep = min(keep, room[c] / way[c]);
+      if (way[c] > box_half[c]) keep = min(keep, box_half[c] / way[c]);
     history = mix(mean, history, keep);
     frames = found.a;
-    color = mix(history, filtered, max(new_share, 1.0 / (frames + 1.0)));
+    color = mix(history, filtered, max(new_fraction, 1.0 / (frames + 1.0)));
   }
-  imageStore(resolved_image, pixel, vec4(max(from_ycocg(color), vec3(0.0)), min(frames + 1.0, 1.0 / new_share)));
+  imageStore(resolved_image, pixel, vec4(max(from_ycocg(color), vec3(0.0)), min(frames + 1.0, 1.0 / new_fraction)));
 }

@@ -56,12 +56,12 @@ void add_parts(CLI::App& verb, GraphParts& parts) {
           ->type_name("FILE"));
   add_root(verb, parts.roots,
            "Folder that graph, scene, model or capture may read from, beside their own; may be repeated");
-  add_kinds(verb, parts.kinds);
+  add_pass_types(verb, parts.pass_types);
 }
 
-void add_kinds(CLI::App& verb, std::vector<std::string>& kinds) {
-  repeat(verb.add_option("--kinds", kinds,
-                         "File of the host's pass kinds (dermis_export_pass_kinds); may be repeated")
+void add_pass_types(CLI::App& verb, std::vector<std::string>& pass_types) {
+  repeat(verb.add_option("--pass-types", pass_types,
+                         "File of the host's pass types (dermis_export_pass_types); may be repeated")
              ->type_name("FILE"));
 }
 

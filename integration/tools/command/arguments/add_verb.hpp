@@ -24,8 +24,8 @@ CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
 void add_parts(CLI::App& verb, GraphParts& parts);
-// --kinds alone, for verbs that take no other parts; add_parts() has it.
-void add_kinds(CLI::App& verb, std::vector<std::string>& kinds);
+// --pass-types alone, for verbs that take no other parts; add_parts() has it.
+void add_pass_types(CLI::App& verb, std::vector<std::string>& pass_types);
 void add_common(CLI::App& verb, Session& session, bool json_is_file);
 
 // One of some names, each of which stands for a value.

@@ -4,7 +4,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr uint32_t most_sequence_frames = 3600, most_supplement_runs = 1u << 20;
+constexpr uint32_t max_sequence_frames = 3600, max_supplement_runs = 1u << 20;
 
 // Files that a bench writes its rows to; `csv` may be null.
 void add_report_files(CLI::App& verb, std::string& json, std::string* csv, std::string& html,
@@ -32,7 +32,7 @@ void add_head(CLI::App& verb, std::string& head) {
       ->type_name("DIR");
 }
 
-// Those of a kind ("scenes") to which what is measured is narrowed.
+// Those of a type ("scenes") to which what is measured is narrowed.
 void add_only(CLI::App& verb, const std::string& kind, std::vector<std::string>& names) {
   repeat(verb.add_option("--" + kind, names, "Only these " + kind + ", separated by commas")
              ->type_name("NAME")
@@ -52,7 +52,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
         verb.add_option("--graphs", options.graphs, "Measure the graph files of a folder instead")
             ->type_name("DIR");
-        add_kinds(verb, options.kinds);
+        add_pass_types(verb, options.pass_types);
         verb.add_flag("--optimize", options.optimize, "Also the packing level that takes seconds a graph");
         add_quick(verb, options.quick);
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
@@ -64,7 +64,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, BenchRecordOptions& options) {
         verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")
             ->type_name("DIR");
-        add_kinds(verb, options.kinds);
+        add_pass_types(verb, options.pass_types);
         verb.add_option("--profile", options.profile, "Profile of id 1 [configs/profiles/skin.json]")
             ->type_name("FILE");
         add_size(verb, options.size);
@@ -115,7 +115,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         verb.add_option("--graph", options.graph, "Graph with choices by budget [configs/graphs/skin.json]")
             ->type_name("FILE");
-        add_kinds(verb, options.kinds);
+        add_pass_types(verb, options.pass_types);
         verb.add_option("--calibration", options.calibration, "What dermis calibrate wrote for this device")
             ->type_name("FILE");
         repeat(verb.add_option("--scenes", options.scenes, "Scenes of configs/scenes, separated by commas")
@@ -157,19 +157,19 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, BenchSkipOptions& options) {
         add_size(verb, options.size);
         verb.add_option("--graph", options.graph, "Graph file [configs/graphs/skin.json]")->type_name("FILE");
-        add_kinds(verb, options.kinds);
+        add_pass_types(verb, options.pass_types);
         verb.add_option("--profile", options.profile, "Profile of the plane [configs/profiles/skin.json]")
             ->type_name("FILE");
         verb.add_option("--repetitions", options.repetitions, "Timed frames of each case [31]")
-            ->check(CLI::Range(1u, most_sequence_frames));
+            ->check(CLI::Range(1u, max_sequence_frames));
         add_quick(verb, options.quick, {"--size", "--repetitions"});
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);
-  add_verb<BenchTruthOptions>(
+  add_verb<BenchReferenceOptions>(
       bench, invocation, "truth", "Laws with known answers, beside what every technique makes of them",
-      "dermis bench truth --json build/truth.json", bench_truth,
-      [](CLI::App& verb, BenchTruthOptions& options) {
+      "dermis bench truth --json build/truth.json", bench_reference,
+      [](CLI::App& verb, BenchReferenceOptions& options) {
         add_report_files(verb, options.json, &options.csv, options.html, "File for a page with the rows");
         verb.add_option("--file", options.file, "Techniques and tolerances [tests/benchmark/truth.json]")
             ->type_name("FILE");
@@ -182,7 +182,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       [](CLI::App& verb, BenchDynamicOptions& options) {
         add_size(verb, options.size);
         verb.add_option("--frames", options.frames, "Frames of each sequence [as the file says]")
-            ->check(CLI::Range(1u, most_sequence_frames));
+            ->check(CLI::Range(1u, max_sequence_frames));
         add_report_files(verb, options.json, &options.csv, options.html, "File for a page with plots");
         verb.add_option("--head", options.head, "Folder of the head scan, which takes the bust's place")
             ->type_name("DIR");
@@ -221,7 +221,7 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
       "dermis bench supplement --json build/supplement.json", bench_supplement,
       [](CLI::App& verb, BenchSupplementOptions& options) {
         verb.add_option("--runs", options.runs, "Runs of 100 frames [4096]")
-            ->check(CLI::Range(16u, most_supplement_runs));
+            ->check(CLI::Range(16u, max_supplement_runs));
         add_report_files(verb, options.json, nullptr, options.html, "File for a page with the rows");
       },
       true);

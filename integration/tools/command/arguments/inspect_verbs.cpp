@@ -67,7 +67,8 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->needs(frame)
             ->check(CLI::PositiveNumber)
             ->type_name("MS");
-        verb.add_flag("--meter", options.metered, "Judge its times by the calibration alone")->needs(frame);
+        verb.add_flag("--deterministic", options.deterministic, "Judge its times by the calibration alone")
+            ->needs(frame);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
       });
@@ -113,7 +114,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_root(verb, options.roots,
                  "Folder of included files and of overlays that cases name, beside the graph's own and the "
                  "folders given; may be repeated");
-        add_kinds(verb, options.kinds);
+        add_pass_types(verb, options.pass_types);
         verb.add_option("--junit", options.junit, "File for the results as JUnit XML")->type_name("FILE");
       });
 }
@@ -187,7 +188,7 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
 
 void add_docs_verb(CLI::App& app, Invocation& invocation) {
   add_verb<DocsOptions>(
-      app, invocation, "docs", "Write the documentation that follows from schemas, pass kinds and graphs",
+      app, invocation, "docs", "Write the documentation that follows from schemas, pass types and graphs",
       "dermis docs --out docs\n  dermis docs --check", docs, [](CLI::App& verb, DocsOptions& options) {
         verb.add_option("--out,-o", options.out, "Folder of the pages [docs]")->type_name("DIR");
         verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")

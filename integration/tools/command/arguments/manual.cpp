@@ -41,8 +41,10 @@ void add_option(std::string& page, const DeclaredOption& option) {
   page += fmt::format(".TP\n{}{}\n{}\n", names,
                       option.type.empty() ? "" : fmt::format(" \\fI{}\\fR", roff(option.type)),
                       roff(option.text));
-  const auto told = [&](const std::string& value) { return option.text.find(value) != std::string::npos; };
-  if (std::all_of(option.values.begin(), option.values.end(), told)) return;
+  const auto reported = [&](const std::string& value) {
+    return option.text.find(value) != std::string::npos;
+  };
+  if (std::all_of(option.values.begin(), option.values.end(), reported)) return;
   page += "One of";
   for (const std::string& value : option.values)
     page += " " + roff(value);

@@ -13,13 +13,14 @@ constexpr uint32_t max_subset = 1u << 24u; // pixels
 // How the graph's choices are made.
 void add_budget(CLI::App& verb, RenderOptions& options) {
   const char* group = "The choice";
-  constexpr double most_ms = 1e6;
+  constexpr double max_ms = 1e6;
   verb.add_option("--budget", options.budget_ms,
                   "Device milliseconds a frame for settings \"by\": \"budget\"")
-      ->check(CLI::Range(0.0, most_ms))
+      ->check(CLI::Range(0.0, max_ms))
       ->type_name("MS")
       ->group(group);
-  verb.add_flag("--meter", options.metered, "Judge times by the calibration alone: the same on every machine")
+  verb.add_flag("--deterministic", options.deterministic,
+                "Judge times by the calibration alone: the same on every machine")
       ->group(group);
   verb.add_option("--calibration", options.calibration, "What dermis calibrate wrote for this device")
       ->type_name("FILE")
@@ -174,7 +175,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
                                "[those that ship]")
                    ->delimiter(',')
                    ->type_name("FILE"));
-        add_kinds(verb, options.kinds);
+        add_pass_types(verb, options.pass_types);
         repeat(verb.add_option("--profiles", options.profiles,
                                "Profile files, separated by commas, one column each, for all objects that "
                                "scatter [skin, jade, marble, wax, ketchup, milk]")
@@ -255,14 +256,13 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->needs(flip)
             ->check(CLI::Range(1.0, 1000.0))
             ->type_name("N");
-        verb.add_option("--most-flip", options.most_flip,
-                        "Fail where a picture or region has more on average")
+        verb.add_option("--most-flip", options.max_flip, "Fail where a picture or region has more on average")
             ->needs(flip)
             ->check(CLI::Range(0.0, 1.0))
             ->type_name("N");
-        constexpr double most_db = 100;
-        verb.add_option("--least-psnr", options.least_psnr, "Fail where a picture or region has less")
-            ->check(CLI::Range(0.0, most_db))
+        constexpr double max_db = 100;
+        verb.add_option("--least-psnr", options.min_psnr, "Fail where a picture or region has less")
+            ->check(CLI::Range(0.0, max_db))
             ->type_name("DB");
       });
 }

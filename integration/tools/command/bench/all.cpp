@@ -55,10 +55,10 @@ constexpr Suite suites[] = {
      }},
     {"truth", "Laws with known answers, beside what every technique makes of them", true, false, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
-       auto options = with_files<BenchTruthOptions>(files);
+       auto options = with_files<BenchReferenceOptions>(files);
        options.quick = all.quick;
        options.csv = files.csv;
-       return bench_truth(session, options);
+       return bench_reference(session, options);
      }},
     {"supplement", "Table 1 of the supplement on control variates", false, false, false, "",
      [](const Session& session, const BenchAllOptions&, const Files& files) {
@@ -175,7 +175,7 @@ std::string state_text(const Outcome& one) {
 std::string index_html(const Session& session, const std::vector<Outcome>& outcomes) {
   std::string body =
       "<h1>Measurements of Dermis</h1><p>Each suite has a page, and its rows for programs.</p><dl>\n";
-  for (const auto& [name, text] : machine_facts(session.command, ""))
+  for (const auto& [name, text] : machine_info(session.command, ""))
     body += fmt::format("<dt>{}<dd>{}\n", html_text(name), html_text(text));
   body += "</dl><div class=wide><table><thead><tr><th class=t>suite<th class=t>what<th class=t>rows<th "
           "class=t>state"
@@ -226,11 +226,11 @@ ExitCode run_suite(const Session& session, const Suite& suite, const BenchAllOpt
   return code;
 }
 
-std::string unknown_suite(const std::vector<std::string>& asked) {
+std::string unknown_suite(const std::vector<std::string>& requested) {
   std::vector<std::string_view> names;
   for (const Suite& suite : suites)
     names.push_back(suite.name);
-  for (const std::string& one : asked)
+  for (const std::string& one : requested)
     if (std::find(names.begin(), names.end(), one) == names.end()) {
       const std::string suggestion = did_you_mean(one, names);
       return fmt::format("there is no suite '{}'; {}", one,
@@ -256,15 +256,15 @@ ExitCode bench_all(const Session& session, const BenchAllOptions& options) {
     return fail(session, ExitCode::environment, problem);
 
   std::vector<Outcome> outcomes = read_index(out.path_of("index.json"));
-  const auto asked = [&](const Suite& suite) {
+  const auto requested = [&](const Suite& suite) {
     return options.suites.empty() ||
            std::find(options.suites.begin(), options.suites.end(), suite.name) != options.suites.end();
   };
-  const auto total = std::count_if(std::begin(suites), std::end(suites), asked);
+  const auto total = std::count_if(std::begin(suites), std::end(suites), requested);
   ExitCode worst = ExitCode::ok;
   int64_t number = 0;
   for (const Suite& suite : suites) {
-    if (!asked(suite)) continue;
+    if (!requested(suite)) continue;
     if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
     ++number;
     const std::string name(suite.name);

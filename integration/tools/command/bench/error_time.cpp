@@ -6,8 +6,8 @@
 #include "integration/tools/command/bench/report/heat_map.hpp"
 #include "integration/tools/command/bench/selection.hpp"
 #include "integration/tools/command/interrupt.hpp"
-#include "integration/tools/command/run/truth_run.hpp"
-#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/command/run/reference_run.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 #include "passes/common/environment.hpp"
 
 #include <fmt/format.h>
@@ -108,12 +108,12 @@ demo::Result<> add_techniques(ErrorTimeBench& bench) {
 // Median projected d of the frame, per channel; and the share of its subsurface pixels that scatter at all.
 struct Scattering {
   subsurface::PerChannel d_px{};
-  double share = 1;
+  double fraction = 1;
 };
 
 Scattering scattering_of(const Subject& subject) {
   constexpr double copy_below_d_px = 0.0546; // shaders/common/radius.glsl
-  const TruthFrame frame = make_truth_frame(subject.frame);
+  const ReferenceFrame frame = make_reference_frame(subject.frame);
   const double pixel = std::sqrt(std::abs(frame.rays.scale_x * frame.rays.scale_y));
   std::vector<double> ratio_to_widest;
   Scattering result;
@@ -129,12 +129,12 @@ Scattering scattering_of(const Subject& subject) {
     ++count[id];
     scattered += *std::max_element(d.begin(), d.end()) * scale / footprint >= copy_below_d_px;
   }
-  const auto most = static_cast<size_t>(std::max_element(count.begin(), count.end()) - count.begin());
-  const auto& d = frame.d_m[most];
+  const auto maximum = static_cast<size_t>(std::max_element(count.begin(), count.end()) - count.begin());
+  const auto& d = frame.d_m[maximum];
   const double widest = std::max({d[0], d[1], d[2]});
   for (size_t c = 0; c < 3; ++c)
     result.d_px[c] = widest > 0 ? subject.d_px * d[c] / widest : 0;
-  result.share = all > 0 ? double(scattered) / double(all) : 0;
+  result.fraction = all > 0 ? double(scattered) / double(all) : 0;
   return result;
 }
 
@@ -204,7 +204,7 @@ demo::Result<> measure(ErrorTimeBench& bench, size_t index, Progress& progress, 
     else
       add_times(one, *times, start);
     one.error = still_error(*light, *reference);
-    one.counts = technique.counts(scattering.share, scattering.d_px);
+    one.counts = technique.counts(scattering.fraction, scattering.d_px);
     if (technique.request().heat_map)
       bench.maps.pictures.push_back(
           heat_map(fmt::format("{}, {} {}", name, technique.request().technique, technique.request().setting),
@@ -217,7 +217,7 @@ demo::Result<> measure(ErrorTimeBench& bench, size_t index, Progress& progress, 
       progress.update(++done);
       ErrorTimeRow& row = bench.measured[first + t];
       if (row.device_ms.size() >= bench.file.repetitions) continue;
-      if (bench.file.row_milliseconds > 0 && row.device_ms.size() >= bench.file.least_repetitions &&
+      if (bench.file.row_milliseconds > 0 && row.device_ms.size() >= bench.file.min_repetitions &&
           row.spent_ms >= bench.file.row_milliseconds)
         continue;
       const auto start = std::chrono::steady_clock::now();
@@ -233,8 +233,8 @@ demo::Result<> measure(ErrorTimeBench& bench, size_t index, Progress& progress, 
 
 } // namespace
 
-ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& asked) {
-  const BenchErrorTimeOptions options = quickened(asked);
+ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& requested) {
+  const BenchErrorTimeOptions options = quickened(requested);
   const auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
   std::optional<ErrorTimeFile> file = read_error_time(options.file, diagnostics);
@@ -262,10 +262,10 @@ ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& a
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
   for (const ErrorTimeRow& one : bench.measured)
-    if (!one.counts.unknown_kind.empty()) {
+    if (!one.counts.unknown_pass_type.empty()) {
       const std::string note =
           fmt::format("reads_per_pixel of {}: nobody has counted those of '{}'",
-                      bench.techniques[one.technique]->request().graph, one.counts.unknown_kind);
+                      bench.techniques[one.technique]->request().graph, one.counts.unknown_pass_type);
       if (std::find(bench.notes.begin(), bench.notes.end(), note) == bench.notes.end())
         bench.notes.push_back(note);
     }
@@ -275,7 +275,7 @@ ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& a
     std::string text = text_of_error_time(report);
     for (const std::string& note : report.notes)
       text += fmt::format("left out: {}\n", note);
-    if (!session.quiet) print(text + fmt::format("took {}\n", report.facts.back().second));
+    if (!session.quiet) print(text + fmt::format("took {}\n", report.info.back().second));
   }
   const std::string problem = deliver_report(report, options.json, options.csv, options.html);
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);

@@ -17,8 +17,8 @@ struct Spread {
 
 Spread spread_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    return values[static_cast<size_t>(share * double(values.size() - 1) + 0.5)];
+  const auto at = [&](double fraction) {
+    return values[static_cast<size_t>(fraction * double(values.size() - 1) + 0.5)];
   };
   return {at(0.5), at(0.1), at(0.9)};
 }
@@ -145,7 +145,7 @@ void fill_plots(const ErrorTimeBench& bench, Report& report) {
 std::string early_end(const ErrorTimeFile& file) {
   if (file.row_milliseconds == 0) return "";
   return fmt::format("; a technique that took {} ms at a scene ends there, after {} at least",
-                     file.row_milliseconds, file.least_repetitions);
+                     file.row_milliseconds, file.min_repetitions);
 }
 
 } // namespace
@@ -158,22 +158,22 @@ Report make_error_time_report(const ErrorTimeBench& bench, double seconds) {
       "Error of the scattered light before albedo against the fp64 truth: linear Rec.709 luminance, the "
       "scene's 99.9th percentile of light at 1. Time is the sum of the device's timestamps over all passes "
       "of a technique.";
-  report.facts = machine_facts(bench.session.command, bench.host.properties.deviceName);
-  report.facts.emplace_back("size",
-                            fmt::format("{}x{} pixels", bench.options.size.width, bench.options.size.height));
-  report.facts.emplace_back("repetitions",
-                            fmt::format("median of {} after {} to warm up, all techniques in turn{}",
-                                        bench.file.repetitions, bench.file.warm_up, early_end(bench.file)));
-  report.facts.emplace_back(
+  report.info = machine_info(bench.session.command, bench.host.properties.deviceName);
+  report.info.emplace_back("size",
+                           fmt::format("{}x{} pixels", bench.options.size.width, bench.options.size.height));
+  report.info.emplace_back("repetitions",
+                           fmt::format("median of {} after {} to warm up, all techniques in turn{}",
+                                       bench.file.repetitions, bench.file.warm_up, early_end(bench.file)));
+  report.info.emplace_back(
       "truth", fmt::format("everywhere on planes, else at {} stratified pixels", bench.file.subset));
-  report.facts.emplace_back(
+  report.info.emplace_back(
       "reads a pixel",
       "counted from the kernels' source (integration/tools/references/image_reads.cpp) times "
       "the texels each pass computes for a pixel of the view");
-  report.facts.emplace_back("baseline",
-                            fmt::format("{} {}", bench.file.baseline_technique, bench.file.baseline_setting));
-  if (bench.options.quick) report.facts.push_back(quick_fact());
-  report.facts.emplace_back("took", format_duration(seconds));
+  report.info.emplace_back("baseline",
+                           fmt::format("{} {}", bench.file.baseline_technique, bench.file.baseline_setting));
+  if (bench.options.quick) report.info.push_back(quick_fact());
+  report.info.emplace_back("took", format_duration(seconds));
   report.notes = bench.notes;
   report.pictures.push_back(scene_pictures(bench.subjects));
   fill_table(bench, report);

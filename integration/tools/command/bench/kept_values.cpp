@@ -12,7 +12,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr std::string_view magic = "dermis truth 1\n";
-constexpr uint64_t most_kept_bytes = uint64_t{1} << 30;
+constexpr uint64_t max_kept_bytes = uint64_t{1} << 30;
 
 std::filesystem::path path_of(const std::string& cache, const Hash& hash) {
   return std::filesystem::path(cache) / fmt::format("{:016x}.truth", hash.value);
@@ -23,7 +23,7 @@ std::filesystem::path path_of(const std::string& cache, const Hash& hash) {
 std::optional<std::vector<double>> read_kept(const std::string& cache, const Hash& hash, size_t count) {
   if (cache.empty()) return std::nullopt;
   std::string ignored;
-  const auto bytes = read_bytes(path_of(cache, hash), most_kept_bytes, ignored);
+  const auto bytes = read_bytes(path_of(cache, hash), max_kept_bytes, ignored);
   if (!bytes || bytes->size() != magic.size() + sizeof hash.value + count * sizeof(double))
     return std::nullopt;
   if (std::memcmp(bytes->data(), magic.data(), magic.size()) != 0 ||

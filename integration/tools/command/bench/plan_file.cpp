@@ -10,8 +10,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t most_entries = 256;
-constexpr double least_d_px = 0.05, most_d_px = 64;
+constexpr size_t max_entries = 256;
+constexpr double min_d_px = 0.05, max_d_px = 64;
 
 struct FileReader {
   const Document& document;
@@ -29,11 +29,11 @@ struct FileReader {
     if (const auto flag = object.boolean("study", Need::optional)) request.study = *flag;
     const bool generated = request.file.empty();
     const NodeId list =
-        object.array("d_px", 1, generated ? most_entries : 1, generated ? Need::required : Need::optional);
+        object.array("d_px", 1, generated ? max_entries : 1, generated ? Need::required : Need::optional);
     if (list.valid())
       for (const NodeId one : children(document, list))
         if (const auto d =
-                read_number(document, one, "'d_px' of " + object.what(), least_d_px, most_d_px, diagnostics))
+                read_number(document, one, "'d_px' of " + object.what(), min_d_px, max_d_px, diagnostics))
           request.d_px.push_back(*d);
     if (!object.finish()) return;
     if (generated && !is_generated(request.scene))
@@ -67,7 +67,7 @@ struct FileReader {
       file.self_samples = static_cast<uint32_t>(*count);
     if (const auto side = object.integer("window", 8, 16384, Need::optional))
       file.self_window = static_cast<uint32_t>(*side);
-    const NodeId list = object.array("scenes", 0, most_entries);
+    const NodeId list = object.array("scenes", 0, max_entries);
     if (list.valid())
       for (const NodeId one : children(document, list))
         if (const auto text = read_string(document, one, "a scene of 'self'", diagnostics))
@@ -83,13 +83,13 @@ struct FileReader {
     if (const auto n = object.integer("row_milliseconds", 0, 1'000'000, Need::optional))
       file.row_milliseconds = static_cast<uint32_t>(*n);
     if (const auto n = object.integer("least_repetitions", 1, 1000, Need::optional))
-      file.least_repetitions = static_cast<uint32_t>(*n);
+      file.min_repetitions = static_cast<uint32_t>(*n);
     if (const auto n = object.integer("subset", 1, 1 << 24)) file.subset = static_cast<uint32_t>(*n);
     if (const auto path = object.string("skin")) file.skin = shipped(std::string(*path));
     baseline(object);
     self(object);
-    const NodeId scenes = object.array("scenes", 1, most_entries);
-    const NodeId techniques = object.array("techniques", 1, most_entries);
+    const NodeId scenes = object.array("scenes", 1, max_entries);
+    const NodeId techniques = object.array("techniques", 1, max_entries);
     size_t number = 0;
     if (scenes.valid())
       for (const NodeId node : children(document, scenes))
@@ -123,7 +123,7 @@ TechniqueRequest read_technique(const Document& document, ObjectReader& object, 
   if (const auto text = object.string("setting")) request.setting = *text;
   if (const auto path = object.string("graph")) request.graph = shipped(std::string(*path));
   if (const auto flag = object.boolean("heat_map", Need::optional)) request.heat_map = *flag;
-  if (const NodeId list = object.array("overlays", 1, most_entries, Need::optional); list.valid())
+  if (const NodeId list = object.array("overlays", 1, max_entries, Need::optional); list.valid())
     for (const NodeId one : children(document, list))
       if (const auto path =
               read_string(document, one, fmt::format("an overlay of {}", object.what()), diagnostics))

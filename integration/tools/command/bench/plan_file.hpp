@@ -24,7 +24,7 @@ struct ErrorTimeFile {
   uint32_t repetitions = 15, warm_up = 2; // of each technique at each scene
   // Timed runs of a technique at a scene end early once they took so long, but not before the least number.
   uint32_t row_milliseconds = 0; // 0: never
-  uint32_t least_repetitions = 3;
+  uint32_t min_repetitions = 3;
   uint32_t subset = 4096; // pixels of a scene that have a truth, where it is not known everywhere
   std::string skin;       // profile of the generated scenes
   std::string baseline_technique, baseline_setting; // what ratios are to

@@ -72,7 +72,7 @@ BenchRestirOptions quickened(BenchRestirOptions options) {
 }
 
 void quicken(ErrorTimeFile& file) {
-  file.repetitions = file.warm_up = file.least_repetitions = 1;
+  file.repetitions = file.warm_up = file.min_repetitions = 1;
   file.subset = std::min(file.subset, few_pixels);
   file.self_scenes.clear();
 }
@@ -92,8 +92,8 @@ void quicken(RestirFile& file) {
   file.scenes.resize(1);
 }
 
-void quicken(LawFile& file) {
-  keep_few(file.techniques, [](const LawTechnique& one) { return one.request.technique; });
+void quicken(PropertyFile& file) {
+  keep_few(file.techniques, [](const PropertyTechnique& one) { return one.request.technique; });
 }
 
 void quicken(std::vector<TechniqueRequest>& techniques) {

@@ -3,9 +3,9 @@
 // It shows that everything runs and how its pages look; its figures say nothing.
 
 #include "integration/tools/command/bench/dynamic/dynamic_file.hpp"
-#include "integration/tools/command/bench/laws/law_file.hpp"
 #include "integration/tools/command/bench/plan_file.hpp"
 #include "integration/tools/command/bench/restir/restir_file.hpp"
+#include "integration/tools/command/bench/truth/truth_file.hpp"
 #include "integration/tools/command/verbs.hpp"
 
 #include <string>
@@ -23,7 +23,7 @@ BenchSkipOptions quickened(BenchSkipOptions options);
 BenchRestirOptions quickened(BenchRestirOptions options);
 void quicken(ErrorTimeFile& file);
 void quicken(DynamicFile& file);
-void quicken(LawFile& file);
+void quicken(PropertyFile& file);
 void quicken(RestirFile& file);
 void quicken(std::vector<TechniqueRequest>& techniques); // the first setting of some
 

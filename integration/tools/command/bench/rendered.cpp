@@ -1,9 +1,9 @@
 // Scenes that the demo engine renders, seen as a graph would see them.
 
 #include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/command/run/reference_run.hpp"
 #include "integration/tools/command/run/rendered_frame.hpp"
-#include "integration/tools/command/run/truth_run.hpp"
-#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double half_a_degree = 0.5 * 3.14159265358979323846 / 180; // in radians
 constexpr double close_enough = 0.02;                                // of d_px
-constexpr int most_tries = 5;
+constexpr int max_tries = 5;
 
 demo::Result<Subject> render_once(const SceneRequest& request, const SubjectOptions& options,
                                   const std::optional<demo::CameraPlace>& camera) {
@@ -39,8 +39,8 @@ demo::Result<Subject> render_once(const SceneRequest& request, const SubjectOpti
     return demo::success();
   };
   if (auto done = demo::render(engine, callbacks); !done) return done.error();
-  const TruthFrame truth = make_truth_frame(subject.frame);
-  subject.d_px = median_d_px(truth.input());
+  const ReferenceFrame reference = make_reference_frame(subject.frame);
+  subject.d_px = median_d_px(reference.input());
   return subject;
 }
 
@@ -51,7 +51,7 @@ demo::Result<Subject> render_subject(const SceneRequest& request, const SubjectO
   auto subject = render_once(request, options, camera);
   if (!subject || request.d_px.empty() || !camera) return subject;
   const double wanted = request.d_px.front();
-  for (int i = 0; i < most_tries && subject->d_px > 0 && std::abs(subject->d_px / wanted - 1) > close_enough;
+  for (int i = 0; i < max_tries && subject->d_px > 0 && std::abs(subject->d_px / wanted - 1) > close_enough;
        ++i) {
     const double half = std::tan(camera->vertical_fov * half_a_degree) * subject->d_px / wanted;
     camera->vertical_fov = std::clamp(std::atan(half) / half_a_degree, 1.0, 150.0);

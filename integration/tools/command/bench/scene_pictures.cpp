@@ -8,7 +8,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr uint32_t most_width = 480; // pixels
+constexpr uint32_t max_width = 480; // pixels
 
 // Means over whole cells of pixels, so that the picture becomes small enough.
 ReportPicture picture_of(const Subject& subject) {
@@ -16,7 +16,7 @@ ReportPicture picture_of(const Subject& subject) {
   ExposureMeter meter;
   meter.add(light.values, subject.frame.profile);
   const double exposure = meter.result();
-  const uint32_t side = (light.width + most_width - 1) / most_width;
+  const uint32_t side = (light.width + max_width - 1) / max_width;
   demo::FloatImage small{light.width / side, light.height / side, 3, {}};
   for (uint32_t y = 0; y < small.height; ++y)
     for (uint32_t x = 0; x < small.width; ++x)

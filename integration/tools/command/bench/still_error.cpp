@@ -26,10 +26,10 @@ StillError still_error(std::span<const float> light, const Reference& reference)
   const auto here = shown(count, reference.exposure, [&](size_t i) {
     return double(light[size_t{3} * reference.pixels[i / 3] + i % 3]);
   });
-  const auto truth = shown(count, reference.exposure, [&](size_t i) { return reference.light[i]; });
+  const auto exact = shown(count, reference.exposure, [&](size_t i) { return reference.light[i]; });
   double squares = 0;
   for (size_t i = 0; i < here.size(); ++i)
-    squares += (double(here[i]) - truth[i]) * (double(here[i]) - truth[i]);
+    squares += (double(here[i]) - exact[i]) * (double(here[i]) - exact[i]);
   error.psnr_db_sdr8 = psnr_from_mse(here.empty() ? 0 : squares / (255.0 * 255.0 * double(here.size())));
   return error;
 }

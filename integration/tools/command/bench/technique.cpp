@@ -13,11 +13,11 @@ namespace dermis::tools {
 namespace {
 
 // Hands light to tools and to hosts that texture later: no part of a technique.
-constexpr std::string_view hand_out_kind = "subsurface.light";
+constexpr std::string_view export_scattered_type = "subsurface.export_scattered";
 // What every technique does before and after it scatters.
-constexpr std::array<std::string_view, 6> common_kinds = {"subsurface.classify",      "subsurface.tile_list",
-                                                          "subsurface.setup",         "subsurface.sap_setup",
-                                                          "subsurface.pyramid_setup", "subsurface.combine"};
+constexpr std::array<std::string_view, 6> common_pass_types = {
+    "subsurface.classify",  "subsurface.tile_list",     "subsurface.setup",
+    "subsurface.sap_setup", "subsurface.pyramid_setup", "subsurface.combine"};
 
 std::string text_of(const Diagnostics& diagnostics) {
   std::string text;
@@ -32,11 +32,11 @@ demo::Error input_error(const std::string& graph, const std::string& text) {
 
 // Texels that a pass computes for one pixel of the view: those of the first image that it writes, if it
 // writes one.
-double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassKind& kind) {
+double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassType& type) {
   for (uint32_t i = 0; i < pass.access_count; ++i) {
     const PlanAccess& access = plan.accesses[pass.first_access + i];
     const PlanResource& resource = plan.resources[access.resource];
-    if (kind.ports[access.port].usage != Usage::storage_image_write || resource.type != ResourceType::image)
+    if (type.ports[access.port].usage != Usage::storage_image_write || resource.type != ResourceType::image)
       continue;
     const uint32_t mip = access.range.first_mip;
     const double texels = double(std::max(resource.width >> mip, 1u)) * std::max(resource.height >> mip, 1u);
@@ -67,7 +67,7 @@ demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHos
                                                                  std::span<const float> sap_tables) {
   Diagnostics diagnostics;
   std::optional<LoadedGraph> loaded =
-      load_graph(request.graph, {.overlays = request.overlays, .roots = {}, .kinds = {}}, diagnostics);
+      load_graph(request.graph, {.overlays = request.overlays, .roots = {}, .pass_types = {}}, diagnostics);
   if (!loaded) return input_error(request.graph, text_of(diagnostics));
   const CompileChoices choices = read_choices(loaded->graph, request.set);
   if (!choices.problem.empty()) return input_error(request.graph, choices.problem);
@@ -159,46 +159,46 @@ demo::Result<TechniqueTimes> TechniqueRun::times() {
         std::find_if(plan_.plan.passes.begin(), plan_.plan.passes.end(), [&](const PlanPass& each) {
           return loaded_.graph.passes[each.declared.value].name == one.pass;
         });
-    const std::string_view kind = pass != plan_.plan.passes.end() ? loaded_.kinds[pass->kind].name : "";
-    if (kind == hand_out_kind) continue;
+    const std::string_view type = pass != plan_.plan.passes.end() ? loaded_.pass_types[pass->type].name : "";
+    if (type == export_scattered_type) continue;
     times.device += one.milliseconds;
-    if (std::find(common_kinds.begin(), common_kinds.end(), kind) == common_kinds.end())
+    if (std::find(common_pass_types.begin(), common_pass_types.end(), type) == common_pass_types.end())
       times.sampling += one.milliseconds;
   }
   return times;
 }
 
-TechniqueCounts TechniqueRun::counts(double sampled_share, const subsurface::PerChannel& d_px,
+TechniqueCounts TechniqueRun::counts(double sampled_fraction, const subsurface::PerChannel& d_px,
                                      std::optional<double> taken) {
   TechniqueCounts counts;
   counts.transient_bytes = device_->memory().transient_bytes;
   counts.reads_per_pixel = 0.0;
   const Plan& plan = plan_.plan;
   for (const PlanPass& pass : plan.passes) {
-    const PassKind& kind = loaded_.kinds[pass.kind];
-    if (kind.name == hand_out_kind) continue;
-    counts.dispatches += kind.dispatch != DispatchShape::none && kind.dispatch != DispatchShape::host;
+    const PassType& type = loaded_.pass_types[pass.type];
+    if (type.name == export_scattered_type) continue;
+    counts.dispatches += type.dispatch != DispatchShape::none && type.dispatch != DispatchShape::host;
     std::vector<SettingValue> settings;
-    for (size_t i = 0; i < kind.settings.size(); ++i)
+    for (size_t i = 0; i < type.settings.size(); ++i)
       settings.push_back(plan.settings[pass.first_setting + i].value);
-    subsurface::ReadsQuestion question{settings, std::vector<bool>(kind.ports.size(), false), d_px,
+    subsurface::ReadsQuestion question{settings, std::vector<bool>(type.ports.size(), false), d_px,
                                        sap_tables_};
     for (uint32_t i = 0; i < pass.access_count; ++i)
       question.bound[plan.accesses[pass.first_access + i].port] = true;
-    auto reads = subsurface::image_reads(kind, question);
+    auto reads = subsurface::image_reads(type, question);
     if (reads && taken && reads->samples > 0) {
-      question.sampled_share = *taken / reads->samples;
-      reads = subsurface::image_reads(kind, question);
-      counts.mean_spp += reads->samples * (1 - sampled_share); // they were counted over all pixels
+      question.sampled_fraction = *taken / reads->samples;
+      reads = subsurface::image_reads(type, question);
+      counts.mean_spp += reads->samples * (1 - sampled_fraction); // they were counted over all pixels
     }
     if (!reads) {
       counts.reads_per_pixel.reset();
-      counts.unknown_kind = kind.name;
+      counts.unknown_pass_type = type.name;
       continue;
     }
-    counts.mean_spp += reads->samples * sampled_share;
+    counts.mean_spp += reads->samples * sampled_fraction;
     if (counts.reads_per_pixel)
-      *counts.reads_per_pixel += reads->per_invocation * invocations_per_pixel(plan, pass, kind);
+      *counts.reads_per_pixel += reads->per_invocation * invocations_per_pixel(plan, pass, type);
   }
   return counts;
 }

@@ -5,7 +5,7 @@
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/run/apply_slots.hpp"
 #include "integration/tools/command/run/device_graph.hpp"
-#include "passes/common/truth/truth.hpp"
+#include "passes/common/reference/reference.hpp"
 
 #include <memory>
 #include <optional>
@@ -25,7 +25,7 @@ struct TechniqueCounts { // of one frame
   uint64_t transient_bytes = 0;
   double mean_spp = 0;                   // stochastic samples a subsurface pixel
   std::optional<double> reads_per_pixel; // nullopt: a pass whose reads nobody has counted
-  std::string unknown_kind;              // then: its kind
+  std::string unknown_pass_type;         // then: its pass type
 };
 
 // What a frame's depth is handed over as.
@@ -62,10 +62,10 @@ public:
   uint64_t history_bytes();
   // Runs the last frame again, on whatever light is there.
   demo::Result<TechniqueTimes> run_again();
-  // Of the last frame. `sampled_share`: of its subsurface pixels, those whose light is scattered at all;
+  // Of the last frame. `sampled_fraction`: of its subsurface pixels, those whose light is scattered at all;
   // `d_px`: its median d per channel; `taken`: samples a subsurface pixel where they were counted on the
   // device.
-  TechniqueCounts counts(double sampled_share, const subsurface::PerChannel& d_px,
+  TechniqueCounts counts(double sampled_fraction, const subsurface::PerChannel& d_px,
                          std::optional<double> taken = {});
 
   const TechniqueRequest& request() const { return request_; }

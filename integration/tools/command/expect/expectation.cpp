@@ -13,9 +13,9 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t most_cases = 1024;
-constexpr size_t most_names = 4096; // passes of a graph, limits.hpp
-constexpr int64_t most_side = 16384;
+constexpr size_t max_cases = 1024;
+constexpr size_t max_names = 4096; // passes of a graph, limits.hpp
+constexpr int64_t max_side = 16384;
 
 struct CaseReader {
   const Document& document;
@@ -52,7 +52,7 @@ struct CaseReader {
     ok &= name.has_value();
     if (!name) return;
     if (const std::optional<Feature> found = feature_from_name(*name))
-      out.lacks |= bit_of(*found);
+      out.unmet |= bit_of(*found);
     else
       refuse(node, fmt::format("'lacks': there is no feature '{}'", *name));
   }
@@ -84,7 +84,7 @@ struct CaseReader {
     uint32_t* const sides[] = {&out.width, &out.height};
     size_t i = 0;
     for (const NodeId node : children(document, list)) {
-      const auto side = read_integer(document, node, "a side of 'size'", 1, most_side, diagnostics);
+      const auto side = read_integer(document, node, "a side of 'size'", 1, max_side, diagnostics);
       ok &= side.has_value();
       if (side) *sides[i] = static_cast<uint32_t>(*side);
       ++i;
@@ -109,19 +109,19 @@ struct CaseReader {
       for (const NodeId one : children(document, formats))
         if (const auto found = format(one, "'unsupported_formats'"))
           out.unsupported_formats.push_back(*found);
-    if (const NodeId lacks = object.array("lacks", 0, static_cast<size_t>(Feature::count), Need::optional);
-        lacks.valid())
-      for (const NodeId one : children(document, lacks))
+    if (const NodeId unmet = object.array("lacks", 0, static_cast<size_t>(Feature::count), Need::optional);
+        unmet.valid())
+      for (const NodeId one : children(document, unmet))
         feature(one, out);
-    if (const auto side = object.integer("max_image_dimension", 1, most_side, Need::optional))
+    if (const auto side = object.integer("max_image_dimension", 1, max_side, Need::optional))
       out.max_image_dimension = static_cast<uint32_t>(*side);
     ok &= object.finish();
   }
 
-  Facts facts(NodeId node, const std::string& name) {
-    Facts out;
+  MachineInfo info(NodeId node, const std::string& name) {
+    MachineInfo out;
     ObjectReader object(document, node, fmt::format("'expect' of case '{}'", name), diagnostics);
-    if (const NodeId list = object.array("passes", 0, most_names, Need::optional); list.valid())
+    if (const NodeId list = object.array("passes", 0, max_names, Need::optional); list.valid())
       out.passes = strings(list, "a pass");
     if (const NodeId all = object.object("culled", Need::optional); all.valid()) {
       out.culled.emplace();
@@ -140,7 +140,7 @@ struct CaseReader {
     count("transient_bytes", out.transient_bytes);
     count("history_bytes", out.history_bytes);
     out.diagnostics =
-        strings(object.array("diagnostics", 0, most_names, Need::optional), "the id of a diagnostic");
+        strings(object.array("diagnostics", 0, max_names, Need::optional), "the id of a diagnostic");
     ok &= object.finish();
     return out;
   }
@@ -157,15 +157,15 @@ struct CaseReader {
     out.name = object.string("case").value_or("");
     size(object.array("size", 2, 2, Need::optional), out.size);
     out.settings = settings(object.object("set", Need::optional));
-    out.unbound = strings(object.array("unbound", 0, most_names, Need::optional), "an unbound slot");
+    out.unbound = strings(object.array("unbound", 0, max_names, Need::optional), "an unbound slot");
     if (const NodeId formats = object.object("host_formats", Need::optional); formats.valid())
       for (const NodeId one : children(document, formats))
         if (const auto found = format(one, "'host_formats'"))
           out.host_formats.emplace(document.key(one), *found);
     overlays(object.array("overlays", 0, limits::graph_files, Need::optional), out);
     device(object.object("device", Need::optional), out);
-    out.facts_node = object.object("expect", Need::optional);
-    if (out.facts_node.valid()) out.facts = facts(out.facts_node, out.name);
+    out.info_node = object.object("expect", Need::optional);
+    if (out.info_node.valid()) out.info = info(out.info_node, out.name);
     ok &= object.finish();
     return out;
   }
@@ -220,7 +220,7 @@ std::optional<std::vector<ExpectedCase>> read_expectations(const Document& docum
   CaseReader reader{document, diagnostics};
   ObjectReader object(document, document.root(), "the expectation", diagnostics);
   object.any("dermis_expect");
-  const NodeId list = object.array("cases", 1, most_cases);
+  const NodeId list = object.array("cases", 1, max_cases);
   std::vector<ExpectedCase> cases;
   std::map<std::string, NodeId> names;
   if (list.valid())
@@ -238,8 +238,8 @@ std::optional<std::vector<ExpectedCase>> read_expectations(const Document& docum
   return cases;
 }
 
-Facts narrow(const Facts& observed, const Facts& stated) {
-  Facts out;
+MachineInfo narrow(const MachineInfo& observed, const MachineInfo& stated) {
+  MachineInfo out;
   if (stated.passes) out.passes = observed.passes;
   if (stated.culled) out.culled = observed.culled;
   if (stated.barriers) out.barriers = observed.barriers;
@@ -250,7 +250,7 @@ Facts narrow(const Facts& observed, const Facts& stated) {
   return out;
 }
 
-std::string facts_json(const Facts& facts) {
+std::string info_json(const MachineInfo& info) {
   JsonWriter out;
   const auto list = [&](std::string_view key, const std::vector<std::string>& all) {
     out.key(key).open_array();
@@ -262,32 +262,32 @@ std::string facts_json(const Facts& facts) {
     if (value) out.member(key, *value);
   };
   out.open_object();
-  if (facts.passes) list("passes", *facts.passes);
-  if (facts.culled) {
+  if (info.passes) list("passes", *info.passes);
+  if (info.culled) {
     out.key("culled").open_object();
-    for (const auto& [pass, why] : *facts.culled)
+    for (const auto& [pass, why] : *info.culled)
       out.member(pass, why);
     out.close();
   }
-  count("barriers", facts.barriers);
-  count("batches", facts.batches);
-  count("transient_bytes", facts.transient_bytes);
-  count("history_bytes", facts.history_bytes);
-  if (!facts.diagnostics.empty()) list("diagnostics", facts.diagnostics);
+  count("barriers", info.barriers);
+  count("batches", info.batches);
+  count("transient_bytes", info.transient_bytes);
+  count("history_bytes", info.history_bytes);
+  if (!info.diagnostics.empty()) list("diagnostics", info.diagnostics);
   out.close();
   return std::move(out).finish();
 }
 
-std::string rewrite_facts(const Document& document, const std::string& text,
-                          const std::vector<ExpectedCase>& cases,
-                          const std::vector<std::optional<Facts>>& facts) {
+std::string rewrite_info(const Document& document, const std::string& text,
+                         const std::vector<ExpectedCase>& cases,
+                         const std::vector<std::optional<MachineInfo>>& info) {
   std::string out = text;
   for (size_t i = cases.size(); i-- > 0;) { // from the back, so that offsets stay true
-    if (!facts[i]) continue;
-    std::string fresh = facts_json(*facts[i]);
+    if (!info[i]) continue;
+    std::string fresh = info_json(*info[i]);
     fresh.pop_back(); // its line break
-    if (cases[i].facts_node.valid()) {
-      const size_t begin = document[cases[i].facts_node].offset;
+    if (cases[i].info_node.valid()) {
+      const size_t begin = document[cases[i].info_node].offset;
       const size_t end = end_of_value(out, begin);
       out.replace(begin, end - begin, indented(fresh, indentation_at(out, begin)));
     } else { // behind the last value of the case; it has one, its name

@@ -12,7 +12,7 @@ namespace {
 
 DeviceProfile device_of(const ExpectedCase& inputs) {
   DeviceProfile device = generic_profile();
-  device.features &= ~inputs.lacks;
+  device.features &= ~inputs.unmet;
   if (inputs.max_image_dimension) device.max_image_dimension = *inputs.max_image_dimension;
   device.supports = [all = device.supports, without = inputs.unsupported_formats](Format format,
                                                                                   uint32_t vk_usage) {
@@ -36,30 +36,30 @@ std::vector<Format> host_formats(const Graph& graph, const ExpectedCase& inputs,
   return out;
 }
 
-Facts facts_of(const Graph& graph, const KindRegistry& kinds, const CompiledPlan& compiled) {
+MachineInfo facts_of(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled) {
   const Plan& plan = compiled.plan;
-  Facts facts;
-  facts.passes.emplace();
-  facts.culled.emplace();
+  MachineInfo info;
+  info.passes.emplace();
+  info.culled.emplace();
   std::vector<bool> runs(graph.passes.size(), false);
   uint64_t batches = plan.final_barrier_count > 0 ? 1 : 0;
   for (const PlanPass& pass : plan.passes) {
     runs[pass.declared.value] = true;
-    facts.passes->push_back(graph.passes[pass.declared.value].name);
+    info.passes->push_back(graph.passes[pass.declared.value].name);
     batches += pass.barrier_count > 0 ? 1 : 0;
   }
   for (size_t p = 0; p < graph.passes.size(); ++p)
-    if (!runs[p]) facts.culled->emplace(graph.passes[p].name, "");
+    if (!runs[p]) info.culled->emplace(graph.passes[p].name, "");
   for (const Reason& reason : compiled.reasons) {
     if (reason.about != Reason::About::pass || runs[reason.index]) continue;
-    std::string& why = (*facts.culled)[graph.passes[reason.index].name];
-    why += (why.empty() ? "" : "; ") + reason_text(graph, kinds, plan, reason);
+    std::string& why = (*info.culled)[graph.passes[reason.index].name];
+    why += (why.empty() ? "" : "; ") + reason_text(graph, pass_types, plan, reason);
   }
-  facts.barriers = plan.barriers.size();
-  facts.batches = batches;
-  facts.transient_bytes = plan.transient_bytes;
-  facts.history_bytes = plan.history_bytes;
-  return facts;
+  info.barriers = plan.barriers.size();
+  info.batches = batches;
+  info.transient_bytes = plan.transient_bytes;
+  info.history_bytes = plan.history_bytes;
+  return info;
 }
 
 } // namespace
@@ -67,7 +67,7 @@ Facts facts_of(const Graph& graph, const KindRegistry& kinds, const CompiledPlan
 Observation observe_messages(const Diagnostics& diagnostics) {
   Observation out;
   for (const Diagnostic& one : diagnostics.list) {
-    out.facts.diagnostics.emplace_back(diagnostic_info(one.id).code);
+    out.info.diagnostics.emplace_back(diagnostic_info(one.id).code);
     out.messages.push_back(format_for_people(diagnostics, one));
   }
   return out;
@@ -80,7 +80,7 @@ Observation observe(const LoadedGraph& loaded, const ExpectedCase& inputs) {
   const DeviceProfile device = device_of(inputs);
   CompileInput input;
   input.graph = &loaded.graph;
-  input.kinds = &loaded.kinds;
+  input.pass_types = &loaded.pass_types;
   input.device = &device;
   input.view_width = inputs.size.width;
   input.view_height = inputs.size.height;
@@ -92,11 +92,11 @@ Observation observe(const LoadedGraph& loaded, const ExpectedCase& inputs) {
   const std::optional<CompiledPlan> compiled = compile(input, diagnostics);
   out = observe_messages(diagnostics);
   if (!compiled) return out;
-  const std::vector<std::string> codes = std::move(out.facts.diagnostics);
-  out.facts = facts_of(loaded.graph, loaded.kinds, *compiled);
-  out.facts.diagnostics = codes;
+  const std::vector<std::string> codes = std::move(out.info.diagnostics);
+  out.info = facts_of(loaded.graph, loaded.pass_types, *compiled);
+  out.info.diagnostics = codes;
   Verdict verdict = verify(compiled->plan);
-  out.objections = std::move(verdict.objections);
+  out.violations = std::move(verdict.violations);
   out.not_verified = std::move(verdict.not_verified);
   return out;
 }

@@ -10,10 +10,10 @@
 namespace dermis::tools {
 
 struct Observation {
-  Facts facts;
+  MachineInfo info;
   std::vector<std::string> messages;   // of the diagnostics, for people
   std::string problem;                 // the inputs do not fit the graph: nothing was compiled
-  std::vector<std::string> objections; // of the verifier, to a plan that it should have accepted
+  std::vector<std::string> violations; // of the verifier, to a plan that it should have accepted
   std::string not_verified;            // why the verifier gave up; "": it did not
 };
 

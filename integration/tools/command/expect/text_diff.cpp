@@ -8,7 +8,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t most_lines = 4096; // the table below grows with the product of both sides
+constexpr size_t max_lines = 4096; // the table below grows with the product of both sides
 
 using Lines = std::vector<std::string_view>;
 
@@ -31,7 +31,7 @@ void append(std::string& out, const char* mark, std::string_view line) {
 void diff_middle(const Lines& before, const Lines& after, size_t first, size_t before_end, size_t after_end,
                  std::string& out) {
   const size_t rows = before_end - first, columns = after_end - first;
-  const bool too_long = rows > most_lines || columns > most_lines;
+  const bool too_long = rows > max_lines || columns > max_lines;
   std::vector<uint16_t> common(too_long ? 0 : (rows + 1) * (columns + 1), 0);
   const auto at = [&](size_t r, size_t c) -> uint16_t& { return common[r * (columns + 1) + c]; };
   for (size_t r = rows; !too_long && r-- > 0;)

@@ -1,6 +1,6 @@
 #include "integration/tools/command/inspect/diagnose.hpp"
 
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <fmt/format.h>
 
@@ -135,14 +135,14 @@ private:
   // contains albedo changes by the same factor. The slope of log lighting over log albedo tells which.
   void check_albedo_in_lighting() {
     if (frame_.albedo.values.empty()) return;
-    constexpr double min_log_step = 0.1, least_value = 1e-3, depth_sides = 4, contained_from = 0.7;
+    constexpr double min_log_step = 0.1, min_value = 1e-3, depth_sides = 4, contained_from = 0.7;
     std::vector<double> slopes;
     for_each_pair([&](size_t p, size_t q) {
       if (frame_.profile[p] == 0 || frame_.profile[p] != frame_.profile[q]) return;
       if (std::abs(depth(p) - depth(q)) > depth_sides * pixel_side(depth(p))) return;
       const double albedo_p = luminance(frame_.albedo, p), albedo_q = luminance(frame_.albedo, q);
       const double light_p = luminance(frame_.lighting, p), light_q = luminance(frame_.lighting, q);
-      if (std::min({albedo_p, albedo_q, light_p, light_q}) < least_value) return;
+      if (std::min({albedo_p, albedo_q, light_p, light_q}) < min_value) return;
       const double step = std::log(albedo_q / albedo_p);
       if (std::abs(step) > min_log_step) slopes.push_back(std::log(light_q / light_p) / step);
     });
@@ -187,7 +187,7 @@ private:
 
   // Distances have no upper end at exactly 1 and no value nearer than the near plane; buffer values do.
   void check_depth_range() {
-    constexpr double least_fraction = 0.01, one_distance = 1e-4;
+    constexpr double min_fraction = 0.01, one_distance = 1e-4;
     uint64_t ones = 0, above = 0, nearer = 0, valid = 0;
     const double near_plane = near_plane_m();
     for_each_pixel([&](uint32_t, uint32_t, size_t p) {
@@ -198,7 +198,7 @@ private:
       nearer += d > 0 && d < 0.99 * near_plane ? 1 : 0;
     });
     const auto many = [&](uint64_t count) {
-      return static_cast<double>(count) > least_fraction * static_cast<double>(valid);
+      return static_cast<double>(count) > min_fraction * static_cast<double>(valid);
     };
     if (above == 0 && many(ones) && figures_.median_m < 1)
       add(DiagnosticId::first_frame_depth,
@@ -234,7 +234,7 @@ private:
   // Seen from outside, surfaces turn away from the camera at their outline, so depth is larger there
   // than in their middle. Outline: next to a pixel without profile that shows nothing or something far.
   void check_depth_direction() {
-    constexpr double far_step = 0.05, clear_fraction = 0.25, least_relief = 1e-3;
+    constexpr double far_step = 0.05, clear_fraction = 0.25, min_relief = 1e-3;
     std::vector<double> outline, all;
     const auto visit = [&](size_t p, size_t q) {
       if (frame_.profile[p] == 0 || frame_.profile[q] != 0 || !(depth(p) > 0)) return;
@@ -246,7 +246,7 @@ private:
       visit(q, p);
     });
     const double relief = figures_.far_m - figures_.near_m;
-    if (outline.size() < min_samples || relief < least_relief * figures_.median_m) return;
+    if (outline.size() < min_samples || relief < min_relief * figures_.median_m) return;
     const double edge = quantile(outline, 0.5);
     if (edge < figures_.median_m - clear_fraction * relief)
       add(DiagnosticId::first_frame_depth,

@@ -67,7 +67,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
   engine.frames = frames;
   engine.settings = settings_as_json(loaded.graph, options.settings);
   engine.budget_ms = options.budget_ms;
-  engine.metered = options.metered;
+  engine.deterministic = options.deterministic;
   for (const auto& [name, text] : loaded.overlays)
     engine.overlays.push_back({name, text});
   engine.include = [open = open_beside(options.graph, options.parts.roots)](
@@ -75,7 +75,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
     const FileText file = open(name);
     return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
   };
-  HostPasses host_passes(loaded.host_kinds);
+  HostPasses host_passes(loaded.host_pass_types);
   engine.hooks = host_passes.hooks();
   ChoiceReport report;
   demo::RenderCallbacks callbacks;
@@ -118,8 +118,8 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   return deliver(
       session, options.out,
       session.json
-          ? plan_json(loaded->graph, loaded->kinds, *compiled, {loaded->changes, diagnostics.files})
-          : plan_text(loaded->graph, loaded->kinds, *compiled, {loaded->changes, diagnostics.files}));
+          ? plan_json(loaded->graph, loaded->pass_types, *compiled, {loaded->changes, diagnostics.files})
+          : plan_text(loaded->graph, loaded->pass_types, *compiled, {loaded->changes, diagnostics.files}));
 }
 
 } // namespace dermis::tools

@@ -24,7 +24,7 @@ enum class FileKindId : uint8_t {
   fragment,
   errors,
   calibration,
-  kinds
+  pass_types
 };
 
 std::span<const FileKind> file_kinds(); // by FileKindId

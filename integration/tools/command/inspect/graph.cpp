@@ -40,9 +40,9 @@ ExitCode graph(const Session& session, const GraphOptions& options) {
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   print_diagnostics(session, diagnostics);
   const std::string problem =
-      deliver_text(options.out, session.json ? plan_json(loaded->graph, loaded->kinds, *compiled,
+      deliver_text(options.out, session.json ? plan_json(loaded->graph, loaded->pass_types, *compiled,
                                                          {loaded->changes, diagnostics.files})
-                                             : plan_dot(loaded->graph, loaded->kinds, *compiled));
+                                             : plan_dot(loaded->graph, loaded->pass_types, *compiled));
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }
 

@@ -11,7 +11,7 @@
 #include "integration/tools/command/shipped.hpp"
 #include "integration/tools/command/verbs.hpp"
 #include "integration/tools/files/bytes.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <fmt/format.h>
 
@@ -26,8 +26,8 @@ namespace {
 
 std::vector<std::pair<std::string_view, std::string>> all_schemas() {
   std::vector<std::pair<std::string_view, std::string>> all;
-  all.emplace_back("graph", graph_schema(subsurface::make_kinds()));
-  all.emplace_back("fragment", fragment_schema(subsurface::make_kinds()));
+  all.emplace_back("graph", graph_schema(subsurface::make_pass_types()));
+  all.emplace_back("fragment", fragment_schema(subsurface::make_pass_types()));
   for (const NamedSchema& one : written_schemas())
     all.emplace_back(one.name, std::string(one.text));
   return all;
@@ -112,7 +112,7 @@ ExitCode docs(const Session& session, const DocsOptions& options) {
     return fail(session, ExitCode::environment, fmt::format("{} holds no graphs", options.graphs));
   std::vector<std::pair<std::string, std::string>> pages = {
       {"format_reference.md", format_page(all_schemas())},
-      {"pass_kinds.md", kinds_page(subsurface::make_kinds())}};
+      {"pass_types.md", pass_types_page(subsurface::make_pass_types())}};
   // Only a block of this page is generated. A folder without the page is not one of user documents.
   const std::string hosts = folder.path_of("integration.md");
   if (std::error_code ignored; std::filesystem::exists(hosts, ignored)) {

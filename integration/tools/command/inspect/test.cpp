@@ -67,35 +67,35 @@ std::string joined(const std::vector<std::string>& lines) {
 
 // Compares, or with `update` takes over what was observed. What nobody can take over stays a failure.
 TestResult judge(const ExpectedCase& expected, const Observation& observed, bool update,
-                 std::optional<Facts>& fresh) {
+                 std::optional<MachineInfo>& fresh) {
   if (!observed.problem.empty()) return {expected.name, false, observed.problem, ""};
-  if (!observed.objections.empty())
+  if (!observed.violations.empty())
     return {expected.name, false, "the verifier refuses the plan: this is a defect of the compiler",
-            joined(observed.objections)};
+            joined(observed.violations)};
   const std::string note =
       observed.not_verified.empty() ? "" : fmt::format("the plan is not verified: {}", observed.not_verified);
-  if (!expected.facts) {
+  if (!expected.info) {
     if (!update) return {expected.name, false, "the case has no \"expect\"; --update writes one", ""};
-    fresh = observed.facts;
+    fresh = observed.info;
     return {expected.name, true, note, ""};
   }
-  const Facts found = narrow(observed.facts, *expected.facts);
-  if (found == *expected.facts) return {expected.name, true, note, ""};
+  const MachineInfo found = narrow(observed.info, *expected.info);
+  if (found == *expected.info) return {expected.name, true, note, ""};
   if (update) {
     // A case that had no plan and has one now, or the other way round, is stated anew as a whole.
-    Facts of_plan = *expected.facts;
+    MachineInfo of_plan = *expected.info;
     of_plan.diagnostics.clear();
-    const bool was_planned = of_plan != Facts{};
-    fresh = was_planned && observed.facts.passes ? found : observed.facts;
+    const bool was_planned = of_plan != MachineInfo{};
+    fresh = was_planned && observed.info.passes ? found : observed.info;
     return {expected.name, true, note, ""};
   }
   return {expected.name, false, "what was compiled is not what is expected (-), but (+)",
-          diff_lines(facts_json(*expected.facts), facts_json(found)) + joined(observed.messages)};
+          diff_lines(info_json(*expected.info), info_json(found)) + joined(observed.messages)};
 }
 
 // The graph with the overlays of a case; nullopt with `observation` filled where that cannot be had.
 std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase& one, const OpenFile& open,
-                                     const std::vector<std::string>& kinds, Observation& observation) {
+                                     const std::vector<std::string>& pass_types, Observation& observation) {
   Diagnostics diagnostics;
   std::optional<Document> graph = read_document(path, diagnostics);
   std::vector<Document> overlays;
@@ -108,7 +108,7 @@ std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase
   }
   std::optional<LoadedGraph> loaded;
   if (graph && overlays.size() == one.overlays.size())
-    loaded = load_graph(std::move(*graph), std::move(overlays), open, diagnostics, kinds);
+    loaded = load_graph(std::move(*graph), std::move(overlays), open, diagnostics, pass_types);
   if (!loaded) observation = observe_messages(diagnostics);
   return loaded;
 }
@@ -128,18 +128,18 @@ TestRun run_file(const std::string& path, const TestOptions& options, const std:
   for (const char* above : {"..", "../.."})
     folders.push_back((of_graph / above).lexically_normal().string());
   const OpenFile open = open_beside(graph_path, folders);
-  std::vector<std::optional<Facts>> fresh(cases->size());
+  std::vector<std::optional<MachineInfo>> fresh(cases->size());
   for (size_t i = 0; i < cases->size(); ++i) {
     Observation observed;
     if (!files::is_regular_file(graph_path, ignored))
       observed.problem = fmt::format("there is no graph '{}' beside it", graph_path);
-    else if (const auto loaded = load_case(graph_path, (*cases)[i], open, options.kinds, observed))
+    else if (const auto loaded = load_case(graph_path, (*cases)[i], open, options.pass_types, observed))
       observed = observe(*loaded, (*cases)[i]);
     run.suite.results.push_back(judge((*cases)[i], observed, options.update, fresh[i]));
     run.updated += fresh[i].has_value();
   }
   const std::string& before = run.diagnostics.files[document->file.value].text;
-  run.text = rewrite_facts(*document, before, *cases, fresh);
+  run.text = rewrite_info(*document, before, *cases, fresh);
   run.rewritten = run.text != before;
   return run;
 }

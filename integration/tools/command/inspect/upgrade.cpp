@@ -1,58 +1,81 @@
-// dermis upgrade: brings files to the newest version of their format. Every format is at its first version,
-// so that there is nothing to rewrite; what no version of this library knows is refused.
+// dermis upgrade: converts files to the newest version of their format, in place.
 
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/reader.hpp"
 #include "integration/tools/command/graph_input.hpp"
-#include "integration/tools/command/inspect/file_kind.hpp"
+#include "integration/tools/command/inspect/upgrade_text.hpp"
+#include "integration/tools/command/output.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace dermis::tools {
 namespace {
 
-struct Judged {
+struct Upgraded {
   std::string path;
   std::string_view kind = "unreadable";
-  int64_t version = 0; // 0: none that is known
+  int64_t version = 0;                  // of the file after the call; 0: unknown
+  std::optional<std::string> text = {}; // in the newest version; nullopt: nothing to change
 };
 
-Judged judge(const std::string& path, Diagnostics& diagnostics) {
+constexpr std::string_view old_pass_type_key = "dermis_kinds"; // version 1 of the pass type files
+
+int64_t version_of(const Document& document, std::string_view key) {
+  const NodeId node = document.find(document.root(), key);
+  return node.valid() && document[node].kind == NodeKind::integer ? document[node].integer : 0;
+}
+
+Upgraded upgrade_file(const std::string& path, Diagnostics& diagnostics) {
   const std::optional<Document> document = read_input(path, diagnostics);
   if (!document) return {path};
-  const FileKind& kind = file_kinds()[static_cast<size_t>(file_kind_of(*document))];
+  const std::string& text = diagnostics.files[document->file.value].text;
+  const FileKindId id = file_kind_of(*document);
+  const FileKind& kind = file_kinds()[static_cast<size_t>(id)];
+  const bool old =
+      version_of(*document, kind.version_key) == 1 || version_of(*document, old_pass_type_key) == 1;
+  if (kind.version > 1 && old) return {path, kind.name, kind.version, upgraded_text(*document, id, text)};
   const bool known = check_version(*document, kind.version_key, kind.version, diagnostics);
-  return {path, kind.name, known ? kind.version : 0};
+  return {path, kind.name, known ? kind.version : 0, std::nullopt};
+}
+
+std::string answer(const Upgraded& one, bool check) {
+  if (!one.text)
+    return fmt::format("{}: {}, version {} is the newest: nothing to {}\n", one.path, one.kind, one.version,
+                       check ? "upgrade" : "do");
+  return fmt::format("{}: {}, {} version {}\n", one.path, one.kind,
+                     check ? "can be upgraded to" : "upgraded to", one.version);
 }
 
 } // namespace
 
 ExitCode upgrade(const Session& session, const UpgradeOptions& options) {
   Diagnostics diagnostics;
-  std::vector<Judged> files;
+  std::vector<Upgraded> files;
   for (const std::string& path : options.files)
-    files.push_back(judge(path, diagnostics));
-  const bool all_known =
-      std::all_of(files.begin(), files.end(), [](const Judged& one) { return one.version > 0; });
-  print_diagnostics(session, diagnostics);
-  for (const Judged& one : files)
-    if (one.version > 0)
-      say(session, fmt::format("{}: {}, version {} is the newest: nothing to {}\n", one.path, one.kind,
-                               one.version, options.check ? "upgrade" : "do"));
-  if (session.json) {
-    JsonWriter answer;
-    answer.open_object().member("ok", all_known).key("files").open_array();
-    for (const Judged& one : files) {
-      answer.open_object(true).member("file", one.path).member("kind", one.kind).key("version");
-      one.version > 0 ? answer.value(one.version) : answer.null();
-      answer.member("changed", false).close();
-    }
-    answer.close().key("diagnostics").json(format_as_json(diagnostics)).close();
-    print(std::move(answer).finish());
+    files.push_back(upgrade_file(path, diagnostics));
+  bool good = true;
+  std::string unwritten;
+  for (const Upgraded& one : files) {
+    good = good && one.version > 0 && !(options.check && one.text);
+    if (options.check || !one.text || !unwritten.empty()) continue;
+    if (const std::string problem = deliver_text(one.path, *one.text); !problem.empty()) unwritten = problem;
   }
-  return all_known ? ExitCode::ok : ExitCode::problems;
+  print_diagnostics(session, diagnostics);
+  if (!unwritten.empty()) return fail(session, ExitCode::environment, unwritten);
+  for (const Upgraded& one : files)
+    if (one.version > 0) say(session, answer(one, options.check));
+  if (session.json) {
+    JsonWriter out;
+    out.open_object().member("ok", good).key("files").open_array();
+    for (const Upgraded& one : files) {
+      out.open_object(true).member("file", one.path).member("kind", one.kind).key("version");
+      one.version > 0 ? out.value(one.version) : out.null();
+      out.member("changed", one.text.has_value()).close();
+    }
+    out.close().key("diagnostics").json(format_as_json(diagnostics)).close();
+    print(std::move(out).finish());
+  }
+  return good ? ExitCode::ok : ExitCode::problems;
 }
 
 } // namespace dermis::tools

@@ -28,21 +28,21 @@ bool check_graph(const Document& document, const std::string& path, const GraphP
                  Diagnostics& diagnostics, bool& verified) {
   auto overlays = read_overlays(parts.overlays, diagnostics);
   if (!overlays) return false;
-  const std::optional<LoadedGraph> loaded =
-      load_graph(document, std::move(*overlays), open_beside(path, parts.roots), diagnostics, parts.kinds);
+  const std::optional<LoadedGraph> loaded = load_graph(
+      document, std::move(*overlays), open_beside(path, parts.roots), diagnostics, parts.pass_types);
   if (!loaded) return false;
   const CompileChoices choices = read_choices(loaded->graph);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, default_size, choices, diagnostics);
   if (!compiled) return false;
   const Verdict verdict = verify(compiled->plan);
-  for (const std::string& objection : verdict.objections)
+  for (const std::string& violation : verdict.violations)
     diagnostics.add(DiagnosticId::internal_defect, document.where(document.root()),
-                    fmt::format("the verifier refuses the plan: {}", objection));
+                    fmt::format("the verifier refuses the plan: {}", violation));
   verified = verdict.not_verified.empty();
   if (!verified)
     diagnostics.add(DiagnosticId::plan_not_verified, document.where(document.root()),
                     fmt::format("the plan is not verified: {}", verdict.not_verified));
-  return verdict.objections.empty();
+  return verdict.violations.empty();
 }
 
 bool check_profile(const Document& document, Diagnostics& diagnostics, std::string& about) {
@@ -107,9 +107,9 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
     checked.good = check_overlay(*document, diagnostics);
     break;
   case FileKindId::fragment:
-    checked.good =
-        load_fragment(*document, open_beside(path, options.parts.roots), diagnostics, options.parts.kinds)
-            .has_value();
+    checked.good = load_fragment(*document, open_beside(path, options.parts.roots), diagnostics,
+                                 options.parts.pass_types)
+                       .has_value();
     break;
   case FileKindId::errors:
     checked.good = choice::read_error_model(*document, diagnostics).has_value();
@@ -117,8 +117,8 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
   case FileKindId::calibration:
     checked.good = choice::read_calibration(*document, diagnostics).has_value();
     break;
-  case FileKindId::kinds:
-    checked.good = read_host_kinds(*document, diagnostics).has_value();
+  case FileKindId::pass_types:
+    checked.good = read_host_pass_types(*document, diagnostics).has_value();
     break;
   }
   return checked;

@@ -31,7 +31,7 @@ std::vector<uint32_t> switched_settings(const Graph& graph) {
   for (const bool by_budget : {true, false})
     for (uint32_t i = 0; i < graph.settings.size(); ++i) {
       const size_t values = values_of(graph.settings[i]).size();
-      if (graph.settings[i].by_budget != by_budget || values < 2 || outcomes * values > most_view_outcomes)
+      if (graph.settings[i].by_budget != by_budget || values < 2 || outcomes * values > max_view_outcomes)
         continue;
       outcomes *= values;
       switched.push_back(i);
@@ -143,7 +143,7 @@ struct View {
       out.open_object(true).member("name", file.name).member("text", file.text).close();
     out.close().key("passes").open_array();
     for (const PassDeclaration& pass : graph.passes) {
-      out.open_object(true).member("name", pass.name).member("kind", loaded.kinds[pass.kind].name);
+      out.open_object(true).member("name", pass.name).member("kind", loaded.pass_types[pass.type].name);
       place(pass.where);
       out.member("note", pass.note).close();
     }
@@ -200,7 +200,7 @@ struct View {
       if (compiled) {
         list.value(count++);
         lines.add(runs,
-                  plan_json(loaded.graph, loaded.kinds, *compiled, {loaded.changes, diagnostics.files}));
+                  plan_json(loaded.graph, loaded.pass_types, *compiled, {loaded.changes, diagnostics.files}));
       } else {
         list.null().member("problem", found.list.empty() ? "" : found.list.front().text);
       }

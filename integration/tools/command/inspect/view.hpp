@@ -7,7 +7,7 @@
 
 namespace dermis::tools {
 
-inline constexpr size_t most_view_outcomes = 64; // plans in one page
+inline constexpr size_t max_view_outcomes = 64; // plans in one page
 
 // What a page holds beside the graph.
 struct ViewOptions {
@@ -23,7 +23,7 @@ struct ViewAnswer {
 };
 
 // Switched in the page are the choices by budget, then switches and enumerations, in the order of the file,
-// as long as their combinations are at most `most_view_outcomes`; other settings keep their values.
+// as long as their combinations are at most `max_view_outcomes`; other settings keep their values.
 ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diagnostics& diagnostics);
 
 } // namespace dermis::tools

@@ -80,12 +80,12 @@ std::string word(const std::string& text) {
 }
 
 struct GraphFiles {
-  std::string graph;                           // its name in the parcel
-  std::vector<std::string> overlays, kinds;    // likewise, in order
-  std::map<std::string, std::string> included; // text by name
+  std::string graph;                             // its name in the parcel
+  std::vector<std::string> overlays, pass_types; // likewise, in order
+  std::map<std::string, std::string> included;   // text by name
 };
 
-// Graph, overlays, kinds and what they include, under names that find each other again.
+// Graph, overlays, pass types and what they include, under names that find each other again.
 bool add_graph(Parcel& parcel, const ReportBugOptions& options, const Diagnostics& diagnostics,
                GraphFiles& files) {
   files.graph = options.graph == "-" ? "graph.json" : fs::path(options.graph).filename().string();
@@ -99,7 +99,7 @@ bool add_graph(Parcel& parcel, const ReportBugOptions& options, const Diagnostic
     }
   };
   add_all("overlays", options.parts.overlays, files.overlays);
-  add_all("kinds", options.parts.kinds, files.kinds);
+  add_all("pass_types", options.parts.pass_types, files.pass_types);
   for (const auto& [name, text] : files.included)
     good = good && parcel.add(name, text);
   return good;
@@ -158,8 +158,8 @@ std::string replay_line(const ReportBugOptions& options, const GraphFiles& files
   std::string line = fmt::format("dermis apply --graph {} --frames capture --out replay", word(files.graph));
   for (const std::string& overlay : files.overlays)
     line += " --overlay " + word(overlay);
-  for (const std::string& kinds : files.kinds)
-    line += " --kinds " + word(kinds);
+  for (const std::string& pass_types : files.pass_types)
+    line += " --pass-types " + word(pass_types);
   for (const auto& [name, value] : options.settings)
     line += " --set " + word(name + "=" + value);
   return line;
@@ -206,7 +206,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
     return file;
   };
   const auto loaded = document && overlays ? load_graph(std::move(*document), std::move(*overlays), recorded,
-                                                        diagnostics, options.parts.kinds)
+                                                        diagnostics, options.parts.pass_types)
                                            : std::nullopt;
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings);
@@ -219,7 +219,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   Parcel parcel{named, temporary_beside(named), archived};
   bool good = add_graph(parcel, options, diagnostics, files) &&
               parcel.add("settings.json", settings_json(*loaded, choices, saved)) &&
-              parcel.add("plan.json", plan_json(loaded->graph, loaded->kinds, *compiled,
+              parcel.add("plan.json", plan_json(loaded->graph, loaded->pass_types, *compiled,
                                                 {loaded->changes, diagnostics.files})) &&
               parcel.add("graph.plan", write_plan(saved)) && parcel.add("device.json", device_json()) &&
               parcel.add("README.txt", about(session, replay_line(options, files)));

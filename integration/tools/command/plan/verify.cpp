@@ -10,15 +10,15 @@ namespace dermis::tools {
 namespace {
 
 // "pass 3" and "resource 7" of an objection mean places in the plan; say which these are.
-std::string with_names(const SavedPlan& saved, const std::string& objection) {
-  std::string text = objection;
+std::string with_names(const SavedPlan& saved, const std::string& violation) {
+  std::string text = violation;
   const auto append_name = [&](std::string_view word, const std::vector<std::string>& names) {
-    const size_t at = objection.find(word);
+    const size_t at = violation.find(word);
     if (at == std::string::npos) return;
     size_t index = 0, digits = 0;
     for (size_t i = at + word.size();
-         i < objection.size() && objection[i] >= '0' && objection[i] <= '9' && digits < 9; ++i, ++digits)
-      index = index * 10 + static_cast<size_t>(objection[i] - '0');
+         i < violation.size() && violation[i] >= '0' && violation[i] <= '9' && digits < 9; ++i, ++digits)
+      index = index * 10 + static_cast<size_t>(violation[i] - '0');
     if (digits > 0 && index < names.size()) text += fmt::format("; {}{} is '{}'", word, index, names[index]);
   };
   append_name("pass ", saved.names.passes);
@@ -38,8 +38,8 @@ ExitCode plan_verify(const Session& session, const PlanVerifyOptions& options) {
     const SourceLocation where{{static_cast<uint32_t>(diagnostics.files.size()) - 1}, 0, 0, ""};
     const Verdict verdict = verify(saved->plan);
     all_proven &= verdict.proven();
-    for (const std::string& objection : verdict.objections)
-      diagnostics.add(DiagnosticId::plan_refused, where, with_names(*saved, objection));
+    for (const std::string& violation : verdict.violations)
+      diagnostics.add(DiagnosticId::plan_rejected, where, with_names(*saved, violation));
     if (!verdict.not_verified.empty())
       diagnostics.add(DiagnosticId::plan_not_verified, where,
                       fmt::format("the plan is not verified: {}", verdict.not_verified));

@@ -112,7 +112,8 @@ demo::Result<> write_frame(const CapturedFrame& frame, const std::string& name, 
   return write("scattered.exr", scattered_light(frame, scattered.take()));
 }
 
-demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std::string& name, OutputFolder& out) {
+demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std::string& name,
+                           OutputFolder& out) {
   const SlotChoice slots = choose_slots(run.loaded.graph, frame);
   if (!slots.problem.empty()) return demo::Error{demo::ErrorKind::input, slots.problem};
   if (auto ready = prepare(run, frame, slots); !ready) return ready;
@@ -159,7 +160,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
       check_sequence(session, options.frames, options.profiles, options.parts.roots);
   if (!sequence) return ExitCode::problems;
 
-  HostPasses host_passes(loaded->host_kinds); // outlives the device's context
+  HostPasses host_passes(loaded->host_pass_types); // outlives the device's context
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
   OutputFolder out;

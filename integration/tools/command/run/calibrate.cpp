@@ -18,7 +18,7 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const auto all = choice_sets(*loaded, options.size, diagnostics);
   if (all.empty()) return fail_graph(session, options.graph, diagnostics);
-  HostPasses host_passes(loaded->host_kinds);
+  HostPasses host_passes(loaded->host_pass_types);
   CostsRequest request;
   request.hooks = host_passes.hooks();
   request.graph = options.graph;

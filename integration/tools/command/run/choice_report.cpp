@@ -15,13 +15,13 @@ void ChoiceReport::add(uint32_t frame, const demo::FrameChoice& choice,
 }
 
 std::string describe_choice(const demo::FrameChoice& choice) {
-  const uint32_t listed = choice.scattering_tiles + choice.copied_tiles + choice.flat_tiles;
+  const uint32_t listed = choice.scattering_tiles + choice.copied_tiles + choice.uniform_tiles;
   std::string text = fmt::format("{}: {} tiles", choice.outcome, choice.scattering_tiles);
   if (choice.mean_d_px > 0) text += fmt::format(" (d {:.1f} px)", choice.mean_d_px);
   for (size_t k = 0; k < choice.sampled_tiles.size(); ++k)
     if (choice.sampled_tiles[k] > 0)
       text += fmt::format(", {} of them sampled x{}", choice.sampled_tiles[k], 1u << k);
-  if (choice.flat_tiles > 0) text += fmt::format(", flat {}", choice.flat_tiles);
+  if (choice.uniform_tiles > 0) text += fmt::format(", flat {}", choice.uniform_tiles);
   text += fmt::format(", copied {}, skipped {}: {:.2f} ms predicted", choice.copied_tiles,
                       choice.view_tiles - std::min(choice.view_tiles, listed), choice.predicted_ms);
   text += choice.measured_ms < 0 ? ", not timed" : fmt::format(", {:.2f} measured", choice.measured_ms);
@@ -33,13 +33,14 @@ std::string describe_choice(const demo::FrameChoice& choice) {
     text += choice.probed_tiles > 1 ? fmt::format(", {:.1e} probed ({:.1e} to {:.1e})", choice.probed_rmse,
                                                   choice.probed_rmse_low, choice.probed_rmse_high)
                                     : fmt::format(", {:.1e} probed in one tile", choice.probed_rmse);
-  if (choice.through_rms > 0) text += fmt::format(", {:.2f} of light through thin parts", choice.through_rms);
+  if (choice.transmitted_rms > 0)
+    text += fmt::format(", {:.2f} of light through thin parts", choice.transmitted_rms);
   if (!choice.next_better.empty())
     text += fmt::format("; next better {} would need {:.2f} ms more", choice.next_better,
                         choice.next_better_missing_ms);
-  if (choice.sample_units < choice.wanted_units)
+  if (choice.sample_units < choice.sample_demand)
     text += fmt::format("; {} of {} wanted samples a tile pixel are paid", 8 * choice.sample_units,
-                        8 * choice.wanted_units);
+                        8 * choice.sample_demand);
   if (!choice.miss.empty()) text += fmt::format("; over the budget: {}", choice.miss);
   return text;
 }
@@ -80,15 +81,15 @@ void ChoiceReport::write(JsonWriter& writer) const {
     writer.member("predicted_rmse", choice.predicted_rmse).member("mean_d_px", choice.mean_d_px);
     writer.member("view_tiles", choice.view_tiles).member("scattering_tiles", choice.scattering_tiles);
     writer.member("copied_tiles", choice.copied_tiles).member("switches", choice.switches);
-    writer.member("flat_tiles", choice.flat_tiles).member("dispatches", choice.dispatches);
+    writer.member("flat_tiles", choice.uniform_tiles).member("dispatches", choice.dispatches);
     writer.member("groups", choice.groups).member("sample_units", choice.sample_units);
-    writer.member("wanted_units", choice.wanted_units).key("sampled_tiles").open_array();
+    writer.member("wanted_units", choice.sample_demand).key("sampled_tiles").open_array();
     for (const uint32_t tiles : choice.sampled_tiles)
       writer.value(tiles);
     writer.close();
     if (choice.probed_tiles > 0) writer.member("probed_tiles", choice.probed_tiles);
     if (choice.probed_tiles > 0) writer.member("probed_rmse", choice.probed_rmse);
-    if (choice.through_rms > 0) writer.member("through_rms", choice.through_rms);
+    if (choice.transmitted_rms > 0) writer.member("through_rms", choice.transmitted_rms);
     if (choice.probed_tiles > 1)
       writer.member("probed_rmse_low", choice.probed_rmse_low)
           .member("probed_rmse_high", choice.probed_rmse_high);

@@ -1,6 +1,6 @@
 #include "integration/tools/command/run/choice_sets.hpp"
 
-#include "passes/choice/outcomes.hpp"
+#include "passes/choice/configurations.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, cons
   choice::CostModel costs;
   const auto made = choice::make_outcomes(
       compile_input(loaded, device, size, choices), {"", {{1, 1}}, {}}, costs,
-      [](const CompileInput& one, Diagnostics& told) { return compile(one, told); }, diagnostics);
+      [](const CompileInput& one, Diagnostics& reported) { return compile(one, reported); }, diagnostics);
   std::vector<std::vector<NamedValue>> sets;
   if (!made) return sets;
   for (const choice::Outcome& outcome : made->outcomes) {

@@ -28,7 +28,7 @@ struct Pair {
 };
 
 // Of `apply` and `reference`: one and the same light.
-constexpr const char *scattered = "scattered.exr", *truth = "reference.exr", *mask_name = "mask.exr";
+constexpr const char *scattered = "scattered.exr", *reference = "reference.exr", *mask_name = "mask.exr";
 
 struct Loaded {
   Image a, b;                // values with peak 1
@@ -49,7 +49,7 @@ bool is_picture(const fs::path& path) {
 // A mask says which pixels of the reference beside it count, and is no picture itself.
 bool is_mask(const fs::path& path) {
   std::error_code ignored;
-  return path.filename() == mask_name && fs::exists(path.parent_path() / truth, ignored);
+  return path.filename() == mask_name && fs::exists(path.parent_path() / reference, ignored);
 }
 
 std::vector<std::string> pictures_below(const fs::path& folder) {
@@ -88,13 +88,13 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
   std::vector<std::string> in_a = pictures_below(a), in_b = pictures_below(b);
   // What apply made beside what reference made: of each frame the scattered light.
   const auto are = [](const std::vector<std::string>& ours, const std::vector<std::string>& theirs) {
-    return !frames_with(ours, scattered).empty() && !frames_with(theirs, truth).empty() &&
-           frames_with(ours, truth).empty();
+    return !frames_with(ours, scattered).empty() && !frames_with(theirs, reference).empty() &&
+           frames_with(ours, reference).empty();
   };
   const bool a_is_applied = are(in_a, in_b), b_is_applied = are(in_b, in_a);
   if (a_is_applied || b_is_applied) {
-    in_a = frames_with(in_a, a_is_applied ? scattered : truth);
-    in_b = frames_with(in_b, b_is_applied ? scattered : truth);
+    in_a = frames_with(in_a, a_is_applied ? scattered : reference);
+    in_b = frames_with(in_b, b_is_applied ? scattered : reference);
   }
   std::vector<std::string> alone;
   std::set_symmetric_difference(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
@@ -105,8 +105,8 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
   if (in_a.empty() && in_b.empty()) problem = fmt::format("there are no .png or .exr files below '{}'", a);
   std::vector<Pair> pairs;
   for (const std::string& name : in_a) {
-    const std::string of_a = a_is_applied ? name + scattered : b_is_applied ? name + truth : name;
-    const std::string of_b = b_is_applied ? name + scattered : a_is_applied ? name + truth : name;
+    const std::string of_a = a_is_applied ? name + scattered : b_is_applied ? name + reference : name;
+    const std::string of_b = b_is_applied ? name + scattered : a_is_applied ? name + reference : name;
     pairs.push_back({of_a, fs::path(a) / of_a, fs::path(b) / of_b});
   }
   return pairs;
@@ -125,7 +125,7 @@ bool read_mask(const Pair& pair, const Image& like, std::optional<Image>& mask, 
   for (const fs::path& picture : {pair.b, pair.a}) {
     const fs::path path = picture.parent_path() / mask_name;
     std::error_code ignored;
-    if (picture.filename() != truth || !fs::exists(path, ignored)) continue;
+    if (picture.filename() != reference || !fs::exists(path, ignored)) continue;
     mask = read_exr(path, std::vector<ChannelNames>{{"Y"}, {"*"}}, problem);
     if (!mask) return false;
     if (mask->width == like.width && mask->height == like.height) return true;
@@ -189,10 +189,10 @@ std::string write_heat(const std::string& path, const Loaded& loaded) {
 
 std::string write_flip(const std::string& path, const Image& like, const std::vector<float>& seen) {
   constexpr double decades = 3,
-                   least = -4; // of heat_color, which is logarithmic: here its colours stand for 0..1
+                   minimum = -4; // of heat_color, which is logarithmic: here its colours stand for 0..1
   std::vector<uint8_t> rgb;
   for (const float value : seen)
-    for (const uint8_t channel : heat_color(std::pow(10.0, least + decades * double(value))))
+    for (const uint8_t channel : heat_color(std::pow(10.0, minimum + decades * double(value))))
       rgb.push_back(channel);
   std::string problem;
   write_png(path, like.width, like.height, rgb, problem);
@@ -327,8 +327,8 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   }
   const bool ok = std::all_of(rows.begin(), rows.end(), [&](const Compared& row) {
-    return row.difference.nonfinite == 0 && row.difference.psnr_db >= options.least_psnr &&
-           row.flip <= options.most_flip;
+    return row.difference.nonfinite == 0 && row.difference.psnr_db >= options.min_psnr &&
+           row.flip <= options.max_flip;
   });
   say(session, as_table(rows, pairs.size() > 1));
   if (!options.heat.empty())
@@ -343,9 +343,9 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   if (ok) return ExitCode::ok;
   if (session.json) return ExitCode::problems;
   std::string allowed;
-  if (options.least_psnr > 0) allowed = format_decibels(options.least_psnr);
-  if (options.most_flip < 1)
-    allowed += fmt::format("{}a FLIP of {}", allowed.empty() ? "" : " and ", options.most_flip);
+  if (options.min_psnr > 0) allowed = format_decibels(options.min_psnr);
+  if (options.max_flip < 1)
+    allowed += fmt::format("{}a FLIP of {}", allowed.empty() ? "" : " and ", options.max_flip);
   return fail(session, ExitCode::problems,
               allowed.empty() ? "there are values that are not finite"
                               : fmt::format("the pictures differ by more than {} allow", allowed));

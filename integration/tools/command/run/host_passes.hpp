@@ -2,7 +2,7 @@
 // Pass kinds of a host in a program that has no kernels for them. Graphs with such passes run as long as each
 // of those passes is off or not needed; a pass that would run is refused by its name.
 
-#include "framegraph/model/host_kind.hpp"
+#include "framegraph/model/host_pass_type.hpp"
 #include "integration/examples/demo_engine/context_hooks.hpp"
 
 #include <deque>
@@ -14,12 +14,12 @@ namespace dermis::tools {
 // Must outlive the contexts that its hooks were given to. One thread.
 class HostPasses {
 public:
-  explicit HostPasses(std::shared_ptr<const HostKinds> kinds);
+  explicit HostPasses(std::shared_ptr<const HostPassTypes> pass_types);
   HostPasses(const HostPasses&) = delete;
   HostPasses& operator=(const HostPasses&) = delete;
 
   demo::ContextHooks hooks();
-  demo::Result<> prepare(dermis_context_t* context); // registers the kinds
+  demo::Result<> prepare(dermis_context_t* context); // registers the pass types
   demo::Result<> recorded() const; // an error names the first pass that the last frames would have run
 
 private:
@@ -28,9 +28,9 @@ private:
     std::string name;
   };
 
-  std::shared_ptr<const HostKinds> declared_;
-  std::deque<Kind> kinds_; // their addresses stay
-  std::string refused_;
+  std::shared_ptr<const HostPassTypes> declared_;
+  std::deque<Kind> pass_types_; // their addresses stay
+  std::string rejected_;
 };
 
 } // namespace dermis::tools

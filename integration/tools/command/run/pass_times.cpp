@@ -38,7 +38,7 @@ double PassTimes::total() const {
 
 std::string format_times(const PassTimes& times, const std::string& title) {
   const double total = times.total();
-  const auto share = [&](double part) {
+  const auto fraction = [&](double part) {
     return fmt::format("{:.1f} %", total > 0.0 ? 100.0 * part / total : 0.0);
   };
   Table table;
@@ -46,9 +46,9 @@ std::string format_times(const PassTimes& times, const std::string& title) {
   const size_t frames = rows.empty() ? 0 : rows.front().frames;
   table.columns = {{fmt::format("{}, median of {}", title, frames)}, {"device time", true}, {"share", true}};
   for (const PassTimes::Row& row : rows)
-    table.rows.push_back({row.pass, format_milliseconds(row.median), share(row.median)});
+    table.rows.push_back({row.pass, format_milliseconds(row.median), fraction(row.median)});
   table.rows.push_back({});
-  table.rows.push_back({"all", format_milliseconds(total), share(total)});
+  table.rows.push_back({"all", format_milliseconds(total), fraction(total)});
   return format_table(table);
 }
 

@@ -4,9 +4,9 @@
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/output.hpp"
 #include "integration/tools/command/run/captured.hpp"
-#include "integration/tools/command/run/truth_run.hpp"
+#include "integration/tools/command/run/reference_run.hpp"
 #include "integration/tools/command/verbs.hpp"
-#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 #include "integration/tools/files/exr.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ struct Answer {
   uint64_t pixels = 0;
 };
 
-std::vector<uint32_t> chosen_pixels(const TruthFrame& frame, uint32_t subset) {
+std::vector<uint32_t> chosen_pixels(const ReferenceFrame& frame, uint32_t subset) {
   if (subset > 0) return subsurface::stratified_subset(frame.width, frame.height, frame.profile, subset);
   std::vector<uint32_t> all;
   for (uint32_t i = 0; i < frame.profile.size(); ++i)
@@ -32,11 +32,11 @@ std::vector<uint32_t> chosen_pixels(const TruthFrame& frame, uint32_t subset) {
   return all;
 }
 
-std::optional<std::vector<double>> solve(const Session& session, const TruthFrame& frame,
+std::optional<std::vector<double>> solve(const Session& session, const ReferenceFrame& frame,
                                          const std::string& name, const std::vector<uint32_t>& pixels) {
-  const subsurface::TruthInput input = frame.input();
-  if (!subsurface::is_planar(input)) return run_truth(session, name, input, pixels);
-  const std::vector<double> everywhere = subsurface::truth_everywhere(input); // seconds, by FFT
+  const subsurface::ReferenceInput input = frame.input();
+  if (!subsurface::is_planar(input)) return run_reference(session, name, input, pixels);
+  const std::vector<double> everywhere = subsurface::reference_everywhere(input); // seconds, by FFT
   std::vector<double> chosen;
   for (const uint32_t pixel : pixels)
     chosen.insert(chosen.end(), everywhere.begin() + 3 * std::ptrdiff_t{pixel},
@@ -46,10 +46,10 @@ std::optional<std::vector<double>> solve(const Session& session, const TruthFram
 
 std::optional<Answer> answer(const Session& session, const CapturedFrame& captured, const std::string& name,
                              uint32_t subset) {
-  const TruthFrame frame = make_truth_frame(captured);
+  const ReferenceFrame frame = make_reference_frame(captured);
   const std::vector<uint32_t> pixels = chosen_pixels(frame, subset);
-  const auto truth = solve(session, frame, name, pixels);
-  if (!truth) return std::nullopt;
+  const auto reference = solve(session, frame, name, pixels);
+  if (!reference) return std::nullopt;
   Answer made{captured.lighting, Image::sized(captured.lighting.width, captured.lighting.height, 1),
               pixels.size()};
   const Rectangle& render = captured.description.render;
@@ -57,7 +57,7 @@ std::optional<Answer> answer(const Session& session, const CapturedFrame& captur
     const uint32_t x = render.x + pixels[i] % frame.width, y = render.y + pixels[i] / frame.width;
     made.mask.at(x, y, 0) = 1.0f;
     for (uint32_t c = 0; c < 3; ++c)
-      made.light.at(x, y, c) = static_cast<float>((*truth)[i * 3 + c]);
+      made.light.at(x, y, c) = static_cast<float>((*reference)[i * 3 + c]);
   }
   return made;
 }

@@ -9,11 +9,11 @@
 #include "integration/tools/command/run/choice_report.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
 #include "integration/tools/command/run/pass_times.hpp"
+#include "integration/tools/command/run/reference_run.hpp"
 #include "integration/tools/command/run/rendered_frame.hpp"
 #include "integration/tools/command/run/surface_warnings.hpp"
 #include "integration/tools/command/run/trace.hpp"
-#include "integration/tools/command/run/truth_run.hpp"
-#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 #include "integration/tools/files/exr.hpp"
 #include "integration/tools/files/png.hpp"
 #include "integration/tools/files/roots.hpp"
@@ -49,7 +49,7 @@ struct RenderRun {
   PassTimes graph_times{}, host_times{};
   ExposureMeter exposure{};
   uint32_t frames = 0;
-  TruthFrame last{}; // with what came out for it:
+  ReferenceFrame last{}; // with what came out for it:
   std::vector<float> last_scattered{};
   CaptureWriter capture{};
   bool textured_before = false;
@@ -80,7 +80,7 @@ demo::Result<> start(RenderRun& run, const demo::RenderInfo& info) {
 // Green by samples, up to the most that a graph takes by default; red where a surface was not to be seen in
 // the frame before; dim where there is subsurface and no sample; black where there is none.
 std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
-  constexpr float most_samples = 64, dim = 0.25f;
+  constexpr float max_samples = 64, dim = 0.25f;
   std::vector<uint8_t> rgb(frame.display.size());
   for (size_t i = 0; i < frame.inputs.profile.texels.size(); ++i) {
     if (!(frame.inputs.profile.texels[i] > 0)) continue;
@@ -89,7 +89,7 @@ std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
       rgb[3 * i + c] = static_cast<uint8_t>(dim * static_cast<float>(frame.display[3 * i + c]));
     // The square root keeps one sample apart from none.
     if (sampled[0] > 0)
-      rgb[3 * i + 1] = static_cast<uint8_t>(255 * std::sqrt(std::min(sampled[0] / most_samples, 1.0f)));
+      rgb[3 * i + 1] = static_cast<uint8_t>(255 * std::sqrt(std::min(sampled[0] / max_samples, 1.0f)));
     if (sampled[3] > 0.5f) rgb[3 * i] = 255;
   }
   return rgb;
@@ -100,11 +100,11 @@ std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
 std::vector<uint8_t> skips_picture(const demo::FrameOutputs& frame) {
   constexpr std::array<std::array<float, 3>, 4> tints{
       {{0.25f, 0.25f, 0.25f}, {0.3f, 1, 0.3f}, {0.3f, 0.3f, 1}, {1, 1, 0.3f}}};
-  constexpr float least = 64; // of 255, so that dark tiles can be told apart, too
+  constexpr float minimum = 64; // of 255, so that dark tiles can be told apart, too
   std::vector<uint8_t> rgb(frame.display.size());
   for (size_t i = 0; i < rgb.size() / 3; ++i) {
     const auto tile = std::min(static_cast<size_t>(frame.skips.texels[2 * i]), tints.size() - 1);
-    const float floor = tile == 0 ? 0 : least;
+    const float floor = tile == 0 ? 0 : minimum;
     for (size_t c = 0; c < 3; ++c)
       rgb[3 * i + c] = static_cast<uint8_t>(tints[tile][c] *
                                             (floor + (255 - floor) / 255 * float(frame.display[3 * i + c])));
@@ -160,7 +160,7 @@ demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
   if (!run.options.trace.empty()) run.trace.add(frame);
   run.by_rays = frame.choice && scatters_by_rays(frame.choice->technique);
   run.exposure.add(captured->lighting.values, captured->profile);
-  run.last = make_truth_frame(*captured);
+  run.last = make_reference_frame(*captured);
   if (run.transmission) add_transmission(*captured, run.last);
   run.last_scattered = frame.scattered.texels;
   run.progress.update(++run.frames);
@@ -210,15 +210,15 @@ ExitCode report(RenderRun& run) {
   if (!run.choices.empty()) text += run.choices.text() + '\n';
   const std::string no_error = why_no_error(run);
   if (no_error.empty()) {
-    const TruthFrame& last = run.last;
-    const subsurface::TruthInput input = last.input();
+    const ReferenceFrame& last = run.last;
+    const subsurface::ReferenceInput input = last.input();
     const std::vector<uint32_t> pixels =
         subsurface::stratified_subset(last.width, last.height, last.profile, run.options.subset);
-    const auto truth = run_truth(run.session, "truth", input, pixels);
-    if (!truth) return fail(run.session, ExitCode::interrupted, "stopped");
+    const auto reference = run_reference(run.session, "truth", input, pixels);
+    if (!reference) return fail(run.session, ExitCode::interrupted, "stopped");
     const double exposure = run.exposure.result();
     const uint64_t population = subsurface_pixels(last.profile);
-    const ErrorFigures figures = measure_error(run.last_scattered, *truth, pixels, exposure, population);
+    const ErrorFigures figures = measure_error(run.last_scattered, *reference, pixels, exposure, population);
     const double d_px = median_d_px(input);
     text += format_error(figures, fmt::format("frame {}", run.frames - 1), population, exposure, d_px);
     error_json = error_as_json(figures, population, exposure, d_px);
@@ -260,7 +260,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.height = options.size.height;
   engine.frames = options.frames;
   engine.budget_ms = options.budget_ms;
-  engine.metered = options.metered;
+  engine.deterministic = options.deterministic;
   engine.taa = options.taa;
   engine.sampling = options.debug == RenderOptions::Debug::samples;
   engine.skips = options.debug == RenderOptions::Debug::skips;
@@ -294,7 +294,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     if (!compile_generic(*loaded, options.size, choices, diagnostics))
       return fail_graph(session, options.graph, diagnostics);
     engine.graph = options.graph;
-    host_passes.emplace(loaded->host_kinds);
+    host_passes.emplace(loaded->host_pass_types);
     engine.hooks = host_passes->hooks();
     for (const auto& [name, text] : loaded->overlays)
       engine.overlays.push_back({name, text});
@@ -309,17 +309,17 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     engine.settings = settings_as_json(loaded->graph, options.settings);
     textured = textured_before(loaded->graph, choices);
     transmission = transmits(loaded->graph, choices);
-  } else if (!options.settings.empty() || !options.parts.overlays.empty() || !options.parts.kinds.empty() ||
-             !options.shaders.empty()) {
-    return fail(session, ExitCode::usage, "--set, --overlay, --kinds and --shaders need a graph");
+  } else if (!options.settings.empty() || !options.parts.overlays.empty() ||
+             !options.parts.pass_types.empty() || !options.shaders.empty()) {
+    return fail(session, ExitCode::usage, "--set, --overlay, --pass-types and --shaders need a graph");
   }
 
   RenderRun run{.session = session,
-          .options = options,
-          .progress =
-              Progress(progress_style(session.quiet, session.json), "render", "frame", options.frames),
-          .textured_before = textured,
-          .transmission = transmission};
+                .options = options,
+                .progress =
+                    Progress(progress_style(session.quiet, session.json), "render", "frame", options.frames),
+                .textured_before = textured,
+                .transmission = transmission};
   demo::RenderCallbacks callbacks;
   callbacks.on_start = [&](const demo::RenderInfo& info) { return start(run, info); };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) { return take_frame(run, frame); };

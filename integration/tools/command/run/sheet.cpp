@@ -79,8 +79,8 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
                 fmt::format("the sheet would have more than {} pixels along a side; use a smaller --size",
                             longest_side));
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> known = load_kinds(options.kinds, diagnostics);
-  if (!known) return fail(session, ExitCode::problems, "the pass kinds cannot be used", &diagnostics);
+  const std::optional<LoadedGraph> known = load_pass_types(options.pass_types, diagnostics);
+  if (!known) return fail(session, ExitCode::problems, "the pass types cannot be used", &diagnostics);
   Sheet sheet(options.size, rows, columns);
   Progress progress(progress_style(session.quiet, session.json), "sheet", "picture",
                     static_cast<uint32_t>(rows * columns));
@@ -91,7 +91,7 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
         sheet.put(row, column, without);
         continue;
       }
-      HostPasses host_passes(known->host_kinds);
+      HostPasses host_passes(known->host_pass_types);
       demo::RenderOptions engine;
       engine.hooks = host_passes.hooks();
       engine.scene = options.scene;

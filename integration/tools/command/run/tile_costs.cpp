@@ -66,28 +66,28 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<cons
   double everywhere = 0, per_step = 0; // a pixel of every scattering tile; of one with a step of samples
   double first_step = 0;               // samples
   for (const PlanPass& pass : plan.passes) {
-    const PassKind& kind = loaded.kinds[pass.kind];
+    const PassType& type = loaded.pass_types[pass.type];
     std::vector<SettingValue> own;
     double finer = 1; // texels of level 0 for one of the pass's
-    for (size_t i = 0; i < kind.settings.size(); ++i) {
+    for (size_t i = 0; i < type.settings.size(); ++i) {
       own.push_back(plan.settings[pass.first_setting + i].value);
-      if (kind.settings[i].name == "level") finer = std::exp2(2.0 * double(own.back().integer));
+      if (type.settings[i].name == "level") finer = std::exp2(2.0 * double(own.back().integer));
     }
-    subsurface::ReadsQuestion question{own, std::vector<bool>(kind.ports.size(), false), {d, d, d}, tables};
+    subsurface::ReadsQuestion question{own, std::vector<bool>(type.ports.size(), false), {d, d, d}, tables};
     for (uint32_t a = 0; a < pass.access_count; ++a)
       question.bound[plan.accesses[pass.first_access + a].port] = true;
-    const auto reads = subsurface::image_reads(kind, question);
+    const auto reads = subsurface::image_reads(type, question);
     if (!reads) continue;
-    const bool by_tile = find_port(kind, "shares", PortSide::read) >= 0;
+    const bool by_tile = find_port(type, "samples_per_tile", PortSide::read) >= 0;
     if (by_tile) { // counted at twice the first step's samples
-      question.sampled_share = 0;
-      const double without = subsurface::image_reads(kind, question)->per_invocation;
+      question.sampled_fraction = 0;
+      const double without = subsurface::image_reads(type, question)->per_invocation;
       out.reads_per_sample = (reads->per_invocation - without) / reads->samples;
       first_step = reads->samples / 2;
       per_step += without;
-    } else if (kind.dispatch == DispatchShape::over_tiles) {
+    } else if (type.dispatch == DispatchShape::over_tiles) {
       everywhere += reads->per_invocation / finer;
-    } else if (kind.dispatch == DispatchShape::over_written) {
+    } else if (type.dispatch == DispatchShape::over_written) {
       out.reads_beside += reads->per_invocation * written_texels(plan, pass);
     } else {
       out.reads_beside += reads->per_invocation * tile_pixels * double(choice.view_tiles);

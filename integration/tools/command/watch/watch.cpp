@@ -37,11 +37,11 @@ struct Watch {
 
 // "a.json, b.json and 2 more"
 std::string list_files(const std::vector<std::string>& files) {
-  constexpr size_t most = 3;
+  constexpr size_t maximum = 3;
   std::string text;
-  for (size_t i = 0; i < std::min(files.size(), most); ++i)
+  for (size_t i = 0; i < std::min(files.size(), maximum); ++i)
     text += (i == 0 ? "" : ", ") + files[i];
-  return files.size() > most ? fmt::format("{} and {} more", text, files.size() - most) : text;
+  return files.size() > maximum ? fmt::format("{} and {} more", text, files.size() - maximum) : text;
 }
 
 // Graph, overlays and what they include, scene and profiles, as far as they can be read. The plan, with
@@ -49,7 +49,7 @@ std::string list_files(const std::vector<std::string>& files) {
 std::optional<SavedPlan> look_at_files(Watch& watch) {
   const WatchOptions& options = watch.options;
   std::vector<std::string> files = {options.scene, options.graph};
-  for (const auto* named : {&options.parts.overlays, &options.parts.kinds})
+  for (const auto* named : {&options.parts.overlays, &options.parts.pass_types})
     files.insert(files.end(), named->begin(), named->end());
   Diagnostics of_scene;
   if (const auto scene = demo::read_scene(options.scene, of_scene, options.parts.roots))
@@ -101,7 +101,7 @@ std::vector<std::string> render_line(const Watch& watch) {
   add("--overlay", o.parts.overlays);
   if (compiles_shaders(watch)) add("--shaders", {o.shaders});
   add("--root", o.parts.roots);
-  add("--kinds", o.parts.kinds);
+  add("--pass-types", o.parts.pass_types);
   for (const auto& [name, value] : o.settings)
     line.insert(line.end(), {"--set", name + "=" + value});
   return line;

@@ -28,7 +28,7 @@ function access_list(title, accesses, plan, choose) {
 
 export function pass_details(plan, declared, time, tools) {
   const pass = plan.passes.find((one) => one.name === declared.name);
-  const head = [h('h2', null, declared.name), h('p', { class: 'quiet' }, `pass of kind ${declared.kind}`), declared.note && h('p', null, declared.note),
+  const head = [h('h2', null, declared.name), h('p', { class: 'quiet' }, `pass of type ${declared.kind}`), declared.note && h('p', null, declared.note),
     tools.source_button(declared)];
   if (!pass) return [...head, h('p', { class: 'off' }, 'Does not run with these settings.'), reason_list(plan, 'pass', declared.name)];
   const uses = accesses_of(pass), reasons = reasons_by_barrier(plan);

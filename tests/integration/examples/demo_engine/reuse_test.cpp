@@ -1,7 +1,7 @@
 // Paths that frames and pixels share, on a device: without bias, without ghosts, without what was before a
 // cut. Periods of a sequence are restarts: each has a history and random numbers of its own. The truth is the
 // graph's own paths without reuse, many of them, which rays_test.cpp holds against a sampler of another kind.
-#include "tests/framegraph/test_tier.hpp"
+#include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/examples/demo_engine/moving_sheet.hpp"
 #include "tests/integration/examples/demo_engine/ray_queries.hpp"
 #include "tests/passes/restir/statistics.hpp"
@@ -19,17 +19,17 @@ namespace {
 using dermis::restir::testing::Mean;
 using dermis::restir::testing::mean_of;
 
-constexpr size_t least_pixels = 20; // of a region
+constexpr size_t min_pixels = 20; // of a region
 constexpr double confidence_cap = 20;
 
-uint32_t tier(uint32_t quick, uint32_t full) {
-  return static_cast<uint32_t>(dermis::testing::seeds_of_tier(quick, full));
+uint32_t quality(uint32_t quick, uint32_t full) {
+  return static_cast<uint32_t>(dermis::testing::seeds_to_try(quick, full));
 }
 
-const uint32_t side = tier(32, 64); // pixels of a picture
+const uint32_t side = quality(32, 64); // pixels of a picture
 
 std::vector<std::string> shifts() { // of tests that judge a frame after something changed
-  if (tier(0, 1) != 0) return {"delayed", "reconnection", "hybrid", "sequential"};
+  if (quality(0, 1) != 0) return {"delayed", "reconnection", "hybrid", "sequential"};
   return {"reconnection"}; // whose paths keep the light that they had, but for what restir.temporal does
 }
 
@@ -85,7 +85,7 @@ std::vector<std::vector<double>> lights_of(const std::vector<FrameOutputs>& fram
     for (uint32_t phase = judged_from; phase < judged_to; ++phase) {
       const auto regions = regions_of(frames[phase]); // the same in each period
       for (size_t r = 0; r < 5; ++r)
-        if (regions[r].size() >= least_pixels)
+        if (regions[r].size() >= min_pixels)
           sums[r] += mean_over(frames[first + phase].scattered, regions[r]);
     }
     for (size_t r = 0; r < 5; ++r)
@@ -97,10 +97,11 @@ std::vector<std::vector<double>> lights_of(const std::vector<FrameOutputs>& fram
 struct Judged {
   double worst = 0, largest = 0, spread = 0; // in sigma; relative; relative sigma of the whole picture
 };
-Judged judge(const std::vector<std::vector<double>>& found, const std::vector<std::vector<double>>& truth) {
+Judged judge(const std::vector<std::vector<double>>& found,
+             const std::vector<std::vector<double>>& reference) {
   Judged judged;
   for (size_t r = 0; r < found.size(); ++r) {
-    const Mean one = mean_of(found[r]), other = mean_of(truth[r]);
+    const Mean one = mean_of(found[r]), other = mean_of(reference[r]);
     if (!(other.mean > 0)) continue;
     judged.worst = std::max(judged.worst, std::abs(deviation(one, other)));
     judged.largest = std::max(judged.largest, std::abs(one.mean / other.mean - 1));
@@ -109,10 +110,10 @@ Judged judge(const std::vector<std::vector<double>>& found, const std::vector<st
   return judged;
 }
 
-double square_of(const FrameOutputs& frame, const std::vector<double>& truth) {
+double square_of(const FrameOutputs& frame, const std::vector<double>& reference) {
   double sum = 0;
-  for (size_t i = 0; i < truth.size(); ++i)
-    sum += std::pow(luminance(frame.scattered, i) - truth[i], 2);
+  for (size_t i = 0; i < reference.size(); ++i)
+    sum += std::pow(luminance(frame.scattered, i) - reference[i], 2);
   return sum / double(regions_of(frame)[0].size());
 }
 
@@ -122,42 +123,42 @@ Motion walking_camera() {
   return motion;
 }
 
-constexpr uint32_t truth_periods = 10, truth_samples = 64;
+constexpr uint32_t reference_periods = 10, reference_samples = 64;
 const Way alone = {"none", "reconnection"};
 
 // 3 sigma over all tests, and sigma small enough to see something.
 void expect_no_bias(const std::vector<std::vector<double>>& found,
-                    const std::vector<std::vector<double>>& truth, int tests, const std::string& name) {
-  const Judged judged = judge(found, truth);
+                    const std::vector<std::vector<double>>& reference, int tests, const std::string& name) {
+  const Judged judged = judge(found, reference);
   std::printf("%-32s %.2f sigma, %.2f %% off, 1 sigma is %.2f %%\n", name.c_str(), judged.worst,
               100 * judged.largest, 100 * judged.spread);
   EXPECT_LT(judged.worst,
-            dermis::restir::testing::three_sigma_limit(static_cast<int>(truth_periods) - 1, tests))
+            dermis::restir::testing::three_sigma_limit(static_cast<int>(reference_periods) - 1, tests))
       << name;
   EXPECT_LT(judged.spread, 0.06) << name;
 }
 
 TEST_F(ReuseWithRayQueries, HasNoBiasWithAnyShiftUnderAMovingCamera) {
   const Motion motion = walking_camera();
-  const auto truth_frames = frames_of(motion, alone, truth_periods, truth_samples);
-  ASSERT_EQ(truth_frames.size(), truth_periods * motion.period);
-  const auto truth = lights_of(truth_frames, motion, 0, motion.period);
+  const auto reference_frames = frames_of(motion, alone, reference_periods, reference_samples);
+  ASSERT_EQ(reference_frames.size(), reference_periods * motion.period);
+  const auto reference = lights_of(reference_frames, motion, 0, motion.period);
   std::vector<double> last(size_t{side} * side); // the truth of the last frame of a period
-  for (size_t first = 0; first < truth_frames.size(); first += motion.period)
+  for (size_t first = 0; first < reference_frames.size(); first += motion.period)
     for (size_t i = 0; i < last.size(); ++i)
-      last[i] += luminance(truth_frames[first + motion.period - 1].scattered, i) / truth_periods;
+      last[i] += luminance(reference_frames[first + motion.period - 1].scattered, i) / reference_periods;
 
   std::vector<Way> ways = {alone};
   for (const char* shift : {"reconnection", "delayed", "hybrid", "sequential"})
     for (const char* reuse : {"temporal", "spatial", "spatiotemporal"})
-      if (tier(0, 1) != 0 || reuse == std::string("spatiotemporal") || shift == std::string("delayed"))
+      if (quality(0, 1) != 0 || reuse == std::string("spatiotemporal") || shift == std::string("delayed"))
         ways.push_back({reuse, shift});
-  const uint32_t periods = tier(10, 40);
+  const uint32_t periods = quality(10, 40);
   double error_alone = 0;
   for (const Way& way : ways) {
     const auto frames = frames_of(motion, way, periods);
     ASSERT_EQ(frames.size(), periods * motion.period);
-    expect_no_bias(lights_of(frames, motion, 0, motion.period), truth, static_cast<int>(5 * ways.size()),
+    expect_no_bias(lights_of(frames, motion, 0, motion.period), reference, static_cast<int>(5 * ways.size()),
                    way.shift + " " + way.reuse);
     double error = 0;
     for (size_t first = 0; first < frames.size(); first += motion.period)
@@ -204,21 +205,22 @@ TEST_F(ReuseWithRayQueries, FollowsALightThatJumpsInTheFirstFrame) {
   motion.light = [](uint32_t phase) {
     return phase < 5 ? glm::dvec3(0.02, 0.03, -0.15) : glm::dvec3(-0.06, -0.05, -0.09);
   };
-  const auto truth = lights_of(frames_of(motion, alone, truth_periods, truth_samples), motion, 5, 6);
+  const auto reference =
+      lights_of(frames_of(motion, alone, reference_periods, reference_samples), motion, 5, 6);
   for (const std::string& shift : shifts())
-    expect_no_bias(lights_of(frames_of(motion, {"temporal", shift}, tier(20, 96)), motion, 5, 6), truth, 20,
-                   "light jumps, " + shift);
+    expect_no_bias(lights_of(frames_of(motion, {"temporal", shift}, quality(20, 96)), motion, 5, 6),
+                   reference, 20, "light jumps, " + shift);
 }
 
 TEST_F(ReuseWithRayQueries, HasNoBiasWhereAnObjectMoves) {
   Motion motion;
   motion.lobe = [](uint32_t phase) { return glm::dvec3(-0.022 + 0.003 * phase, -0.012, 0.012); };
-  const auto truth =
-      lights_of(frames_of(motion, alone, truth_periods, truth_samples), motion, 0, motion.period);
+  const auto reference =
+      lights_of(frames_of(motion, alone, reference_periods, reference_samples), motion, 0, motion.period);
   for (const std::string& shift : shifts())
     expect_no_bias(
-        lights_of(frames_of(motion, {"spatiotemporal", shift}, tier(10, 40)), motion, 0, motion.period),
-        truth, 20, "object moves, " + shift);
+        lights_of(frames_of(motion, {"spatiotemporal", shift}, quality(10, 40)), motion, 0, motion.period),
+        reference, 20, "object moves, " + shift);
 }
 
 // What stood before the light is seen to be gone by new paths alone; history, which knew none, counts for at
@@ -230,13 +232,13 @@ TEST_F(ReuseWithRayQueries, ForgetsAShadowAsFastAsTheCapAllows) {
   motion.shield = [](uint32_t phase) { return glm::dvec3(0, phase < shaded ? 0 : 5, -0.05); };
   Motion bare;
   bare.period = 1;
-  const auto truth = frames_of(bare, alone, truth_periods, truth_samples);
+  const auto reference = frames_of(bare, alone, reference_periods, reference_samples);
   for (const std::string& shift : shifts()) {
     const auto frames = frames_of(motion, {"temporal", shift}, 1);
     ASSERT_EQ(frames.size(), shaded + lit);
     const auto region = regions_of(frames[0])[2]; // right of the lobe
     std::vector<double> lights;
-    for (const FrameOutputs& frame : truth)
+    for (const FrameOutputs& frame : reference)
       lights.push_back(mean_over(frame.scattered, region));
     const double whole = mean_of(lights).mean;
     EXPECT_LT(mean_over(frames[shaded - 1].scattered, region), 0.2 * whole) << "it is shaded";

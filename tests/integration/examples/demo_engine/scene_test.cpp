@@ -25,8 +25,8 @@ std::string scene_with(const std::string& camera, const std::string& more = "") 
 }
 const std::string plain_camera = R"({ "position": [0, 0, 2], "target": [0, 0, 0], "vertical_fov": 30 })";
 
-void expect_refused(const std::string& text, dermis::DiagnosticId id, uint32_t line,
-                    const std::string& words) {
+void expect_rejected(const std::string& text, dermis::DiagnosticId id, uint32_t line,
+                     const std::string& words) {
   dermis::Diagnostics diagnostics;
   EXPECT_FALSE(parse_scene("scenes/s.json", text, diagnostics)) << text;
   ASSERT_FALSE(diagnostics.list.empty());
@@ -125,26 +125,26 @@ TEST_F(SceneFolders, NamesThatNoSystemTakesAreRefused) {
 
 TEST(SceneFile, MistakesAreNamedWithTheirPlace) {
   using dermis::DiagnosticId;
-  expect_refused("{", DiagnosticId::syntax, 1, "");
-  expect_refused(R"({ "name": "s" })", DiagnosticId::missing_key, 1, "dermis_scene");
-  expect_refused(scene_with(plain_camera, R"(, "colour": [1, 1, 1])"), DiagnosticId::unknown_key, 4,
-                 "colour");
-  expect_refused(scene_with(plain_camera, R"(, "pattern": "wood")"), DiagnosticId::invalid_value, 4, "wood");
-  expect_refused(scene_with(R"({ "position": [0, 0], "target": [0, 0, 0], "vertical_fov": 30 })"),
-                 DiagnosticId::wrong_type, 3, "position");
-  expect_refused(scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 0 })"),
-                 DiagnosticId::out_of_range, 3, "vertical_fov");
-  expect_refused(
+  expect_rejected("{", DiagnosticId::syntax, 1, "");
+  expect_rejected(R"({ "name": "s" })", DiagnosticId::missing_key, 1, "dermis_scene");
+  expect_rejected(scene_with(plain_camera, R"(, "colour": [1, 1, 1])"), DiagnosticId::unknown_key, 4,
+                  "colour");
+  expect_rejected(scene_with(plain_camera, R"(, "pattern": "wood")"), DiagnosticId::invalid_value, 4, "wood");
+  expect_rejected(scene_with(R"({ "position": [0, 0], "target": [0, 0, 0], "vertical_fov": 30 })"),
+                  DiagnosticId::wrong_type, 3, "position");
+  expect_rejected(scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 0 })"),
+                  DiagnosticId::out_of_range, 3, "vertical_fov");
+  expect_rejected(
       scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 30, "near": 30 })"),
       DiagnosticId::scene_range, 3, "near plane");
-  expect_refused(scene_with(plain_camera, R"(, "profile": "skim")").replace(0, 0, ""),
-                 DiagnosticId::duplicate_key, 4, "profile");
+  expect_rejected(scene_with(plain_camera, R"(, "profile": "skim")").replace(0, 0, ""),
+                  DiagnosticId::duplicate_key, 4, "profile");
 }
 
 TEST(SceneFile, AnUnknownProfileListsTheKnownOnes) {
   std::string text = scene_with(plain_camera);
   text.replace(text.rfind("\"skin\""), 6, "\"wood\"");
-  expect_refused(text, dermis::DiagnosticId::scene_profile, 4, "'skin'");
+  expect_rejected(text, dermis::DiagnosticId::scene_profile, 4, "'skin'");
 }
 
 TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
@@ -160,10 +160,10 @@ TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
   ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
   EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 0.5), 1.5);
   EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 9.0), 3.0);
-  expect_refused(lit(R"({ "keys": [[1, 1], [1, 3]] })"), DiagnosticId::scene_range, 4, "ascend");
-  expect_refused(lit(R"({ "keys": [[0, -1]] })"), DiagnosticId::out_of_range, 4, "-1");
-  expect_refused(lit(R"({ "sine": { "mean": 1, "amplitude": 2, "hertz": 5 } })"), DiagnosticId::scene_range,
-                 4, "swings");
+  expect_rejected(lit(R"({ "keys": [[1, 1], [1, 3]] })"), DiagnosticId::scene_range, 4, "ascend");
+  expect_rejected(lit(R"({ "keys": [[0, -1]] })"), DiagnosticId::out_of_range, 4, "-1");
+  expect_rejected(lit(R"({ "sine": { "mean": 1, "amplitude": 2, "hertz": 5 } })"), DiagnosticId::scene_range,
+                  4, "swings");
 }
 
 TEST(SceneFile, MoreShadowMapsThanThereIsRoomForAreRefused) {
@@ -172,7 +172,7 @@ TEST(SceneFile, MoreShadowMapsThanThereIsRoomForAreRefused) {
     lights += std::string(i ? "," : "") + R"({ "type": "point", "position": [0, 1, 0], "intensity": 1 })";
   std::string text = scene_with(plain_camera);
   text.insert(text.rfind('}'), ", \"lights\": [" + lights + "]");
-  expect_refused(text, dermis::DiagnosticId::scene_range, 4, "30 shadow maps");
+  expect_rejected(text, dermis::DiagnosticId::scene_range, 4, "30 shadow maps");
 }
 
 Scene scene_seen_by(bool orthographic) {

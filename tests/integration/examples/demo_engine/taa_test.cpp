@@ -77,7 +77,7 @@ double rmse(const FloatImage& a, const FloatImage& b) {
 
 TEST_F(TemporalAntiAliasing, APictureThatRestsComesCloserToOneOfManySamplesAPixel) {
   constexpr uint32_t width = 70, height = 45, side = 8;
-  const FloatImage truth =
+  const FloatImage reference =
       smaller(colors_of(options(resting_camera, width * side, height * side)).front(), side);
   RenderOptions resting = options(resting_camera, width, height);
   const FloatImage single = colors_of(resting).front();
@@ -85,10 +85,10 @@ TEST_F(TemporalAntiAliasing, APictureThatRestsComesCloserToOneOfManySamplesAPixe
   resting.frames = 9; // before the cut
   resting.first_frame = 0;
   const FloatImage resolved = colors_of(resting).back();
-  RecordProperty("single", std::to_string(rmse(single, truth)));
-  RecordProperty("resolved", std::to_string(rmse(resolved, truth)));
+  RecordProperty("single", std::to_string(rmse(single, reference)));
+  RecordProperty("resolved", std::to_string(rmse(resolved, reference)));
   // Regression bound: it follows the product.
-  EXPECT_LT(rmse(resolved, truth), 0.6 * rmse(single, truth));
+  EXPECT_LT(rmse(resolved, reference), 0.6 * rmse(single, reference));
 }
 
 TEST_F(TemporalAntiAliasing, TheFirstFrameAfterACutShowsNothingOfWhatWasBefore) {

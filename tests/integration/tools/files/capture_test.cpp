@@ -1,6 +1,6 @@
 #include "integration/tools/files/bytes.hpp"
 #include "integration/tools/files/capture.hpp"
-#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 #include "integration/tools/files/exr.hpp"
 
 #include <gmock/gmock.h>
@@ -97,8 +97,8 @@ struct Captures : ::testing::Test {
     return all;
   }
   // Reading must fail with this diagnostic at this JSON pointer, and say this.
-  void expect_refused(const fs::path& frame, DiagnosticId id, const std::string& pointer,
-                      const std::string& text) {
+  void expect_rejected(const fs::path& frame, DiagnosticId id, const std::string& pointer,
+                       const std::string& text) {
     EXPECT_FALSE(read_frame(frame, shipped, diagnostics));
     ASSERT_FALSE(diagnostics.list.empty());
     EXPECT_EQ(diagnostics.list[0].id, id) << messages();
@@ -141,15 +141,15 @@ TEST_F(Captures, ReturnWhatWasWrittenBitForBit) {
 TEST_F(Captures, ThicknessAndTheLightBehindComeTogether) {
   const fs::path frame = write(sample());
   fs::remove(frame / "back_lighting.exr");
-  expect_refused(frame, DiagnosticId::capture_picture, "", "'thickness.exr' and 'back_lighting.exr'");
+  expect_rejected(frame, DiagnosticId::capture_picture, "", "'thickness.exr' and 'back_lighting.exr'");
   EXPECT_EQ(diagnostics.count(Severity::error), 1u);
 }
 
 TEST_F(Captures, TransmissionAddsWhatComesThroughToTheTruthsLight) {
   CapturedFrame frame = sample();
   frame.scatter_scale = {};
-  const TruthFrame without = make_truth_frame(frame);
-  TruthFrame with = without;
+  const ReferenceFrame without = make_reference_frame(frame);
+  ReferenceFrame with = without;
   add_transmission(frame, with);
   const auto& shape = without.shapes[3];
   bool some = false;
@@ -199,7 +199,7 @@ TEST_F(Captures, OptionalPicturesMayBeAbsentAndRequiredOnesMayNot) {
     const fs::path again = write(frame, name);
     fs::remove(again / name);
     diagnostics = {};
-    expect_refused(again, DiagnosticId::capture_picture, "", name);
+    expect_rejected(again, DiagnosticId::capture_picture, "", name);
   }
 }
 
@@ -297,20 +297,20 @@ TEST_F(Captures, LightThatGraphsClampIsReported) {
 TEST_F(Captures, PicturesOfAnotherSizeAreRefused) {
   const fs::path folder = write(sample());
   ASSERT_TRUE(write_exr(folder / "albedo.exr", Image::sized(5, 4, 3), {"R", "G", "B"}, error));
-  expect_refused(folder, DiagnosticId::capture_picture_size, "/width", "5 x 4");
+  expect_rejected(folder, DiagnosticId::capture_picture_size, "/width", "5 x 4");
 }
 
 TEST_F(Captures, PicturesWithOtherChannelsAreRefused) {
   const fs::path folder = write(sample());
   ASSERT_TRUE(write_exr(folder / "lighting.exr", Image::sized(6, 4, 1), {"Y"}, error));
-  expect_refused(folder, DiagnosticId::capture_picture, "", "R,G,B");
+  expect_rejected(folder, DiagnosticId::capture_picture, "", "R,G,B");
 }
 
 TEST_F(Captures, ProfilesOfThePictureMustBeListed) {
   const fs::path folder = write(sample());
   change(folder, "\"id\": 3", "\"id\": 4");
-  expect_refused(folder, DiagnosticId::capture_profile, "/profiles",
-                 "12 pixels have profile 3, first at (0, 0)");
+  expect_rejected(folder, DiagnosticId::capture_profile, "/profiles",
+                  "12 pixels have profile 3, first at (0, 0)");
 }
 
 TEST_F(Captures, ProfileIdsAreWholeNumbers) {
@@ -318,7 +318,7 @@ TEST_F(Captures, ProfileIdsAreWholeNumbers) {
   Image ids = Image::sized(6, 4, 1);
   ids.values[7] = 0.5f;
   ASSERT_TRUE(write_exr(folder / "profile.exr", ids, {"id"}, error));
-  expect_refused(folder, DiagnosticId::capture_profile, "/profiles", "0.5 at pixel (1, 1)");
+  expect_rejected(folder, DiagnosticId::capture_profile, "/profiles", "0.5 at pixel (1, 1)");
 }
 
 TEST_F(Captures, ProfilesComeFromFilesToo) {
@@ -329,7 +329,7 @@ TEST_F(Captures, ProfilesComeFromFilesToo) {
   ASSERT_TRUE(frame) << messages();
   EXPECT_EQ(frame->description.profiles[0].profile.name, "skin");
   change(folder, "\"file\": \"skin\"", "\"file\": \"own.json\"");
-  expect_refused(folder, DiagnosticId::capture_profile, "/profiles/0/file", "own.json");
+  expect_rejected(folder, DiagnosticId::capture_profile, "/profiles/0/file", "own.json");
   fs::copy_file(shipped / "wax.json", folder / "own.json");
   diagnostics = {};
   frame = read_frame(folder, shipped, diagnostics);
@@ -348,7 +348,7 @@ TEST_F(Captures, NothingIsReadOutsideOfTheirFolder) {
     if (outside.starts_with("link")) fs::create_directory_symlink(root, folder / "link");
     change(folder, before, "\"file\": \"" + outside + "\"");
     before = "\"file\": \"" + outside + "\"";
-    expect_refused(folder, DiagnosticId::outside_root, "/profiles/0/file", "leads out of what may be read");
+    expect_rejected(folder, DiagnosticId::outside_root, "/profiles/0/file", "leads out of what may be read");
     diagnostics = {};
     EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{root.string()})) << messages();
   }
@@ -358,7 +358,7 @@ TEST_F(Captures, PicturesAndFramesThatAreLinksOutAreRefused) {
   const fs::path folder = write(sample()), other = write(sample(), "other");
   fs::remove(folder / "lighting.exr");
   fs::create_symlink(other / "lighting.exr", folder / "lighting.exr");
-  expect_refused(folder, DiagnosticId::outside_root, "", "lighting.exr");
+  expect_rejected(folder, DiagnosticId::outside_root, "", "lighting.exr");
   diagnostics = {};
   EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{(root / "other").string()})) << messages();
   fs::rename(folder / "albedo.exr", folder / "here.exr");
@@ -379,19 +379,19 @@ TEST_F(Captures, PicturesAndFramesThatAreLinksOutAreRefused) {
 TEST_F(Captures, AProfileIdIsGivenOnce) {
   const fs::path folder = write(sample());
   change(folder, "\"profiles\": [", "\"profiles\": [ { \"id\": 3, \"file\": \"skin\" },");
-  expect_refused(folder, DiagnosticId::capture_profile, "/profiles/1/id", "given twice");
+  expect_rejected(folder, DiagnosticId::capture_profile, "/profiles/1/id", "given twice");
 }
 
 TEST_F(Captures, WhatIsNoProjectionIsRefused) {
   const fs::path folder = write(sample());
   change(folder, "[1.1, 0, 0, 0", "[1.1, 0.5, 0, 0");
-  expect_refused(folder, DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned perspective");
+  expect_rejected(folder, DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned perspective");
 }
 
 TEST_F(Captures, TheKindOfProjectionMustAgreeWithTheMatrix) {
   const fs::path folder = write(sample());
   change(folder, "\"perspective\"", "\"orthographic\"");
-  expect_refused(folder, DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned orthographic");
+  expect_rejected(folder, DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned orthographic");
 }
 
 // The same frame in a left-handed view space: z of every view position and normal has the other sign.
@@ -453,7 +453,7 @@ TEST_F(Captures, ContradictingViewSpacesAreRefused) {
   CapturedFrame frame = sample();
   const auto refused = [&](const fs::path& folder, const char* pointer, const char* text) {
     diagnostics = {};
-    expect_refused(folder, DiagnosticId::capture_projection, pointer, text);
+    expect_rejected(folder, DiagnosticId::capture_projection, pointer, text);
     EXPECT_THAT(messages(), HasSubstr("\"view_space\": \"left_handed\""));
   };
   const fs::path right = write(frame, "right");
@@ -474,41 +474,41 @@ TEST_F(Captures, ContradictingViewSpacesAreRefused) {
 TEST_F(Captures, PixelPitchAndMatrixExcludeEachOther) {
   const fs::path folder = write(sample());
   change(folder, "\"perspective\"", "\"orthographic\", \"pixel_pitch_m\": 0.001");
-  expect_refused(folder, DiagnosticId::capture_projection, "/pixel_pitch_m", "give one");
+  expect_rejected(folder, DiagnosticId::capture_projection, "/pixel_pitch_m", "give one");
 }
 
 TEST_F(Captures, RectanglesStayInside) {
   const fs::path folder = write(sample());
   change(folder, "[1, 0, 5, 4]", "[2, 0, 5, 4]");
-  expect_refused(folder, DiagnosticId::capture_rectangle, "/render_rectangle", "inside 6 x 4");
+  expect_rejected(folder, DiagnosticId::capture_rectangle, "/render_rectangle", "inside 6 x 4");
 }
 
 TEST_F(Captures, UnknownKeysAreRefusedWithASuggestion) {
   const fs::path folder = write(sample());
   change(folder, "\"exposure\"", "\"exposur\"");
-  expect_refused(folder, DiagnosticId::unknown_key, "/exposur", "exposure");
+  expect_rejected(folder, DiagnosticId::unknown_key, "/exposur", "exposure");
 }
 
 TEST_F(Captures, TheVersionAndTheSizeAreRequired) {
   const fs::path folder = write(sample());
   change(folder, "\"dermis_capture\": 1", "\"dermis_capture\": 2");
-  expect_refused(folder, DiagnosticId::unsupported_version, "/dermis_capture", "2");
+  expect_rejected(folder, DiagnosticId::unsupported_version, "/dermis_capture", "2");
   change(folder, "\"dermis_capture\": 2", "\"dermis_capture\": 1");
   change(folder, "\"width\": 6", "\"width\": 0");
   diagnostics = {};
-  expect_refused(folder, DiagnosticId::out_of_range, "/width", "width");
+  expect_rejected(folder, DiagnosticId::out_of_range, "/width", "width");
 }
 
 TEST_F(Captures, TheTruthSeesTheRenderedPartAlone) {
   const CapturedFrame frame = sample();
-  const TruthFrame truth = make_truth_frame(frame);
-  EXPECT_EQ(truth.width, 5u);
-  EXPECT_EQ(truth.light.size(), 60u);
-  EXPECT_EQ(truth.light[0], frame.lighting.at(1, 0, 0));
-  EXPECT_EQ(truth.depth[5], frame.depth.at(1, 1, 0));
-  EXPECT_EQ(truth.profile[0], 3);
-  EXPECT_NEAR(truth.d_m[3][0], frame.description.profiles[0].profile.d_mm[0] * 1e-3, 1e-15);
-  EXPECT_EQ(subsurface::truth_everywhere(truth.input()).size(), 60u);
+  const ReferenceFrame reference = make_reference_frame(frame);
+  EXPECT_EQ(reference.width, 5u);
+  EXPECT_EQ(reference.light.size(), 60u);
+  EXPECT_EQ(reference.light[0], frame.lighting.at(1, 0, 0));
+  EXPECT_EQ(reference.depth[5], frame.depth.at(1, 1, 0));
+  EXPECT_EQ(reference.profile[0], 3);
+  EXPECT_NEAR(reference.d_m[3][0], frame.description.profiles[0].profile.d_mm[0] * 1e-3, 1e-15);
+  EXPECT_EQ(subsurface::reference_everywhere(reference.input()).size(), 60u);
 }
 
 } // namespace

@@ -82,7 +82,7 @@ struct Exr : ::testing::Test {
     EXPECT_TRUE(write_bytes(folder / "changed.exr", bytes, error));
     return folder / "changed.exr";
   }
-  void expect_refused(const fs::path& path, const std::string& why) {
+  void expect_rejected(const fs::path& path, const std::string& why) {
     EXPECT_FALSE(read_exr(path, single, error));
     EXPECT_THAT(error, HasSubstr(why));
   }
@@ -153,23 +153,23 @@ TEST_F(Exr, DataWindowsArePlacedInDisplayWindows) {
 
 TEST_F(Exr, WindowsThatDoNotMeetAreRefused) {
   const Box2i far_away(V2i(100, 0), V2i(131, 23));
-  expect_refused(write(header_of(small, far_away, Imf::ZIP_COMPRESSION)), "outside of its display window");
+  expect_rejected(write(header_of(small, far_away, Imf::ZIP_COMPRESSION)), "outside of its display window");
 }
 
 TEST_F(Exr, CompressionsThatAreNotReadAreNamed) {
   const fs::path path = write(header_of(small, small, Imf::ZIP_COMPRESSION));
   const std::string key("compression\0compression\0", 24);
-  expect_refused(change(path, key, 4, {10}), "its compression HTJ2K256 is not read; save it with ZIP");
-  expect_refused(change(path, key, 4, {11}), "HTJ2K32");
-  expect_refused(change(path, key, 4, {200}), "its compression (number 200) is not read");
+  expect_rejected(change(path, key, 4, {10}), "its compression HTJ2K256 is not read; save it with ZIP");
+  expect_rejected(change(path, key, 4, {11}), "HTJ2K32");
+  expect_rejected(change(path, key, 4, {200}), "its compression (number 200) is not read");
 }
 
 TEST_F(Exr, PartsAndDeepPixelsAreRefusedByName) {
   const fs::path path = write(header_of(small, small, Imf::ZIP_COMPRESSION));
   const std::string magic("\x76\x2f\x31\x01\x02", 5);
-  expect_refused(change(path, magic, 0, {0x10}), "several parts");
-  expect_refused(change(path, magic, 0, {0x08}), "deep");
-  expect_refused(change(path, magic, 0, {0x80}), "flags");
+  expect_rejected(change(path, magic, 0, {0x10}), "several parts");
+  expect_rejected(change(path, magic, 0, {0x08}), "deep");
+  expect_rejected(change(path, magic, 0, {0x80}), "flags");
 }
 
 TEST_F(Exr, SubsampledChannelsAreRefused) {
@@ -183,25 +183,25 @@ TEST_F(Exr, SubsampledChannelsAreRefused) {
     file.setFrameBuffer(source);
     file.writePixels(66);
   }
-  expect_refused(folder / "a.exr", "channel 'Y' is subsampled");
+  expect_rejected(folder / "a.exr", "channel 'Y' is subsampled");
 }
 
 TEST_F(Exr, SizesAreCheckedBeforeAllocation) {
   Imf::Header header = header_of(small, small, Imf::ZIP_COMPRESSION);
   header.setTileDescription(Imf::TileDescription(16, 16));
   const fs::path tiled = write(header);
-  expect_refused(change(tiled, std::string("tiles\0tiledesc\0", 15), 4, words({32769, 1})),
-                 "tiles measure 32769 x 1");
-  expect_refused(change(tiled, std::string("tiles\0tiledesc\0", 15), 4, words({32768, 32768})),
-                 "one of its chunks holds more than");
+  expect_rejected(change(tiled, std::string("tiles\0tiledesc\0", 15), 4, words({32769, 1})),
+                  "tiles measure 32769 x 1");
+  expect_rejected(change(tiled, std::string("tiles\0tiledesc\0", 15), 4, words({32768, 32768})),
+                  "one of its chunks holds more than");
 
   const fs::path path = write(header_of(small, small, Imf::DWAB_COMPRESSION));
   const std::string data("dataWindow\0box2i\0", 17), display("displayWindow\0box2i\0", 20);
-  expect_refused(change(path, data, 4, words({0, 0, 32767, 32767})), "channels hold more than");
-  expect_refused(change(path, data, 4, words({0, 0, 32768, 0})), "data window measures 32769 x 1");
-  expect_refused(change(path, display, 4, words({0, 0, 32767, 32767})), "display window holds more than");
-  expect_refused(change(path, display, 4, words({0, 0, 0, 70000})), "display window measures 1 x 70001");
-  expect_refused(change(path, data, 4, words({-2147483647, 0, 2147483647, 0})), "changed.exr");
+  expect_rejected(change(path, data, 4, words({0, 0, 32767, 32767})), "channels hold more than");
+  expect_rejected(change(path, data, 4, words({0, 0, 32768, 0})), "data window measures 32769 x 1");
+  expect_rejected(change(path, display, 4, words({0, 0, 32767, 32767})), "display window holds more than");
+  expect_rejected(change(path, display, 4, words({0, 0, 0, 70000})), "display window measures 1 x 70001");
+  expect_rejected(change(path, data, 4, words({-2147483647, 0, 2147483647, 0})), "changed.exr");
 }
 
 TEST_F(Exr, AttributesBeyondTheFileAreRefused) {
@@ -210,13 +210,13 @@ TEST_F(Exr, AttributesBeyondTheFileAreRefused) {
        {std::string("channels\0chlist\0", 16), std::string("dataWindow\0box2i\0", 17),
         std::string("lineOrder\0lineOrder\0", 20)})
     for (const int32_t size : {0x7fffffff, -1, 0x00100000})
-      expect_refused(change(path, key, 0, words({size})), "header is damaged or cut off");
+      expect_rejected(change(path, key, 0, words({size})), "header is damaged or cut off");
 }
 
 TEST_F(Exr, HeadersWithoutWindowsAreRefused) {
   const fs::path path = write(header_of(small, small, Imf::ZIP_COMPRESSION));
-  expect_refused(change(path, "dataWind", 0, {'o', 'x'}), "its header has no 'dataWindow'");
-  expect_refused(change(path, "displayWind", 0, {'o', 'x'}), "its header has no 'displayWindow'");
+  expect_rejected(change(path, "dataWind", 0, {'o', 'x'}), "its header has no 'dataWindow'");
+  expect_rejected(change(path, "displayWind", 0, {'o', 'x'}), "its header has no 'displayWindow'");
 }
 
 TEST_F(Exr, PicturesOfEveryCompressionMayBeDamaged) {
@@ -233,7 +233,7 @@ TEST_F(Exr, PicturesOfEveryCompressionMayBeDamaged) {
         error.clear();
         EXPECT_TRUE(read_exr(folder / "b.exr", single, error) || !error.empty()) << c;
         ASSERT_TRUE(write_bytes(folder / "b.exr", std::span(whole).first(at), error));
-        expect_refused(folder / "b.exr", "b.exr");
+        expect_rejected(folder / "b.exr", "b.exr");
       }
     }
 }

@@ -21,11 +21,11 @@ Image even(float r, float g, float b, uint32_t side = 32) {
   return image;
 }
 
-Image noise(uint32_t seed, float most = 1) {
+Image noise(uint32_t seed, float maximum = 1) {
   Image image = Image::sized(40, 24, 3);
   std::mt19937 generator(seed);
   for (float& value : image.values) // bits of the generator itself: distributions differ between libraries
-    value = most * static_cast<float>(generator() >> 8) / float(1u << 24);
+    value = maximum * static_cast<float>(generator() >> 8) / float(1u << 24);
   return image;
 }
 

@@ -10,10 +10,10 @@ namespace {
 
 TEST(Metrics, AConstantErrorIsItsOwnRmse) {
   const std::vector<float> image(3 * 100, 1.5f);
-  const std::vector<double> truth(3 * 100, 1.4);
+  const std::vector<double> reference(3 * 100, 1.4);
   std::vector<uint32_t> pixels(100);
   std::iota(pixels.begin(), pixels.end(), 0u);
-  const ErrorFigures figures = measure_error(image, truth, pixels, 0.5, 100);
+  const ErrorFigures figures = measure_error(image, reference, pixels, 0.5, 100);
   EXPECT_NEAR(figures.rmse, 0.05, 1e-8);
   EXPECT_NEAR(figures.psnr_db, 26.0206, 1e-4);
   EXPECT_NEAR(figures.max_error, 0.05, 1e-8);
@@ -24,19 +24,19 @@ TEST(Metrics, AConstantErrorIsItsOwnRmse) {
 
 TEST(Metrics, LuminanceWeighsTheChannels) {
   const std::vector<float> image = {1, 0, 0};
-  const std::vector<double> truth = {0, 0, 0};
+  const std::vector<double> reference = {0, 0, 0};
   const std::vector<uint32_t> pixels = {0};
-  const ErrorFigures figures = measure_error(image, truth, pixels, 1, 1);
+  const ErrorFigures figures = measure_error(image, reference, pixels, 1, 1);
   EXPECT_NEAR(figures.rmse, 0.2126, 1e-12);
   EXPECT_EQ(figures.rmse_rgb[0], 1);
 }
 
 TEST(Metrics, OnlyListedPixelsCount) {
   const std::vector<float> image = {9, 9, 9, 1, 1, 1, 9, 9, 9};
-  const std::vector<double> truth = {1, 1, 1};
+  const std::vector<double> reference = {1, 1, 1};
   const std::vector<uint32_t> pixels = {1};
-  EXPECT_EQ(measure_error(image, truth, pixels, 1, 3).rmse, 0);
-  EXPECT_EQ(measure_error(image, truth, pixels, 1, 3).psnr_db, max_psnr_db);
+  EXPECT_EQ(measure_error(image, reference, pixels, 1, 3).rmse, 0);
+  EXPECT_EQ(measure_error(image, reference, pixels, 1, 3).psnr_db, max_psnr_db);
 }
 
 TEST(Metrics, P99IsTheNearestRank) {
@@ -53,9 +53,9 @@ TEST(Metrics, P99IsTheNearestRank) {
 
 TEST(Metrics, NonFiniteResultsAreInfiniteErrors) {
   const std::vector<float> image = {NAN, 0, 0};
-  const std::vector<double> truth = {0, 0, 0};
+  const std::vector<double> reference = {0, 0, 0};
   const std::vector<uint32_t> pixels = {0};
-  const ErrorFigures figures = measure_error(image, truth, pixels, 1, 1);
+  const ErrorFigures figures = measure_error(image, reference, pixels, 1, 1);
   EXPECT_TRUE(std::isinf(figures.rmse));
   EXPECT_TRUE(std::isinf(figures.max_error));
   EXPECT_LT(figures.psnr_db, 0);

@@ -1,7 +1,7 @@
 #include "integration/tools/references/image_reads.hpp"
 
 #include "passes/common/environment.hpp"
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 namespace dermis::subsurface {
 namespace {
 
-const KindRegistry& kinds() {
-  static const KindRegistry registry = make_kinds();
+const PassTypeRegistry& pass_types() {
+  static const PassTypeRegistry registry = make_pass_types();
   return registry;
 }
 
@@ -19,34 +19,34 @@ const KindRegistry& kinds() {
 ImageReads reads_of(std::string_view kind_name, std::string_view setting = "", int64_t value = 0,
                     PerChannel d_px = {4, 2, 1}) {
   static const std::vector<float> tables = make_sap_tables({true, true}, {});
-  const PassKind& kind = kinds()[kinds().find(kind_name)];
+  const PassType& type = pass_types()[pass_types().find(kind_name)];
   std::vector<SettingValue> settings;
-  for (const KindSetting& one : kind.settings) {
+  for (const PassTypeSetting& one : type.settings) {
     settings.push_back(one.default_value);
     if (one.name == setting) settings.back().integer = value;
   }
-  const auto reads = image_reads(kind, {settings, std::vector<bool>(kind.ports.size(), true), d_px, tables});
+  const auto reads = image_reads(type, {settings, std::vector<bool>(type.ports.size(), true), d_px, tables});
   EXPECT_TRUE(reads.has_value()) << kind_name;
   return reads.value_or(ImageReads{});
 }
 
 TEST(ImageReads, AreKnownOfEveryKindThatSamplesAnImage) {
-  const std::vector<std::string_view> known = kinds_with_known_reads();
-  for (uint32_t i = 0; i < kinds().size(); ++i) {
-    const PassKind& kind = kinds()[KindId{i}];
-    const bool samples = std::any_of(kind.ports.begin(), kind.ports.end(),
+  const std::vector<std::string_view> known = pass_types_with_known_reads();
+  for (uint32_t i = 0; i < pass_types().size(); ++i) {
+    const PassType& type = pass_types()[PassTypeId{i}];
+    const bool samples = std::any_of(type.ports.begin(), type.ports.end(),
                                      [](const Port& port) { return port.usage == Usage::sampled_image; });
-    EXPECT_TRUE(!samples || std::count(known.begin(), known.end(), kind.name) == 1)
-        << "count the reads of " << kind.name << " in integration/tools/references/image_reads.cpp";
+    EXPECT_TRUE(!samples || std::count(known.begin(), known.end(), type.name) == 1)
+        << "count the reads of " << type.name << " in integration/tools/references/image_reads.cpp";
   }
   for (const std::string_view name : known)
-    EXPECT_TRUE(kinds().find(name).valid()) << name;
+    EXPECT_TRUE(pass_types().find(name).valid()) << name;
 }
 
 TEST(ImageReads, AreNoneWhereNoImageIsSampledAndSomeWhereOneIs) {
-  for (const std::string_view name : kinds_with_known_reads()) {
-    const PassKind& kind = kinds()[kinds().find(name)];
-    const bool samples = std::any_of(kind.ports.begin(), kind.ports.end(),
+  for (const std::string_view name : pass_types_with_known_reads()) {
+    const PassType& type = pass_types()[pass_types().find(name)];
+    const bool samples = std::any_of(type.ports.begin(), type.ports.end(),
                                      [](const Port& port) { return port.usage == Usage::sampled_image; });
     EXPECT_EQ(reads_of(name).per_invocation > 0, samples) << name;
   }
@@ -79,9 +79,9 @@ TEST(ImageReads, OfThePlainPyramidAreFourForEachLevelThatCounts) {
 }
 
 TEST(ImageReads, OfAKindThatNobodyCountedAreNotGuessed) {
-  PassKind kind = kinds()[KindId{0}];
-  kind.name = "subsurface.unheard_of";
-  EXPECT_FALSE(image_reads(kind, {}).has_value());
+  PassType type = pass_types()[PassTypeId{0}];
+  type.name = "subsurface.unheard_of";
+  EXPECT_FALSE(image_reads(type, {}).has_value());
 }
 
 } // namespace

@@ -17,26 +17,26 @@ function make_page(name, ...options) {
   return { file, url: pathToFileURL(file).href, bytes: statSync(file).size };
 }
 
-// A chain of sums with readers of earlier passes among them, of a pass kind of the host.
+// A chain of sums with readers of earlier passes among them, of a pass type of the host.
 function write_large_graph() {
   const kinds = join(out, 'kinds.json'), graph = join(out, 'large.json');
-  writeFileSync(kinds, JSON.stringify({ dermis_kinds: 1, kinds: [{ name: 'test.sum', ports: [
+  writeFileSync(kinds, JSON.stringify({ dermis_pass_types: 2, pass_types: [{ name: 'test.sum', ports: [
     { name: 'a', usage: 'sampled_image' }, { name: 'b', usage: 'sampled_image' }, { name: 'sum', usage: 'storage_image_write' }] }] }));
   const resources = {}, passes = [];
   const source = (i) => (i < 0 ? 'start' : `r${i}`);
   for (let i = 0; i < passes_of_large; ++i) {
     if (i + 1 < passes_of_large) resources[`r${i}`] = { format: 'rgba16f', size: 'view' };
-    passes.push({ pass: `sum_${i}`, kind: 'test.sum', read: { a: source(i - 1), b: source(i - 1 - (i * 7) % 40) },
+    passes.push({ pass: `sum_${i}`, type: 'test.sum', read: { a: source(i - 1), b: source(i - 1 - (i * 7) % 40) },
       write: { sum: i + 1 < passes_of_large ? `r${i}` : 'end' } });
   }
-  writeFileSync(graph, JSON.stringify({ dermis: 1, name: 'large', imports: { start: { format: 'rgba16f', size: 'view' } },
+  writeFileSync(graph, JSON.stringify({ dermis: 2, name: 'large', imports: { start: { format: 'rgba16f', size: 'view' } },
     resources: { ...resources, end: { format: 'rgba16f', size: 'view' } }, passes, exports: ['end'] }, null, 1));
-  return [graph, '--kinds', kinds];
+  return [graph, '--pass-types', kinds];
 }
 
 function write_hostile_graph() {
   const graph = join(out, '<img src=x onerror=window.hurt=1>.json');
-  writeFileSync(graph, JSON.stringify({ dermis: 1, name: 'hostile', note: hostile, imports: { light: { format: 'rgba16f', size: 'view', note: hostile } },
+  writeFileSync(graph, JSON.stringify({ dermis: 2, name: 'hostile', note: hostile, imports: { light: { format: 'rgba16f', size: 'view', note: hostile } },
     settings: { mode: { enum: ['a', 'b'], default: 'a', note: hostile } }, passes: [], exports: [] }, null, 1));
   return [graph];
 }

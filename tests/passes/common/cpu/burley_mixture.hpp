@@ -2,7 +2,7 @@
 // Radii of the mean of several Burley distributions: one stratified variable for channels of different d.
 // Mirrors shaders/afis/mixture.glsl in fp64. Thread: any.
 
-#include "passes/common/truth/pixel_kernel.hpp"
+#include "passes/common/reference/pixel_kernel.hpp"
 
 namespace dermis::subsurface {
 

@@ -10,13 +10,13 @@ namespace dermis::restir {
 
 namespace {
 
-constexpr double snorm_most = 32767;
+constexpr double snorm_max = 32767;
 
 uint32_t snorm(double x) {
-  return static_cast<uint32_t>(std::lround(std::clamp(x, -1.0, 1.0) * snorm_most)) & 0xffffu;
+  return static_cast<uint32_t>(std::lround(std::clamp(x, -1.0, 1.0) * snorm_max)) & 0xffffu;
 }
 double from_snorm(uint32_t half) {
-  return std::max(static_cast<int16_t>(half & 0xffffu) / snorm_most, -1.0);
+  return std::max(static_cast<int16_t>(half & 0xffffu) / snorm_max, -1.0);
 }
 double sign_of(double x) {
   return x >= 0 ? 1 : -1;
@@ -25,7 +25,7 @@ double sign_of(double x) {
 } // namespace
 
 double reach_in_d() {
-  static const double reach = subsurface::burley_inverse_survival(1 - probe_share, 1);
+  static const double reach = subsurface::burley_inverse_survival(1 - probe_fraction, 1);
   return reach;
 }
 
@@ -39,7 +39,7 @@ Vector3 scattering_profile(const Vector3& d, double r) {
   if (!(r <= reach)) return profile;
   for (size_t c = 0; c < 3; ++c)
     if (d[c] > 0)
-      profile[c] = subsurface::burley_R(std::max(r, least_radius_in_d * d[c]), d[c]) /
+      profile[c] = subsurface::burley_R(std::max(r, min_radius_in_d * d[c]), d[c]) /
                    subsurface::burley_cdf(reach, d[c]);
   return profile;
 }

@@ -19,8 +19,8 @@ struct Domain {
 
 // Probes reach to where this share of a channel's energy lies (KIT's implementation of Werner, Schuessler &
 // Dachsbacher 2024; subsurface.md R11).
-inline constexpr double probe_share = 0.999;
-// That radius for d = 1: 1 - probe_share = (e^-r + 3 e^(-r/3)) / 4.
+inline constexpr double probe_fraction = 0.999;
+// That radius for d = 1: 1 - probe_fraction = (e^-r + 3 e^(-r/3)) / 4.
 double reach_in_d();
 // Of the widest channel: light from further away does not count.
 double scattering_reach(const Vector3& d);
@@ -30,7 +30,7 @@ double scattering_reach(const Vector3& d);
 Vector3 scattering_profile(const Vector3& d, double r);
 
 // R is infinite at r = 0; radii below this many d count as it. Its share of the energy is 5e-7.
-inline constexpr double least_radius_in_d = 1e-6;
+inline constexpr double min_radius_in_d = 1e-6;
 
 // Three axes at right angles: the normal and two tangents (Duff et al. 2017, "Building an orthonormal basis,
 // revisited"); axis % 3.

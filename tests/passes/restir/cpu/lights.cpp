@@ -16,27 +16,27 @@ bool has_area(const Light& light) {
 void share_lights(std::span<Light> lights) {
   double local = 0;
   for (Light& light : lights) {
-    light.share = 0;
+    light.fraction = 0;
     if (has_area(light)) {
       light.area =
           length(cross(light.edge_u, light.edge_v)) * (light.type == LightType::triangle ? 0.5 : 1.0);
-      light.share = std::numbers::pi * light.area * luminance(light.emission); // diffuse, one side
+      light.fraction = std::numbers::pi * light.area * luminance(light.emission); // diffuse, one side
     } else if (light.type == LightType::point) {
       light.area = 1;
-      light.share = 4 * std::numbers::pi * luminance(light.emission);
+      light.fraction = 4 * std::numbers::pi * luminance(light.emission);
     }
-    local += light.share;
+    local += light.fraction;
   }
   double sum = 0;
   for (Light& light : lights) {
     if (light.type == LightType::directional && luminance(light.emission) > 0)
-      light.share = local > 0 ? local : 1;
-    sum += light.share;
+      light.fraction = local > 0 ? local : 1;
+    sum += light.fraction;
   }
   double until = 0;
   for (Light& light : lights) {
-    light.share = sum > 0 ? light.share / sum : 1.0 / double(lights.size());
-    light.until = until += light.share;
+    light.fraction = sum > 0 ? light.fraction / sum : 1.0 / double(lights.size());
+    light.until = until += light.fraction;
   }
 }
 
@@ -55,7 +55,7 @@ uint32_t pick_light(std::span<const Light> lights, double u) {
 }
 
 double light_density(const Light& light) {
-  return has_area(light) ? light.share / light.area : light.share;
+  return has_area(light) ? light.fraction / light.area : light.fraction;
 }
 
 Vector3 light_target(const Light& light, uint32_t place, const Vector3& from) {

@@ -16,8 +16,8 @@ enum class LightType : uint32_t { point, parallelogram, triangle, directional };
 struct Light {
   Vector3 position{}; // point: where it is; areas: a corner; directional: unit vector towards the light
   LightType type = LightType::point;
-  Vector3 edge_u{}; // areas: edges from the corner; the light shines where cross(edge_u, edge_v) points
-  double share = 1; // probability of being picked; those of all lights sum to 1
+  Vector3 edge_u{};    // areas: edges from the corner; the light shines where cross(edge_u, edge_v) points
+  double fraction = 1; // probability of being picked; those of all lights sum to 1
   Vector3 edge_v{};
   double area = 1;    // areas: theirs; directional: how far away its shadow rays end; point: 1
   Vector3 emission{}; // point: intensity; areas: radiance; directional: irradiance on a plane that faces it

@@ -24,17 +24,17 @@ std::array<double, 2> on_disc(const Domain& domain, uint32_t axis, const Vector3
 ProbeNumbers draw_numbers(const Vector3& d, const std::array<double, 4>& u) {
   ProbeNumbers numbers;
   double below = 0;
-  while (numbers.axis < 2 && u[0] >= below + probe_axis_share[numbers.axis])
-    below += probe_axis_share[numbers.axis++];
+  while (numbers.axis < 2 && u[0] >= below + probe_axis_fraction[numbers.axis])
+    below += probe_axis_fraction[numbers.axis++];
   const uint32_t channels = std::max(1u, scattering_channels(d));
-  const double rest = (u[0] - below) / probe_axis_share[numbers.axis];
+  const double rest = (u[0] - below) / probe_axis_fraction[numbers.axis];
   uint32_t skip = picked_hit(rest, channels);
   for (uint32_t c = 0; c < 3; ++c)
     if (d[c] > 0 && skip-- == 0) {
       numbers.channel = c;
       break;
     }
-  numbers.survival = 1 - probe_share * u[1];
+  numbers.survival = 1 - probe_fraction * u[1];
   numbers.angle = u[2];
   numbers.pick = u[3];
   return numbers;
@@ -62,10 +62,10 @@ double probe_technique_pdf(const Domain& domain, uint32_t axis, uint32_t channel
   const Vector3 offset = position - domain.position;
   if (!(d > 0) || !(length(offset) <= reach_in_d() * d)) return 0;
   const auto place = on_disc(domain, axis, offset);
-  const double r = std::max(std::hypot(place[0], place[1]), least_radius_in_d * d);
+  const double r = std::max(std::hypot(place[0], place[1]), min_radius_in_d * d);
   const double cosine = std::abs(dot(normal, probe_axis(domain.normal, axis)));
-  return probe_axis_share[axis] / scattering_channels(domain.d) * cosine * subsurface::burley_R(r, d) /
-         probe_share;
+  return probe_axis_fraction[axis] / scattering_channels(domain.d) * cosine * subsurface::burley_R(r, d) /
+         probe_fraction;
 }
 
 double probe_pdf(const Domain& domain, const Vector3& position, const Vector3& normal) {
@@ -92,7 +92,7 @@ bool invert_point(const Domain& domain, const Vector3& position, const Vector3& 
   if (!found) return false;
   const auto place = on_disc(domain, numbers.axis, position - domain.position);
   const double d = domain.d[numbers.channel], r = std::hypot(place[0], place[1]);
-  numbers.survival = std::clamp(1 - subsurface::burley_cdf(r, d), 1 - probe_share, 1.0);
+  numbers.survival = std::clamp(1 - subsurface::burley_cdf(r, d), 1 - probe_fraction, 1.0);
   const double turn = std::atan2(place[1], place[0]) / (2 * std::numbers::pi);
   numbers.angle = turn < 0 ? turn + 1 : turn;
   numbers.pick = 0;

@@ -12,15 +12,15 @@ namespace dermis::restir {
 
 using Barycentrics = std::array<double, 2>; // of the second and third vertex
 
-inline constexpr std::array<double, 3> probe_axis_share = {0.5, 0.25, 0.25}; // normal, tangents (R11)
-inline constexpr uint32_t most_probe_hits = 16; // surfaces along one probe; more are not seen
+inline constexpr std::array<double, 3> probe_axis_fraction = {0.5, 0.25, 0.25}; // normal, tangents (R11)
+inline constexpr uint32_t max_probe_hits = 16; // surfaces along one probe; more are not seen
 // A count of hits that was not traced: taken for that of whatever it is compared with (Index::drawn).
 inline constexpr uint32_t assumed_hits = 255;
 
 // The random numbers of one point x2, with the choices they lead to.
 struct ProbeNumbers {
   uint32_t axis = 0, channel = 0;
-  double survival = 1; // 1 - probe_share u: the share of a channel's energy beyond the disc's radius
+  double survival = 1; // 1 - probe_fraction u: the share of a channel's energy beyond the disc's radius
   double angle = 0;    // of a full turn, [0, 1)
   double pick = 0;     // which of the hits, [0, 1)
 };
@@ -38,7 +38,7 @@ struct ProbeHit {
 
 struct ProbeHits {
   uint32_t count = 0;
-  std::array<ProbeHit, most_probe_hits> hit{};
+  std::array<ProbeHit, max_probe_hits> hit{};
 };
 
 // From four uniform numbers: axis and channel (uniform among those with d > 0), radius, angle, pick.

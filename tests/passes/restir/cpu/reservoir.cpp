@@ -20,7 +20,7 @@ bool has_sample(const Reservoir& reservoir) {
 
 Reservoir sanitised(const Reservoir& reservoir) {
   Reservoir clean = reservoir;
-  clean.confidence = reservoir.confidence > 0 ? std::min(reservoir.confidence, most_confidence) : 0;
+  clean.confidence = reservoir.confidence > 0 ? std::min(reservoir.confidence, max_confidence) : 0;
   bool good = usable(clean.weight) && usable(clean.density);
   for (const double x : clean.irradiance)
     good = good && usable(x);
@@ -28,7 +28,7 @@ Reservoir sanitised(const Reservoir& reservoir) {
                          clean.numbers.angle, clean.numbers.pick})
     good = good && usable(x) && x <= 1;
   good = good && clean.numbers.axis < 3 && clean.numbers.channel < 3 &&
-         (clean.hits <= most_probe_hits || clean.hits == assumed_hits);
+         (clean.hits <= max_probe_hits || clean.hits == assumed_hits);
   if (good) return clean;
   Reservoir none;
   none.confidence = clean.confidence;

@@ -28,8 +28,8 @@ struct Reservoir {
 bool has_sample(const Reservoir& reservoir);
 
 // What a reservoir may say after an untrusted journey: a sample with anything infinite, NaN or negative is
-// none, a confidence is in [0, most_confidence], NaN counts as 0.
-inline constexpr double most_confidence = 65536;
+// none, a confidence is in [0, max_confidence], NaN counts as 0.
+inline constexpr double max_confidence = 65536;
 Reservoir sanitised(const Reservoir& reservoir);
 
 // Words in the order of the members; axis, channel (2 bits each) and hits (8) share one, the rest are floats.

@@ -7,7 +7,7 @@ namespace dermis::restir {
 
 namespace {
 
-constexpr double least_search_px = 5, most_search_px = 30, search_in_d = 2;
+constexpr double min_search_px = 5, max_search_px = 30, search_in_d = 2;
 
 // x / (x + y) for densities, 0 where both are.
 double part(double x, double y) {
@@ -101,16 +101,16 @@ void spatial_add(const Scene& scene, const ReuseSettings& settings, const Domain
                  const Domain& neighbour_domain, const Reservoir& neighbour, Random& random) {
   Reservoir other = sanitised(neighbour);
   const double own_confidence = spatial.own.confidence;
-  const double share = part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
+  const double fraction = part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
   prepare(scene, settings.shift, settings.index, neighbour_domain, other, random);
 
   const Shifted back = shift_path(scene, settings.shift, domain, neighbour_domain, spatial.own);
   spatial.own_mis +=
-      share * part(own_confidence * spatial.own_target, spatial.neighbours * back.target * back.jacobian);
+      fraction * part(own_confidence * spatial.own_target, spatial.neighbours * back.target * back.jacobian);
 
   const Shifted here = shift_path(scene, settings.shift, neighbour_domain, domain, other);
   const double there = here.jacobian > 0 ? target_of(scene, neighbour_domain, other) / here.jacobian : 0;
-  const double mis = share * part(spatial.neighbours * there, own_confidence * here.target);
+  const double mis = fraction * part(spatial.neighbours * there, own_confidence * here.target);
   stream_add(spatial.stream, here.path, here.target, mis * here.target * other.weight * here.jacobian,
              other.confidence, random_unit(random));
 }
@@ -129,7 +129,7 @@ Vector3 resolve(const Scene& scene, const Domain& domain, const Reservoir& reser
 
 double search_radius(const Vector3& d, double footprint) {
   const double px = search_in_d * std::max({d[0], d[1], d[2]}) / footprint;
-  return px >= least_search_px ? std::min(px, most_search_px) : least_search_px; // NaN: the least
+  return px >= min_search_px ? std::min(px, max_search_px) : min_search_px; // NaN: the least
 }
 
 std::array<int, 2> neighbour_offset(double radius, Random& random) {

@@ -19,7 +19,7 @@ struct SurfacePoint {
 // `of` is handed to each function. Functions answer the same for the same question within a frame.
 struct Scene {
   const void* of = nullptr;
-  // All hits with surfaces of the medium, front and back, in order of distance; the nearest most_probe_hits.
+  // All hits with surfaces of the medium, front and back, in order of distance; the nearest max_probe_hits.
   void (*trace_probe)(const void* of, const ProbeRay& ray, uint32_t medium, ProbeHits& hits) = nullptr;
   SurfacePoint (*surface_at)(const void* of, uint32_t instance, uint32_t primitive,
                              const Barycentrics& barycentrics) = nullptr;

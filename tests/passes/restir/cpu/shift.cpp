@@ -62,9 +62,9 @@ Shift shift_of_stage(Shift shift, Stage stage) {
 }
 
 bool connectable(const Domain& domain, const Vector3& position, const Vector3& normal) {
-  const double most = std::max({domain.d[0], domain.d[1], domain.d[2]});
+  const double maximum = std::max({domain.d[0], domain.d[1], domain.d[2]});
   return dot(domain.normal, normal) <= connectable_cosine ||
-         length(position - domain.position) >= connectable_distance_in_d * most;
+         length(position - domain.position) >= connectable_distance_in_d * maximum;
 }
 
 double reconnection_jacobian(const Vector3& x, const Vector3& y, const Vector3& v, const Vector3& normal) {

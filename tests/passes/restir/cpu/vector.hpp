@@ -1,7 +1,7 @@
 #pragma once
 // Vectors of three, as the truth has them, with what tracing needs beside. Names as in GLSL.
 
-#include "passes/common/truth/surface.hpp"
+#include "passes/common/reference/surface.hpp"
 
 #include <cmath>
 

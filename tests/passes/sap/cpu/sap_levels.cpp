@@ -1,6 +1,6 @@
 #include "tests/passes/sap/cpu/sap_levels.hpp"
 
-#include "passes/common/truth/parallel.hpp"
+#include "passes/common/reference/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr double hysteresis = 1.02;    // the first of equals stays the seed
-constexpr double nearest_share = 0.25; // a plane is not extrapolated nearer than this share of its depth
+constexpr double hysteresis = 1.02;       // the first of equals stays the seed
+constexpr double nearest_fraction = 0.25; // a plane is not extrapolated nearer than this share of its depth
 constexpr size_t children_a_layer = 16, no_child = 2 * children_a_layer;
 constexpr size_t central[8] = {5, 6, 9, 10, 21, 22, 25, 26}; // of the first layer, of the second
 // What has less left is no seed of the second layer: it lies on the first one's surface, bent.
-constexpr double least_seed_part = 0.9;
+constexpr double min_seed_part = 0.9;
 
 template <class Real> Real binomial(size_t child) {
   child %= children_a_layer;
@@ -27,7 +27,7 @@ template <class Real> struct Children {
   std::array<Real, no_child> left{};                    // what no layer of the parent has taken yet
   Real spacing = 1;
 
-  bool may_seed(size_t child) const { return texels[child] && left[child] >= Real(least_seed_part); }
+  bool may_seed(size_t child) const { return texels[child] && left[child] >= Real(min_seed_part); }
   Real x(size_t child) const { return (Real(child % 4) - Real(1.5)) * spacing; }
   Real y(size_t child) const { return (Real(child % children_a_layer / 4) - Real(1.5)) * spacing; }
 };
@@ -37,7 +37,7 @@ SapTexel<Real> plane_at_parent(const SapPyramid<Real>& pyramid, const Children<R
                                size_t child) {
   SapTexel<Real> plane = *children.texels[child];
   const Real rise = pyramid.rise(plane, children.x(child), children.y(child));
-  plane.depth = std::max(plane.depth - rise, Real(nearest_share) * plane.depth);
+  plane.depth = std::max(plane.depth - rise, Real(nearest_fraction) * plane.depth);
   return plane;
 }
 
@@ -45,7 +45,7 @@ SapTexel<Real> plane_at_parent(const SapPyramid<Real>& pyramid, const Children<R
 // no_child: none at all.
 template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children) {
   size_t best = no_child;
-  Real most = 0;
+  Real maximum = 0;
   for (const size_t a : central) {
     if (!children.may_seed(a)) continue;
     const SapTexel<Real> plane = plane_at_parent(pyramid, children, a);
@@ -58,17 +58,17 @@ template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Ch
       const Real off = sap_nearer(step - pyramid.rise(plane, children.x(b), children.y(b)), step);
       support += sap_falloff(off * per_metre, sap_depth_width);
     }
-    if (best == no_child || support > Real(hysteresis) * most) {
+    if (best == no_child || support > Real(hysteresis) * maximum) {
       best = a;
-      most = support;
+      maximum = support;
     }
   }
   if (best != no_child) return best;
   for (size_t a = 0; a < no_child; ++a) {
     const Real weight = children.may_seed(a) ? binomial<Real>(a) * children.texels[a]->mass : Real(0);
-    if (weight > Real(hysteresis) * most) {
+    if (weight > Real(hysteresis) * maximum) {
       best = a;
-      most = weight;
+      maximum = weight;
     }
   }
   return best;
@@ -107,7 +107,7 @@ template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Chi
     sum.reach += flat_weight * child->reach;
   }
   if (!(total > Real(sap_negligible))) return {};
-  SapTexel<Real> parent{.depth = std::max(sum.depth / flat, Real(nearest_share) * plane.depth),
+  SapTexel<Real> parent{.depth = std::max(sum.depth / flat, Real(nearest_fraction) * plane.depth),
                         .slope_x = sum.slope_x / flat,
                         .slope_y = sum.slope_y / flat,
                         .reach = sum.reach / flat,
@@ -120,7 +120,7 @@ template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Chi
   return parent;
 }
 
-template <class Real> SapTexel<Real> first_texel(const TruthInput& input, const Patch& patch, size_t i) {
+template <class Real> SapTexel<Real> first_texel(const ReferenceInput& input, const Patch& patch, size_t i) {
   const double x = double(i % input.width), y = double(i / input.width);
   const Vector3 ray = input.rays.perspective ? pixel_ray(input.rays, x, y) : Vector3{0, 0, -1};
   const double cosine = -dot(patch.normal, ray) / length(ray);
@@ -141,7 +141,7 @@ template <class Real> SapTexel<Real> first_texel(const TruthInput& input, const 
 } // namespace
 
 template <class Real>
-SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t first_layered, unsigned threads) {
+SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered, unsigned threads) {
   SapPyramid<Real> pyramid{.side_x = Real(std::abs(input.rays.scale_x)),
                            .side_y = Real(std::abs(input.rays.scale_y)),
                            .perspective = input.rays.perspective};
@@ -188,7 +188,7 @@ SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t first_layer
   }
   return pyramid;
 }
-template SapPyramid<float> build_sap_pyramid<float>(const TruthInput&, uint32_t, unsigned);
-template SapPyramid<double> build_sap_pyramid<double>(const TruthInput&, uint32_t, unsigned);
+template SapPyramid<float> build_sap_pyramid<float>(const ReferenceInput&, uint32_t, unsigned);
+template SapPyramid<double> build_sap_pyramid<double>(const ReferenceInput&, uint32_t, unsigned);
 
 } // namespace dermis::subsurface

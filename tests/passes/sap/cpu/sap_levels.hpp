@@ -2,7 +2,7 @@
 // The levels of the surface-aware pyramid on the CPU: light, surface and mass, from the view down to one
 // texel every 256 pixels.
 
-#include "passes/common/truth/truth.hpp"
+#include "passes/common/reference/reference.hpp"
 #include "passes/sap/sap_weights.hpp"
 
 #include <array>
@@ -88,6 +88,6 @@ template <class Real> struct SapPyramid {
 // All levels, those from `first_layered` on (1 or more) with two layers a texel. Deterministic for any number
 // of threads. Real: float or double.
 template <class Real>
-SapPyramid<Real> build_sap_pyramid(const TruthInput& input, uint32_t first_layered, unsigned threads);
+SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered, unsigned threads);
 
 } // namespace dermis::subsurface

@@ -22,8 +22,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double shares[] = {0.25, 0.5, 1, 2}; // x: of the way from the cheapest to the best outcome
-constexpr uint32_t compared = 8;               // judged frames of a run whose error is measured
+constexpr double fractions[] = {0.25, 0.5, 1, 2}; // x: of the way from the cheapest to the best outcome
+constexpr uint32_t compared = 8;                  // judged frames of a run whose error is measured
 
 // The camera of `dolly` takes five seconds for its way: more frames, each further from the one before, see
 // all of it.
@@ -72,7 +72,7 @@ void begin_scene(BudgetBench& bench, const std::string& scene) {
 demo::Result<std::vector<Single>> measure_singles(BudgetBench& bench) {
   std::vector<Single> singles;
   bench.request.budget_ms = 0;
-  bench.request.metered = true;
+  bench.request.deterministic = true;
   for (const auto& set : bench.sets) {
     bench.request.set = set;
     const auto run = run_counted(bench);
@@ -96,12 +96,12 @@ demo::Result<> measure_by_meter(BudgetBench& bench, const std::string& scene) {
   begin_scene(bench, scene);
   const auto singles = measure_singles(bench);
   if (!singles) return singles.error();
-  for (const double x : shares) {
+  for (const double x : fractions) {
     BudgetRow& row = bench.rows.emplace_back(BudgetRow{scene, x, budget_at(*singles, x)});
     bench.request.budget_ms = row.budget_ms;
     const auto run = run_counted(bench);
     if (!run) return run.error();
-    row.over_meter = share_over_meter(*run, row.budget_ms);
+    row.over_model = fraction_over_model(*run, row.budget_ms);
     row.rmse = pooled_rmse(*run);
     if (const Single* single = best_within(*singles, row.budget_ms)) {
       row.single_rmse = single->rmse;
@@ -114,7 +114,7 @@ demo::Result<> measure_by_meter(BudgetBench& bench, const std::string& scene) {
 // One more timed run of each of a scene's rows.
 demo::Result<> measure_by_time(BudgetBench& bench, const std::string& scene) {
   begin_scene(bench, scene);
-  bench.request.metered = false;
+  bench.request.deterministic = false;
   bench.request.error_every = 0;
   for (BudgetRow& row : bench.rows) {
     if (row.scene != scene) continue;
@@ -158,15 +158,15 @@ std::string why_not(const BenchBudgetOptions& options) {
 
 } // namespace
 
-ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
-  const BenchBudgetOptions options = quickened(asked);
+ExitCode bench_budget(const Session& session, const BenchBudgetOptions& requested) {
+  const BenchBudgetOptions options = quickened(requested);
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> loaded =
-      load_graph(options.graph, {.overlays = {}, .roots = {}, .kinds = options.kinds}, diagnostics);
+      load_graph(options.graph, {.overlays = {}, .roots = {}, .pass_types = options.pass_types}, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   auto sets = choice_sets(*loaded, options.size, diagnostics);
   if (sets.empty()) return fail_graph(session, options.graph, diagnostics);
-  HostPasses host_passes(loaded->host_kinds); // outlives the stage of the runs
+  HostPasses host_passes(loaded->host_pass_types); // outlives the stage of the runs
   SceneRunRequest request;
   request.graph = options.graph;
   request.hooks = host_passes.hooks();
@@ -181,7 +181,7 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
   if (const std::string problem = why_not(options); !problem.empty())
     return fail(session, ExitCode::usage, problem);
   Progress progress(progress_style(session.quiet, false), "budget", "run",
-                    options.scenes.size() * (sets.size() + (1 + options.repetitions) * std::size(shares)));
+                    options.scenes.size() * (sets.size() + (1 + options.repetitions) * std::size(fractions)));
   BudgetBench bench{session, options, std::move(request), std::move(sets), progress};
   Report report;
   report.bench = "budget";
@@ -189,15 +189,15 @@ ExitCode bench_budget(const Session& session, const BenchBudgetOptions& asked) {
   report.summary =
       fmt::format("{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
                   "meter; times: median of {}",
-                  options.frames, unjudged_frames, measured_tolerance, meter_tolerance, options.repetitions);
+                  options.frames, unjudged_frames, measured_tolerance, model_tolerance, options.repetitions);
   report.table.columns = budget_columns();
   const auto measured = measure(bench);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!measured) return fail(session, static_cast<ExitCode>(measured.error().kind), measured.error().text);
   for (const BudgetRow& row : bench.rows)
     add_budget_row(report, row);
-  report.facts = machine_facts(session.command, bench.device);
-  if (options.quick) report.facts.push_back(quick_fact());
+  report.info = machine_info(session.command, bench.device);
+  if (options.quick) report.info.push_back(quick_fact());
   add_budget_plots(report);
   if (!session.quiet && options.json != "-" && options.html != "-") print(text_of_budget(report));
   const std::string problem = deliver_report(report, options.json, "", options.html);

@@ -15,10 +15,10 @@ std::span<const RunFrame> judged_frames(const SceneRun& run) {
 
 } // namespace
 
-double Single::metered_at(double share) const {
+double Single::metered_at(double fraction) const {
   std::vector<double> sorted = metered_ms;
   std::sort(sorted.begin(), sorted.end());
-  const auto rank = static_cast<size_t>(std::ceil(share * double(sorted.size())));
+  const auto rank = static_cast<size_t>(std::ceil(fraction * double(sorted.size())));
   return sorted[std::clamp<size_t>(rank, 1, sorted.size()) - 1];
 }
 
@@ -32,18 +32,18 @@ Single single_of(const SceneRun& run, std::vector<NamedValue> set) {
 const Single* best_within(const std::vector<Single>& singles, double budget_ms) {
   const Single* best = nullptr;
   for (const Single& one : singles)
-    if (one.metered_at(within) <= meter_tolerance * budget_ms && (best == nullptr || one.rmse < best->rmse))
+    if (one.metered_at(within) <= model_tolerance * budget_ms && (best == nullptr || one.rmse < best->rmse))
       best = &one;
   return best;
 }
 
-double budget_at(const std::vector<Single>& singles, double share) {
+double budget_at(const std::vector<Single>& singles, double fraction) {
   double floor_ms = singles.front().metered_at(within);
   for (const Single& single : singles)
     floor_ms = std::min(floor_ms, single.metered_at(within));
   const auto best = std::min_element(singles.begin(), singles.end(),
                                      [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
-  return floor_ms + share * (best->metered_at(within) - floor_ms);
+  return floor_ms + fraction * (best->metered_at(within) - floor_ms);
 }
 
 TimedFigures judge_times(const SceneRun& run, double budget_ms) {
@@ -75,11 +75,11 @@ TimedFigures median_of(const std::vector<TimedFigures>& runs) {
           median(&TimedFigures::switches)};
 }
 
-double share_over_meter(const SceneRun& run, double budget_ms) {
+double fraction_over_model(const SceneRun& run, double budget_ms) {
   double over = 0;
   const auto frames = judged_frames(run);
   for (const RunFrame& frame : frames)
-    over += frame.choice.metered_ms > meter_tolerance * budget_ms ? 1 / double(frames.size()) : 0;
+    over += frame.choice.metered_ms > model_tolerance * budget_ms ? 1 / double(frames.size()) : 0;
   return over;
 }
 

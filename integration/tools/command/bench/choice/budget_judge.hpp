@@ -12,7 +12,7 @@
 namespace dermis::tools {
 
 constexpr uint32_t unjudged_frames = 10;                            // of each run, its first
-constexpr double measured_tolerance = 1.15, meter_tolerance = 1.05; // of the budget: over it beyond that
+constexpr double measured_tolerance = 1.15, model_tolerance = 1.05; // of the budget: over it beyond that
 
 // One outcome alone over the whole scene.
 struct Single {
@@ -20,7 +20,7 @@ struct Single {
   std::vector<double> metered_ms;
   double rmse = 0;
 
-  double metered_at(double share) const; // nearest rank
+  double metered_at(double fraction) const; // nearest rank
 };
 
 Single single_of(const SceneRun& run, std::vector<NamedValue> set);
@@ -29,7 +29,7 @@ Single single_of(const SceneRun& run, std::vector<NamedValue> set);
 const Single* best_within(const std::vector<Single>& singles, double budget_ms);
 
 // Budget of a share of the way from the cheapest outcome to the best, in milliseconds. Not of none.
-double budget_at(const std::vector<Single>& singles, double share);
+double budget_at(const std::vector<Single>& singles, double fraction);
 
 // By timestamps, of the judged frames.
 struct TimedFigures {
@@ -46,13 +46,13 @@ TimedFigures median_of(const std::vector<TimedFigures>& runs);
 struct BudgetRow {
   std::string scene;
   double x = 0, budget_ms = 0;
-  double over_meter = 0, rmse = 0;        // of the metered run
+  double over_model = 0, rmse = 0;        // of the deterministic run
   std::optional<double> single_rmse = {}; // of the best single outcome that keeps the budget; none does: none
   std::string single = {};                // its settings
   std::vector<TimedFigures> timed = {};   // a run each
 };
 
-double share_over_meter(const SceneRun& run, double budget_ms);
+double fraction_over_model(const SceneRun& run, double budget_ms);
 
 // Root of the mean square over the judged frames that were compared with the truth.
 double pooled_rmse(const SceneRun& run);

@@ -35,7 +35,7 @@ std::vector<ReportColumn> budget_columns() {
 void add_budget_row(Report& report, const BudgetRow& row) {
   const TimedFigures timed = median_of(row.timed);
   report.table.rows.push_back({row.scene, row.x, row.budget_ms, timed.mean_ms, timed.p95_ms, timed.over,
-                               row.over_meter, row.rmse,
+                               row.over_model, row.rmse,
                                row.single_rmse ? ReportValue(*row.single_rmse) : ReportValue(), row.single,
                                static_cast<int64_t>(timed.switches)});
 }

@@ -22,7 +22,7 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
   engine.frames_per_second = request.frames_per_second;
   engine.settings = request.set;
   engine.budget_ms = request.budget_ms;
-  engine.metered = request.metered;
+  engine.deterministic = request.deterministic;
   engine.calibration = request.calibration;
   const auto compared = [&](uint32_t frame) {
     return request.error_every > 0 && frame % request.error_every == request.error_every - 1;

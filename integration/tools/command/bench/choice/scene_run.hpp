@@ -23,7 +23,7 @@ struct SceneRunRequest {
   uint32_t error_every = 0;     // frames; 0: errors are not measured
   uint32_t subset = 1024;       // pixels of a frame that are compared with the truth
   double budget_ms = 0;         // 0: the defaults, with `set`
-  bool metered = false;
+  bool deterministic = false;
   std::vector<NamedValue> set; // JSON texts
   demo::NamedText calibration; // "": the library's own
   std::string cache;           // folder for references

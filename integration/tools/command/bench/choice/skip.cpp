@@ -26,8 +26,8 @@ constexpr uint32_t warm_up = 3;
 constexpr double pixels_per_tile = 64;
 
 // Takes what looks for flat light out of a graph that has it.
-constexpr const char* without_flat = R"({ "dermis_overlay": 1, "edits": [
-  { "remove": "/passes/flat" }, { "remove": "/passes/classify/write/light_range" },
+constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits": [
+  { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
   { "remove": "/passes/classify/write/light_cells" } ] })";
 
 struct Case {
@@ -65,7 +65,7 @@ demo::Result<> prepare(SkipBench& bench, SkipCase from) {
   request.graph_text = bench.text;
   request.width = bench.options.size.width;
   request.height = bench.options.size.height;
-  if (!one.from.skips) request.overlays.emplace_back("without flat light", without_flat);
+  if (!one.from.skips) request.overlays.emplace_back("without flat light", without_uniform_light);
   if (!one.from.no_profiles)
     for (const CaptureProfile& profile : bench.profiles)
       request.profiles.push_back({profile.id, profile.profile.name, profile_as_json(profile.profile)});
@@ -122,33 +122,35 @@ demo::Result<> measure(SkipBench& bench, Progress& progress) {
 double reads_of(const SkipBench& bench, const Case& one, std::span<const float> sap_tables) {
   if (one.from.no_profiles || one.from.empty_bounds) return 0;
   const LoadedGraph& loaded = bench.graph_of(one.from);
-  const double listed = double(one.choice.scattering_tiles) + one.choice.copied_tiles + one.choice.flat_tiles;
+  const double listed =
+      double(one.choice.scattering_tiles) + one.choice.copied_tiles + one.choice.uniform_tiles;
   double sum = 0;
   for (const PlanPass& pass : one.plan.plan.passes) {
-    const PassKind& kind = loaded.kinds[pass.kind];
-    const bool copies = kind.name == "subsurface.copy"; // runs where nothing scatters, else the pyramid does
-    const bool pyramid = find_port(kind, "level_tiles", PortSide::read) >= 0;
+    const PassType& type = loaded.pass_types[pass.type];
+    const bool copies =
+        type.name == "subsurface.copy_tiles"; // runs where nothing scatters, else the pyramid does
+    const bool pyramid = find_port(type, "level_tiles", PortSide::read) >= 0;
     if ((copies || pyramid) && copies != (one.choice.scattering_tiles == 0)) continue;
     std::vector<SettingValue> settings;
     double finer = 1; // texels of level 0 for one of the pass's
-    for (size_t i = 0; i < kind.settings.size(); ++i) {
+    for (size_t i = 0; i < type.settings.size(); ++i) {
       settings.push_back(one.plan.plan.settings[pass.first_setting + i].value);
-      if (kind.settings[i].name == "level") {
+      if (type.settings[i].name == "level") {
         finer = std::exp2(2.0 * double(settings.back().integer));
       }
     }
     subsurface::ReadsQuestion question{
-        settings, std::vector<bool>(kind.ports.size(), false), {d_px, d_px, d_px}, sap_tables};
+        settings, std::vector<bool>(type.ports.size(), false), {d_px, d_px, d_px}, sap_tables};
     for (uint32_t i = 0; i < pass.access_count; ++i)
       question.bound[one.plan.plan.accesses[pass.first_access + i].port] = true;
     if (one.choice.view_tiles > 0) {
-      question.subsurface_share = listed / one.choice.view_tiles;
-      question.scattering_share =
-          (double(one.choice.scattering_tiles) + one.choice.flat_tiles) / one.choice.view_tiles;
+      question.subsurface_fraction = listed / one.choice.view_tiles;
+      question.scattering_fraction =
+          (double(one.choice.scattering_tiles) + one.choice.uniform_tiles) / one.choice.view_tiles;
     }
-    const auto reads = subsurface::image_reads(kind, question);
+    const auto reads = subsurface::image_reads(type, question);
     const bool over_all =
-        kind.dispatch == DispatchShape::over_view || kind.dispatch == DispatchShape::over_tile_blocks;
+        type.dispatch == DispatchShape::over_view || type.dispatch == DispatchShape::over_tile_blocks;
     const double tiles = over_all ? double(one.choice.view_tiles) : listed;
     if (reads) sum += reads->per_invocation * pixels_per_tile * tiles / finer;
   }
@@ -180,13 +182,13 @@ Report make_report(const Session& session, SkipBench& bench) {
   report.summary = fmt::format("{}, {}x{}, d = {} px; medians of {}, all cases by turns", bench.options.graph,
                                bench.options.size.width, bench.options.size.height, d_px,
                                format_count(bench.options.repetitions, "frame"));
-  report.facts = machine_facts(session.command, bench.host.properties.deviceName);
-  if (bench.options.quick) report.facts.push_back(quick_fact());
-  report.facts.emplace_back("full",
-                            "all of the picture scatters, nothing is looked for that could be skipped");
-  report.facts.emplace_back("reads",
-                            "texels that the groups fetch that ran, counted from the kernels' source as if "
-                            "everything around them scattered");
+  report.info = machine_info(session.command, bench.host.properties.deviceName);
+  if (bench.options.quick) report.info.push_back(quick_fact());
+  report.info.emplace_back("full",
+                           "all of the picture scatters, nothing is looked for that could be skipped");
+  report.info.emplace_back("reads",
+                           "texels that the groups fetch that ran, counted from the kernels' source as if "
+                           "everything around them scattered");
   report.table.columns = {{"case", "case"},
                           {"dispatches", "dispatches"},
                           {"groups", "groups"},
@@ -234,26 +236,26 @@ ExitCode failed(const Session& session, const demo::Error& error) {
 
 } // namespace
 
-ExitCode bench_skip(const Session& session, const BenchSkipOptions& asked) {
-  const BenchSkipOptions options = quickened(asked);
+ExitCode bench_skip(const Session& session, const BenchSkipOptions& requested) {
+  const BenchSkipOptions options = quickened(requested);
   Diagnostics diagnostics;
-  const GraphParts parts{.overlays = {}, .roots = {}, .kinds = options.kinds};
+  const GraphParts parts{.overlays = {}, .roots = {}, .pass_types = options.pass_types};
   auto loaded = load_graph(options.graph, parts, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const std::string text = diagnostics.files.front().text;
   std::vector<Document> overlays;
-  if (auto overlay = parse_document("without flat light", without_flat, diagnostics))
+  if (auto overlay = parse_document("without flat light", without_uniform_light, diagnostics))
     overlays.push_back(std::move(*overlay));
   auto document = read_document(options.graph, diagnostics);
   auto plain = document ? load_graph(std::move(*document), std::move(overlays),
-                                     open_beside(options.graph, {}), diagnostics, options.kinds)
+                                     open_beside(options.graph, {}), diagnostics, options.pass_types)
                         : std::nullopt;
   if (!plain) return fail_graph(session, options.graph, diagnostics);
   const auto profile_text = read_document(options.profile, diagnostics);
   const auto profile = profile_text ? subsurface::read_profile(*profile_text, diagnostics) : std::nullopt;
   if (!profile) return fail_graph(session, options.profile, diagnostics);
 
-  HostPasses host_passes(loaded->host_kinds); // outlives the device's context
+  HostPasses host_passes(loaded->host_pass_types); // outlives the device's context
   auto host = demo::create_vulkan_host({});
   if (!host) return failed(session, host.error());
   SkipBench bench{**host, options,         std::move(*loaded), std::move(*plain),

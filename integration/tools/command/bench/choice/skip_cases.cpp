@@ -19,9 +19,9 @@ void paint_noise(CapturedFrame& frame) {
     value = 0.25f + 0.75f * static_cast<float>(random.next() >> 40) / float(1u << 24);
 }
 
-void cut_disc(CapturedFrame& frame, double share) {
+void cut_disc(CapturedFrame& frame, double fraction) {
   const uint32_t width = frame.description.width, height = frame.description.height;
-  const double radius = std::sqrt(share * width * height / std::numbers::pi);
+  const double radius = std::sqrt(fraction * width * height / std::numbers::pi);
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x)
       if (std::hypot(x + 0.5 - width / 2.0, y + 0.5 - height / 2.0) > radius)

@@ -21,7 +21,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr uint32_t pass_counts[] = {10, 100, 1000, 10000};
-constexpr uint32_t least_samples = 5, most_samples = 200;
+constexpr uint32_t min_samples = 5, max_samples = 200;
 constexpr uint32_t memory_passes = 100;
 
 struct Effort {
@@ -48,7 +48,7 @@ struct Subject { // graphs that take turns
   std::string shape;
   uint32_t passes = 0;
   uint32_t view_width = 0, view_height = 0;
-  const KindRegistry* kinds = nullptr;
+  const PassTypeRegistry* pass_types = nullptr;
   std::vector<Graph> graphs;
 };
 
@@ -73,7 +73,7 @@ CompileInput input_of(const Subject& subject, const Graph& graph, const DevicePr
                       const Options& options) {
   CompileInput input;
   input.graph = &graph;
-  input.kinds = subject.kinds;
+  input.pass_types = subject.pass_types;
   input.device = &device;
   input.view_width = subject.view_width;
   input.view_height = subject.view_height;
@@ -127,7 +127,7 @@ void measure_time(Compiler& compiler, const Subject& subject, const DeviceProfil
   }
   std::vector<double> samples;
   for (uint64_t spent = 0;
-       samples.size() < least_samples || (spent < time_per_row && samples.size() < most_samples);) {
+       samples.size() < min_samples || (spent < time_per_row && samples.size() < max_samples);) {
     const uint64_t begin = thread_nanoseconds();
     for (const CompileInput& input : inputs)
       compiler.compile(input, diagnostics, plan);
@@ -160,9 +160,9 @@ std::optional<Row> measure(const Subject& subject, const Options& options, uint6
   return row;
 }
 
-Subject draw(const ShapeFile& file, const KindRegistry& kinds, const Shape& shape, uint32_t passes,
+Subject draw(const ShapeFile& file, const PassTypeRegistry& pass_types, const Shape& shape, uint32_t passes,
              uint32_t count) {
-  Subject subject{shape.name, passes, file.view_width, file.view_height, &kinds, {}};
+  Subject subject{shape.name, passes, file.view_width, file.view_height, &pass_types, {}};
   for (uint32_t seed = 0; seed < count; ++seed)
     subject.graphs.push_back(draw_graph(file, shape, passes, seed));
   return subject;
@@ -208,7 +208,7 @@ Report page_of(const Session& session, const std::vector<Row>& rows) {
   report.bench = "compile";
   report.title = "What compiling a graph costs";
   report.summary = "CPU time of the thread that compiles, and how tightly the heaps are packed.";
-  report.facts = machine_facts(session.command, "");
+  report.info = machine_info(session.command, "");
   report.table.columns = {{"shape", "shape"},
                           {"passes", "passes"},
                           {"rotating", "graphs"},
@@ -261,10 +261,10 @@ struct Bench {
     return true;
   }
 
-  bool add_times(const ShapeFile& file, const KindRegistry& kinds) {
+  bool add_times(const ShapeFile& file, const PassTypeRegistry& pass_types) {
     for (const Shape& shape : file.shapes)
       for (const uint32_t passes : pass_counts) {
-        const Subject subject = draw(file, kinds, shape, passes, effort.rotating);
+        const Subject subject = draw(file, pass_types, shape, passes, effort.rotating);
         if (!add(subject, {}, true) || !add(subject, {PackingLevel::fast, PassOrder::memory, true}, true))
           return false;
         if (passes == memory_passes && !add(subject, {PackingLevel::tight, PassOrder::memory, false}, true))
@@ -273,10 +273,10 @@ struct Bench {
     return true;
   }
 
-  bool add_memory(const ShapeFile& file, const KindRegistry& kinds, bool optimize) {
+  bool add_memory(const ShapeFile& file, const PassTypeRegistry& pass_types, bool optimize) {
     for (const Shape& shape : file.shapes) {
       if (shape.kind == Shape::Kind::random && shape.dead_percent == 0) {
-        const Subject subject = draw(file, kinds, shape, memory_passes, effort.memory_seeds);
+        const Subject subject = draw(file, pass_types, shape, memory_passes, effort.memory_seeds);
         for (const PackingLevel level : {PackingLevel::fast, PackingLevel::tight, PackingLevel::optimize})
           if ((level != PackingLevel::optimize || optimize) &&
               !add(subject, {level, PassOrder::memory, false}, false))
@@ -284,7 +284,7 @@ struct Bench {
       }
       if (shape.kind != Shape::Kind::fan) continue;
       for (const uint32_t passes : pass_counts) {
-        const Subject subject = draw(file, kinds, shape, passes, effort.fan_seeds);
+        const Subject subject = draw(file, pass_types, shape, passes, effort.fan_seeds);
         for (const PassOrder order : {PassOrder::memory, PassOrder::program})
           if (!add(subject, {PackingLevel::fast, order, false}, false)) return false;
         if (!add(subject, {PackingLevel::tight, PassOrder::memory, false}, false)) return false;
@@ -293,7 +293,7 @@ struct Bench {
     return true;
   }
 
-  bool add_given(const std::string& folder, const std::vector<std::string>& kinds) {
+  bool add_given(const std::string& folder, const std::vector<std::string>& pass_types) {
     std::vector<std::string> files;
     std::error_code error;
     for (std::filesystem::recursive_directory_iterator at(folder, error), end; !error && at != end;
@@ -306,7 +306,7 @@ struct Bench {
     std::vector<LoadedGraph> loaded;
     for (const std::string& file : files) {
       std::optional<LoadedGraph> graph =
-          load_graph(file, {.overlays = {}, .roots = {}, .kinds = kinds}, diagnostics);
+          load_graph(file, {.overlays = {}, .roots = {}, .pass_types = pass_types}, diagnostics);
       if (!graph) return false;
       loaded.push_back(std::move(*graph));
     }
@@ -316,7 +316,7 @@ struct Bench {
                             passes,
                             default_size.width,
                             default_size.height,
-                            &loaded[i].kinds,
+                            &loaded[i].pass_types,
                             {loaded[i].graph}};
       for (const bool reasons : {false, true})
         if (!add(subject, {PackingLevel::fast, PassOrder::memory, reasons}, true)) return false;
@@ -334,15 +334,15 @@ ExitCode bench_compile(const Session& session, const BenchCompileOptions& option
   if (options.graphs.empty()) {
     const std::optional<ShapeFile> file = read_shapes(options.shapes, bench.diagnostics);
     if (!file) return fail_graph(session, options.shapes, bench.diagnostics);
-    const KindRegistry kinds = benchmark_kinds();
-    good = bench.add_times(*file, kinds) && bench.add_memory(*file, kinds, options.optimize);
+    const PassTypeRegistry pass_types = benchmark_pass_types();
+    good = bench.add_times(*file, pass_types) && bench.add_memory(*file, pass_types, options.optimize);
   } else {
-    good = bench.add_given(options.graphs, options.kinds);
+    good = bench.add_given(options.graphs, options.pass_types);
   }
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!good) return fail_graph(session, options.graphs, bench.diagnostics);
   Report page = page_of(session, bench.rows);
-  if (options.quick) page.facts.push_back(quick_fact());
+  if (options.quick) page.info.push_back(quick_fact());
   const std::string refused = deliver_report(page, "", "", options.html);
   if (!refused.empty()) return fail(session, ExitCode::environment, refused);
   if (options.json.empty()) return ExitCode::ok;

@@ -14,8 +14,8 @@ constexpr Port ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
                           {"c", Usage::sampled_image, true, "texture2D", ""},
                           {"out", Usage::storage_image_write, false, "image2D", ""},
                           {"out2", Usage::storage_image_write, true, "image2D", ""}};
-constexpr uint32_t most_reads = 3, most_writes = 2, first_output = 3; // of `ports`
-constexpr KindId plain{0}, kept{1};                                   // as benchmark_kinds() adds them
+constexpr uint32_t max_reads = 3, max_writes = 2, first_output = 3; // of `ports`
+constexpr PassTypeId plain{0}, kept{1};                             // as benchmark_pass_types() adds them
 
 struct Random : SplitMix64 {
   uint32_t below(size_t limit) { return static_cast<uint32_t>(SplitMix64::below(limit)); }
@@ -49,7 +49,7 @@ struct Draft {
   void pass(const std::vector<ResourceId>& reads, const std::vector<ResourceId>& writes) {
     PassDeclaration declared;
     declared.name = fmt::format("pass{}", graph.passes.size());
-    declared.kind = plain;
+    declared.type = plain;
     for (uint32_t i = 0; i < reads.size(); ++i)
       graph.bind(declared, PortSide::read, bound(i, reads[i]), {});
     for (uint32_t i = 0; i < writes.size(); ++i)
@@ -65,7 +65,7 @@ struct Draft {
       pass({last}, {next});
       last = next;
     }
-    graph.passes.back().kind = kept;
+    graph.passes.back().type = kept;
   }
 
   void fan(const Shape& shape, uint32_t passes) {
@@ -91,7 +91,7 @@ struct Draft {
       }
       level = std::move(above);
     }
-    graph.passes.back().kind = kept;
+    graph.passes.back().type = kept;
   }
 
   // What passes on one side (needed by somebody, or dead) have written so far.
@@ -142,7 +142,7 @@ struct Draft {
     for (size_t r = 0; r < writer.size(); ++r)
       if (has_reader[r]) read_by_others[writer[r]] = 1;
     for (uint32_t p = 0; p < passes; ++p)
-      if (!dead[p] && !read_by_others[p]) graph.passes[p].kind = kept;
+      if (!dead[p] && !read_by_others[p]) graph.passes[p].type = kept;
   }
 };
 
@@ -159,21 +159,21 @@ struct Fields {
     return {};
   }
 
-  uint32_t integer(NodeId object, std::string_view key, int64_t least, int64_t most) {
+  uint32_t integer(NodeId object, std::string_view key, int64_t minimum, int64_t maximum) {
     const NodeId node = member(object, key, NodeKind::integer);
-    return node.valid() ? checked(node, least, most) : 1;
+    return node.valid() ? checked(node, minimum, maximum) : 1;
   }
 
-  uint32_t checked(NodeId node, int64_t least, int64_t most) {
+  uint32_t checked(NodeId node, int64_t minimum, int64_t maximum) {
     const int64_t value = document[node].integer;
-    if (document[node].kind == NodeKind::integer && value >= least && value <= most)
+    if (document[node].kind == NodeKind::integer && value >= minimum && value <= maximum)
       return static_cast<uint32_t>(value);
     diagnostics.add(DiagnosticId::out_of_range, document.where(node),
-                    fmt::format("an integer within {} .. {} is expected", least, most));
+                    fmt::format("an integer within {} .. {} is expected", minimum, maximum));
     return 1;
   }
 
-  std::pair<uint32_t, uint32_t> pair(NodeId object, std::string_view key, int64_t most) {
+  std::pair<uint32_t, uint32_t> pair(NodeId object, std::string_view key, int64_t maximum) {
     const NodeId node = member(object, key, NodeKind::array);
     if (!node.valid()) return {1, 1};
     if (document[node].child_count != 2) {
@@ -181,7 +181,7 @@ struct Fields {
       return {1, 1};
     }
     const NodeId first = document[node].first_child;
-    return {checked(first, 1, most), checked(document[first].next, 1, most)};
+    return {checked(first, 1, maximum), checked(document[first].next, 1, maximum)};
   }
 
   void resource(NodeId node, ShapeFile& file) {
@@ -206,11 +206,11 @@ struct Fields {
       shape.kind = Shape::Kind::fan;
       const auto [numerator, denominator] = pair(node, "readers", 64);
       shape.readers = {numerator, denominator};
-      shape.arity = integer(node, "arity", 2, most_reads);
+      shape.arity = integer(node, "arity", 2, max_reads);
     } else if (document.text(kind) == "random") {
       shape.kind = Shape::Kind::random;
-      shape.max_reads = integer(node, "max_reads", 1, most_reads);
-      shape.max_writes = integer(node, "max_writes", 1, most_writes);
+      shape.max_reads = integer(node, "max_reads", 1, max_reads);
+      shape.max_writes = integer(node, "max_writes", 1, max_writes);
       shape.unread_percent = integer(node, "unread_percent", 0, 100);
       shape.window = integer(node, "window", 1, 1 << 20);
       shape.dead_percent = integer(node, "dead_percent", 0, 90);
@@ -243,16 +243,16 @@ std::optional<ShapeFile> read_shapes(const std::string& path, Diagnostics& diagn
   return diagnostics.has_errors() ? std::nullopt : std::optional(std::move(file));
 }
 
-KindRegistry benchmark_kinds() {
-  KindRegistry kinds;
-  PassKind kind;
-  kind.name = "benchmark.shade";
-  kind.ports = ports;
-  kinds.add(kind);
-  kind.name = "benchmark.keep";
-  kind.side_effects = true;
-  kinds.add(kind);
-  return kinds;
+PassTypeRegistry benchmark_pass_types() {
+  PassTypeRegistry pass_types;
+  PassType type;
+  type.name = "benchmark.shade";
+  type.ports = ports;
+  pass_types.add(type);
+  type.name = "benchmark.keep";
+  type.side_effects = true;
+  pass_types.add(type);
+  return pass_types;
 }
 
 Graph draw_graph(const ShapeFile& file, const Shape& shape, uint32_t passes, uint64_t seed) {

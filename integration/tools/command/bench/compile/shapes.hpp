@@ -34,9 +34,9 @@ struct ShapeFile {
 // nullopt with errors in `diagnostics`.
 std::optional<ShapeFile> read_shapes(const std::string& path, Diagnostics& diagnostics);
 
-// Kinds of the drawn graphs: images a b c are read, out and out2 written; one kind is culled when unread, the
-// other never.
-KindRegistry benchmark_kinds();
+// Kinds of the drawn graphs: images a b c are read, out and out2 written; one pass type is culled when
+// unread, the other never.
+PassTypeRegistry benchmark_pass_types();
 
 // `passes` >= 2. The same graph for the same arguments on every machine.
 Graph draw_graph(const ShapeFile& file, const Shape& shape, uint32_t passes, uint64_t seed);

@@ -1,8 +1,8 @@
 #include "integration/tools/command/bench/dynamic/accumulation.hpp"
 
 #include "passes/common/environment.hpp"
+#include "passes/common/reference/parallel.hpp"
 #include "passes/common/reproject.hpp"
-#include "passes/common/truth/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,11 +42,11 @@ struct Past {
     const size_t i = index(x, y);
     return profile[i] == id && std::abs(double(depth[i]) - at) <= tolerance;
   }
-  void add(AccumulatedLight& sum, double share, int x, int y) const {
+  void add(AccumulatedLight& sum, double fraction, int x, int y) const {
     const AccumulatedLight& one = mean[index(x, y)];
     for (size_t c = 0; c < 3; ++c)
-      sum.light[c] += share * one.light[c];
-    sum.count += share * one.count;
+      sum.light[c] += fraction * one.light[c];
+    sum.count += fraction * one.count;
   }
 };
 
@@ -63,11 +63,11 @@ AccumulatedLight find_light(const FrameConstants& frame, const Past& past, const
   const std::array<double, 4> across = catmull_rom(place.x - taps.x), down = catmull_rom(place.y - taps.y);
   bool sharp = true;
   for (int k = 0; k < 16 && sharp; ++k) {
-    const double share = across[size_t(k & 3)] * down[size_t(k >> 2)];
+    const double fraction = across[size_t(k & 3)] * down[size_t(k >> 2)];
     const int x = taps.x + (k & 3) - 1, y = taps.y + (k >> 2) - 1;
-    if (share == 0) continue;
+    if (fraction == 0) continue;
     sharp = past.shows(x, y, id, place.depth, tolerance);
-    if (sharp) past.add(sum, share, x, y);
+    if (sharp) past.add(sum, fraction, x, y);
   }
   if (!sharp) {
     sum = {};
@@ -88,13 +88,13 @@ double rise_of(const std::vector<float>& depth, const std::vector<uint8_t>& prof
   const size_t own = i(x, y);
   double steps[2] = {0, 0};
   for (int axis = 0; axis < 2; ++axis) {
-    double least = 1e30;
+    double minimum = 1e30;
     for (const int side : {-1, 1}) {
       const int u = x + (axis == 0 ? side : 0), v = y + (axis == 1 ? side : 0);
       if (u < 0 || v < 0 || u >= width || v >= height || profile[i(u, v)] != profile[own]) continue;
-      least = std::min(least, double(std::abs(depth[i(u, v)] - depth[own])));
+      minimum = std::min(minimum, double(std::abs(depth[i(u, v)] - depth[own])));
     }
-    if (least < 1e30) steps[axis] = least;
+    if (minimum < 1e30) steps[axis] = minimum;
   }
   return std::hypot(steps[0], steps[1]);
 }

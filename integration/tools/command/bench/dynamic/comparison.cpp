@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<const char*, 3> changing = {"flashing", "regular", "dynamic"};
 
 struct Row {
-  double samples = 0, most = 0, ms = 0, psnr = 0, shown = 0;
+  double samples = 0, maximum = 0, ms = 0, psnr = 0, shown = 0;
 };
 
 // Of a gated sequence; the row with the least samples 8 where there are several.
@@ -44,11 +44,11 @@ void add_against(Report& report, const std::string& technique, const std::string
     difference += ours->psnr - theirs->psnr;
   }
   if (count == 0) return;
-  report.facts.emplace_back(technique + " against afis + ccv",
-                            fmt::format("{}: samples x {:.3f}, time x {:.3f}, PSNR {:+.2f} dB",
-                                        format_count(static_cast<uint64_t>(count), "sequence"),
-                                        std::exp(log_samples / count), std::exp(log_ms / count),
-                                        difference / count));
+  report.info.emplace_back(technique + " against afis + ccv",
+                           fmt::format("{}: samples x {:.3f}, time x {:.3f}, PSNR {:+.2f} dB",
+                                       format_count(static_cast<uint64_t>(count), "sequence"),
+                                       std::exp(log_samples / count), std::exp(log_ms / count),
+                                       difference / count));
 }
 
 struct Published {
@@ -74,11 +74,11 @@ void add_comparisons(Report& report) {
   if (const auto ocv = row_of(report, "flashing", "afis", "ocv"),
       spvg = row_of(report, "flashing", "afis", "spvg");
       ocv && spvg)
-    report.facts.emplace_back("ocv against spvg, flashing",
-                              fmt::format("samples x {:.3f}", ocv->samples / spvg->samples));
+    report.info.emplace_back("ocv against spvg, flashing",
+                             fmt::format("samples x {:.3f}", ocv->samples / spvg->samples));
   if (const auto split = row_of(report, "regular", "afis", "split_half"))
-    report.facts.emplace_back("split_half, regular",
-                              fmt::format("most samples x {:.3f} of the mean", split->most / split->samples));
+    report.info.emplace_back("split_half, regular", fmt::format("most samples x {:.3f} of the mean",
+                                                                split->maximum / split->samples));
 }
 
 void add_published(Report& report) {

@@ -1,7 +1,7 @@
 // dermis bench dynamic: techniques over sequences of frames in which light, camera or things change.
 
 #include "integration/tools/command/bench/dynamic/accumulation.hpp"
-#include "integration/tools/command/bench/dynamic/combined_truth.hpp"
+#include "integration/tools/command/bench/dynamic/combined_reference.hpp"
 #include "integration/tools/command/bench/dynamic/comparison.hpp"
 #include "integration/tools/command/bench/dynamic/dynamic_file.hpp"
 #include "integration/tools/command/bench/dynamic/figures.hpp"
@@ -10,7 +10,7 @@
 #include "integration/tools/command/bench/selection.hpp"
 #include "integration/tools/command/bench/technique.hpp"
 #include "integration/tools/command/interrupt.hpp"
-#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 #include "passes/common/environment.hpp"
 
 #include <fmt/format.h>
@@ -71,9 +71,9 @@ subsurface::PerChannel d_of(const CapturedFrame& frame, double d_px) {
   std::array<uint64_t, 256> count{};
   for (const uint8_t id : frame.profile)
     count[id] += id != 0;
-  const auto most = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
+  const auto maximum = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
   for (const CaptureProfile& one : frame.description.profiles)
-    if (one.id == most) {
+    if (one.id == maximum) {
       const auto& d = one.profile.d_mm;
       const double widest = std::max({d[0], d[1], d[2], 1e-30});
       return {d_px * d[0] / widest, d_px * d[1] / widest, d_px * d[2] / widest};
@@ -151,10 +151,10 @@ void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicT
     }
     plot.series.push_back(std::move(series));
     if (one.spp.empty()) continue;
-    constexpr double least_shown = 0.1; // the axis is logarithmic
+    constexpr double min_shown = 0.1; // the axis is logarithmic
     PlotSeries taken{series_name, {}, is_baseline(technique.request.technique)};
     for (size_t t = 0; t < one.spp.size(); ++t)
-      taken.points.push_back({double(t), std::max(one.spp[t], least_shown),
+      taken.points.push_back({double(t), std::max(one.spp[t], min_shown),
                               fmt::format("{}, frame {}: {:.2f}", name_of(technique), t, one.spp[t]), false});
     samples.series.push_back(std::move(taken));
   }
@@ -183,7 +183,7 @@ demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
   std::vector<Measured> all(techniques.size());
   const std::string name = fmt::format("{} {}", request.scene, request.framing);
   Progress progress(progress_style(bench.session.quiet, false), name, "frame", sequence.frames.size());
-  KnownTruths known;
+  KnownReferences known;
   for (size_t t = 0; t < sequence.frames.size(); ++t) {
     progress.update(t);
     const CapturedFrame& frame = sequence.frames[t].captured;
@@ -204,7 +204,7 @@ demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
 
 std::string facts_text(const Report& report) {
   std::string text;
-  for (const auto& [name, value] : report.facts)
+  for (const auto& [name, value] : report.info)
     text += fmt::format("{}: {}\n", name, value);
   return text;
 }
@@ -250,8 +250,8 @@ std::string text_of(const Report& report) {
 
 } // namespace
 
-ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& asked) {
-  const BenchDynamicOptions options = quickened(asked);
+ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& requested) {
+  const BenchDynamicOptions options = quickened(requested);
   const auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
   std::optional<DynamicFile> file = read_dynamic(options.file, diagnostics);
@@ -277,17 +277,17 @@ ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& asked)
     if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
   }
   if (bench.report.table.rows.empty()) return fail(session, ExitCode::usage, "nothing is left to measure");
-  bench.report.facts = machine_facts(session.command, (*host)->properties.deviceName);
-  bench.report.facts.emplace_back("size",
-                                  fmt::format("{}x{} pixels", options.size.width, options.size.height));
-  bench.report.facts.emplace_back("truth", fmt::format("at {} stratified pixels a frame", file->subset));
-  bench.report.facts.emplace_back("frames",
-                                  fmt::format("counted from number {} of each sequence on", file->counted));
-  if (options.quick) bench.report.facts.push_back(quick_fact());
+  bench.report.info = machine_info(session.command, (*host)->properties.deviceName);
+  bench.report.info.emplace_back("size",
+                                 fmt::format("{}x{} pixels", options.size.width, options.size.height));
+  bench.report.info.emplace_back("truth", fmt::format("at {} stratified pixels a frame", file->subset));
+  bench.report.info.emplace_back("frames",
+                                 fmt::format("counted from number {} of each sequence on", file->counted));
+  if (options.quick) bench.report.info.push_back(quick_fact());
   add_comparisons(bench.report);
   add_published(bench.report);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  bench.report.facts.emplace_back("took", format_duration(seconds));
+  bench.report.info.emplace_back("took", format_duration(seconds));
   if (!session.quiet && options.json != "-" && options.html != "-" && options.csv != "-")
     print(text_of(bench.report) + facts_text(bench.report));
   const std::string problem = deliver_report(bench.report, options.json, options.csv, options.html);

@@ -7,9 +7,9 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t most_entries = 256;
-constexpr int64_t most_frames = 3600, most_samples = 4096;
-constexpr double least_d_px = 0.05, most_d_px = 64;
+constexpr size_t max_entries = 256;
+constexpr int64_t max_frames = 3600, max_samples = 4096;
+constexpr double min_d_px = 0.05, max_d_px = 64;
 
 void read_scene(const Document& document, NodeId node, Diagnostics& diagnostics, DynamicFile& file) {
   ObjectReader object(document, node, fmt::format("scene {}", file.scenes.size()), diagnostics);
@@ -17,10 +17,10 @@ void read_scene(const Document& document, NodeId node, Diagnostics& diagnostics,
   if (const auto name = object.name("scene")) request.scene = *name;
   if (const auto name = object.name("framing")) request.framing = *name;
   if (const auto path = object.string("file")) request.file = shipped(std::string(*path));
-  if (const auto d = object.number("d_px", least_d_px, most_d_px, Need::optional)) request.d_px = *d;
+  if (const auto d = object.number("d_px", min_d_px, max_d_px, Need::optional)) request.d_px = *d;
   request.camera = read_camera(document, object, diagnostics);
-  if (const auto n = object.integer("first", 0, most_frames, Need::optional)) request.first = uint32_t(*n);
-  if (const auto n = object.integer("frames", 1, most_frames)) request.frames = uint32_t(*n);
+  if (const auto n = object.integer("first", 0, max_frames, Need::optional)) request.first = uint32_t(*n);
+  if (const auto n = object.integer("frames", 1, max_frames)) request.frames = uint32_t(*n);
   if (const auto flag = object.boolean("still", Need::optional)) request.still = *flag;
   if (object.finish()) file.scenes.push_back(std::move(request));
 }
@@ -30,7 +30,7 @@ void read_one_technique(const Document& document, NodeId node, Diagnostics& diag
   DynamicTechnique technique;
   technique.request = read_technique(document, object, diagnostics);
   if (const auto name = object.name("guidance")) technique.guidance = *name;
-  if (const auto n = object.integer("min_samples", 0, most_samples)) technique.min_samples = uint32_t(*n);
+  if (const auto n = object.integer("min_samples", 0, max_samples)) technique.min_samples = uint32_t(*n);
   if (object.finish()) file.techniques.push_back(std::move(technique));
 }
 
@@ -42,10 +42,10 @@ std::optional<DynamicFile> read_dynamic(const std::string& path, Diagnostics& di
   DynamicFile file;
   ObjectReader object(*document, document->root(), "the bench file", diagnostics);
   object.integer("dermis_benchmark", 1, 1);
-  if (const auto n = object.integer("counted", 0, most_frames)) file.counted = uint32_t(*n);
+  if (const auto n = object.integer("counted", 0, max_frames)) file.counted = uint32_t(*n);
   if (const auto n = object.integer("subset", 1, 1 << 24)) file.subset = uint32_t(*n);
-  const NodeId scenes = object.array("scenes", 1, most_entries);
-  const NodeId techniques = object.array("techniques", 1, most_entries);
+  const NodeId scenes = object.array("scenes", 1, max_entries);
+  const NodeId techniques = object.array("techniques", 1, max_entries);
   object.finish();
   if (scenes.valid())
     for (const NodeId node : children(*document, scenes))

@@ -43,41 +43,41 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
   double frame_sum = 0, shown_sum = 0, accumulated_sum = 0;
   uint32_t used = 0;
   Mean flicker;
-  std::vector<double> found_mean, truth_mean;
+  std::vector<double> found_mean, reference_mean;
   for (uint32_t t = 0; t < frames.size(); ++t) {
     const FrameLight& now = frames[t];
-    const size_t pixels = now.truth.size() / 3;
+    const size_t pixels = now.reference.size() / 3;
     Mean error;
     for (size_t i = 0; i < pixels; ++i)
-      error.add_square(exposure * (luminance(now.found, i) - luminance(now.truth, i)));
+      error.add_square(exposure * (luminance(now.found, i) - luminance(now.reference, i)));
     figures.psnr_db.push_back(psnr_from_mse(error.value()));
     if (still) {
       if (found_mean.empty()) {
         found_mean = now.found;
-        truth_mean = now.truth;
+        reference_mean = now.reference;
       }
       for (size_t i = 0; i < found_mean.size(); ++i) {
         found_mean[i] += accumulation * (now.found[i] - found_mean[i]);
-        truth_mean[i] += accumulation * (now.truth[i] - truth_mean[i]);
+        reference_mean[i] += accumulation * (now.reference[i] - reference_mean[i]);
       }
     }
     if (t < counted) continue;
     ++used;
     frame_sum += error.value();
-    const std::vector<uint8_t> here = shown(now.found, exposure), there = shown(now.truth, exposure);
+    const std::vector<uint8_t> here = shown(now.found, exposure), there = shown(now.reference, exposure);
     Mean eight_bit;
     for (size_t i = 0; i < here.size(); ++i)
       eight_bit.add_square((double(here[i]) - double(there[i])) / 255.0);
     shown_sum += eight_bit.value();
     Mean accumulated;
     for (size_t i = 0; !still && i < now.accumulated.size() / 3; ++i)
-      accumulated.add_square(exposure * (luminance(now.accumulated, i) - luminance(now.truth, i)));
+      accumulated.add_square(exposure * (luminance(now.accumulated, i) - luminance(now.reference, i)));
     for (size_t i = 0; still && i < pixels; ++i) {
-      accumulated.add_square(exposure * (luminance(found_mean, i) - luminance(truth_mean, i)));
+      accumulated.add_square(exposure * (luminance(found_mean, i) - luminance(reference_mean, i)));
       if (t == 0) continue;
       const FrameLight& last = frames[t - 1];
       flicker.add_square(exposure * ((luminance(now.found, i) - luminance(last.found, i)) -
-                                     (luminance(now.truth, i) - luminance(last.truth, i))));
+                                     (luminance(now.reference, i) - luminance(last.reference, i))));
     }
     accumulated_sum += accumulated.value();
   }

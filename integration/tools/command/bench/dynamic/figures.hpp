@@ -8,7 +8,7 @@ namespace dermis::tools {
 
 // Light at the reference's pixels of one frame, 3 values a pixel.
 struct FrameLight {
-  std::vector<double> found, truth;
+  std::vector<double> found, reference;
   std::vector<double> accumulated = {}; // found so far along surfaces, where these move; else empty
 };
 

@@ -1,8 +1,8 @@
 #include "integration/tools/command/bench/dynamic/sequence.hpp"
 
+#include "integration/tools/command/run/reference_run.hpp"
 #include "integration/tools/command/run/rendered_frame.hpp"
-#include "integration/tools/command/run/truth_run.hpp"
-#include "integration/tools/files/capture_truth.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr double little_change = 0.02; // of d_px
-constexpr int most_tries = 4;
+constexpr int max_tries = 4;
 
 demo::Result<Sequence> render_frames(const SequenceRequest& request, demo::RenderOptions options,
                                      uint32_t frames) {
@@ -33,9 +33,9 @@ demo::Result<Sequence> render_frames(const SequenceRequest& request, demo::Rende
     for (Image* unused : {&one.captured.normal, &one.captured.specular, &one.captured.thickness,
                           &one.captured.back_lighting, &one.captured.albedo})
       *unused = {};
-    const TruthFrame truth = make_truth_frame(one.captured);
-    meter.add(truth.light, truth.profile);
-    if (sequence.frames.empty()) sequence.d_px = median_d_px(truth.input());
+    const ReferenceFrame reference = make_reference_frame(one.captured);
+    meter.add(reference.light, reference.profile);
+    if (sequence.frames.empty()) sequence.d_px = median_d_px(reference.input());
     sequence.frames.push_back(std::move(one));
     return demo::success();
   };
@@ -56,7 +56,7 @@ demo::Result<Sequence> render_sequence(const SequenceRequest& request, uint32_t 
   options.camera = request.camera;
   options.width = width;
   options.height = height;
-  for (int i = 0; i < most_tries && request.d_px > 0; ++i) {
+  for (int i = 0; i < max_tries && request.d_px > 0; ++i) {
     auto first = render_frames(request, options, 1);
     if (!first) return first;
     if (!(first->d_px > 0) || std::abs(first->d_px / request.d_px - 1) <= little_change) break;

@@ -44,13 +44,13 @@ std::string chain_graph() {
     resources += fmt::format(R"(, "blur{}": {{ "format": "rgba16f", "size": "view" }})", i);
     const std::string before = i == 0 ? "light" : fmt::format("blur{}", i - 1);
     passes += fmt::format(
-        R"({{ "pass": "blur{0}", "kind": "subsurface.separable", "set": {{ "axis": "vertical", "taps": "11" }},
+        R"({{ "pass": "blur{0}", "type": "subsurface.separable", "set": {{ "axis": "vertical", "taps": "11" }},
         "read": {{ "light": "light", "blurred": "{1}", "material": "material", "depth": "depth",
                   "tiles": "tiles", "arguments": "arguments" }}, "write": {{ "scattered": "blur{0}" }} }},)",
         i, before);
   }
   return fmt::format(
-      R"({{ "dermis": 1, "name": "chain",
+      R"({{ "dermis": 2, "name": "chain",
   "imports": {{ "lighting": {{ "format": "rgba16f", "size": "view" }}, "depth": {{ "format": "depth", "size": "view" }},
                "material": {{ "format": "r8_uint", "size": "view" }} }},
   "resources": {{ "classes": {{ "buffer": {{ "stride": 4, "count": "view/8" }} }},
@@ -58,14 +58,14 @@ std::string chain_graph() {
                  "arguments": {{ "buffer": {{ "stride": 4, "count": [4, 1] }} }},
                  "light": {{ "format": "rgba16f", "size": "view" }}{0} }},
   "passes": [
-    {{ "pass": "classify", "kind": "subsurface.classify", "read": {{ "material": "material", "depth": "depth" }},
+    {{ "pass": "classify", "type": "subsurface.classify", "read": {{ "material": "material", "depth": "depth" }},
       "write": {{ "classes": "classes" }} }},
-    {{ "pass": "list", "kind": "subsurface.tile_list", "read": {{ "classes": "classes" }},
+    {{ "pass": "list", "type": "subsurface.tile_list", "read": {{ "classes": "classes" }},
       "write": {{ "tiles": "tiles", "arguments": "arguments" }} }},
-    {{ "pass": "setup", "kind": "subsurface.setup", "read": {{ "lighting": "lighting", "material": "material",
+    {{ "pass": "setup", "type": "subsurface.setup", "read": {{ "lighting": "lighting", "material": "material",
       "depth": "depth", "tiles": "tiles", "arguments": "arguments" }}, "write": {{ "light": "light" }} }},
     {1}
-    {{ "pass": "combine", "kind": "subsurface.combine", "read": {{ "scattered": "blur{2}", "material": "material",
+    {{ "pass": "combine", "type": "subsurface.combine", "read": {{ "scattered": "blur{2}", "material": "material",
       "tiles": "tiles", "arguments": "arguments" }}, "write": {{ "lighting": "lighting" }} }} ],
   "exports": ["lighting"] }})",
       resources, passes, blurs - 1);
@@ -142,9 +142,8 @@ Report page_of(const Session& session, const std::vector<Row>& rows) {
   report.bench = "record";
   report.title = "What recording costs the host's thread";
   report.summary = "CPU time of the thread that records frames, on a device whose functions only count.";
-  report.facts = machine_facts(session.command, "");
-  report.facts.emplace_back("repetitions",
-                            fmt::format("{} samples of {} frames", samples, frames_per_sample));
+  report.info = machine_info(session.command, "");
+  report.info.emplace_back("repetitions", fmt::format("{} samples of {} frames", samples, frames_per_sample));
   report.table.columns = {{"graph", "graph"},
                           {"passes", "passes"},
                           {"commands", "commands a frame"},
@@ -224,13 +223,13 @@ ExitCode bench_record(const Session& session, const BenchRecordOptions& options)
   if (const std::string problem = read_sources(options, graphs, profile); !problem.empty())
     return fail(session, ExitCode::problems, problem);
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> known = load_kinds(options.kinds, diagnostics);
-  if (!known) return fail(session, ExitCode::problems, "the pass kinds cannot be used", &diagnostics);
+  const std::optional<LoadedGraph> known = load_pass_types(options.pass_types, diagnostics);
+  if (!known) return fail(session, ExitCode::problems, "the pass types cannot be used", &diagnostics);
   const bool table = !session.quiet && options.json != "-" && options.html != "-";
   if (table) print(table_head);
   std::vector<Row> rows;
   for (const Source& graph : graphs) {
-    HostPasses host_passes(known->host_kinds);
+    HostPasses host_passes(known->host_pass_types);
     const CountedInput input{graph.name,         graph.text,          options.profile,    profile,
                              options.size.width, options.size.height, host_passes.hooks()};
     const Measured measured = measure(input, std::filesystem::path(graph.name).stem().string());

@@ -208,7 +208,7 @@ std::string base64(std::span<const uint8_t> bytes) {
 std::string report_as_html(const Report& report) {
   std::string page;
   page += fmt::format("<h1>{}</h1><p>{}</p><dl>\n", html_text(report.title), html_text(report.summary));
-  for (const auto& [name, text] : report.facts)
+  for (const auto& [name, text] : report.info)
     page += fmt::format("<dt>{}<dd>{}\n", html_text(name), html_text(text));
   page += "</dl>\n";
   if (!report.notes.empty()) page += "<h2>Left out</h2><ul>\n";

@@ -74,25 +74,25 @@ ReportValue& ReportTable::at(size_t row, std::string_view key) {
 std::string ReportTable::text_at(size_t row, std::string_view key, int digits) const {
   const ReportValue& value = at(row, key);
   if (const auto* words = std::get_if<std::string>(&value)) return *words;
-  if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "yes" : "no";
+  if (const auto* reference = std::get_if<bool>(&value)) return *reference ? "yes" : "no";
   const auto* number = std::get_if<double>(&value);
   return number != nullptr ? fmt::format("{:.{}f}", *number, digits) : "-";
 }
 
-std::vector<std::pair<std::string, std::string>> machine_facts(const std::string& command,
-                                                               const std::string& device) {
-  std::vector<std::pair<std::string, std::string>> facts = {{"command", command}};
-  if (!device.empty()) facts.emplace_back("device", device);
-  facts.emplace_back("processor", processor_name());
-  facts.emplace_back("hardware threads", fmt::format("{}", std::thread::hardware_concurrency()));
-  return facts;
+std::vector<std::pair<std::string, std::string>> machine_info(const std::string& command,
+                                                              const std::string& device) {
+  std::vector<std::pair<std::string, std::string>> info = {{"command", command}};
+  if (!device.empty()) info.emplace_back("device", device);
+  info.emplace_back("processor", processor_name());
+  info.emplace_back("hardware threads", fmt::format("{}", std::thread::hardware_concurrency()));
+  return info;
 }
 
 std::string report_as_json(const Report& report) {
   JsonWriter out;
   out.open_object().member("dermis_bench", report.bench);
   out.key("facts").open_object();
-  for (const auto& [name, text] : report.facts)
+  for (const auto& [name, text] : report.info)
     out.member(name, text);
   out.close().key("notes").open_array();
   for (const std::string& note : report.notes)

@@ -60,8 +60,8 @@ struct ReportPictures {
 struct Report {
   std::string bench; // "error-time"
   std::string title, summary;
-  std::vector<std::pair<std::string, std::string>> facts; // machine, command, repetitions
-  std::vector<std::string> notes;                         // what was left out and why
+  std::vector<std::pair<std::string, std::string>> info; // machine, command, repetitions
+  std::vector<std::string> notes;                        // what was left out and why
   ReportTable table;
   std::vector<Plot> plots;
   std::string plots_title, plots_text; // "": those of time against error, or over frames
@@ -72,8 +72,8 @@ struct Report {
 };
 
 // Facts that every bench states: command, processor, threads, and where given the device.
-std::vector<std::pair<std::string, std::string>> machine_facts(const std::string& command,
-                                                               const std::string& device);
+std::vector<std::pair<std::string, std::string>> machine_info(const std::string& command,
+                                                              const std::string& device);
 
 std::string report_as_json(const Report& report);
 std::string report_as_csv(const Report& report);

@@ -7,7 +7,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr std::string_view hand_out_kind = "subsurface.light"; // no part of a technique
+constexpr std::string_view export_scattered_type = "subsurface.export_scattered"; // no part of a technique
 
 double device_ms_of(const demo::FrameOutputs& frame, const LoadedGraph& loaded) {
   double sum = 0;
@@ -15,7 +15,8 @@ double device_ms_of(const demo::FrameOutputs& frame, const LoadedGraph& loaded) 
     const auto& passes = loaded.graph.passes;
     const auto pass = std::find_if(passes.begin(), passes.end(),
                                    [&](const PassDeclaration& each) { return each.name == one.pass; });
-    if (pass == passes.end() || loaded.kinds[pass->kind].name != hand_out_kind) sum += one.milliseconds;
+    if (pass == passes.end() || loaded.pass_types[pass->type].name != export_scattered_type)
+      sum += one.milliseconds;
   }
   return sum;
 }
@@ -45,7 +46,7 @@ scatter_by_rays(const RayRequest& request, const SceneRequest& scene, const Subj
     if (frame.dermis_times.empty())
       return demo::Error{demo::ErrorKind::environment,
                          "the device has no timestamps; nothing can be compared"};
-    const double slab_rms = frame.choice ? frame.choice->through_rms / double(frame.exposure) : 0;
+    const double slab_rms = frame.choice ? frame.choice->transmitted_rms / double(frame.exposure) : 0;
     auto done = on_frame({frame.scattered.texels, device_ms_of(frame, request.loaded), slab_rms});
     if (done && request.step) request.step();
     return done;

@@ -14,12 +14,12 @@ RegionError measure(std::span<const float> light, const Reference& region) {
   if (region.pixels.empty()) return {};
   const ErrorFigures figures =
       measure_error(light, region.light, region.pixels, region.exposure, region.population);
-  double found = 0, truth = 0;
+  double found = 0, reference = 0;
   for (size_t i = 0; i < region.pixels.size(); ++i) {
     found += luminance_of(&light[size_t{3} * region.pixels[i]]);
-    truth += luminance_of(&region.light[3 * i]);
+    reference += luminance_of(&region.light[3 * i]);
   }
-  return {figures.rmse * figures.rmse, truth > 0 ? found / truth : 0};
+  return {figures.rmse * figures.rmse, reference > 0 ? found / reference : 0};
 }
 
 } // namespace

@@ -77,8 +77,8 @@ demo::Result<RestirRow> measure_variant(Bench& bench, const SceneRequest& scene,
   if (!done) return done.error();
   for (const std::string& credit : *done)
     if (const std::pair<std::string, std::string> fact{"credit", credit};
-        std::find(bench.report.facts.begin(), bench.report.facts.end(), fact) == bench.report.facts.end())
-      bench.report.facts.push_back(fact);
+        std::find(bench.report.info.begin(), bench.report.info.end(), fact) == bench.report.info.end())
+      bench.report.info.push_back(fact);
   row.error = mean_of(errors);
   row.device_ms = median_of(times);
   return row;
@@ -119,13 +119,13 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
   RestirScene scene{subject.take(), {}, {}, {}, {}};
   RayRequest none = request_of(bench, bench.variants.front());
   none.step = [&] { steps.reach(steps.done + 1); };
-  const uint64_t after_truth = steps.done + bench.file.reference.frames; // also where it was kept
-  auto truth = make_ray_reference(bench.file.reference, none, request, scene.subject, bench.subject_options,
-                                  bench.options.cache);
-  if (!truth) return truth.error();
-  steps.reach(after_truth);
-  scene.truth = truth.take();
-  scene.regions = split_by_light(scene.truth.reference, scene.subject.frame, bench.file.thin_mm);
+  const uint64_t after_reference = steps.done + bench.file.reference.frames; // also where it was kept
+  auto reference = make_ray_reference(bench.file.reference, none, request, scene.subject,
+                                      bench.subject_options, bench.options.cache);
+  if (!reference) return reference.error();
+  steps.reach(after_reference);
+  scene.reference = reference.take();
+  scene.regions = split_by_light(scene.reference.reference, scene.subject.frame, bench.file.thin_mm);
   for (const uint32_t samples : bench.file.samples) {
     const size_t first = scene.rows.size();
     for (const RestirVariant& variant : bench.variants) {
@@ -138,7 +138,7 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
           ratio_at_equal_time(last.error.all.mse, last.device_ms, base.error.all.mse, base.device_ms);
     }
   }
-  scene.slab_rms *= scene.truth.reference.exposure;
+  scene.slab_rms *= scene.reference.reference.exposure;
   if (!bench.options.quick) expect_of_reuse(scene.rows); // a few frames say nothing
   choose_pictures(scene.rows);
   const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
@@ -176,8 +176,8 @@ demo::Result<> measure(Bench& bench) {
 
 } // namespace
 
-ExitCode bench_restir(const Session& session, const BenchRestirOptions& asked) {
-  const BenchRestirOptions options = quickened(asked);
+ExitCode bench_restir(const Session& session, const BenchRestirOptions& requested) {
+  const BenchRestirOptions options = quickened(requested);
   const auto start = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
   std::optional<RestirFile> file = read_restir(options.file, diagnostics);
@@ -206,14 +206,14 @@ ExitCode bench_restir(const Session& session, const BenchRestirOptions& asked) {
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
   Report& report = bench.report;
-  auto facts = machine_facts(session.command, (*host)->properties.deviceName);
-  facts.emplace_back("size", fmt::format("{}x{} pixels", options.size.width, options.size.height));
-  report.facts.insert(report.facts.begin(), facts.begin(), facts.end());
+  auto info = machine_info(session.command, (*host)->properties.deviceName);
+  info.emplace_back("size", fmt::format("{}x{} pixels", options.size.width, options.size.height));
+  report.info.insert(report.info.begin(), info.begin(), info.end());
   if (!bench.reuses)
     report.notes.push_back(fmt::format("reuse: '{}' has no settings 'reuse' and 'shift'", file->graph));
-  if (options.quick) report.facts.push_back(quick_fact());
+  if (options.quick) report.info.push_back(quick_fact());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report.facts.emplace_back("took", format_duration(seconds));
+  report.info.emplace_back("took", format_duration(seconds));
   if (!session.quiet && options.json != "-" && options.html != "-" && options.csv != "-") {
     std::string text = text_of_restir(report);
     for (const std::string& note : report.notes)

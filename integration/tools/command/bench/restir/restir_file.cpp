@@ -7,9 +7,9 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t most_entries = 256;
-constexpr int64_t most_frames = 3600, most_samples = 1024;
-constexpr double most_thin_mm = 1000;
+constexpr size_t max_entries = 256;
+constexpr int64_t max_frames = 3600, max_samples = 1024;
+constexpr double max_thin_mm = 1000;
 
 void read_scene(const Document& document, NodeId node, Diagnostics& diagnostics, RestirFile& file) {
   ObjectReader object(document, node, fmt::format("scene {}", file.scenes.size()), diagnostics);
@@ -23,8 +23,8 @@ void read_scene(const Document& document, NodeId node, Diagnostics& diagnostics,
 
 void read_reference(const Document& document, NodeId node, Diagnostics& diagnostics, RestirFile& file) {
   ObjectReader object(document, node, "'reference'", diagnostics);
-  if (const auto n = object.integer("samples", 1, most_samples)) file.reference.samples = uint32_t(*n);
-  if (const auto n = object.integer("frames", 2, most_frames)) file.reference.frames = uint32_t(*n);
+  if (const auto n = object.integer("samples", 1, max_samples)) file.reference.samples = uint32_t(*n);
+  if (const auto n = object.integer("frames", 2, max_frames)) file.reference.frames = uint32_t(*n);
   object.finish();
 }
 
@@ -37,18 +37,18 @@ std::optional<RestirFile> read_restir(const std::string& path, Diagnostics& diag
   ObjectReader object(*document, document->root(), "the bench file", diagnostics);
   object.integer("dermis_benchmark", 1, 1);
   if (const auto name = object.string("graph")) file.graph = shipped(std::string(*name));
-  if (const auto n = object.integer("settle", 1, most_frames)) file.settle = uint32_t(*n);
-  if (const auto n = object.integer("frames", 1, most_frames)) file.frames = uint32_t(*n);
-  if (const auto n = object.integer("repetitions", 1, most_frames)) file.repetitions = uint32_t(*n);
-  if (const auto mm = object.number("thin_mm", 0, most_thin_mm)) file.thin_mm = *mm;
-  const NodeId samples = object.array("samples", 1, most_entries);
+  if (const auto n = object.integer("settle", 1, max_frames)) file.settle = uint32_t(*n);
+  if (const auto n = object.integer("frames", 1, max_frames)) file.frames = uint32_t(*n);
+  if (const auto n = object.integer("repetitions", 1, max_frames)) file.repetitions = uint32_t(*n);
+  if (const auto mm = object.number("thin_mm", 0, max_thin_mm)) file.thin_mm = *mm;
+  const NodeId samples = object.array("samples", 1, max_entries);
   const NodeId reference = object.object("reference");
-  const NodeId scenes = object.array("scenes", 1, most_entries);
-  const NodeId techniques = object.array("screen_space", 0, most_entries);
+  const NodeId scenes = object.array("scenes", 1, max_entries);
+  const NodeId techniques = object.array("screen_space", 0, max_entries);
   object.finish();
   if (samples.valid())
     for (const NodeId node : children(*document, samples))
-      if (const auto n = read_number(*document, node, "'samples'", 1, double(most_samples), diagnostics))
+      if (const auto n = read_number(*document, node, "'samples'", 1, double(max_samples), diagnostics))
         file.samples.push_back(uint32_t(*n));
   if (reference.valid()) read_reference(*document, reference, diagnostics, file);
   if (scenes.valid())

@@ -34,18 +34,18 @@ void add_pictures(Report& report, const RestirScene& scene) {
   ReportPictures& light = report.pictures[0];
   ReportPictures& maps = report.pictures[1];
   const CapturedFrame& frame = scene.subject.frame;
-  const Reference& truth = scene.truth.reference;
+  const Reference& reference = scene.reference.reference;
   std::vector<float> everywhere(3 * frame.profile.size());
-  for (size_t i = 0; i < truth.light.size(); ++i)
-    everywhere[size_t{3} * truth.pixels[i / 3] + i % 3] = static_cast<float>(truth.light[i]);
-  light.pictures.push_back(picture_of(scene.subject.scene + ", reference", frame, truth.exposure,
+  for (size_t i = 0; i < reference.light.size(); ++i)
+    everywhere[size_t{3} * reference.pixels[i / 3] + i % 3] = static_cast<float>(reference.light[i]);
+  light.pictures.push_back(picture_of(scene.subject.scene + ", reference", frame, reference.exposure,
                                       [&](size_t i) { return everywhere[i]; }));
   for (const RestirRow& row : scene.rows) {
     if (!row.heat_map) continue;
     const std::string caption = fmt::format("{}, {}", scene.subject.scene, name_of(row));
     light.pictures.push_back(
-        picture_of(caption, frame, truth.exposure, [&](size_t i) { return row.light[i]; }));
-    maps.pictures.push_back(heat_map(caption, row.light, truth, frame.description.width, frame.profile));
+        picture_of(caption, frame, reference.exposure, [&](size_t i) { return row.light[i]; }));
+    maps.pictures.push_back(heat_map(caption, row.light, reference, frame.description.width, frame.profile));
   }
 }
 
@@ -61,13 +61,13 @@ Report start_restir_report(const RestirFile& file) {
       "where light comes from behind). At equal time: mean square error times device time, over the same "
       "without reuse at as many samples, since the error of independent samples falls as one over their "
       "number; below 1 is better. Light: mean over the reference's mean, 1 where nothing is missing.";
-  report.facts.emplace_back(
+  report.info.emplace_back(
       "reference", fmt::format("the same kernels without reuse, {} paths a pixel in each of {} frames",
                                file.reference.samples, file.reference.frames));
-  report.facts.emplace_back("expected", expectation_text());
-  report.facts.emplace_back(
+  report.info.emplace_back("expected", expectation_text());
+  report.info.emplace_back(
       "frames", fmt::format("{} counted, after {} where there is history", file.frames, file.settle));
-  report.facts.emplace_back(
+  report.info.emplace_back(
       "through", fmt::format("pixels with more light behind than in front, and at most {} mm of way for it",
                              file.thin_mm));
   report.table.columns = {{"scene", "scene"},
@@ -127,7 +127,7 @@ void add_scene(Report& report, const RestirScene& scene) {
                                  if_any(regions.through, row.error.through.light),
                                  if_any(regions.rest, std::sqrt(row.error.rest.mse)),
                                  if_any(regions.rest, row.error.rest.light),
-                                 scene.truth.own_mse,
+                                 scene.reference.own_mse,
                                  static_cast<int64_t>(regions.all.pixels.size()),
                                  static_cast<int64_t>(regions.through.pixels.size()),
                                  scene.slab_rms,

@@ -23,7 +23,7 @@ struct RestirRow {
 
 struct RestirScene {
   Subject subject;
-  RayReference truth;
+  RayReference reference;
   RayRegions regions;
   double slab_rms = 0;         // as RayFrame has it, exposed
   std::vector<RestirRow> rows; // without reuse first

@@ -44,7 +44,7 @@ struct StabilityCase {
   std::function<CapturedFrame(uint32_t frame)> same_as = nullptr;
   std::function<double(uint32_t frame)> wanted = nullptr;
   Judged judged = Judged::light;
-  Asked asked = Asked::all;
+  Asked requested = Asked::all;
   double bound = 0;           // of the error, in units of `scale`
   double scale = 1;           // brightest light of the judged frames
   uint32_t first_channel = 0; // that is judged
@@ -54,7 +54,7 @@ struct StabilityCase {
       0;               // frames from here on are sound: how many more until the error is within the bound
   bool follows = true; // false: every frame is a cut
   bool finite_only = false;                     // nothing is asked but finite values, none below 0
-  bool may_be_refused = false;                  // a graph may say that it cannot be made for this size
+  bool may_be_rejected = false;                 // a graph may say that it cannot be made for this size
   bool large = false;                           // millions of pixels, hundreds of frames: not for a quick run
   DepthGiven depth = DepthGiven::view_distance; // of `given`; `same_as` gives distances
   uint64_t frame_index = 0;                     // of the first frame; 0: as it comes

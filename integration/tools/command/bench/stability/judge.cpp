@@ -12,13 +12,13 @@ constexpr uint32_t period = 16; // two tiles: seams of groups of 16 show as well
 constexpr uint32_t beside = 4;  // columns on either side of the middle that count as beside an edge
 
 // What a frame must give, 3 values a pixel.
-std::vector<float> wanted_light(const StabilityCase& asked, uint32_t t, const CapturedFrame& frame) {
+std::vector<float> wanted_light(const StabilityCase& requested, uint32_t t, const CapturedFrame& frame) {
   std::vector<float> light(frame.lighting.values);
-  if (asked.wanted)
+  if (requested.wanted)
     for (size_t i = 0; i < frame.profile.size(); ++i)
       if (frame.profile[i] != 0)
         for (size_t c = 0; c < 3; ++c)
-          light[3 * i + c] = static_cast<float>(asked.wanted(t));
+          light[3 * i + c] = static_cast<float>(requested.wanted(t));
   return light;
 }
 
@@ -46,11 +46,11 @@ struct LightErrors {
     rows[y % period].add(error);
   }
   double edges() const {
-    double most = 0;
+    double maximum = 0;
     for (const auto& lines : {columns, rows})
       for (const Mean& one : lines)
-        most = std::max(most, std::abs(one.value() - all.value()));
-    return most;
+        maximum = std::max(maximum, std::abs(one.value() - all.value()));
+    return maximum;
   }
 };
 
@@ -66,8 +66,8 @@ Mean samples_of(const CapturedFrame& frame, const StabilityAnswer& answer, Count
   return mean;
 }
 
-double beyond(double share) {
-  return std::max({0.0, -share, share - 1});
+double beyond(double fraction) {
+  return std::max({0.0, -fraction, fraction - 1});
 }
 
 double samples_at_edge(const CapturedFrame& frame, const StabilityAnswer& answer) {
@@ -75,22 +75,23 @@ double samples_at_edge(const CapturedFrame& frame, const StabilityAnswer& answer
   const double mean = samples_of(frame, answer, [&](uint32_t x, uint32_t) {
                         return x + beside >= middle && x < middle + beside;
                       }).value();
-  constexpr double least = 8;
-  return mean > 0 ? least / mean : infinity;
+  constexpr double minimum = 8;
+  return mean > 0 ? minimum / mean : infinity;
 }
 
 double samples_in_tile(const CapturedFrame& frame, const StabilityAnswer& answer) {
   double worst = 0;
   for (uint32_t y = 0; y < frame.description.height; y += tile)
     for (uint32_t x = 0; x < frame.description.width; x += tile) {
-      double most = 0;
+      double maximum = 0;
       const double mean =
           samples_of(frame, answer, [&](uint32_t i, uint32_t j) {
             if (i / tile != x / tile || j / tile != y / tile) return false;
-            most = std::max(most, double(answer.samples[3 * (size_t{j} * frame.description.width + i)]));
+            maximum =
+                std::max(maximum, double(answer.samples[3 * (size_t{j} * frame.description.width + i)]));
             return true;
           }).value();
-      if (mean > 0) worst = std::max(worst, most / mean);
+      if (mean > 0) worst = std::max(worst, maximum / mean);
     }
   return worst > 0 ? worst : infinity;
 }
@@ -102,21 +103,21 @@ double mean_samples(const CapturedFrame& frame, const StabilityAnswer& found, co
   return std::isfinite(difference) ? difference : infinity; // NaN would hold
 }
 
-double samples_error(const StabilityCase& asked, const CapturedFrame& frame, const StabilityAnswer& found,
+double samples_error(const StabilityCase& requested, const CapturedFrame& frame, const StabilityAnswer& found,
                      const StabilityAnswer* sound) {
   if (found.samples.size() != frame.lighting.values.size()) return infinity; // nothing was handed out
-  if (asked.judged == Judged::samples_at_edge) return samples_at_edge(frame, found);
-  if (asked.judged == Judged::samples_in_tile) return samples_in_tile(frame, found);
+  if (requested.judged == Judged::samples_at_edge) return samples_at_edge(frame, found);
+  if (requested.judged == Judged::samples_in_tile) return samples_in_tile(frame, found);
   return sound != nullptr ? mean_samples(frame, found, *sound) : infinity;
 }
 
 } // namespace
 
-Judgement judge(const StabilityCase& asked, uint32_t t, const StabilityAnswer& found,
+Judgement judge(const StabilityCase& requested, uint32_t t, const StabilityAnswer& found,
                 const StabilityAnswer* sound) {
   // A frame in which a pixel has no profile, or no place, says nothing of its light.
-  const CapturedFrame frame = asked.same_as ? asked.same_as(t) : asked.given(t);
-  const std::vector<float> wanted = sound != nullptr ? sound->light : wanted_light(asked, t, frame);
+  const CapturedFrame frame = requested.same_as ? requested.same_as(t) : requested.given(t);
+  const std::vector<float> wanted = sound != nullptr ? sound->light : wanted_light(requested, t, frame);
   Judgement judgement;
   LightErrors errors;
   const uint32_t width = frame.description.width, height = frame.description.height;
@@ -130,16 +131,16 @@ Judgement judge(const StabilityCase& asked, uint32_t t, const StabilityAnswer& f
       }
       judgement.nonfinite += finite ? 0 : 1;
       judgement.negative += finite && negative ? 1 : 0;
-      const bool inside =
-          x >= asked.margin && x + asked.margin < width && y >= asked.margin && y + asked.margin < height;
-      if (!finite || asked.finite_only || frame.profile[i] == 0 || !inside) continue;
-      for (size_t c = asked.first_channel; c < 3; ++c)
-        if (asked.judged == Judged::light_beyond)
-          errors.add(x, y, beyond(double(found.light[3 * i + c]) / asked.scale));
+      const bool inside = x >= requested.margin && x + requested.margin < width && y >= requested.margin &&
+                          y + requested.margin < height;
+      if (!finite || requested.finite_only || frame.profile[i] == 0 || !inside) continue;
+      for (size_t c = requested.first_channel; c < 3; ++c)
+        if (requested.judged == Judged::light_beyond)
+          errors.add(x, y, beyond(double(found.light[3 * i + c]) / requested.scale));
         else
-          errors.add(x, y, (double(found.light[3 * i + c]) - double(wanted[3 * i + c])) / asked.scale);
+          errors.add(x, y, (double(found.light[3 * i + c]) - double(wanted[3 * i + c])) / requested.scale);
     }
-  switch (asked.judged) {
+  switch (requested.judged) {
   case Judged::light:
   case Judged::light_beyond:
     judgement.error = errors.largest;
@@ -153,7 +154,7 @@ Judgement judge(const StabilityCase& asked, uint32_t t, const StabilityAnswer& f
   case Judged::mean_samples:
   case Judged::samples_at_edge:
   case Judged::samples_in_tile:
-    judgement.error = samples_error(asked, frame, found, sound);
+    judgement.error = samples_error(requested, frame, found, sound);
     break;
   }
   return judgement;

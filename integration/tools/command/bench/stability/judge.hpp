@@ -19,7 +19,7 @@ struct Judgement {
 };
 
 // Frame `t` of the case. `sound`: the answer to `same_as`, where the case has it.
-Judgement judge(const StabilityCase& asked, uint32_t t, const StabilityAnswer& found,
+Judgement judge(const StabilityCase& requested, uint32_t t, const StabilityAnswer& found,
                 const StabilityAnswer* sound);
 
 } // namespace dermis::tools

@@ -21,15 +21,15 @@ float as_half(double value) {
 // relative, of the standard deviation, which is what sample numbers go by, over the last tenth.
 StabilityRow moving(std::string name, double level, uint64_t updates) {
   constexpr double eta = 0.2; // GuidanceSettings::eta
-  subsurface::MovingVariance twin;
+  subsurface::MovingVariance cpu_kernel;
   float mean = 0, deviation = 0;
   SplitMix64 random{7};
-  double squares = 0, twin_squares = 0;
+  double squares = 0, cpu_kernel_squares = 0;
   bool finite = true;
   for (uint64_t i = 0; i < updates; ++i) {
     const double noise = static_cast<double>(random.next() >> 11) * 0x1p-53;
     const double x = level * (1 + 0.02 * (2 * noise - 1));
-    twin.add(x, eta);
+    cpu_kernel.add(x, eta);
     if (i == 0) mean = as_half(x);
     const double step = x - double(mean);
     mean = as_half(double(mean) + eta * step);
@@ -37,12 +37,12 @@ StabilityRow moving(std::string name, double level, uint64_t updates) {
     finite = finite && std::isfinite(mean) && std::isfinite(deviation);
     if (i >= updates - updates / 10) {
       squares += double(deviation) * double(deviation);
-      twin_squares += twin.variance;
+      cpu_kernel_squares += cpu_kernel.variance;
     }
   }
   // Each rounding of the mean adds at most half a step to the next deviation, of 2 % of the mean or more.
   StabilityRow made =
-      formula_row(std::move(name), std::abs(std::sqrt(squares / twin_squares) - 1), 0.02, finite);
+      formula_row(std::move(name), std::abs(std::sqrt(squares / cpu_kernel_squares) - 1), 0.02, finite);
   made.frames = updates;
   return made;
 }
@@ -57,14 +57,14 @@ StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
     int count = 0;
   };
   const subsurface::GuidanceSettings settings;
-  Loop kept, twin;
+  Loop kept, cpu_kernel;
   const auto frame = [&](Loop& loop, double draw, bool halves) {
     const auto store = [&](double value) { return halves ? double(as_half(value)) : value; };
     const bool begun = loop.moments.begun;
     loop.count =
         begun ? subsurface::clamped_samples(
                     subsurface::wanted_samples(loop.moments.variance, loop.mean_count, settings), settings)
-              : static_cast<int>(settings.least);
+              : static_cast<int>(settings.min_samples);
     loop.samples += loop.count;
     loop.moments.add(1 + spread * draw / std::sqrt(double(loop.count)), settings.eta);
     const double deviation = store(std::sqrt(loop.moments.variance));
@@ -78,9 +78,9 @@ StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
     const double even = static_cast<double>(random.next() >> 11) * 0x1p-53;
     const double draw = std::sqrt(12.0) * (even - 0.5); // variance 1
     frame(kept, draw, true);
-    frame(twin, draw, false);
+    frame(cpu_kernel, draw, false);
   }
-  StabilityRow made = formula_row(std::move(name), std::abs(kept.samples / twin.samples - 1), 0.02,
+  StabilityRow made = formula_row(std::move(name), std::abs(kept.samples / cpu_kernel.samples - 1), 0.02,
                                   std::isfinite(kept.samples));
   made.frames = updates;
   return made;
@@ -131,14 +131,14 @@ double in_float(double value) {
 // between both weights, over the last tenth.
 StabilityRow control_over_frames(std::string name, double swing, double eta, double eps_alpha, Store store) {
   constexpr uint64_t frames = 36000; // ten minutes at 60 Hz
-  subsurface::MovingCovariance twin, kept;
+  subsurface::MovingCovariance cpu_kernel, kept;
   SplitMix64 random{13};
   const auto noise = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-52 - 1; };
   double error = 0;
   bool finite = true;
   for (uint64_t i = 0; i < frames; ++i) {
     const double own = swing * noise(), f = 1 + own / 2 + 0.03 * noise(), g = 1 + own;
-    twin.add(f, g, eta);
+    cpu_kernel.add(f, g, eta);
     kept.add(f, g, eta);
     const double weight = store(kept.variance_g > 0 ? kept.covariance / kept.variance_g : 1);
     const double deviation = store(std::sqrt(kept.variance_g));
@@ -149,7 +149,7 @@ StabilityRow control_over_frames(std::string name, double swing, double eta, dou
     const double found = subsurface::control_weight(kept, eps_alpha);
     finite = finite && std::isfinite(found) && found >= 0 && found <= 2.1; // 1 + mean_f / mean_g at most
     if (i >= frames - frames / 10)
-      error = std::max(error, std::abs(found - subsurface::control_weight(twin, eps_alpha)));
+      error = std::max(error, std::abs(found - subsurface::control_weight(cpu_kernel, eps_alpha)));
   }
   StabilityRow made = formula_row(std::move(name), error, 0.02, finite);
   made.frames = frames;
@@ -161,7 +161,7 @@ StabilityRow control_over_frames(std::string name, double swing, double eta, dou
 StabilityRow awakening(std::string name) {
   const subsurface::GuidanceSettings settings;
   subsurface::MovingVariance moments;
-  double mean_count = settings.least;
+  double mean_count = settings.min_samples;
   int count = 0;
   constexpr int even = 600;
   for (int i = 0; i < even + 2; ++i) {
@@ -172,7 +172,7 @@ StabilityRow awakening(std::string name) {
     moments.variance = deviation * deviation;
     mean_count = as_half(mean_count + settings.eta * (count - mean_count));
   }
-  StabilityRow made = formula_row(std::move(name), settings.least / count, 0.5);
+  StabilityRow made = formula_row(std::move(name), settings.min_samples / count, 0.5);
   made.frames = even + 2;
   return made;
 }

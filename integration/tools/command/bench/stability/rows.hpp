@@ -26,7 +26,7 @@ struct StabilityRow {
 
 // One case of one technique; nullopt where it keeps no history and the case asks for one. Errors: those of
 // the run.
-demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const StabilityCase& asked,
+demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const StabilityCase& requested,
                                                    const std::string& name);
 
 // A row of technique "formula".

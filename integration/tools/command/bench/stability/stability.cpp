@@ -15,7 +15,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t most_techniques = 256;
+constexpr size_t max_techniques = 256;
 
 std::optional<std::vector<TechniqueRequest>> read_techniques(const std::string& path,
                                                              Diagnostics& diagnostics) {
@@ -24,7 +24,7 @@ std::optional<std::vector<TechniqueRequest>> read_techniques(const std::string& 
   ObjectReader object(*document, document->root(), "the bench file", diagnostics);
   object.integer("dermis_benchmark", 1, 1);
   std::vector<TechniqueRequest> techniques;
-  if (const NodeId list = object.array("techniques", 1, most_techniques); list.valid())
+  if (const NodeId list = object.array("techniques", 1, max_techniques); list.valid())
     for (const NodeId node : children(*document, list)) {
       ObjectReader entry(*document, node, fmt::format("technique {}", techniques.size()), diagnostics);
       techniques.push_back(read_technique(*document, entry, diagnostics));
@@ -35,13 +35,13 @@ std::optional<std::vector<TechniqueRequest>> read_techniques(const std::string& 
   return techniques;
 }
 
-std::vector<StabilityCase> cases_asked_for(const std::vector<std::string>& only, bool quick) {
-  std::vector<StabilityCase> asked;
+std::vector<StabilityCase> requested_cases(const std::vector<std::string>& only, bool quick) {
+  std::vector<StabilityCase> requested;
   for (const auto& list : {light_cases(), shape_cases(), depth_cases(), tile_cases(), time_cases(),
                            motion_cases(), guidance_cases(), random_cases()})
     for (const StabilityCase& one : list)
-      if (is_selected(only, one.name) && !(quick && one.large)) asked.push_back(one);
-  return asked;
+      if (is_selected(only, one.name) && !(quick && one.large)) requested.push_back(one);
+  return requested;
 }
 
 Report make_report(const Session& session, const std::vector<StabilityRow>& rows,
@@ -52,7 +52,7 @@ Report make_report(const Session& session, const std::vector<StabilityRow>& rows
   report.summary = "Damaged light, depth, masks, velocities and histories; sizes, radii, slopes and frame "
                    "numbers at their "
                    "limits. Errors are in units of the brightest light of a case.";
-  report.facts = machine_facts(session.command, device);
+  report.info = machine_info(session.command, device);
   report.notes = notes;
   report.table.columns = {{"case", "case"},
                           {"technique", "technique"},
@@ -108,8 +108,8 @@ std::string text_of(const std::vector<StabilityRow>& rows, const std::vector<std
 
 } // namespace
 
-ExitCode bench_stability(const Session& session, const BenchStabilityOptions& asked) {
-  const BenchStabilityOptions options = quickened(asked);
+ExitCode bench_stability(const Session& session, const BenchStabilityOptions& requested) {
+  const BenchStabilityOptions options = quickened(requested);
   Diagnostics diagnostics;
   auto techniques = read_techniques(options.file, diagnostics);
   if (!techniques)
@@ -118,7 +118,7 @@ ExitCode bench_stability(const Session& session, const BenchStabilityOptions& as
   if (options.quick && options.techniques.empty()) quicken(*techniques);
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
-  const std::vector<StabilityCase> cases = cases_asked_for(options.cases, options.quick);
+  const std::vector<StabilityCase> cases = requested_cases(options.cases, options.quick);
   std::vector<StabilityRow> rows;
   std::vector<std::string> notes;
   for (std::vector<StabilityRow>& list : std::array{formula_rows(), moving_rows(options.updates)})
@@ -141,7 +141,7 @@ ExitCode bench_stability(const Session& session, const BenchStabilityOptions& as
       progress.update(done++);
       if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
       auto row = run_case(**run, one, name);
-      if (!row && one.may_be_refused && row.error().kind == demo::ErrorKind::input) {
+      if (!row && one.may_be_rejected && row.error().kind == demo::ErrorKind::input) {
         notes.push_back(fmt::format("{} with {}: refused, which is allowed there", one.name, name));
         continue;
       }
@@ -155,7 +155,7 @@ ExitCode bench_stability(const Session& session, const BenchStabilityOptions& as
   if (!session.quiet && options.json != "-" && options.html != "-")
     print(text_of(rows, notes) + fmt::format("{} of {} rows do not hold\n", broken, rows.size()));
   Report report = make_report(session, rows, notes, (*host)->properties.deviceName);
-  if (options.quick) report.facts.push_back(quick_fact());
+  if (options.quick) report.info.push_back(quick_fact());
   const std::string problem = deliver_report(report, options.json, "", options.html);
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   return broken == 0 ? ExitCode::ok : ExitCode::problems;

@@ -44,7 +44,9 @@ std::vector<Row> table_rows(const Session& session, uint32_t runs) {
     }
     for (size_t k = 0; k < all.size(); ++k) {
       std::sort(all[k].begin(), all[k].end());
-      const auto at = [&](double share) { return all[k][static_cast<size_t>(share * (runs - 1) + 0.5)]; };
+      const auto at = [&](double fraction) {
+        return all[k][static_cast<size_t>(fraction * (runs - 1) + 0.5)];
+      };
       Row row{dynamic ? "dynamic" : "static",
               std::string(residual_names[k]),
               at(0.5),
@@ -87,8 +89,8 @@ Report make_report(const Session& session, const std::vector<Row>& rows, uint32_
   report.summary =
       "Mean over frames 25 to 100 of the root of the moving variance of six residuals, and the best "
       "weight of the control. The printed values are those of one run.";
-  report.facts = machine_facts(session.command, "");
-  report.facts.emplace_back("runs", fmt::format("{} of 100 frames with 16 samples each", runs));
+  report.info = machine_info(session.command, "");
+  report.info.emplace_back("runs", fmt::format("{} of 100 frames with 16 samples each", runs));
   report.table.columns = {{"scenario", "light"},      {"configuration", "residual"},
                           {"median", "median", 4},    {"low", "1 %", 4},
                           {"high", "99 %", 4},        {"expected", "expected", 4},

@@ -61,17 +61,17 @@ struct SchemaPage {
     return out;
   }
 
-  std::string range(NodeId of, std::string_view least, std::string_view most) const {
-    const NodeId low = at(of, least), high = at(of, most);
+  std::string range(NodeId of, std::string_view minimum, std::string_view maximum) const {
+    const NodeId low = at(of, minimum), high = at(of, maximum);
     const auto is_single = [&](NodeId id) { // the whole range of a float says nothing
       return !id.valid() || std::abs(schema[id].real) > 3e38;
     };
     if (is_single(low) && is_single(high)) return "";
     if (!low.valid()) return fmt::format(" up to {}", value(high));
     if (!high.valid()) return fmt::format(" from {}", value(low));
-    const std::string least_text = value(low), most_text = value(high);
-    return least_text == most_text ? fmt::format(" of exactly {}", least_text)
-                                   : fmt::format(" {} .. {}", least_text, most_text);
+    const std::string min_text = value(low), max_text = value(high);
+    return min_text == max_text ? fmt::format(" of exactly {}", min_text)
+                                : fmt::format(" {} .. {}", min_text, max_text);
   }
 
   // "integer 1 .. 8", "`a`, `b`", "array of name".
@@ -145,7 +145,7 @@ struct SchemaPage {
     std::string out = fmt::format("## {}\n\n{}\n\n", name, text_at(root, "description")) + table_of(root);
     each(at(root, "definitions"), [&](NodeId one) {
       const std::string_view key = schema.key(one);
-      if (key == "pass_of_a_kind") return; // pass_kinds.md
+      if (key == "pass_of_a_kind") return; // pass_types.md
       const std::string table = table_of(one);
       const std::string text = text_at(one, "description");
       out +=

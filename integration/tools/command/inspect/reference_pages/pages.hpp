@@ -2,7 +2,7 @@
 // Pages of documentation that follow from declarations, as Markdown.
 
 #include "framegraph/model/graph.hpp"
-#include "framegraph/model/pass_kind.hpp"
+#include "framegraph/model/pass_type.hpp"
 
 #include <span>
 #include <string>
@@ -22,8 +22,8 @@ inline std::string cell(std::string_view text) {
 // Tables of the keys of each schema (name, text), in this order.
 std::string format_page(std::span<const std::pair<std::string_view, std::string>> schemas);
 
-// Ports and settings of each kind.
-std::string kinds_page(const KindRegistry& kinds);
+// Ports and settings of each pass type.
+std::string pass_types_page(const PassTypeRegistry& pass_types);
 
 struct NamedGraph {
   std::string name; // of the file, without its ending

@@ -24,7 +24,7 @@ StabilityCase wakes_up() {
   made.frames = comes + 3;
   made.given = [](uint32_t frame) { return frame < comes ? sound_frame() : edge_frame(); };
   made.judged = Judged::samples_at_edge;
-  made.asked = Asked::guided;
+  made.requested = Asked::guided;
   made.large = true;
   made.first_judged = comes + 1;
   made.bound = 0.5;
@@ -49,7 +49,7 @@ StabilityCase in_other_units() {
   made.given = with(16);
   made.same_as = with(1);
   made.judged = Judged::mean_samples;
-  made.asked = Asked::guided;
+  made.requested = Asked::guided;
   made.bound = 0.02;
   return made;
 }
@@ -62,7 +62,7 @@ StabilityCase uneven() {
   made.frames = 24;
   made.given = [](uint32_t) { return edge_frame(); };
   made.judged = Judged::samples_in_tile;
-  made.asked = Asked::guided;
+  made.requested = Asked::guided;
   made.bound = 8;
   return made;
 }

@@ -143,10 +143,10 @@ std::vector<CaptureProfile> stability_profiles() {
   for (double& dmfp : wide.dmfp_mm)
     dmfp *= 2;
   subsurface::derive(wide);
-  const auto with_blue = [](std::string name, double share) {
+  const auto with_blue = [](std::string name, double fraction) {
     subsurface::Profile made = grey_profile();
     made.name = std::move(name);
-    made.dmfp_mm[2] *= share;
+    made.dmfp_mm[2] *= fraction;
     subsurface::derive(made);
     return made;
   };

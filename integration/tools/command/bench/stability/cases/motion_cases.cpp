@@ -24,7 +24,7 @@ StabilityCase velocity(std::string_view name, float value) {
   };
   made.wanted = [](uint32_t) { return 1.0; };
   made.bound = furnace;
-  made.asked = Asked::with_history;
+  made.requested = Asked::with_history;
   return made;
 }
 
@@ -51,7 +51,7 @@ StabilityCase striped(std::string_view name, std::array<Velocity, 3> broken) {
   made.frames = 5;
   made.given = with(true);
   made.same_as = with(false);
-  made.asked = Asked::with_history;
+  made.requested = Asked::with_history;
   return made;
 }
 
@@ -80,7 +80,7 @@ StabilityCase red_comes() {
   made.first_judged = comes;
   made.scale = level;
   made.bound = largest_ratio - 1;
-  made.asked = Asked::with_history;
+  made.requested = Asked::with_history;
   return made;
 }
 

@@ -12,7 +12,7 @@ constexpr std::array any_value{not_a_number, infinity,  -infinity, 0.0f,  -0.0f,
                                65504.0f,     65520.0f,  0x1p31f,   1e30f, -1e30f, 3e38f, -3e38f};
 constexpr std::array<uint8_t, 7> ids{0, 1, 2, 3, 4, 5, 200}; // the last one has no profile
 constexpr std::array dim_light{0.0f, 1e-3f, 0.5f, 1.0f};     // of light
-constexpr std::array shares{256u, 8u, 1u};                   // one of so many pixels
+constexpr std::array fractions{256u, 8u, 1u};                // one of so many pixels
 
 // Numbers that differ from place to place and repeat from run to run (splitmix64).
 class Dice {
@@ -29,26 +29,26 @@ private:
   uint64_t state_;
 };
 
-void spoil(Image& image, uint32_t share, Dice& dice) {
+void spoil(Image& image, uint32_t fraction, Dice& dice) {
   for (float& value : image.values)
-    if (dice.below(share) == 0) value = any_value[dice.below(any_value.size())];
+    if (dice.below(fraction) == 0) value = any_value[dice.below(any_value.size())];
 }
 
 enum class Light : uint8_t { any, even, at_most_1 };
 
 CapturedFrame spoiled(uint32_t t, Light light) {
   Dice dice(t);
-  const uint32_t share = shares[t % shares.size()];
+  const uint32_t fraction = fractions[t % fractions.size()];
   CapturedFrame frame = sound_frame();
   frame.velocity = Image::sized(stability_side, stability_side, 3);
   frame.scatter_scale = Image::sized(stability_side, stability_side, 1);
   for (float& scale : frame.scatter_scale.values)
     scale = 1;
   for (Image* image : {&frame.depth, &frame.albedo, &frame.velocity, &frame.scatter_scale})
-    spoil(*image, share, dice);
+    spoil(*image, fraction, dice);
   for (uint8_t& id : frame.profile)
-    if (dice.below(share) == 0) id = ids[dice.below(ids.size())];
-  if (light == Light::any) spoil(frame.lighting, share, dice);
+    if (dice.below(fraction) == 0) id = ids[dice.below(ids.size())];
+  if (light == Light::any) spoil(frame.lighting, fraction, dice);
   for (float& value : frame.lighting.values)
     if (light == Light::at_most_1) value = dim_light[dice.below(dim_light.size())];
   return frame;

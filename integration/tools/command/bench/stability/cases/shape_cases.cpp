@@ -1,7 +1,7 @@
 // Distances, slopes, sizes and radii at their limits.
 #include "integration/tools/command/bench/stability/cases.hpp"
 
-#include "passes/common/kinds.hpp"
+#include "passes/common/pass_types.hpp"
 
 #include <algorithm>
 #include <array>
@@ -100,7 +100,7 @@ StabilityCase begins_to_scatter() {
         set_light(frame, x, y, (x + y) % 2 == 0 ? 1.0f : 0.0f);
     return frame;
   };
-  made.asked = Asked::of_profile;
+  made.requested = Asked::of_profile;
   made.bound = std::max(leaves, sample) + furnace;
   return made;
 }
@@ -128,7 +128,7 @@ std::vector<StabilityCase> shape_cases() {
   StabilityCase widest = sized("size_16384x64", 16384, 64);
   StabilityCase odd = sized("size_1919x1079", 1919, 1079);
   odd.large = true;
-  widest.may_be_refused = true; // where images have a border, the last columns have no room on the device
+  widest.may_be_rejected = true; // where images have a border, the last columns have no room on the device
   return {grazing("grazing_85", 85),
           grazing("grazing_89", 89),
           grazing("grazing_89_9", 89.9),

@@ -1,0 +1,75 @@
+#pragma once
+// pass types that a host registers: their own storage of names, what is wrong with one, and the file that
+// carries them from the host to the tools.
+
+#include "framegraph/model/pass_type.hpp"
+#include "framegraph/text/document.hpp"
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dermis {
+
+struct HostPassTypePort {
+  std::string name, doc;
+  Usage usage = Usage::sampled_image;
+  bool optional = false;
+  bool own_texels = false; // see Port::own_texels
+};
+
+struct HostPassTypeSetting {
+  std::string name, unit, doc;
+  SettingType type = SettingType::boolean; // boolean, integer or real
+  double default_value = 0.0, minimum = 0.0, maximum = 0.0;
+  bool per_frame = false; // as PassTypeSetting::per_frame
+};
+
+struct HostPassTypeDeclaration {
+  std::string name, doc;
+  std::vector<HostPassTypePort> ports;
+  std::vector<HostPassTypeSetting> settings;
+  bool side_effects = false;
+  bool serves_scattering = false;
+};
+
+namespace limits {
+inline constexpr size_t host_pass_types = 256;     // of one context
+inline constexpr size_t host_pass_type_ports = 32; // the port mask holds no more
+inline constexpr size_t host_pass_type_settings = 32;
+inline constexpr double host_pass_type_value = 1e9; // largest magnitude of a range
+} // namespace limits
+
+// What is wrong with a declaration, in words that name the field; no text: nothing.
+struct PassTypeProblem {
+  DiagnosticId id = DiagnosticId::bad_name;
+  std::string text;
+};
+PassTypeProblem problem_of(const HostPassTypeDeclaration& type);
+
+// Owns what the PassTypes of its declarations refer to. Must live as long as any registry that they were
+// added to.
+class HostPassTypes {
+public:
+  // The id in `registry`; invalid if the name exists there. `kind` must have no problem.
+  PassTypeId add(HostPassTypeDeclaration type, PassTypeRegistry& registry);
+  size_t size() const { return pass_types_.size(); }
+  const HostPassTypeDeclaration& operator[](size_t i) const { return pass_types_[i].declared; }
+
+private:
+  struct Kept {
+    HostPassTypeDeclaration declared;
+    std::vector<Port> ports;
+    std::vector<PassTypeSetting> settings;
+  };
+  std::deque<Kept> pass_types_; // their addresses stay
+};
+
+// {"dermis_pass_types": 2, "pass_types": [...]}; same pass types, same bytes.
+std::string write_host_pass_types(const HostPassTypes& pass_types);
+// nullopt with errors in `diagnostics`.
+std::optional<std::vector<HostPassTypeDeclaration>> read_host_pass_types(const Document& document,
+                                                                         Diagnostics& diagnostics);
+
+} // namespace dermis

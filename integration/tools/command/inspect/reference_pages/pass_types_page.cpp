@@ -1,0 +1,107 @@
+// Ports and settings of the pass types, out of their signatures.
+#include "framegraph/model/vocabulary.hpp"
+#include "integration/tools/command/inspect/reference_pages/pages.hpp"
+
+#include <fmt/format.h>
+
+namespace dermis::tools {
+namespace {
+
+std::string_view dispatch_text(DispatchShape shape) {
+  switch (shape) {
+  case DispatchShape::over_view:
+    return "a group for each 8x8 pixels of the render rectangle";
+  case DispatchShape::over_tiles:
+    return "a group for each listed tile, by indirect arguments";
+  case DispatchShape::over_tile_grid:
+    return "a group for each 64 tiles of the render rectangle";
+  case DispatchShape::over_tile_blocks:
+    return "a group for each 4x4 tiles of the render rectangle";
+  case DispatchShape::over_written:
+    return "a group for each 8x8 texels of the first image that it writes";
+  case DispatchShape::single_group:
+    return "one group";
+  case DispatchShape::none:
+    return "no dispatch";
+  case DispatchShape::host:
+    break;
+  }
+  return "recorded by the host";
+}
+
+std::string value_text(const PassTypeSetting& setting, const SettingValue& value) {
+  switch (setting.type) {
+  case SettingType::boolean:
+    return value.integer != 0 ? "true" : "false";
+  case SettingType::real:
+    return fmt::format("{}", value.real);
+  case SettingType::integer:
+    return fmt::format("{}", value.integer);
+  case SettingType::enumeration:
+  case SettingType::choice:
+    break;
+  }
+  return fmt::format("`{}`", setting.options[static_cast<size_t>(value.integer)]);
+}
+
+std::string range_text(const PassTypeSetting& setting) {
+  if (setting.type == SettingType::boolean) return "true, false";
+  std::string text;
+  for (const std::string_view option : setting.options)
+    text += fmt::format("{}`{}`", text.empty() ? "" : ", ", option);
+  return setting.options.empty() ? fmt::format("{} .. {}", setting.minimum, setting.maximum) : text;
+}
+
+// "; at least ..." of a port, "" where any size will do.
+std::string need_text(const PassType& type, const Port& port) {
+  for (const PortNeed& need : type.needs) {
+    if (need.port != port.name) continue;
+    const std::string square =
+        need.square == 1 ? "each pixel" : fmt::format("each {0}x{0} pixels", need.square);
+    if (need.bytes == 0 && need.more == 0) return fmt::format("; a texel for {}", square);
+    if (need.square == 0) return fmt::format("; {} bytes", need.more);
+    return fmt::format("; {} bytes for {}{}", need.bytes, square,
+                       need.more > 0 ? fmt::format(" and {} more", need.more) : "");
+  }
+  return "";
+}
+
+} // namespace
+
+std::string pass_types_page(const PassTypeRegistry& pass_types) {
+  std::string out =
+      "# pass types\n\nMade by `dermis docs` from the signatures in `passes/`. `read` and `write` name the "
+      "side of a pass on which a port stands; what it does with the\nresource decides stages, accesses and "
+      "layouts. How large the resource has to be at least stands behind it (D0229). Each invocation reads "
+      "of *own texels* only what it writes itself: the pass may write the same resource. "
+      "A setting that is marked \"per frame\" may differ between the views of a graph. "
+      "[techniques.md](techniques.md) tells what the pass types are for.\n";
+  for (uint32_t k = 0; k < pass_types.size(); ++k) {
+    const PassType& type = pass_types[PassTypeId{k}];
+    out += fmt::format("\n## {}\n\n{} Runs {}{}.\n", type.name, type.doc, dispatch_text(type.dispatch),
+                       type.side_effects ? "; never left out" : "");
+    for (const std::string_view port : type.one_of)
+      out += fmt::format("{}`{}`", port == type.one_of.front() ? "\nBound is at least one of " : ", ", port);
+    if (!type.one_of.empty()) out += ".\n";
+    out += "\n| port | | | |\n|---|---|---|---|\n";
+    for (const Port& port : type.ports) {
+      std::string formats;
+      for (const Format format : port.formats)
+        formats += fmt::format("{}{}", formats.empty() ? "; " : ", ", format_info(format).name);
+      out += fmt::format("| `{}` | {}{}{} | {}{}{} | {} |\n", port.name,
+                         side_of(port) == PortSide::read ? "read" : "write",
+                         port.optional ? ", optional" : "", port.own_texels ? ", own texels" : "",
+                         usage_info(port.usage).name, formats, need_text(type, port), cell(port.doc));
+    }
+    if (type.settings.empty()) continue;
+    out += "\n| setting | default | | |\n|---|---|---|---|\n";
+    for (const PassTypeSetting& setting : type.settings)
+      out += fmt::format("| `{}` | {} | {}{}{} | {} |\n", setting.name,
+                         value_text(setting, setting.default_value), range_text(setting),
+                         setting.unit.empty() ? "" : fmt::format(" {}", setting.unit),
+                         setting.per_frame ? "; per frame" : "", cell(setting.doc));
+  }
+  return out;
+}
+
+} // namespace dermis::tools

@@ -1,0 +1,338 @@
+#include "passes/choice/configurations.hpp"
+
+#include "framegraph/compile/availability.hpp"
+#include "framegraph/model/expression.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::choice {
+namespace {
+
+constexpr uint64_t tile_side = 8;
+
+std::string value_text(const PassTypeSetting& setting, const SettingValue& value) {
+  switch (setting.type) {
+  case SettingType::boolean:
+    return value.integer != 0 ? "true" : "false";
+  case SettingType::real:
+    return fmt::format("{}", value.real);
+  case SettingType::enumeration:
+  case SettingType::choice:
+    if (value.integer >= 0 && static_cast<size_t>(value.integer) < setting.options.size())
+      return std::string(setting.options[static_cast<size_t>(value.integer)]);
+    break;
+  case SettingType::integer:
+    break;
+  }
+  return fmt::format("{}", value.integer);
+}
+
+// Values that a pass runs with: those that follow a setting of the graph take the outcome's.
+std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, const PassType& type,
+                                    const std::vector<SettingValue>& settings) {
+  std::vector<SettingValue> out;
+  for (size_t i = 0; i < type.settings.size(); ++i) {
+    const PlanSetting& setting = plan.settings[pass.first_setting + i];
+    out.push_back(setting.from.valid() ? settings[setting.from.value] : setting.value);
+  }
+  return out;
+}
+
+// The image whose size an over_written dispatch has.
+const PlanResource* first_written_image(const Plan& plan, const PlanPass& pass, const PassType& type) {
+  for (uint32_t port = 0; port < type.ports.size(); ++port)
+    for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+      const PlanAccess& access = plan.accesses[a];
+      const PlanResource& resource = plan.resources[access.resource];
+      if (access.port == port && (access.access & access::shader_storage_write) != 0 &&
+          resource.type == ResourceType::image)
+        return &resource;
+    }
+  return nullptr;
+}
+
+uint64_t tiles_along(uint64_t pixels) {
+  return (pixels + tile_side - 1) / tile_side;
+}
+
+// Does it run over the tiles that subsurface.allocate_samples lists?
+bool samples_by_tile(const PassType& type) {
+  return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles";
+}
+
+PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type) {
+  PassLoad load;
+  switch (type.dispatch) {
+  case DispatchShape::over_view:
+    load.groups = PassLoad::Groups::view_tiles;
+    break;
+  case DispatchShape::over_tiles:
+    load.groups = samples_by_tile(type)                  ? PassLoad::Groups::sample_units
+                  : type.name == "subsurface.copy_tiles" ? PassLoad::Groups::copied_tiles
+                                                         : PassLoad::Groups::listed_tiles;
+    break;
+  case DispatchShape::over_tile_grid:
+    load.groups = PassLoad::Groups::tile_grid;
+    break;
+  case DispatchShape::over_tile_blocks:
+    load.groups = PassLoad::Groups::tile_blocks;
+    break;
+  case DispatchShape::over_written:
+    if (const PlanResource* image = first_written_image(plan, pass, type))
+      load.count = tiles_along(image->width) * tiles_along(image->height);
+    break;
+  case DispatchShape::single_group:
+  case DispatchShape::host:
+    break;
+  case DispatchShape::none:
+    load.launches = false;
+    break;
+  }
+  return load;
+}
+
+int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) {
+  if (find_port(type, "level_tiles", PortSide::read) < 0) return -1;
+  const int level = find_setting(type, "level");
+  return level < 0 ? 0 : static_cast<int32_t>(values[static_cast<size_t>(level)].integer);
+}
+
+RunningPass running(const PassType& type, const std::vector<SettingValue>& values) {
+  RunningPass out{type.name, {}};
+  for (size_t i = 0; i < values.size(); ++i)
+    out.settings.push_back({std::string(type.settings[i].name), value_text(type.settings[i], values[i])});
+  return out;
+}
+
+void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorModel& errors,
+              CostModel& costs, Outcome& outcome) {
+  std::vector<RunningPass> passes, without_samples;
+  outcome.passes.clear();
+  outcome.takes_samples = false;
+  for (const PlanPass& pass : plan.passes) {
+    const PassType& type = pass_types[pass.type];
+    const std::vector<SettingValue> values = values_of(plan, pass, type, outcome.settings);
+    PassLoad load = load_of(plan, pass, type);
+    load.cost = costs.add(work_name(type, values));
+    load.level = level_of(type, values);
+    outcome.passes.push_back(load);
+    passes.push_back(running(type, values));
+    const bool samples = load.groups == PassLoad::Groups::sample_units;
+    outcome.takes_samples = outcome.takes_samples || samples;
+    if (!samples) without_samples.push_back(passes.back());
+  }
+  outcome.technique = find_technique(errors, passes);
+  outcome.without_samples = find_technique(errors, without_samples);
+}
+
+bool same_work(const Outcome& a, const Outcome& b) {
+  return a.plan == b.plan &&
+         std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(), b.passes.end(),
+                    [](const PassLoad& x, const PassLoad& y) { return x.cost.value == y.cost.value; });
+}
+
+std::vector<bool> passes_on(const Graph& graph, const std::vector<SettingValue>& values) {
+  std::vector<bool> on;
+  for (const PassDeclaration& pass : graph.passes)
+    on.push_back(!pass.when.valid() || evaluate(graph, pass.when, values));
+  return on;
+}
+
+std::vector<uint32_t> choices_of(const Graph& graph) {
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < graph.settings.size(); ++i)
+    if (graph.settings[i].by_budget) out.push_back(i);
+  return out;
+}
+
+// Counts `digits` up like an odometer whose wheels are the choices' options; false after the last.
+bool count_up(const Graph& graph, const std::vector<uint32_t>& choices, std::vector<size_t>& digits) {
+  for (size_t i = choices.size(); i-- > 0;) {
+    if (++digits[i] < graph.settings[choices[i]].options.size()) return true;
+    digits[i] = 0;
+  }
+  return false;
+}
+
+bool refers_to(const Graph& graph, ExpressionId id, uint32_t setting) {
+  if (!id.valid()) return false;
+  const Expression& one = graph.expressions[id.value];
+  return (one.setting.valid() && one.setting.value == setting) || refers_to(graph, one.left, setting) ||
+         refers_to(graph, one.right, setting);
+}
+
+// Does it decide which passes run, or what one of those that run does?
+bool matters(const Graph& graph, const Plan& plan, uint32_t setting) {
+  const auto decides = [&](const PassDeclaration& pass) { return refers_to(graph, pass.when, setting); };
+  const auto follows = [&](const PlanSetting& value) {
+    return value.from.valid() && value.from.value == setting;
+  };
+  return std::any_of(graph.passes.begin(), graph.passes.end(), decides) ||
+         std::any_of(plan.settings.begin(), plan.settings.end(), follows);
+}
+
+std::string name_of(const Graph& graph, const Plan& plan, const std::vector<uint32_t>& choices,
+                    const std::vector<SettingValue>& values) {
+  std::string name;
+  for (const uint32_t choice : choices) {
+    if (!matters(graph, plan, choice)) continue;
+    const SettingDeclaration& setting = graph.settings[choice];
+    name += fmt::format("{}{}={}", name.empty() ? "" : ", ", setting.name,
+                        setting.options[static_cast<size_t>(values[choice].integer)]);
+  }
+  return name.empty() ? "the graph" : name;
+}
+
+} // namespace
+
+std::string work_name(const PassType& type, std::span<const SettingValue> values) {
+  std::string name(type.name);
+  for (size_t i = 0; i < values.size(); ++i)
+    name += fmt::format(" {}={}", type.settings[i].name, value_text(type.settings[i], values[i]));
+  return name;
+}
+
+std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const ErrorModel& errors,
+                                          CostModel& costs, const CompileOne& compile,
+                                          Diagnostics& diagnostics, const std::vector<bool>& pinned) {
+  const Graph& graph = *input.graph;
+  std::vector<SettingValue> base = input.settings;
+  if (base.empty())
+    for (const SettingDeclaration& setting : graph.settings)
+      base.push_back(setting.default_value);
+  for (uint32_t i = 0; i < graph.settings.size(); ++i)
+    base[i] = available_option(graph.settings[i], base[i], input.device->features, input.bound);
+  const std::vector<uint32_t> choices = choices_of(graph);
+  std::vector<uint32_t> open = choices;
+  std::erase_if(open, [&](uint32_t choice) { return choice < pinned.size() && pinned[choice]; });
+  size_t combinations = 1;
+  for (const uint32_t choice : open) {
+    combinations *= graph.settings[choice].options.size();
+    if (combinations <= max_outcomes) continue;
+    diagnostics.add(
+        DiagnosticId::too_many_outcomes, graph.settings[choice].where,
+        fmt::format("the options of the settings \"by\": \"budget\" combine to more than {} outcomes",
+                    max_outcomes));
+    return std::nullopt;
+  }
+
+  OutcomePlans out;
+  std::vector<std::vector<bool>> on_of_plan;
+  const auto add = [&](const std::vector<SettingValue>& values) {
+    Outcome outcome;
+    outcome.settings = values;
+    std::vector<bool> on = passes_on(graph, values);
+    const auto known = std::find(on_of_plan.begin(), on_of_plan.end(), on);
+    outcome.plan = static_cast<uint32_t>(known - on_of_plan.begin());
+    if (known == on_of_plan.end()) {
+      CompileInput one = input;
+      one.settings = values;
+      auto compiled = compile(one, diagnostics);
+      if (!compiled) return false;
+      out.plans.push_back(std::move(*compiled));
+      on_of_plan.push_back(std::move(on));
+    }
+    outcome.name = name_of(graph, out.plans[outcome.plan].plan, choices, values);
+    describe(*input.pass_types, out.plans[outcome.plan].plan, errors, costs, outcome);
+    const bool twice = std::any_of(out.outcomes.begin(), out.outcomes.end(),
+                                   [&](const Outcome& other) { return same_work(other, outcome); });
+    if (!twice) out.outcomes.push_back(std::move(outcome));
+    return true;
+  };
+  if (!add(base)) return std::nullopt;
+  std::vector<size_t> digits(open.size(), 0);
+  do {
+    std::vector<SettingValue> values = base;
+    bool offered = true;
+    for (size_t i = 0; i < open.size(); ++i) {
+      values[open[i]].integer = static_cast<int64_t>(digits[i]);
+      offered = offered && !missing_requirements(graph.settings[open[i]], values[open[i]].integer,
+                                                 input.device->features, input.bound)
+                                .any();
+    }
+    if (offered && !add(values)) return std::nullopt;
+  } while (count_up(graph, open, digits));
+  return out;
+}
+
+void describe_outcomes(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
+                       const ErrorModel& errors, CostModel& costs, std::span<Outcome> outcomes) {
+  for (Outcome& outcome : outcomes)
+    describe(pass_types, *plans[outcome.plan], errors, costs, outcome);
+}
+
+uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
+  constexpr uint64_t tiles_per_group = 64; // DispatchShape::over_tile_grid
+  switch (pass.groups) {
+  case PassLoad::Groups::view_tiles:
+    return load.view_tiles;
+  case PassLoad::Groups::tile_blocks:
+    return load.view_blocks;
+  case PassLoad::Groups::tile_grid:
+    return (load.view_tiles + tiles_per_group - 1) / tiles_per_group;
+  case PassLoad::Groups::listed_tiles:
+    // The pyramid is not built where light is copied.
+    return pass.level < 0 ? load.listed_tiles
+                          : load.listed_tiles - std::min(load.copied_tiles, load.listed_tiles);
+  case PassLoad::Groups::copied_tiles:
+    return load.copied_tiles;
+  case PassLoad::Groups::sample_units:
+    return load.sample_units;
+  case PassLoad::Groups::fixed:
+    break;
+  }
+  return pass.count;
+}
+
+Estimate calibrated_estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load) {
+  Estimate sum;
+  for (const PassLoad& pass : outcome.passes)
+    sum.ms += costs.metered_ms(pass.cost, groups_of(pass, load));
+  return sum;
+}
+
+Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load) {
+  Estimate sum{0, 0, true};
+  double variance = 0;
+  for (const PassLoad& pass : outcome.passes) {
+    const Estimate one = costs.estimate(pass.cost, groups_of(pass, load));
+    sum.ms += one.ms;
+    variance += one.spread_ms * one.spread_ms;
+    sum.measured = sum.measured && one.measured;
+  }
+  sum.spread_ms = std::sqrt(variance);
+  return sum;
+}
+
+uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
+                      bool deterministic) {
+  constexpr uint64_t many = 1u << 16; // far apart, so that rounding does not matter
+  if (!outcome.takes_samples) return UINT32_MAX;
+  const auto expected = [&](uint64_t units) {
+    load.sample_units = units;
+    return deterministic ? calibrated_estimate(outcome, costs, load) : estimate(outcome, costs, load);
+  };
+  const Estimate without = expected(0);
+  const double unit_ms = (expected(many).ms - without.ms) / double(many);
+  if (!(unit_ms > 0)) return UINT32_MAX;
+  const auto units_beside = [&](double spread_ms) {
+    const double left_ms = budget_ms - without.ms - given_deviations * spread_ms;
+    return static_cast<uint32_t>(std::clamp(left_ms / unit_ms, 0.0, double(UINT32_MAX)));
+  };
+  // Units deviate, too: fewer of them by no more than the most would.
+  return units_beside(expected(std::min<uint64_t>(units_beside(without.spread_ms), many)).spread_ms);
+}
+
+double expected_rmse(const ErrorModel& errors, const Outcome& outcome, double d_px, uint32_t given,
+                     uint32_t wanted) {
+  const double all = expected_rmse(errors, outcome.technique, d_px);
+  if (!outcome.takes_samples) return all;
+  const double none = expected_rmse(errors, outcome.without_samples, d_px);
+  const double fraction = wanted > 0 ? std::min(1.0, double(given) / double(wanted)) : 0.0;
+  return std::sqrt(none * none + fraction * (all * all - none * none));
+}
+
+} // namespace dermis::choice

@@ -1,0 +1,41 @@
+#version 460
+// How much light comes through thin parts, for the choice: over the pixels with subsurface of a tile, the mean square of
+// what a slab of their thickness lets through (slab.glsl), exposed. Sums of integers, which no order changes. What the
+// host makes of it: transmitted_rms of passes/common/environment.hpp.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "common/subsurface_transmission_stats.bindings.glsl"
+#include "common/environment.glsl"
+#include "constants.glsl"
+#include "common/counters.glsl"
+#include "common/slab.glsl"
+#include "common/tiles.glsl"
+
+const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
+const float pixel_steps = 65536.0; // of a square of 1; 64 of them fit 32 bits
+
+shared uint squares, pixels;
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u) {
+    squares = 0u;
+    pixels = 0u;
+  }
+  barrier();
+  ivec2 pixel;
+  bool copy_only;
+  if (listed_pixel(pixel, copy_only)) {
+    ivec2 texel = texel_of(pixel);
+    uint id = texelFetch(material_image, texel, 0).r;
+    if (id != 0u) {
+      float exposed = min(frame.exposure * dot(luminance, light_through_slab(texel, id)), 1.0);
+      atomicAdd(squares, uint(exposed * exposed * pixel_steps));
+      atomicAdd(pixels, 1u);
+    }
+  }
+  barrier();
+  if (gl_LocalInvocationIndex == 0u && squares != 0u) {
+    float mean = float(squares) / (float(pixels) * pixel_steps);
+    atomicAdd(counters.through_steps, uint(mean * through_square_steps + 0.5));
+  }
+}

@@ -1,0 +1,41 @@
+#version 460
+// How much light varies inside a tile: over its pixels, how far the light is from the tile's mean, times the host's
+// importance. Sums of integers, which no order changes.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "papers/subsurface_tile_variance.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+
+const float contrast_steps = 1024.0; // of one pixel under exposed light of 1, as subsurface.tile_error_estimate counts
+const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
+
+shared uint light_sum, pixel_count, contrast_sum;
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u)
+    light_sum = pixel_count = contrast_sum = 0u;
+  barrier();
+  ivec2 pixel;
+  bool copy_only;
+  bool listed = listed_pixel(pixel, copy_only);
+  ivec2 texel = texel_of(pixel);
+  bool counts = listed && !copy_only && texelFetch(material_image, texel, 0).r != 0u;
+  uint seen = 0u;
+  if (counts) {
+    float exposed = dot(texelFetch(light_image, texel, 0).rgb, luminance) * frame.exposure;
+    seen = uint(clamp(exposed, 0.0, 4.0) * contrast_steps + 0.5);
+    atomicAdd(light_sum, seen);
+    atomicAdd(pixel_count, 1u);
+  }
+  barrier();
+  if (counts) {
+    uint mean = (light_sum + pixel_count / 2u) / pixel_count;
+    float matters = has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
+    atomicAdd(contrast_sum, uint(float(max(seen, mean) - min(seen, mean)) * matters + 0.5));
+  }
+  barrier();
+  if (listed && gl_LocalInvocationIndex == 0u)
+    tile_errors_data[(pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3)] =
+        contrast_sum >= uint(settings.min_contrast * contrast_steps * 64.0) ? contrast_sum : 0u;
+}

@@ -1,0 +1,38 @@
+#version 460
+// How far off a tile is expected to be: over its pixels, what the pyramid's confidence lacks times the light, times the
+// host's importance. Sums of integers, which no order changes.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "sap/subsurface_tile_error_estimate.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+
+const float doubt_steps = 1024.0; // of one pixel's doubt under exposed light of 1
+const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
+
+shared uint sum;
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u)
+    sum = 0u;
+  barrier();
+  ivec2 pixel;
+  bool copy_only;
+  bool listed = listed_pixel(pixel, copy_only);
+  if (listed && !copy_only) {
+    ivec2 texel = texel_of(pixel);
+    if (texelFetch(material_image, texel, 0).r != 0u) {
+      vec4 light = texelFetch(scattered_image, texel, 0);
+      float unmet = clamp((settings.below - light.a) / max(settings.below, 1e-6), 0.0, 1.0);
+      float stake = dot(light.rgb, luminance);
+      if (has_light())
+        stake = abs(stake - dot(texelFetch(light_image, texel, 0).rgb, luminance));
+      float seen = clamp(stake * frame.exposure, 0.0, 4.0);
+      float matters = has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
+      atomicAdd(sum, uint(unmet * seen * matters * doubt_steps + 0.5));
+    }
+  }
+  barrier();
+  if (listed && gl_LocalInvocationIndex == 0u)
+    tile_errors_data[(pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3)] = sum;
+}

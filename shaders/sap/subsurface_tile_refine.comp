@@ -1,0 +1,35 @@
+#version 460
+// Samples where a tile was given some, blended into the pyramid's light in place: the less its confidence, the more. No
+// seams: towards tiles that were given none the share of the samples falls to nothing.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "sap/subsurface_tile_refine.bindings.glsl"
+#include "common/environment.glsl"
+#include "common/tiles.glsl"
+#include "common/half.glsl"
+#include "sap/sap.glsl"
+bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) != class_none; }
+#include "sap/sap_samples.glsl"
+#include "sap/sample_allocation.glsl"
+#include "common/tile_edges.glsl"
+
+const float ramp_px = 4.0; // half a tile
+const float soft = 0.2; // of confidence, below `below`: from no share to all of it
+
+void main() {
+  ivec2 pixel;
+  bool copy_only;
+  if (!listed_pixel(pixel, copy_only))
+    return;
+  ivec2 texel = texel_of(pixel);
+  vec4 light = imageLoad(scattered_image, texel);
+  sap_texel own = sap_unpack(texelFetch(surface_image, texel, 0));
+  if (own.id == 0u || light.a >= settings.below)
+    return;
+  ivec2 tile = pixel >> 3;
+  int count = samples_of(samples_per_tile_data[tile.y * frame.tiles.x + tile.x]);
+  float fraction = settings.sample_weight * edge_weight(pixel, ramp_px) * clamp((settings.below - light.a) / soft, 0.0, 1.0);
+  uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), frame.frame_index);
+  vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count, settings.lod_bias);
+  imageStore(scattered_image, texel, vec4(round_to_half(mix(light.rgb, sampled, fraction)), light.a));
+}

@@ -1,0 +1,115 @@
+#include "tests/framegraph/graph_reference.hpp"
+
+#include "framegraph/model/expression.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace dermis::testing {
+namespace {
+
+bool is_slot(const ResourceDeclaration& resource) {
+  return resource.origin == Origin::imported || resource.exported;
+}
+
+// By mip, then by layer.
+using Contents = std::vector<std::optional<Pixels>>;
+
+Contents undefined(const ResourceDeclaration& resource) {
+  return Contents(size_t{resource.mips} * resource.layers);
+}
+
+// Numbers of the mips of layers that the part holds.
+std::vector<size_t> numbers(const ResourceDeclaration& resource, const ImagePart& part) {
+  std::vector<size_t> result;
+  for (uint32_t m = part.first_mip; m < (part.mips == 0 ? resource.mips : part.first_mip + part.mips); ++m)
+    for (uint32_t l = part.first_layer;
+         l < (part.layers == 0 ? resource.layers : uint32_t{part.first_layer} + part.layers); ++l)
+      result.push_back(m * resource.layers + l);
+  return result;
+}
+
+} // namespace
+
+Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_types, uint32_t frames,
+                               uint64_t contents, uint64_t cuts) {
+  std::vector<SettingValue> settings;
+  for (const SettingDeclaration& setting : graph.settings)
+    settings.push_back(setting.default_value);
+  // contents_of[r][f]: of resource r at the end of frame f, or as far as the frame has come.
+  std::vector<std::vector<Contents>> contents_of(graph.resources.size());
+  Interpretation out(frames);
+  for (uint32_t frame = 0; frame < frames; ++frame) {
+    uint32_t slot = 0;
+    for (size_t r = 0; r < graph.resources.size(); ++r) {
+      const bool import = graph.resources[r].origin == Origin::imported;
+      contents_of[r].push_back(undefined(graph.resources[r]));
+      if (import) contents_of[r].back().assign(1, host_pixels(contents, frame, slot));
+      slot += is_slot(graph.resources[r]) ? 1 : 0;
+    }
+    const auto in_history = [&](const PortBinding& binding) { // written since the last cut that counts
+      const HistoryDeclaration& history = graph.resources[binding.resource.value].history;
+      const bool cuts_count = history.on_cut == HistoryDeclaration::OnCut::invalidate;
+      for (uint32_t back = 0; back < binding.frames_back; ++back)
+        if (back == frame || (cuts_count && (cuts >> (frame - back) & 1u) != 0)) return false;
+      return true;
+    };
+    const auto read = [&](const PortBinding& binding, std::vector<StandInInput>& inputs) {
+      const ResourceDeclaration& resource = graph.resources[binding.resource.value];
+      if (!in_history(binding)) { // histories start from zero
+        inputs.insert(inputs.end(), numbers(resource, binding.part).size(), {binding.port, Pixels{}});
+        return;
+      }
+      const Contents& found = contents_of[binding.resource.value][frame - binding.frames_back];
+      if (binding.part.whole()) // of whatever stands for the resource
+        for (const auto& pixels : found) {
+          EXPECT_TRUE(pixels.has_value()) << resource.name;
+          inputs.push_back({binding.port, pixels.value_or(Pixels{})});
+        }
+      else
+        for (const size_t number : numbers(resource, binding.part)) {
+          EXPECT_TRUE(found[number].has_value()) << resource.name;
+          inputs.push_back({binding.port, found[number].value_or(Pixels{})});
+        }
+    };
+    for (uint32_t p = 0; p < graph.passes.size(); ++p) {
+      const PassDeclaration& pass = graph.passes[p];
+      if (pass.when.valid() && !evaluate(graph, pass.when, settings)) {
+        for (const PassThrough& one : pass.otherwise) // its readers see this instead
+          contents_of[one.output.value][frame] = contents_of[one.instead.value][frame];
+        continue;
+      }
+      std::vector<StandInInput> inputs;
+      const auto reads = graph.reads(pass), writes = graph.writes(pass);
+      for (size_t i = 0; i < reads.size(); ++i) {
+        const PortBinding& binding = reads[i];
+        if (binding.when == ReadWhen::history_valid && !in_history(binding)) continue;
+        if (binding.when == ReadWhen::history_invalid && in_history(reads[i - 1])) continue;
+        read(binding, inputs);
+      }
+      for (const PortBinding& binding : writes)
+        if (usage_info(pass_types[pass.type].ports[binding.port].usage).reads) read(binding, inputs);
+      std::stable_sort(inputs.begin(), inputs.end(),
+                       [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
+      for (const PortBinding& binding : writes) {
+        uint32_t part = 0;
+        for (const size_t number : numbers(graph.resources[binding.resource.value], binding.part))
+          contents_of[binding.resource.value][frame][number] = placeholder(p, binding.port, part++, inputs);
+      }
+    }
+    for (size_t r = 0; r < graph.resources.size(); ++r)
+      if (is_slot(graph.resources[r]))
+        out[frame].push_back(graph.resources[r].exported ? contents_of[r][frame].front() : std::nullopt);
+  }
+  return out;
+}
+
+bool agrees(const Interpretation& found, const Interpretation& reference) {
+  for (size_t frame = 0; frame < reference.size(); ++frame)
+    for (size_t slot = 0; slot < reference[frame].size(); ++slot)
+      if (reference[frame][slot] && found[frame][slot] != reference[frame][slot]) return false;
+  return true;
+}
+
+} // namespace dermis::testing

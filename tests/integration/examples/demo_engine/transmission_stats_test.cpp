@@ -1,0 +1,103 @@
+// What a budget buys where light comes through thin parts: rays, where the device has them, and the reason
+// told.
+#include "tests/integration/examples/demo_engine/ray_queries.hpp"
+#include "tests/support/test_folder.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace demo {
+namespace {
+
+using dermis::test::TestFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+enum class LightFrom { behind, front };
+
+void replace(std::string& text, const std::string& old, const std::string& with) {
+  const size_t at = text.find(old);
+  ASSERT_NE(at, std::string::npos) << old;
+  text.replace(at, old.size(), with);
+}
+
+// The ear of configs/scenes/back_lit_ear.json, its light behind it or in front. Frames are seconds apart: no
+// switch has to wait.
+RenderOptions ear(const TestFolder& folder, LightFrom from, double budget_ms) {
+  std::ifstream file(source + "/configs/scenes/back_lit_ear.json");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string scene = text.str();
+  replace(scene, R"("frames_per_second": 25)", R"("frames_per_second": 1)");
+  replace(scene, "../profiles/skin.json", "skin.json");
+  if (from == LightFrom::front) replace(scene, "[-0.05, 0.05, -0.20]", "[-0.05, 0.05, 0.20]");
+  const std::filesystem::path path = folder / "ear.json";
+  std::ofstream(path) << scene;
+  std::filesystem::copy_file(source + "/configs/profiles/skin.json", folder / "skin.json",
+                             std::filesystem::copy_options::overwrite_existing);
+  RenderOptions options = by_rays(path.string(), 48, 5, {});
+  options.budget_ms = budget_ms;
+  return options;
+}
+
+constexpr double plenty_ms = 60000; // of a software driver, whatever else runs beside it
+
+TEST(WithoutRayQueries, TheBudgetHasNoRaysToBuyAndTheReportSaysWhy) {
+  const TestFolder folder;
+  const Rendering rendering = rendered(ear(folder, LightFrom::behind, plenty_ms));
+  ASSERT_EQ(rendering.frames.size(), 5u);
+  // The first frame's choice is made before anything was counted; one of the others takes them.
+  if (std::any_of(rendering.frames.begin(), rendering.frames.end(),
+                  [](const FrameOutputs& frame) { return ran(frame, "draw"); }))
+    GTEST_SKIP() << "this device has ray queries";
+  EXPECT_THAT(rendering.warnings,
+              testing::Contains(HasSubstr("does not offer 'restir': the device lacks ray_query")));
+  const FrameChoice& choice = rendering.frames.back().choice.value();
+  EXPECT_EQ(choice.outcomes, 1u);
+  EXPECT_EQ(choice.technique, "sap smooth");
+  EXPECT_GT(choice.transmitted_rms, 0.05) << "it is counted all the same";
+  EXPECT_GT(choice.predicted_rmse, 0.5 * choice.transmitted_rms) << "and told as an error";
+}
+
+TEST_F(WithRayQueries, ABudgetBuysThemWhereLightComesThroughAThinPart) {
+  const TestFolder folder;
+  const Rendering rendering = rendered(ear(folder, LightFrom::behind, plenty_ms));
+  ASSERT_EQ(rendering.frames.size(), 5u);
+  const FrameChoice& choice = rendering.frames.back().choice.value();
+  EXPECT_EQ(choice.outcome, "technique=restir");
+  EXPECT_THAT(choice.why, HasSubstr("for light through thin parts"));
+  EXPECT_GT(choice.transmitted_rms, 0.05);
+  EXPECT_TRUE(ran(rendering.frames.back(), "draw"));
+  EXPECT_FALSE(ran(rendering.frames.back(), "gather"));
+  EXPECT_NE(rendering.frames[0].choice->outcome, choice.outcome)
+      << "before anything was counted nothing comes through";
+}
+
+TEST_F(WithRayQueries, ABudgetBuysNoneWhereLightComesFromTheFront) {
+  const TestFolder folder;
+  const Rendering rendering = rendered(ear(folder, LightFrom::front, plenty_ms));
+  ASSERT_EQ(rendering.frames.size(), 5u);
+  const FrameChoice& choice = rendering.frames.back().choice.value();
+  EXPECT_EQ(choice.outcomes, 2u);
+  EXPECT_EQ(choice.outcome, "technique=sap");
+  EXPECT_THAT(choice.why, AllOf(HasSubstr("least error that fits"), Not(HasSubstr("thin parts"))));
+  EXPECT_LT(choice.transmitted_rms, 0.05);
+}
+
+TEST_F(WithRayQueries, ABudgetThatDoesNotPayForThemSaysWhatIsMissing) {
+  const TestFolder folder;
+  RenderOptions options = ear(folder, LightFrom::behind, 0);
+  options.deterministic = true; // the same on every machine
+  options.budget_ms = 20;
+  const Rendering rendering = rendered(options);
+  ASSERT_EQ(rendering.frames.size(), 5u);
+  const FrameChoice& choice = rendering.frames.back().choice.value();
+  EXPECT_EQ(choice.outcome, "technique=sap");
+  EXPECT_EQ(choice.next_better, "technique=restir");
+  EXPECT_GT(choice.next_better_missing_ms, 0);
+}
+
+} // namespace
+} // namespace demo

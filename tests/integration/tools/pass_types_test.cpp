@@ -1,0 +1,153 @@
+// Pass kinds of a host, known to the verbs that look at graphs through the file that the host exported.
+#include "tests/integration/tools/command_fixture.hpp"
+
+namespace dermis::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* pass_types = R"({ "dermis_pass_types": 2, "pass_types": [
+  { "name": "studio.tone", "ports": [ { "name": "light", "usage": "sampled_image" },
+                                      { "name": "toned", "usage": "storage_image_write" } ],
+    "settings": [ { "name": "level", "type": "real", "default": 1, "min": 0, "max": 4 } ] } ] })";
+constexpr const char* tone = R"({ "dermis": 2, "name": "tone",
+  "imports": { "light": { "format": "rgba16f", "size": "view" } },
+  "resources": { "out": { "format": "rgba16f", "size": "view" } },
+  "passes": [ { "pass": "tone", "type": "studio.tone", "read": { "light": "light" }, "write": { "toned": "out" },
+                "set": { "level": 2 } } ],
+  "exports": ["out"] })";
+
+class PassTypes : public CommandTest {};
+
+TEST_F(PassTypes, OfAHostLetItsGraphsBeCheckedWithoutIt) {
+  const std::string kind_file = write("pass_types.json", pass_types), graph_file = write("tone.json", tone);
+  const Outcome without = run({"validate", graph_file});
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_THAT(without.err, HasSubstr("studio.tone"));
+  const Outcome with = run({"validate", graph_file, "--pass-types", kind_file});
+  EXPECT_EQ(with.exit_code, 0) << with.err;
+  const Outcome explained = run({"explain", graph_file, "--pass-types", kind_file});
+  EXPECT_EQ(explained.exit_code, 0) << explained.err;
+  EXPECT_THAT(explained.out, HasSubstr("tone"));
+}
+
+TEST_F(PassTypes, AreCheckedThemselves) {
+  EXPECT_EQ(run({"validate", write("pass_types.json", pass_types)}).exit_code, 0);
+  std::string range = pass_types, own = pass_types;
+  range.replace(range.find("\"default\": 1"), 12, "\"default\": 9");
+  const Outcome refused = run({"validate", write("range.json", range)});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("range.json:2:3"));
+  EXPECT_THAT(refused.err, HasSubstr("settings[0]"));
+  own.replace(own.find("studio"), 6, "subsurface");
+  EXPECT_THAT(run({"validate", write("own.json", own)}).err, HasSubstr("are the library's"));
+  const std::string graph_file = write("tone.json", tone);
+  const std::string kind_file = write("pass_types.json", pass_types);
+  const Outcome twice = run({"validate", graph_file, "--pass-types", kind_file, "--pass-types", kind_file});
+  EXPECT_EQ(twice.exit_code, 1);
+  EXPECT_THAT(twice.err, HasSubstr("there is a pass type 'studio.tone' already"));
+}
+
+// burley with a pass of the host after it, which a setting turns on.
+constexpr const char* toned = R"({ "dermis_overlay": 2, "edits": [
+  { "set": "/settings/toned", "to": { "bool": false } },
+  { "set": "/resources/toned_light", "to": { "format": "rgba16f", "size": "view", "optional": true } },
+  { "set": "/exports/-", "to": "toned_light" },
+  { "insert_after": "combine", "passes": [ { "pass": "tone", "type": "studio.tone", "when": "toned",
+    "read": { "light": "lighting" }, "write": { "toned": "toned_light" } } ] } ] })";
+
+TEST_F(PassTypes, AnOptionThatRepeatsDoesNotSwallowTheGraph) {
+  const std::string kind_file = write("pass_types.json", pass_types), graph_file = write("tone.json", tone);
+  const std::vector<std::vector<std::string>> lines{
+      {"explain", "--pass-types", kind_file, graph_file, "--size", "64x64"},
+      {"explain", "--pass-types", kind_file, "--root", path(""), graph_file},
+      {"validate", "--pass-types", kind_file, graph_file},
+      {"graph", "--pass-types", kind_file, graph_file},
+      {"explain", "--unbound", "albedo", burley},
+      {"explain", "--set", "samples=16", burley, "--set", "texturing=pre"}};
+  for (const auto& line : lines) {
+    const Outcome outcome = run(line);
+    EXPECT_NE(outcome.exit_code, 2) << line[0] << " " << line[1] << "\n" << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("required")));
+  }
+}
+
+TEST_F(PassTypes, AreKnownToExpectations) {
+  const std::string kind_file = write("pass_types.json", pass_types);
+  write("tone.json", tone);
+  const std::string expectations = write("tone.expect.json", R"({ "dermis_expect": 1, "cases": [
+  { "case": "as_it_is" } ] })");
+  const Outcome updated = run({"test", "--pass-types", kind_file, expectations, "--update"});
+  EXPECT_EQ(updated.exit_code, 0) << updated.err;
+  EXPECT_EQ(run({"test", expectations, "--pass-types", kind_file}).exit_code, 0);
+  EXPECT_EQ(run({"test", expectations}).exit_code, 1);
+}
+
+TEST_F(PassTypes, OfPassesThatAreOffDoNotStopARendering) {
+  const std::string kind_file = write("pass_types.json", pass_types), overlay = write("toned.json", toned);
+  const std::vector<std::string> line{"render",       "configs/scenes/bust.json",
+                                      "--graph",      burley,
+                                      "--overlay",    overlay,
+                                      "--pass-types", kind_file,
+                                      "--out",        path("out"),
+                                      "--size",       "32x24",
+                                      "--frames",     "1",
+                                      "--subset",     "0"};
+  const Outcome outcome = run(line);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+TEST_F(PassTypes, APassThatWouldRunIsRefusedByItsName) {
+  const std::string side_effects = write("effects.json", R"({ "dermis_pass_types": 2, "pass_types": [
+  { "name": "studio.look", "side_effects": true, "ports": [ { "name": "light", "usage": "sampled_image" } ] } ] })");
+  const std::string look = write("look.json", R"({ "dermis_overlay": 2, "edits": [
+  { "insert_before": "classify", "passes": [ { "pass": "look", "type": "studio.look", "read": { "light": "lighting" } } ] } ] })");
+  const std::vector<std::string> both{"--graph", burley, "--overlay", look, "--pass-types", side_effects};
+  std::vector<std::string> rendering{"render",   "configs/scenes/bust.json",
+                                     "--out",    path("out"),
+                                     "--size",   "32x24",
+                                     "--frames", "1",
+                                     "--subset", "0"};
+  rendering.insert(rendering.end(), both.begin(), both.end());
+  const Outcome rendered = run(rendering);
+  EXPECT_EQ(rendered.exit_code, 1);
+  EXPECT_THAT(rendered.err,
+              HasSubstr("pass 'look' (studio.look) has no kernel here; embed Dermis or turn the "
+                        "pass off"));
+  EXPECT_THAT(files(), Not(::testing::Contains(HasSubstr("frame_"))));
+  ASSERT_EQ(run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size", "32x24",
+                 "--frames", "1"})
+                .exit_code,
+            0);
+  std::vector<std::string> applying{"apply", "--frames", path("capture"), "--out", path("applied")};
+  applying.insert(applying.end(), both.begin(), both.end());
+  const Outcome applied = run(applying);
+  EXPECT_EQ(applied.exit_code, 1);
+  EXPECT_THAT(applied.err, HasSubstr("pass 'look' (studio.look) has no kernel here"));
+}
+
+TEST_F(PassTypes, ABugReportNamesThemInItsLine) {
+  const std::string kind_file = write("pass_types.json", pass_types), overlay = write("toned.json", toned);
+  const Outcome outcome = run({"report-bug", burley, "--overlay", overlay, "--pass-types", kind_file,
+                               "--size", "32x18", "--count", "1", "--out", path("bug")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read("bug/README.txt"),
+              HasSubstr("dermis apply --graph burley.json --frames capture --out replay --overlay "
+                        "overlays/0_toned.json --pass-types pass_types/0_pass_types.json\n"));
+  const Outcome again = run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
+                             "--out", path("replay"), "--overlay", path("bug/overlays/0_toned.json"),
+                             "--pass-types", path("bug/pass_types/0_pass_types.json")});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+}
+
+TEST_F(PassTypes, APageMakesItsFolder) {
+  const std::string page = path("pages/new/tone.html");
+  const Outcome outcome = run({"graph", "--pass-types", write("pass_types.json", pass_types),
+                               write("tone.json", tone), "--html", page});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_FALSE(read("pages/new/tone.html").empty());
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,146 @@
+// `dermis upgrade` on files of version 1. version_1.tar.xz holds the graphs, overlays, tables and pass
+// type files that were shipped with version 1, and further graphs (folder cases).
+
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+
+namespace dermis::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Upgrade : CommandTest {
+  // Paths of the old files, unpacked into the test's folder.
+  std::vector<std::string> unpack() const {
+    const std::string archive = DERMIS_SOURCE_DIR "/tests/integration/tools/version_1.tar.xz";
+    const std::string line = "tar -xJf '" + archive + "' -C '" + path("") + "'";
+    EXPECT_EQ(std::system(line.c_str()), 0);
+    std::vector<std::string> paths;
+    for (const std::string& name : files())
+      if (name.ends_with(".json")) paths.push_back(path(name));
+    return paths;
+  }
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> comments_of(const std::string& text) {
+  std::vector<std::string> comments;
+  for (const std::string& line : lines_of(text))
+    if (const size_t at = line.find("// "); at != std::string::npos) comments.push_back(line.substr(at));
+  return comments;
+}
+
+TEST_F(Upgrade, OldFiles_Validate_OneDiagnosticNamesTheVerb) {
+  const std::vector<std::string> old = unpack();
+  ASSERT_GE(old.size(), 50u);
+  for (const std::string& file : old) {
+    const Outcome outcome = run({"validate", file, "--json"});
+    EXPECT_EQ(outcome.exit_code, 1) << file;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("D0110"), HasSubstr("`dermis upgrade FILE`"))) << file;
+    size_t diagnostics = 0;
+    for (size_t at = 0; (at = outcome.out.find("\"id\": \"D", at)) != std::string::npos; ++at)
+      ++diagnostics;
+    EXPECT_EQ(diagnostics, 1u) << file << outcome.out;
+  }
+}
+
+TEST_F(Upgrade, OldFiles_Upgrade_CommentsAndLinesStay) {
+  for (const std::string& file : unpack()) {
+    const std::string before = text_of(file);
+    EXPECT_EQ(run({"upgrade", "--check", file}).exit_code, 1) << file;
+    EXPECT_EQ(text_of(file), before) << "--check writes nothing";
+    const Outcome outcome = run({"upgrade", file});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("upgraded to version 2"));
+    const std::string after = text_of(file);
+    EXPECT_EQ(lines_of(after).size(), lines_of(before).size()) << file;
+    EXPECT_EQ(comments_of(after), comments_of(before)) << file;
+    EXPECT_EQ(run({"upgrade", "--check", file}).exit_code, 0) << "a second time changes nothing";
+    EXPECT_EQ(run({"upgrade", file}).exit_code, 0);
+    EXPECT_EQ(text_of(file), after);
+  }
+}
+
+TEST_F(Upgrade, OldShippedFiles_Upgrade_Compile) {
+  for (const std::string& file : unpack())
+    ASSERT_EQ(run({"upgrade", file}).exit_code, 0) << file;
+  for (const std::string& name : files("graphs")) {
+    const Outcome outcome = run({"explain", path("graphs/" + name), "--json"});
+    EXPECT_EQ(outcome.exit_code, 0) << name << outcome.err;
+  }
+  for (const char* name : {"overlays/accumulate.json", "overlays/skips.json", "overlays/probe.json"})
+    EXPECT_EQ(run({"explain", path("graphs/sap.json"), "--overlay", path(name)}).exit_code, 0) << name;
+  EXPECT_EQ(run({"validate", path("choice/errors.json"), path("choice/calibration.json"),
+                 path("cases/kinds.json"), path("cases/qa_kinds.json")})
+                .exit_code,
+            0);
+}
+
+// The graphs in cases/ whose version 1 was valid stay valid, the other ones stay invalid.
+TEST_F(Upgrade, OldCases_Upgrade_StayAsValidAsBefore) {
+  const std::vector<std::string> invalid = {
+      "bloom_otherwise2.json",    "bloom_readself.json", "chain_half_written.json",
+      "format_alternatives.json", "half.json",           "inplace_blur.json",
+      "otherwise_inplace.json",   "three.json",          "x_inc_dup.json",
+      "x_inc_missing.json",       "x_inc_prefix.json",   "x_inc_up.json",
+      "x_inc_when.json"};
+  for (const std::string& file : unpack())
+    ASSERT_EQ(run({"upgrade", file}).exit_code, 0) << file;
+  for (const std::string& name : files("cases")) {
+    const bool valid = std::find(invalid.begin(), invalid.end(), name) == invalid.end();
+    const Outcome outcome = run({"validate", path("cases/" + name), "--pass-types", path("cases/kinds.json"),
+                                 "--pass-types", path("cases/qa_kinds.json")});
+    EXPECT_EQ(outcome.exit_code, valid ? 0 : 1) << name << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("D0110"))) << name;
+  }
+}
+
+TEST_F(Upgrade, Pass_Upgrade_RenamesTypePortsAndSettings) {
+  const std::string graph = write("graph.json", R"({ "dermis": 1, "name": "g", // kind: stays
+  "passes": [ { "pass": "mend", /**/ "kind": "x" } ], "exports": [] })");
+  EXPECT_EQ(run({"upgrade", graph}).exit_code, 1) << "block comments are no JSON";
+  const std::string good = write("good.json", R"({ "dermis":   1, "name": "kind", // "kind": stays
+  "passes": [ { "pass": "mend", "kind" : "subsurface.mend", // "share"
+    "read": { "shares": "shares@-1" }, "set": { "share": "$share", "below": 1 } },
+    { "pass": "mend2", "kind": "mine.mend", "set": { "share": 1 } } ], "exports": ["doubts"] })");
+  EXPECT_EQ(run({"upgrade", good}).exit_code, 0);
+  EXPECT_EQ(text_of(good), R"({ "dermis":   2, "name": "kind", // "kind": stays
+  "passes": [ { "pass": "refine_tiles", "type" : "subsurface.tile_refine", // "share"
+    "read": { "samples_per_tile": "shares@-1" }, "set": { "sample_weight": "$share", "below": 1 } },
+    { "pass": "mend2", "type": "mine.mend", "set": { "share": 1 } } ], "exports": ["doubts"] })");
+}
+
+TEST_F(Upgrade, Overlay_Upgrade_RenamesTargetsAndPaths) {
+  const std::string overlay = write("overlay.json", R"({ "dermis_overlay": 1, "edits": [
+  { "insert_before": "hand_out", "passes": [ { "pass": "p", "kind": "subsurface.copy" } ] },
+  { "set": "/passes/doubt/write/doubts", "to": "d" }, { "set": "/passes/x/kind", "to": "subsurface.light" },
+  { "set": "/settings/kind", "to": 1 }, { "remove": "/passes/mend/set/share" } ] })");
+  EXPECT_EQ(run({"upgrade", overlay}).exit_code, 0);
+  EXPECT_EQ(text_of(overlay), R"({ "dermis_overlay": 2, "edits": [
+  { "insert_before": "export_scattered", "passes": [ { "pass": "p", "type": "subsurface.copy_tiles" } ] },
+  { "set": "/passes/estimate_tile_error/write/tile_errors", "to": "d" }, { "set": "/passes/x/type", "to": "subsurface.export_scattered" },
+  { "set": "/settings/kind", "to": 1 }, { "remove": "/passes/refine_tiles/set/sample_weight" } ] })");
+}
+
+TEST_F(Upgrade, FileThatCannotBeWritten_Upgrade_FailsAndKeepsTheFile) {
+  const std::string good = write("good.json", R"({ "dermis": 1, "name": "g", "passes": [], "exports": [] })");
+  const std::string missing = path("none.json");
+  const Outcome outcome = run({"upgrade", missing, good});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(text_of(good), HasSubstr("\"dermis\": 2")) << "other files are upgraded";
+}
+
+} // namespace
+} // namespace dermis::test

@@ -1,0 +1,196 @@
+#include "framegraph/model/read_graph.hpp"
+#include "passes/choice/configurations.hpp"
+#include "passes/common/pass_types.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::choice;
+
+constexpr const char* errors_text = R"({ "dermis_errors": 2, "scenes": "invented",
+"unscattered": [[1, 0.02], [4, 0.04]], "unscattered_through": 1.5,
+"techniques": [
+ { "name": "burley 16", "pass_types": [{ "type": "subsurface.burley", "set": { "samples": 16 } }], "rmse": [[1, 0.004], [16, 0.016]] },
+ { "name": "separable", "pass_types": [{ "type": "subsurface.separable" }], "rmse": [[1, 0.003]] },
+ { "name": "separable 11", "pass_types": [{ "type": "subsurface.separable", "set": { "taps": "11" } }], "rmse": [[1, 0.005]],
+   "through": 0.5, "by_rays": true }] })";
+
+struct Outcomes : ::testing::Test {
+  PassTypeRegistry pass_types = subsurface::make_pass_types();
+  DeviceProfile device = generic_profile();
+  Diagnostics diagnostics;
+  ErrorModel errors;
+  CostModel costs;
+  std::optional<Graph> graph;
+
+  void SetUp() override {
+    const auto document = parse_document("errors.json", errors_text, diagnostics);
+    ASSERT_TRUE(document);
+    auto model = read_error_model(*document, diagnostics);
+    ASSERT_TRUE(model) << format_as_json(diagnostics);
+    errors = std::move(*model);
+  }
+
+  std::optional<OutcomePlans> outcomes_of(const std::string& settings, const std::string& extra_set = "") {
+    const std::string common = R"("read": { "light": "light", "material": "material", "depth": "depth",
+      "tiles": "tiles", "arguments": "arguments")";
+    const std::string text = R"({ "dermis": 2, "name": "g", "settings": {)" + settings + R"(},
+    "imports": { "lighting": { "format": "rgba16f", "size": "view" }, "depth": { "format": "depth", "size": "view" },
+                 "material": { "format": "r8_uint", "size": "view" } },
+    "resources": { "classes": { "buffer": { "stride": 4, "count": "view/8" } },
+      "tiles": { "buffer": { "stride": 4, "count": "view/8", "extra": 1 } },
+      "arguments": { "buffer": { "stride": 4, "count": [4, 1] } },
+      "light": { "format": "rgba16f", "size": "view" }, "slope": { "format": "rg16f", "size": "view" },
+      "blurred": { "format": "rgba16f", "size": "view" }, "scattered": { "format": "rgba16f", "size": "view" } },
+    "passes": [
+      { "pass": "classify", "type": "subsurface.classify", "read": { "material": "material", "depth": "depth" }, "write": { "classes": "classes" } },
+      { "pass": "list", "type": "subsurface.tile_list", "read": { "classes": "classes" }, "write": { "tiles": "tiles", "arguments": "arguments" } },
+      { "pass": "setup", "type": "subsurface.setup",
+        "read": { "lighting": "lighting", "material": "material", "depth": "depth", "tiles": "tiles", "arguments": "arguments" },
+        "write": { "light": "light" } },
+      { "pass": "horizontal", "type": "subsurface.separable", "when": "technique == 'separable'", )" +
+                             common + R"(},
+        "write": { "scattered": "blurred" }, "set": { "axis": "horizontal")" +
+                             extra_set + R"( } },
+      { "pass": "vertical", "type": "subsurface.separable", "when": "technique == 'separable'", )" +
+                             common + R"(, "blurred": "blurred" },
+        "write": { "scattered": "scattered" }, "set": { "axis": "vertical")" +
+                             extra_set + R"( }, "otherwise": { "scattered": "light" } },
+      { "pass": "combine", "type": "subsurface.combine",
+        "read": { "scattered": "scattered", "material": "material", "tiles": "tiles", "arguments": "arguments" },
+        "write": { "lighting": "lighting" } } ],
+    "exports": ["lighting"] })";
+    const auto document = parse_document("graph.json", text, diagnostics);
+    if (!document) return std::nullopt;
+    graph = read_graph(*document, pass_types, diagnostics);
+    if (!graph) return std::nullopt;
+    CompileInput input;
+    input.graph = &*graph;
+    input.pass_types = &pass_types;
+    input.device = &device;
+    input.view_width = 640;
+    input.view_height = 360;
+    return make_outcomes(
+        input, errors, costs,
+        [](const CompileInput& one, Diagnostics& reported) { return compile(one, reported); }, diagnostics);
+  }
+};
+
+TEST_F(Outcomes, AGraphWithoutChoicesHasOne) {
+  const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
+  ASSERT_TRUE(all) << format_as_json(diagnostics);
+  ASSERT_EQ(all->outcomes.size(), 1u);
+  EXPECT_EQ(all->plans.size(), 1u);
+}
+
+TEST_F(Outcomes, CombinationsThatRunTheSameWorkAreOne) {
+  const auto all =
+      outcomes_of(R"("technique": { "choice": ["separable", "off"], "by": "budget", "default": "separable" },
+    "taps": { "choice": ["11", "17", "25"], "by": "budget", "default": "25" })",
+                  R"(, "taps": "$taps")");
+  ASSERT_TRUE(all) << format_as_json(diagnostics);
+  ASSERT_EQ(all->outcomes.size(), 4u); // three with taps; without the technique they do not matter
+  EXPECT_EQ(all->plans.size(), 2u);
+  EXPECT_EQ(all->outcomes[0].name, "technique=separable, taps=25");
+  EXPECT_EQ(all->outcomes[0].technique, 1); // any taps
+  EXPECT_EQ(all->outcomes[1].technique, 2); // the row for 11 taps says more
+  EXPECT_EQ(all->outcomes.back().technique, -1);
+  EXPECT_EQ(all->outcomes.back().name, "technique=off"); // no pass that runs has taps
+}
+
+TEST_F(Outcomes, ErrorsRunStraightOnLogarithmicAxes) {
+  EXPECT_NEAR(expected_rmse(errors, 0, 4), 0.008, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, 0.1), 0.004, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, 100), 0.016, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, -1, 2), std::sqrt(0.02 * 0.04), 1e-12);
+}
+
+TEST_F(Outcomes, LightThroughThinPartsIsMissedByTheShareThatTheTableSays) {
+  EXPECT_NEAR(missed_rmse(errors, 2, 0.3), 0.15, 1e-12);
+  EXPECT_NEAR(missed_rmse(errors, -1, 0.3), 0.45, 1e-12);
+  EXPECT_EQ(missed_rmse(errors, 0, 0.3), 0); // the table says nothing of it
+  EXPECT_TRUE(errors.techniques[2].by_rays);
+  EXPECT_FALSE(errors.techniques[0].by_rays);
+}
+
+TEST_F(Outcomes, SamplesThatAreGivenInPartTakeOffPartOfTheSquare) {
+  Outcome outcome;
+  outcome.technique = 0;
+  outcome.without_samples = -1;
+  outcome.takes_samples = true;
+  const double all = expected_rmse(errors, 0, 4), none = expected_rmse(errors, -1, 4);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 0, 100), none, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 100, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 25, 100), std::sqrt(0.75 * none * none + 0.25 * all * all),
+              1e-12);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 200, 100), all, 1e-12); // more than is wanted is not taken
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 5, 0), none, 1e-12);    // no tile is in doubt
+  outcome.takes_samples = false;
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 0, 100), all, 1e-12);
+}
+
+TEST_F(Outcomes, CostsGrowWithTheTilesThatAreListed) {
+  const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
+  ASSERT_TRUE(all);
+  for (uint64_t groups = 200; groups <= 3600; groups += 200)
+    for (const PassLoad& pass : all->outcomes[0].passes)
+      costs.observe(pass.cost, groups, 0.01 + 1e-4 * static_cast<double>(groups));
+  const double few = estimate(all->outcomes[0], costs, {3600, 100}).ms;
+  const double many = estimate(all->outcomes[0], costs, {3600, 3600}).ms;
+  EXPECT_GT(many, few + 4 * 1e-4 * 3400); // setup, two passes and combine run over listed tiles
+}
+
+TEST_F(Outcomes, TooManyAreRefusedAtTheChoiceThatIsOneTooMuch) {
+  EXPECT_FALSE(outcomes_of("\"technique\": { \"choice\": [\"separable\", \"b\", \"c\", \"d\", \"e\", \"f\", "
+                           "\"g\", \"h\"], \"by\": \"budget\", "
+                           "\"default\": \"b\" },\n"
+                           "\"two\": { \"choice\": [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\", \"g\", \"h\", "
+                           "\"i\"], \"by\": \"budget\", \"default\": \"a\" }"));
+  ASSERT_EQ(diagnostics.count(Severity::error), 1u) << format_as_json(diagnostics);
+  EXPECT_EQ(diagnostics.list.back().id, DiagnosticId::too_many_outcomes);
+  EXPECT_EQ(diagnostics.list.back().where.line, 2u);
+}
+
+// 10 ms in any case, typically off by .1 of that; a unit of samples takes 1 us and is never off.
+TEST(Units, LeaveTwoTypicalDeviationsOfTheBudgetFree) {
+  CostModel costs({{"fixed work", 10000, 0, 0.1}, {"samples", 0, 1, 0}});
+  Outcome outcome;
+  outcome.takes_samples = true;
+  PassLoad work, samples;
+  work.cost = costs.add("fixed work");
+  samples.cost = costs.add("samples");
+  samples.groups = PassLoad::Groups::sample_units;
+  outcome.passes = {work, samples};
+
+  const double budget_ms = 20;
+  FrameLoad load;
+  load.sample_units = units_within(outcome, costs, load, budget_ms, false);
+  const Estimate filled = estimate(outcome, costs, load);
+  EXPECT_NEAR(filled.ms + 2 * filled.spread_ms, budget_ms, 0.002) << "to a unit: as many as fit";
+  EXPECT_NEAR(static_cast<double>(load.sample_units), 8000, 2);
+  // By the meter nothing deviates.
+  EXPECT_NEAR(units_within(outcome, costs, {}, budget_ms, true), 10000, 2);
+  // Where the rest takes all, none are given.
+  EXPECT_EQ(units_within(outcome, costs, {}, 11.9, false), 0u);
+  outcome.takes_samples = false;
+  EXPECT_EQ(units_within(outcome, costs, {}, budget_ms, false), UINT32_MAX);
+}
+
+TEST_F(Outcomes, CurvesThatDoNotGrowAreRefused) {
+  Diagnostics other;
+  const auto document = parse_document("errors.json",
+                                       "{ \"dermis_errors\": 2, \"scenes\": \"s\", \"techniques\": "
+                                       "[],\n\"unscattered\": [[4, 0.1], [2, 0.2]] }",
+                                       other);
+  ASSERT_TRUE(document);
+  EXPECT_FALSE(read_error_model(*document, other));
+  ASSERT_EQ(other.count(Severity::error), 1u) << format_as_json(other);
+  EXPECT_EQ(other.list[0].id, DiagnosticId::error_curve);
+  EXPECT_EQ(other.list[0].where.pointer, "/unscattered/1");
+}
+
+} // namespace

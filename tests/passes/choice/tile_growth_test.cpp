@@ -1,0 +1,59 @@
+// What is expected of frames whose tiles are not counted yet.
+#include "passes/choice/tile_growth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace dermis::choice {
+namespace {
+
+TEST(Trend, ACameraThatComesCloserIsExpectedToGoOn) {
+  TileGrowth trend;
+  constexpr double step = 1.1;
+  for (uint64_t frame = 1; frame <= 20; ++frame)
+    follow(trend, frame, static_cast<uint64_t>(1000 * std::pow(step, double(frame))));
+  EXPECT_NEAR(trend.growth, step, 1e-3); // whole tiles
+  EXPECT_NEAR(growth_until(trend, 22), step * step, 2e-3);
+  EXPECT_EQ(growth_until(trend, 20), 1);
+}
+
+TEST(Trend, CountsThatSkipFramesGrowTheSame) {
+  TileGrowth trend;
+  for (uint64_t frame = 3; frame <= 30; frame += 3)
+    follow(trend, frame, static_cast<uint64_t>(1000 * std::pow(1.1, double(frame))));
+  EXPECT_NEAR(trend.growth, 1.1, 1e-3);
+}
+
+TEST(Trend, ACutIsNotExpectedToGoOn) {
+  TileGrowth trend;
+  for (uint64_t frame = 1; frame <= 30; ++frame) {
+    follow(trend, frame, frame < 10 ? 100 : 900);
+    EXPECT_EQ(trend.growth, 1) << frame;
+  }
+}
+
+TEST(Trend, NothingIsExpectedToBecomeLess) {
+  TileGrowth trend;
+  for (uint64_t frame = 1; frame <= 20; ++frame)
+    follow(trend, frame, 2000 - 90 * frame);
+  EXPECT_EQ(growth_until(trend, 25), 1);
+}
+
+TEST(Trend, AFewTilesAreNoTrendAndWhatIsExpectedHasABound) {
+  TileGrowth trend;
+  for (uint64_t frame = 1; frame <= 4; ++frame)
+    follow(trend, frame, 2 * frame);
+  EXPECT_EQ(trend.growth, 1);
+  for (uint64_t frame = 5; frame <= 12; ++frame)
+    follow(trend, frame, uint64_t{8} << (2 * (frame - 5)));
+  EXPECT_EQ(trend.growth, max_growth);
+  EXPECT_EQ(growth_until(trend, 1000), max_growth * max_growth);
+}
+
+TEST(Trend, NothingIsKnownBeforeAnythingWasCounted) {
+  EXPECT_EQ(growth_until(TileGrowth{}, 7), 1);
+}
+
+} // namespace
+} // namespace dermis::choice

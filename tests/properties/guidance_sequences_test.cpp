@@ -1,0 +1,137 @@
+// How many samples guidance takes over frames: as many as the light's own size asks for, whatever units it
+// comes in.
+#include "tests/framegraph/test_scale.hpp"
+#include "tests/properties/noise.hpp"
+#include "tests/properties/sequences.hpp"
+
+#include <cmath>
+#include <string_view>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::tools;
+using properties::Judge;
+using properties::SequenceRun;
+
+class GuidedSequence : public properties::SequenceTest {
+protected:
+  static TechniqueRequest guided(const std::string& guidance, std::vector<NamedValue> set = {}) {
+    set.emplace_back("guidance", guidance);
+    return properties::request_of("afis_guided", set);
+  }
+};
+
+TEST_F(GuidedSequence, LightInOtherUnitsUnderAnotherExposureTakesAsManySamples) {
+  // From frame 6 on the host's light has a sixteenth of its size and the exposure is sixteen times as large.
+  constexpr uint32_t frames = 12, changed = 6;
+  const Sequence same = properties::standing_still(frames_of("pan", 40, 1), frames);
+  Sequence other = same;
+  for (uint32_t t = changed; t < frames; ++t) {
+    CapturedFrame& frame = other.frames[t].captured;
+    for (float& value : frame.lighting.values)
+      value /= 16; // exact in half floats
+    frame.description.exposure *= 16;
+  }
+  Judge judge{same}, other_judge{other};
+  for (const char* guidance : {"spvg", "split_half", "ccv", "ocv"}) {
+    if (guidance == std::string_view("ccv") && dermis::testing::seeds_to_try(0, 1) == 0) break;
+    const SequenceRun one = run(judge, guided(guidance), {}), two = run(other_judge, guided(guidance), {});
+    ASSERT_EQ(one.samples.size(), frames);
+    ASSERT_EQ(two.samples.size(), frames);
+    for (uint32_t t = 0; t < frames; ++t)
+      // Light below 1e-3 loses bits in half floats.
+      EXPECT_NEAR(two.samples[t], one.samples[t], 1e-3 * one.samples[t]) << guidance << ", frame " << t;
+  }
+}
+
+TEST_F(GuidedSequence, AControlAsksForNoMoreSamplesThanNoneWhereAllLightTrembles) {
+  DERMIS_FULL_TESTS_ONLY();
+  // All light times 1 +- .02, drawn anew in each frame: what candles and compressed textures do.
+  constexpr uint32_t frames = 36, counted = 18;
+  Sequence sequence = properties::standing_still(frames_of("pan", 40, 1), frames);
+  for (uint32_t t = 0; t < frames; ++t)
+    for (float& value : sequence.frames[t].captured.lighting.values)
+      value *= 1 + 0.02f * (2 * properties::noise(t, 0) - 1);
+  Judge judge{sequence};
+  const auto mean = [&](const char* guidance) {
+    const SequenceRun one = run(judge, guided(guidance), {});
+    double sum = 0;
+    for (uint32_t t = counted; t < frames; ++t)
+      sum += one.samples.at(t) / (frames - counted);
+    RecordProperty(guidance, std::to_string(sum));
+    return sum;
+  };
+  const double none = mean("spvg");
+  EXPECT_LE(mean("ocv"), 1.005 * none); // C16; half a percent for the rounding of whole samples
+}
+
+// Noise on a plane, alike everywhere.
+Sequence plane_of_noise(uint32_t frames) {
+  constexpr uint32_t side = 128;
+  CapturedFrame frame;
+  FrameDescription& description = frame.description;
+  description.width = description.height = side;
+  description.render = {0, 0, side, side};
+  description.perspective = false;
+  description.clip_from_view = {
+      2 / (side * 1e-3), 0, 0, 0, 0, -2 / (side * 1e-3), 0, 0, 0, 0, -0.1, 0, 0, 0, 0, 1};
+  description.view_from_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  EXPECT_TRUE(complete_projection(description, frame.rays));
+  subsurface::Profile profile;
+  profile.name = "plane";
+  profile.albedo = {0.33, 0.33, 0.33};
+  profile.dmfp_mm = {14, 14, 14}; // 3.5 d at this albedo; d is 4 pixels
+  profile.d_mm = {4, 4, 4};
+  description.profiles.push_back({1, profile});
+  frame.lighting = Image::sized(side, side, 3);
+  for (size_t i = 0; i < frame.lighting.values.size(); ++i)
+    frame.lighting.values[i] = properties::noise(double(i / 3 % side), double(i / 3 / side));
+  frame.depth = Image::sized(side, side, 1);
+  std::fill(frame.depth.values.begin(), frame.depth.values.end(), 1.0f);
+  frame.profile.assign(size_t{side} * side, 1);
+  Sequence sequence;
+  sequence.frames.push_back({frame, false});
+  return properties::standing_still(std::move(sequence), frames);
+}
+
+TEST_F(GuidedSequence, HalfSequencesTakeAsManyMoreSamplesUnderLightThatFlashesAsItsVarianceAsksFor) {
+  DERMIS_FULL_TESTS_ONLY();
+  // All light times 1 + sin: its square, and with it the variance, is 1.5 times as large in the mean. Without
+  // mips the variance of n samples of noise is that of one over n; where mips average over what n samples
+  // leave between them, noise of single pixels spreads as much however many they are.
+  constexpr uint32_t frames = 61, counted = 25, period = 12;
+  const Sequence still = plane_of_noise(frames);
+  Sequence flashing = still;
+  for (uint32_t t = 0; t < frames; ++t)
+    for (float& value : flashing.frames[t].captured.lighting.values)
+      value *= static_cast<float>(1 + std::sin(2 * std::acos(-1.0) * t / period));
+  const std::vector<NamedValue> wide = {{"sigma2_target", "3e-3"}, {"mips", "none"}};
+  Judge judge{still}, flashing_judge{flashing};
+  const SequenceRun one = run(judge, guided("split_half", wide), {60}),
+                    two = run(flashing_judge, guided("split_half", wide), {60});
+  const auto mean = [&](const SequenceRun& run) {
+    double sum = 0;
+    for (uint32_t t = counted; t < counted + 3 * period; ++t)
+      sum += run.samples[t] / (3 * period);
+    return sum;
+  };
+  const auto clamped = [](const SequenceRun& run) { // share of pixels
+    const std::vector<float>& sampling = run.sampling.at(60);
+    double count = 0;
+    for (size_t i = 0; i < sampling.size(); i += 3)
+      count += sampling[i] <= 8 || sampling[i] >= 64;
+    return count / (double(sampling.size()) / 3);
+  };
+  RecordProperty("still", std::to_string(mean(one)));
+  RecordProperty("flashing", std::to_string(mean(two)));
+  RecordProperty("still_clamped", std::to_string(clamped(one)));
+  RecordProperty("flashing_clamped", std::to_string(clamped(two)));
+  // Regression bounds: they follow the product.
+  EXPECT_GE(mean(one), 16);
+  EXPECT_LE(mean(one), 24);
+  EXPECT_LT(clamped(one), 0.02);
+  EXPECT_NEAR(mean(two) / mean(one), 1.5, 0.2);
+}
+
+} // namespace

@@ -1,0 +1,87 @@
+// What holds of samples: means, their bias and how errors fall with their number.
+#include "tests/properties/noise.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace properties;
+
+class Sampler : public DeviceTest {};
+
+TEST_F(Sampler, TheMeanOfManyFramesIsTheTruthAtEveryPixel) {
+  const double z_square = expect_the_reference_in_the_mean(
+      "fixed", {{"samples", "4"}, {"normalise", "\"none\""}, {"inverse", "\"exact\""}});
+  EXPECT_NEAR(z_square, 1, 0.36); // three sd
+}
+
+TEST_F(Sampler, EveryInverseWithItsOwnDensityIsUnbiasedAndThePublishedChoicesAreNot) {
+  const Plane plane = noisy_plane(40, 0.5);
+  const std::vector<double> reference = unnormalised_reference(plane);
+  const auto bias = [&](const char* inverse, const char* weighting, const char* direct) {
+    return bias_of("fixed", plane, reference,
+                   {{"samples", "8"},
+                    {"normalise", "\"none\""},
+                    {"inverse", inverse},
+                    {"weighting", weighting},
+                    {"direct", direct}},
+                   64);
+  };
+  for (const char* inverse : {"\"polynomial\"", "\"exact\"", "\"approximate\""})
+    for (const char* direct : {"\"inscribed\"", "\"none\""}) {
+      const Bias one = bias(inverse, "\"sampler\"", direct);
+      EXPECT_LT(std::abs(one.sigmas), 3.5) << inverse << " " << direct << ": " << one.fraction;
+    }
+  const Bias radius = bias("\"exact\"", "\"sampler\"", "\"circumscribed\"");
+  EXPECT_GT(radius.sigmas, 10)
+      << radius.fraction; // the neighbours' share of the corners becomes the own light
+  EXPECT_GT(radius.fraction, 0.01);
+}
+
+TEST_F(Sampler, SelfNormalisationHasABiasThatFallsWithTheNumberOfSamples) {
+  // In a narrow channel weights vary, so that the ratio of two means is off by about their covariance over n.
+  const Plane plane = noisy_plane(48, 4.0);
+  const std::vector<double> reference = normalised_reference(plane);
+  double before = 1, first = 0;
+  for (const char* samples : {"4", "16", "64"}) {
+    const Bias one =
+        bias_of("fixed", plane, reference, {{"samples", samples}, {"direct", "\"none\""}}, 64, 2);
+    RecordProperty(std::string("share_at_") + samples, std::to_string(one.fraction));
+    RecordProperty(std::string("sigmas_at_") + samples, std::to_string(one.sigmas));
+    EXPECT_LT(std::abs(one.fraction), before) << samples << " samples";
+    before = std::abs(one.fraction);
+    if (first == 0) first = before;
+  }
+  EXPECT_LT(before, 0.15 * first); // 1/16 is expected
+}
+
+TEST_F(Sampler, TheErrorFallsFasterThanThatOfIndependentSamples) {
+  // Independent samples: n^-.5. R2 on light with edges: about n^-.7 over 8 to 64.
+  Plane plane;
+  plane.width = plane.height = 192;
+  plane.d_px = {3, 3, 3};
+  plane.light = [](double x, double y) {
+    return (x < 96 ? 0.2f : 0.8f) + (std::hypot(x - 60, y - 80) < 25 ? 0.2f : 0.0f);
+  };
+  std::vector<double> logs;
+  std::vector<float> reference;
+  {
+    const Picture many = run("fixed", plane, {{"samples", "4096"}});
+    reference = many.rgb;
+  }
+  for (const char* samples : {"8", "16", "32", "64"}) {
+    const Picture picture = run("fixed", plane, {{"samples", samples}});
+    double squares = 0;
+    for (size_t i = 0; i < reference.size(); i += 3)
+      squares += std::pow(double(picture.rgb[i]) - double(reference[i]), 2);
+    logs.push_back(0.5 * std::log2(squares / double(reference.size() / 3)));
+  }
+  // Least squares over four points one octave apart.
+  const double slope = (3 * (logs[3] - logs[0]) + (logs[2] - logs[1])) / 10;
+  RecordProperty("slope", std::to_string(slope));
+  // Regression bounds: they follow the product.
+  EXPECT_LT(slope, -0.6);
+  EXPECT_GT(slope, -0.9);
+}
+
+} // namespace
