@@ -3,7 +3,8 @@
 namespace dermis {
 namespace {
 
-// Whether the write was checked to come after `event`. Accesses of one pass are not ordered by each other.
+// Returns whether `event` was checked to come before `write`. Accesses of one pass are not ordered
+// by each other.
 bool is_before(const Event& event, const Event& write) {
   return write.access == nullptr || event.access == nullptr || event.at != write.at;
 }
@@ -22,7 +23,7 @@ void Memory::add_instance(const Subresource& subresource, uint32_t count, uint32
     place.space = memory.heap;
     place.begin = memory.offset;
     place.end = memory.offset + memory.size;
-  } else { // the host's: nothing else is located there
+  } else { // host memory: nothing else is located there
     place.space = static_cast<uint32_t>(spaces_.size());
     spaces_.emplace_back()[0].end = UINT64_MAX;
   }
@@ -59,7 +60,7 @@ std::vector<Event>& Memory::events_of(ByteRange& range, uint32_t subresource) co
   return occupant->subresources.insert(at, ThingEvents{subresource, {}})->events;
 }
 
-// The place must be isolated.
+// The ranges of `place` must be isolated.
 template <class Visit> void Memory::for_each_range(const InstanceSubresources& place, Visit visit) {
   std::map<uint64_t, ByteRange>& space = spaces_[place.space];
   for (auto range = space.lower_bound(place.begin); range != space.end() && range->first < place.end; ++range)
@@ -91,14 +92,14 @@ void Memory::add_read(uint32_t subresource, const Event& event) {
       events.push_back(event);
       return;
     }
-    same->at = event.at; // whatever waits for the later read waits for the earlier one
+    same->at = event.at; // a barrier that waits for the later read waits for the earlier read
     same->access = event.access;
     same->certain |= event.certain;
   });
 }
 
-// Holds events that other instances left on these bytes. They count until each used part of the new owner was
-// written.
+// Drops the events that other instances left on these bytes. They count until each used subresource
+// of the new owner has been written.
 void Memory::take_over(ByteRange& range, uint32_t owner, bool whole, const Event& write) {
   for (InstanceEvents& other : range.occupants) {
     if (other.instance == owner) continue;
@@ -129,7 +130,7 @@ void Memory::add_write(uint32_t subresource, const Event& event) {
   join(place);
 }
 
-// Neighbours of which the same is known become one range.
+// Merges adjacent ranges that have equal occupants.
 void Memory::join(const InstanceSubresources& place) {
   std::map<uint64_t, ByteRange>& space = spaces_[place.space];
   auto range = space.lower_bound(place.begin);

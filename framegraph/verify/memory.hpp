@@ -1,7 +1,8 @@
 #pragma once
-// Which events count for which bytes: those since the bytes were last written as a whole. Whatever is ordered
-// after that write is ordered after everything before it, so earlier events are dropped. The number of events
-// therefore follows what is alive, and not how many resources used the same memory one after the other.
+// Keeps the events that count for each range of bytes: the events since these bytes were last
+// written as a whole. Work ordered after that write is ordered after everything before that write,
+// so earlier events are dropped. The number of events therefore depends on the live resources, not
+// on how many resources used the memory one after the other.
 
 #include "framegraph/verify/subresources.hpp"
 
@@ -21,12 +22,13 @@ struct ThingEvents {
 
 struct InstanceEvents {
   uint32_t instance = 0;
-  std::vector<ThingEvents> subresources; // sorted by thing
+  std::vector<ThingEvents> subresources; // sorted by index
 
   bool operator==(const InstanceEvents&) const = default;
 };
 
-struct ByteRange { // every byte of it has the same events
+// All bytes of the range have equal events.
+struct ByteRange {
   uint64_t end = 0;
   std::vector<InstanceEvents> occupants;
 };
@@ -36,13 +38,15 @@ public:
   // `plan` must pass verify_structure().
   explicit Memory(const Plan& plan);
 
-  // Adds the things of one resource instance. `used_subresources` is how many of them the plan ever touches.
+  // Adds the subresources of one resource instance. `used_subresources` is the number of them that
+  // accesses and barriers of the plan name.
   void add_instance(const Subresource& subresource, uint32_t count, uint32_t used_subresources);
-  // The thing holds an earlier frame, as the executor made it.
+  // Marks a subresource as holding an earlier frame, as the executor left it.
   void set_kept(uint32_t subresource, int64_t of_frame, Layout layout);
 
-  // Calls visit(ThingEvents&, bool own) for the thing itself and for each thing of another instance that has
-  // events on some of its bytes. Parts of one image share no byte.
+  // Calls visit(ThingEvents&, bool own) for the subresource itself and for each subresource of
+  // another instance that has events on some of the instance's bytes. Subresources of one image
+  // share no byte.
   template <class Visit> void for_each_meeting(uint32_t subresource, Visit visit) {
     const uint32_t owner = subresources[subresource].owner;
     const InstanceSubresources& place = instances[owner];
@@ -59,11 +63,13 @@ public:
       }
   }
 
-  // Makes the ranges of bytes end where the thing does, so that what is changed of them concerns no others.
+  // Splits byte ranges at the borders of the subresource's instance, so that changes to them affect
+  // no other instance.
   void isolate(uint32_t subresource);
   // Adds a read. It replaces earlier reads that wait for the same barriers.
   void add_read(uint32_t subresource, const Event& event);
-  // Adds a write or a layout transition. Contents of other things on the same bytes become undefined.
+  // Adds a write or a layout transition. Contents of other instances on the same bytes become
+  // undefined.
   void add_write(uint32_t subresource, const Event& event);
 
   std::vector<Subresource> subresources;
@@ -78,7 +84,8 @@ private:
   void join(const InstanceSubresources& place);
 
   const Plan& plan_;
-  std::vector<std::map<uint64_t, ByteRange>> spaces_; // one for each heap, then one for each host instance
+  // one for each heap, then one for each instance in host memory
+  std::vector<std::map<uint64_t, ByteRange>> spaces_;
 };
 
 } // namespace dermis

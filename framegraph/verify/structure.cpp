@@ -14,12 +14,13 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t max_mips = 32; // of an image whose sides are 32-bit numbers
+constexpr uint32_t max_mips = 32; // enough for images with 32-bit sides
 
 struct Checker {
   const Plan& plan;
   std::vector<std::string> violations;
-  std::vector<uint32_t> deepest = {}; // by resource: earlier frames that its history keeps
+  // by resource: number of earlier frames that its history keeps
+  std::vector<uint32_t> deepest = {};
 
   void find_histories() {
     deepest.assign(plan.resources.size(), 0);
@@ -38,7 +39,7 @@ struct Checker {
     return resource < plan.resources.size() && frames_back <= deepest[resource];
   }
 
-  // Does the resource have all of the range? What the host binds is never divided.
+  // Returns whether the resource has all of the range. Resources in host memory are never divided.
   bool has(uint32_t number, const SubresourceRange& range) const {
     const PlanResource& resource = plan.resources[number];
     if (resource.first_instance == no_instance) return range == resource.whole();
@@ -95,8 +96,8 @@ struct Checker {
                                 : std::pair(placement.first_use, placement.last_use);
   }
 
-  // Histories among each other, and transients among each other. Memory that a history shares with transients
-  // can be judged only by a run over several frames.
+  // Checks histories against histories and transients against transients. Memory that a history
+  // shares with transients can only be judged by a run over several frames.
   void shared_memory() {
     std::vector<size_t> sorted(plan.placements.size());
     for (size_t i = 0; i < sorted.size(); ++i)
@@ -117,11 +118,12 @@ struct Checker {
     }
   }
 
-  // Of one heap, sorted by first use. Those that are alive share no byte, so that a new one has to be
-  // compared with its two neighbours only.
+  // Checks placements of one heap, sorted by first use. Live placements share no byte, so a new
+  // placement is compared with its two neighbours only.
   void shared_memory(std::span<const size_t> sorted) {
-    std::map<uint64_t, size_t> alive;                    // by offset
-    std::set<std::pair<uint32_t, uint64_t>> by_last_use; // last use and offset of each that is alive
+    std::map<uint64_t, size_t> alive; // by offset
+    // last use and offset of each live placement
+    std::set<std::pair<uint32_t, uint64_t>> by_last_use;
     for (const size_t i : sorted) {
       const Placement& own = plan.placements[i];
       while (!by_last_use.empty() && by_last_use.begin()->first < lifetime(own).first) {
@@ -142,7 +144,8 @@ struct Checker {
     }
   }
 
-  // Only reads can be left out; what stands in for another stands behind it.
+  // Returns whether the access may be conditional: only reads are, and the fallback of a history
+  // read follows that read.
   bool condition_fits(const PlanPass& pass, uint32_t number) const {
     const PlanAccess& access = plan.accesses[pass.first_access + number];
     if (access.when == ReadWhen::always) return true;
@@ -219,7 +222,8 @@ struct Checker {
         expect(has(history.resource, plan.history_parts[history.first_part + part]),
                "a history has mips or layers that do not exist", h);
     }
-    uint32_t maximum = 1; // who uses memory of a history goes round with it
+    // An alias in history memory has as many instances as the history.
+    uint32_t maximum = 1;
     for (const PlanHistory& history : plan.histories)
       if (history.resource < plan.resources.size())
         maximum = std::max(maximum, plan.resources[history.resource].instance_count);

@@ -1,6 +1,6 @@
 #pragma once
-// What must hold for a plan before it can be run in thought: indices in range, intervals and memory
-// consistent.
+// Checks that must hold before a plan can be simulated: indices are in range, intervals and memory
+// are consistent.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -10,12 +10,13 @@
 namespace dermis {
 
 inline constexpr size_t max_violations =
-    32; // the first ones tell; a hostile plan could cause one for each pair
+    32; // A hostile plan could cause one violation for each pair; the first ones are enough.
 
-// What is wrong with the shape of the plan, one sentence each; empty: every index can be followed.
+// Returns what is wrong with the structure of the plan, one sentence each. Empty: every index can
+// be followed.
 std::vector<std::string> verify_structure(const Plan& plan);
 
-// Do the two placements have a byte in common?
+// Returns whether the two placements have a byte in common.
 bool share_memory(const Placement& a, const Placement& b);
 
 } // namespace dermis

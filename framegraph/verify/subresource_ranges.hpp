@@ -1,6 +1,6 @@
 #pragma once
-// Into which parts a plan's accesses and barriers divide its images: the fewest of which each range holds
-// whole ones.
+// Divides each image of a plan into the smallest number of parts such that the range of every
+// access and barrier is a set of whole parts.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -11,13 +11,13 @@
 
 namespace dermis {
 
-// The parts of one resource: a grid of mips by layers, mips first. Buffers have one.
+// Parts of one resource: a grid of mips by layers, mips first. A buffer has one part.
 struct ResourceParts {
-  std::vector<uint16_t> mips, layers; // where rows and columns begin, and the end
+  std::vector<uint16_t> mips, layers; // first mip and first layer of each part, then the end
 
   uint32_t count() const { return static_cast<uint32_t>((mips.size() - 1) * (layers.size() - 1)); }
 
-  // Calls with the number of each part that begins in the range.
+  // Calls visit with the number of each part that begins in the range.
   template <class Visit> void for_each_in(const SubresourceRange& range, Visit visit) const {
     const auto columns = static_cast<uint32_t>(layers.size() - 1);
     const auto [first_row, end_row] = between(mips, range.first_mip, range.mips);
@@ -28,7 +28,7 @@ struct ResourceParts {
   }
 
 private:
-  // Which rows or columns begin within the range.
+  // Returns the first and the end of the grid rows or columns that begin within the range.
   static std::pair<uint32_t, uint32_t> between(const std::vector<uint16_t>& cuts, uint32_t first,
                                                uint32_t count) {
     const auto place = [&](uint32_t value) {
@@ -38,13 +38,13 @@ private:
   }
 };
 
-// By resource. `plan` must pass verify_structure().
+// Returns the parts of each resource. `plan` must pass verify_structure().
 std::vector<ResourceParts> parts_of(const Plan& plan);
 
-// By resource: how many of the parts any access or barrier touches.
+// Returns for each resource how many of its parts an access or barrier uses.
 std::vector<uint32_t> used_parts(const Plan& plan, const std::vector<ResourceParts>& parts);
 
-// Have the two ranges a mip of a layer in common?
+// Returns whether the two ranges have a mip of a layer in common.
 bool meet(const SubresourceRange& a, const SubresourceRange& b);
 
 } // namespace dermis

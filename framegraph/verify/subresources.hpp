@@ -1,28 +1,33 @@
 #pragma once
-// The verifier's model. A *thing* is a piece of memory with one layout: a part of an image that no access and
-// no barrier divides, or a buffer, in a placement or in what the host bound to a slot. Parts of one image
-// share no byte; images and buffers whose placements overlap share those that the placements share. Every
-// access leaves an *event* on its thing, which remembers at which stages later work is ordered behind it and
-// where a write is visible. Barriers extend both along execution chains (Vulkan 1.3, "Execution and Memory
-// Dependencies"), on the bytes of their own thing alone. memory.hpp keeps the events by the bytes they are
-// on.
+// Data model of the verifier. A *subresource* is a piece of memory with one layout: a buffer, or a
+// part of an image that no access and no barrier divides. It lies in a placement or in a resource
+// that the host bound to a slot. Parts of one image share no byte; images and buffers whose
+// placements overlap share the overlapping bytes.
 //
-//  read    Every earlier write to the same bytes is ordered before it, the last one to the same thing is
-//          visible to it, and the contents are defined and are those of the frame meant: written that many
-//          frames ago, or before the first.
-//  write   Goes to this frame's instance. Every earlier access to the same bytes is ordered before it, every
-//  earlier write is available, and
-//          the last one visible to it unless it was read since: then the wait for the reader is enough.
-//  maybe   A read that depends on the validity of a history counts as if it happened, but nobody may
-//          rely on it.
-//  both    What a pass writes it touches in no other way, except to read the same thing texel by texel
-//          (PlanAccess::own_texels). An access that reads and writes counts as one.
-//  layout  Equals what the access was planned with; transitions are writes; `undefined` discards.
-//  queues  A barrier orders what is on its own queue. A wait for a point orders and shows to its queue
-//          all that the other one had done, or had been ordered behind, when it reached the point. What
-//          one queue left the other one touches once released and acquired, or discards.
-//  host    A slot is taken over before its first access and handed back, ordered and available, at the
-//          end.
+// Every access leaves an *event* on its subresource. The event remembers which stages of later work
+// are ordered after the access, and where a write is visible. Barriers extend both along execution
+// chains (Vulkan 1.3, "Execution and Memory Dependencies"), only on the bytes of their own
+// subresource. memory.hpp keeps the events by byte range.
+//
+// Rules:
+// - read: Every earlier write to the bytes is ordered before the read, and the last write to the
+//   subresource is visible to the read. The contents are defined and belong to the named frame:
+//   written that many frames ago, or before the first frame.
+// - write: Goes to the instance of the current frame. Every earlier access to the bytes is ordered
+//   before the write, and every earlier write is available. The last write is visible to it, unless
+//   a read followed that write: then waiting for the reader is enough.
+// - conditional read: A read that depends on the validity of a history counts as if it happened,
+//   but no other access may rely on it.
+// - read and write in one pass: A pass accesses what it writes in no other way, except to read the
+//   same texels (PlanAccess::own_texels). An access that reads and writes counts as one access.
+// - layout: Equals the layout that the access was planned with. Transitions are writes; `undefined`
+//   discards the contents.
+// - queues: A barrier orders work on its own queue. A wait for a sync point orders everything that
+//   the other queue had done, or had been ordered after, when it reached the point, and makes that
+//   work visible. A resource used by one queue can be used by the other after a release and an
+//   acquire, or after its contents are discarded.
+// - host: A slot is acquired from the host before its first access, and released at the end,
+//   ordered and available.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -33,7 +38,8 @@
 namespace dermis {
 
 inline constexpr size_t queues = 2;
-inline constexpr uint64_t everything = ~uint64_t{0}; // stages or accesses: behind a semaphore
+// stages or accesses: everything after a semaphore wait
+inline constexpr uint64_t everything = ~uint64_t{0};
 inline constexpr int64_t never = INT64_MAX;
 
 inline size_t index_of(Queue queue) {
@@ -52,15 +58,17 @@ struct Visible {
 };
 
 struct Event {
-  Stage stages = 0;  // where it happened; 0 for a layout transition, which only chains
+  Stage stages = 0;  // stages of the access; 0: a layout transition, which only extends chains
   Access writes = 0; // 0: a read
   bool is_write = false;
   bool certain = true; // false: a read that some frames leave out
   Queue queue = Queue::main;
-  int64_t at = 0;                                  // which pass it was, counted through all frames
-  const PlanAccess* access = nullptr;              // and which of its accesses; none: a layout transition
-  std::array<Stage, queues> ordered{};             // by queue: later work at these stages happens after it
-  std::array<int64_t, queues> since{never, never}; // by queue: the pass from which on that is so
+  int64_t at = 0;                     // number of the pass, counted through all frames
+  const PlanAccess* access = nullptr; // the access; null: a layout transition
+  // by queue: stages of later work that happens after the event
+  std::array<Stage, queues> ordered{};
+  // by queue: the first pass that `ordered` holds for
+  std::array<int64_t, queues> since{never, never};
   bool available = false;
   std::vector<Visible> visible;
 
@@ -69,25 +77,25 @@ struct Event {
 
 struct Subresource {
   uint32_t owner = 0;               // into Memory::instances
-  uint32_t placement = no_instance; // or the host's
+  uint32_t placement = no_instance; // no_instance: host memory
   bool image = false;
-  bool with_host = false;    // not ours to touch now
+  bool with_host = false;    // true: the host owns it now
   bool handed_back = false;  // to the host, in this frame
-  Queue queue = Queue::main; // whose it is
-  bool in_transfer = false;  // released by that queue
+  Queue queue = Queue::main; // queue that owns it
+  bool in_transfer = false;  // released by that queue, not yet acquired
   Layout released_old = Layout::undefined, released_new = Layout::undefined;
-  bool defined = false; // contents mean something
-  int64_t of_frame = 0; // what was written last: below 0 as the executor made it
+  bool defined = false; // true: the contents are defined
+  int64_t of_frame = 0; // frame of the last write; below 0: as the executor left it
   Layout layout = Layout::undefined;
-  bool written = false; // since other instances left something on its bytes
+  bool written = false; // true: written since other instances left events on its bytes
 };
 
-// One instance of a resource: its parts follow each other among the things.
+// Subresources of one instance of a resource; they have consecutive indices.
 struct InstanceSubresources {
   uint32_t first = 0, count = 0;
-  uint32_t used_subresources = 0;       // that the plan ever touches
-  uint32_t written_subresources = 0;    // see Thing::written
-  uint32_t space = 0;                   // its heap, or what the host bound
+  uint32_t used_subresources = 0;       // number that accesses and barriers of the plan use
+  uint32_t written_subresources = 0;    // see Subresource::written
+  uint32_t space = 0;                   // its heap, or the memory that the host bound
   uint64_t begin = 0, end = UINT64_MAX; // bytes there
 };
 

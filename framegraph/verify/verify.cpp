@@ -1,5 +1,5 @@
-// The rules that the model of things.hpp holds a plan to: one frame after the other, barrier by barrier and
-// access by access.
+// Simulates a plan frame by frame, barrier by barrier and access by access, and checks it against
+// the rules in subresources.hpp.
 
 #include "framegraph/verify/verify.hpp"
 
@@ -17,14 +17,15 @@
 namespace dermis {
 namespace {
 
-// A hostile plan could divide images without end, and let everything meet in the same memory. A chain of
-// 4,096 passes, the longest that a graph may have, takes 3e5 looks.
+// Work limits: a hostile plan could divide images without end and place everything in the same
+// memory. A chain of 4,096 passes, the longest that a graph may have, takes 3e5 units of work.
 constexpr uint64_t max_subresources = 1u << 20, max_looks = 1u << 27;
 
-// Waits of one queue for the other one that show it more than the waits before them, in their order.
+// Waits of one queue for the other queue, in order. Only waits that imply more than the waits
+// before them are kept.
 struct Waits {
-  std::vector<int64_t> until; // the pass that the other queue has done by then
-  std::vector<int64_t> at;    // the pass that waits
+  std::vector<int64_t> until; // last pass of the other queue that is done after the wait
+  std::vector<int64_t> at;    // pass that waits
 
   void add(int64_t pass, int64_t now) {
     if (!until.empty() && until.back() >= pass) return;
@@ -32,7 +33,7 @@ struct Waits {
     at.push_back(now);
   }
   bool knows(int64_t pass) const { return !until.empty() && until.back() >= pass; }
-  // The pass that was the first to know.
+  // Returns the first pass that is ordered after `pass`.
   int64_t since(int64_t pass) const {
     return at[static_cast<size_t>(std::lower_bound(until.begin(), until.end(), pass) - until.begin())];
   }
@@ -43,16 +44,17 @@ struct Machine {
   const std::vector<ResourceParts> parts; // by resource
   Memory memory = Memory(plan);
   std::vector<uint32_t> first_instance = {}; // by resource: into Memory::instances
-  std::vector<uint8_t> in_place = {};        // by resource: this frame is written over the oldest one
+  std::vector<uint8_t> in_place = {};        // by resource: 1: the frame overwrites the oldest one
   std::vector<std::string> violations = {};
   uint32_t frame = 0;
-  Queue queue = Queue::main;                             // that runs now
-  int64_t now = 0;                                       // which pass, counted through all frames
-  std::array<std::vector<int64_t>, queues> reached = {}; // by queue and point: the pass behind which it was
-  std::array<size_t, queues> points_before = {};         // those of earlier frames
-  std::array<Waits, queues> waits = {};                  // by the queue that waits
-  int64_t frame_began = 0;                               // behind which pass
-  uint64_t work_budget = 0;                              // at events
+  Queue queue = Queue::main; // queue of the current pass
+  int64_t now = 0;           // current pass, counted through all frames
+  // by queue and sync point: the pass that reached it
+  std::array<std::vector<int64_t>, queues> reached = {};
+  std::array<size_t, queues> points_before = {}; // by queue: number of points in earlier frames
+  std::array<Waits, queues> waits = {};          // by queue that waits
+  int64_t frame_began = 0;                       // last pass before the frame
+  uint64_t work_budget = 0;                      // work done so far: visits of events
 
   void prepare() {
     const std::vector<uint32_t> used = used_parts(plan, parts);
@@ -75,7 +77,8 @@ struct Machine {
     });
   }
 
-  // Calls with each thing that holds an earlier frame when this one starts, and the layout promised then.
+  // Calls visit for each subresource that holds an earlier frame when this frame starts, and its
+  // promised layout.
   template <class Visit> void for_each_kept(Visit visit) const {
     for (const PlanHistory& history : plan.histories)
       for (uint32_t i = history.parts; i < (history.frames + 1) * history.parts; ++i)
@@ -91,7 +94,7 @@ struct Machine {
     return first_instance[resource] + (frame % count + count - frames_back % count) % count;
   }
 
-  // Calls with the index of each thing in the range.
+  // Calls visit with the index of each subresource in the range.
   template <class Visit>
   void for_each_part(uint32_t resource, uint32_t frames_back, const SubresourceRange& range,
                      Visit visit) const {
@@ -105,11 +108,11 @@ struct Machine {
           fmt::format("frame {}, {}: resource {}@-{}: {}", frame, where, resource, frames_back, what));
   }
 
-  // Whether the check has taken too long to go on.
+  // Returns whether the check has exceeded its work limit.
   bool is_over() const { return work_budget > max_looks; }
 
-  // Calls with the events of the thing itself and of what shares memory with it, as the waits so far left
-  // them.
+  // Calls visit with the events of the subresource and of everything that shares memory with it,
+  // after applying the waits so far.
   template <class Visit> void for_each_meeting(uint32_t index, Visit visit) {
     ++work_budget;
     memory.for_each_meeting(index, [&](ThingEvents& there, bool own) {
@@ -125,7 +128,7 @@ struct Machine {
     for (Subresource& subresource : memory.subresources)
       subresource.handed_back = false;
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
-      if (in_place[r] != 0) continue; // it holds the oldest frame still
+      if (in_place[r] != 0) continue; // still holds the oldest frame
       for_each_part(r, 0, plan.resources[r].whole(), [&](uint32_t index) {
         Subresource& current = memory.subresources[index];
         current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
@@ -165,8 +168,9 @@ struct Machine {
     if (event.available) show(event, {queue, barrier.destination_stages, barrier.destination_access});
   }
 
-  // A wait orders and shows whatever the other queue had done by then, or had been ordered behind. What one
-  // wait changes may be what another one of the other queue passes on.
+  // Applies waits: a wait orders and makes visible everything that the other queue had done, or had
+  // been ordered after, when it reached the point. The loop repeats because one wait can extend
+  // what a wait of the other queue implies.
   void apply_waits(Event& event) const {
     for (uint32_t unchanged = 0, q = 0; unchanged < queues; q ^= 1u, ++unchanged) {
       const size_t other = q ^ 1u;
@@ -194,7 +198,7 @@ struct Machine {
       complain(
           fmt::format("frame {}, {}: waits for point {} of the other queue, which is not reached before it",
                       frame, where, point));
-    else if (wanted > 0) // else the frames before the first, which nobody waits for
+    else if (wanted > 0) // 0: frames before the first, which need no wait
       waits[index_of(queue)].add(reached[other][wanted - 1], now);
   }
 
@@ -206,7 +210,7 @@ struct Machine {
     own.push_back(now);
   }
 
-  // A transition, as a write that its own barrier has made available.
+  // Returns a layout transition as an event: a write that its own barrier has made available.
   Event left_by(const PlanBarrier& barrier) const {
     Event event;
     event.is_write = event.available = true;
@@ -217,7 +221,8 @@ struct Machine {
     return event;
   }
 
-  // Whether the thing may go from queue to queue as the barrier says; it does so.
+  // Moves the subresource between queues as the barrier says, and reports it if that is not
+  // allowed.
   void change_queue(Subresource& subresource, const PlanBarrier& barrier, const auto& wrong) {
     const bool discarded = subresource.image && barrier.old_layout == Layout::undefined;
     switch (barrier.transfer) {
@@ -345,7 +350,7 @@ struct Machine {
           wrong("is written before an earlier write is available");
         if (reads && own && event.is_write && !visible(event, access.stages, as_read))
           wrong("is read where the last write is not visible");
-        // Where it was read since, in this frame whatever is valid, the wait for the reader is enough.
+        // If a read of every frame followed the write, waiting for that read is enough.
         if (writes && event.is_write && !followed && !visible(event, access.stages, as_write))
           wrong("is written where the last write is not visible");
         followed |= event.certain;
@@ -370,7 +375,8 @@ struct Machine {
     memory.add_write(index, event);
   }
 
-  // Passes that `after` names stand before this one; those of the other queue are waited for.
+  // Checks the orderings that `after` requests: earlier passes come first, and earlier passes of
+  // the other queue are waited for.
   void check_orderings(uint32_t position, const std::string& where) {
     const auto [first, last] =
         std::equal_range(plan.orderings.begin(), plan.orderings.end(), PlanOrdering{0, position});
@@ -428,11 +434,13 @@ struct Machine {
 Verdict verify(const Plan& plan) {
   auto violations = verify_structure(plan);
   if (!violations.empty()) return {std::move(violations), ""};
-  uint32_t frames = 3; // the first, one that follows it, and one that follows a frame like itself
+  // the first frame, one that follows it, and one that follows a frame like itself
+  uint32_t frames = 3;
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
-  for (const PlanResource& resource : plan.resources) // whoever uses one instance too many is found out when
-    frames = std::max(frames, 2 * resource.instance_count + 1); // that has become the oldest
+  // The use of one instance too many is detected once that instance has become the oldest.
+  for (const PlanResource& resource : plan.resources)
+    frames = std::max(frames, 2 * resource.instance_count + 1);
   std::vector<ResourceParts> parts = parts_of(plan);
   uint64_t subresources = 0;
   for (size_t r = 0; r < parts.size(); ++r)

@@ -1,6 +1,7 @@
 #pragma once
-// An independent check of a plan: a happens-before model of its own over the plan alone, sharing no code with
-// compile/. A plan it accepts has no hazard that the model can express; see the list in verify.cpp.
+// Checks a plan independently of the compiler: a happens-before model over the plan alone, sharing
+// no code with compile/. An accepted plan has no hazard that the model can express;
+// subresources.hpp lists the rules.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -10,18 +11,18 @@
 namespace dermis {
 
 struct Verdict {
-  std::vector<std::string> violations; // hazards, one sentence each, in the order in which they would happen
-  std::string not_verified;            // why the check ended before it was complete; "": it is complete
+  std::vector<std::string> violations; // hazards, one sentence each, in execution order
+  std::string not_verified;            // why the check ended early; "": it is complete
 
-  // No hazard, and nothing left to check.
+  // Returns whether the check was complete and found no hazard.
   bool proven() const { return violations.empty() && not_verified.empty(); }
 };
 
-// Runs the plan over enough consecutive frames for every history instance to have played every role. Stricter
-// than Vulkan in one point: a barrier orders only accesses to the memory it names, so that each dependency is
-// stated where it is needed. Takes time in proportion to passes, accesses and barriers; gives up where a plan
-// is made so that it would take far longer. Free-threaded. Safe on any plan, also one with indices out of
-// range.
+// Simulates enough consecutive frames for every history instance to have played every role.
+// Stricter than Vulkan in one point: a barrier orders only accesses to the memory it names, so each
+// dependency must be stated where it is needed. Time is proportional to the number of passes,
+// accesses and barriers; the check gives up on plans that need far longer (Verdict::not_verified).
+// Free-threaded. Safe for any plan, including plans with indices out of range.
 Verdict verify(const Plan& plan);
 
 } // namespace dermis

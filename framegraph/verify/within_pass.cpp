@@ -6,7 +6,7 @@
 namespace dermis {
 namespace {
 
-// Of the resource's instances, the one that the access names in this frame.
+// Returns the instance of the resource that the access names in this frame.
 uint32_t instance_of(const Plan& plan, const PlanAccess& access, uint32_t frame) {
   const uint32_t count = plan.resources[access.resource].instance_count;
   return (frame % count + count - access.frames_back % count) % count;
@@ -15,7 +15,8 @@ uint32_t instance_of(const Plan& plan, const PlanAccess& access, uint32_t frame)
 bool lie_in_same_memory(const Plan& plan, const PlanAccess& a, const PlanAccess& b, uint32_t frame) {
   const uint32_t first = plan.resources[a.resource].first_instance;
   const uint32_t second = plan.resources[b.resource].first_instance;
-  if (first == no_instance || second == no_instance) return false; // the host's: nothing else lies there
+  // host memory: nothing else lies there
+  if (first == no_instance || second == no_instance) return false;
   return share_memory(plan.placements[first + instance_of(plan, a, frame)],
                       plan.placements[second + instance_of(plan, b, frame)]);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Races inside one pass: its invocations run in no order, so that what one of its accesses writes no other
-// one may touch, except to read the same thing texel by texel (PlanAccess::own_texels).
+// Finds races inside one pass. Its invocations run in no order, so no other access may use what one
+// access writes, except to read the same texels (PlanAccess::own_texels).
 
 #include "framegraph/compile/plan.hpp"
 
@@ -10,11 +10,11 @@
 namespace dermis {
 
 struct PassRace {
-  uint32_t resource = 0, frames_back = 0; // what is touched while it is written
+  uint32_t resource = 0, frames_back = 0; // the resource that is accessed while it is written
   const char* what = "";
 };
 
-// In frame number `frame`. `plan` must pass verify_structure().
+// Returns the races of `pass` in frame number `frame`. `plan` must pass verify_structure().
 std::vector<PassRace> races_within(const Plan& plan, const PlanPass& pass, uint32_t frame);
 
 } // namespace dermis
