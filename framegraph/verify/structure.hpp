@@ -9,8 +9,8 @@
 
 namespace dermis {
 
-inline constexpr size_t max_violations =
-    32; // A hostile plan could cause one violation for each pair; the first ones are enough.
+// A hostile plan could cause one violation for each pair; the first ones are enough.
+inline constexpr size_t max_violations = 32;
 
 // Returns what is wrong with the structure of the plan, one sentence each. Empty: every index can
 // be followed.

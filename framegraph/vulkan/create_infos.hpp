@@ -1,6 +1,6 @@
 #pragma once
-// How images and buffers of a plan are created: the same infos for asking the driver what memory they need
-// and for creating them.
+// Builds the create infos of a plan's images and buffers. The infos that create a resource also
+// query its memory requirements.
 
 #include "framegraph/compile/device_profile.hpp"
 
@@ -8,11 +8,13 @@
 
 namespace dermis::vulkan {
 
-// Optimal tiling, one sample, exclusive, 2-D. Free-threaded.
+// Returns info for a 2-D image with optimal tiling, one sample and exclusive sharing.
+// Free-threaded.
 VkImageCreateInfo image_create_info(const ImageDescription& image);
-// Exclusive. Free-threaded.
+// Returns info for a buffer with exclusive sharing. Free-threaded.
 VkBufferCreateInfo buffer_create_info(const BufferDescription& buffer);
-// The aspects a barrier must name: depth, with stencil where the format has it, or colour. Free-threaded.
+// Returns the aspects that a barrier must name: colour, depth, or depth and stencil if the format
+// has both. Free-threaded.
 VkImageAspectFlags barrier_aspects(Format format);
 VkFormat vk_format(Format format);
 

@@ -59,7 +59,8 @@ Error make_device(const DeviceInput& input, Device& device) {
     return {ErrorKind::unsupported, VK_SUCCESS,
             fmt::format("the device {} speaks Vulkan {}.{}, 1.2 is needed", device.properties.deviceName,
                         VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
-  if (std::string reason = explain_old_instance(device.vk.vkGetDeviceProcAddr, device.device, version); !reason.empty())
+  if (std::string reason = explain_old_instance(device.vk.vkGetDeviceProcAddr, device.device, version);
+      !reason.empty())
     return {ErrorKind::unsupported, VK_SUCCESS, std::move(reason)};
   if (Error error = read_queue_family(input, device)) return error;
   device.features = input.features;
@@ -74,7 +75,7 @@ void name_object(const Device& device, VkObjectType type, uint64_t handle, const
   if (!device.labels || handle == 0) return;
   const VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type,
                                            handle, name};
-  // A debugging aid: that it failed is no reason to fail.
+  // Names are a debugging aid, so a failure is ignored.
   static_cast<void>(device.vk.vkSetDebugUtilsObjectNameEXT(device.device, &info));
 }
 

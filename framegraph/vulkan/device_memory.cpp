@@ -10,12 +10,13 @@
 namespace dermis::vulkan {
 namespace {
 
-// Types that must not be chosen for ordinary memory, whatever their other properties.
+// Excludes memory types with properties that ordinary memory must not have.
 constexpr VkMemoryPropertyFlags special_memory =
     VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
     VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
 
-// All of `required`, and of those the first with `preferred`; nullopt: none.
+// Returns the first type that has all required and preferred properties, else the first with the
+// required ones.
 std::optional<uint32_t> choose_type(const Device& device, const MemoryRequest& request) {
   std::optional<uint32_t> fallback;
   for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {

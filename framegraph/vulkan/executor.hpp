@@ -1,6 +1,7 @@
 #pragma once
-// Runs a Plan on the host's device: owns its images, buffers, memory, pipelines, descriptors and queries, and
-// records frames into command buffers of the host. One executor is one view: it owns that view's history.
+// Runs a Plan on the host's device: owns its images, buffers, memory, pipelines, descriptors and
+// queries, and records frames into the host's command buffers. One executor serves one view and
+// owns that view's histories.
 
 #include "framegraph/compile/plan.hpp"
 #include "framegraph/vulkan/device.hpp"
@@ -17,34 +18,38 @@ namespace dermis::vulkan {
 
 inline constexpr uint32_t max_frames_in_flight = 8;
 
-// One compiled kernel: `shader` is PassType::shader, the entry point is "main".
+// Describes one compiled kernel: `shader` is PassType::shader, the entry point is "main".
 struct KernelCode {
   std::string_view shader;
   std::span<const uint32_t> spirv;
-  uint64_t version = 0; // kernels of one name and version are the same
+  uint64_t version = 0; // kernels with equal name and version are equal
 };
 
-// Descriptor set 1, common to all kernels: entry i is binding i. Binding 0, if it is a uniform buffer, holds
-// the frame constants and exists once per frame in flight, as counters do; the others are written once.
+// Describes descriptor set 1, common to all kernels: entry i is binding i. Binding 0, if it is a
+// uniform buffer, holds the frame constants. Frame constants and counters exist once per frame in
+// flight; all other buffers are written once.
 enum class EnvironmentType : uint8_t {
   uniform_buffer,
   storage_buffer,
   linear_sampler,
-  counters // storage buffer that kernels write and the host reads; zero at the start of each frame
+  // counters: a storage buffer that kernels write and the host reads; zero at the start of each
+  // frame
+  counters
 };
 struct EnvironmentBinding {
   EnvironmentType type = EnvironmentType::uniform_buffer;
-  uint64_t bytes = 0;                    // of the buffer, 1 or more; counters: a multiple of 4
-  std::span<const std::byte> contents{}; // at most `bytes`, the rest is zero; ignored for frame constants
+  uint64_t bytes = 0; // size of the buffer, at least 1; counters: a multiple of 4
+  // at most `bytes`; the rest is zero; ignored for frame constants
+  std::span<const std::byte> contents{};
 };
 
-// The static buffers of an environment on the device: all but frame constants, counters and samplers.
-// Executors of one environment share them; they live as long as one of these, or a frame in flight, uses
-// them.
+// Holds the static buffers of an environment on the device: all except frame constants, counters
+// and samplers. Executors of one environment share the tables. The tables live as long as an
+// executor, or a frame in flight, uses them.
 class EnvironmentTables {
 public:
-  // `device` must outlive the tables. Errors: host_memory, device_memory, device_lost, vulkan; `tables` is
-  // then unchanged. May throw std::bad_alloc. Free-threaded.
+  // Creates tables. `device` must outlive them. Errors: host_memory, device_memory, device_lost,
+  // vulkan; `tables` is then unchanged. May throw std::bad_alloc. Free-threaded.
   static Error create(const Device& device, std::span<const EnvironmentBinding> environment,
                       std::shared_ptr<const EnvironmentTables>& tables);
   ~EnvironmentTables();
@@ -60,159 +65,170 @@ private:
   std::unique_ptr<State> state_;
 };
 
-// Why a history holds nothing worth reading.
+// States why the contents of a history are invalid.
 enum class HistoryReason : uint8_t {
-  valid,       // it does
+  valid,       // the history is valid
   first_frame, // nothing has been recorded yet
   cut,         // FrameInput::reset_history
   resized,     // the executor was made for a new size
   reloaded,    // the executor was made for a new graph
   switched,    // frames ran with another plan
-  left_out     // a frame ran without passes: FrameInput::left_out
+  left_out     // a frame ran without some passes: FrameInput::left_out
 };
-// Static string for people, for example "camera cut". Free-threaded.
+// Returns a static string for people, e.g. "camera cut". Free-threaded.
 const char* history_reason_text(HistoryReason reason);
-// The same for a history that holds something again since then: "valid since a camera cut".
+// Returns the text for a history that is valid again, e.g. "valid since a camera cut". `lost` is
+// why it was last invalid. Free-threaded.
 const char* valid_since_text(HistoryReason lost);
 
 class HeapPool;
 class KernelStore;
 class Executor;
 
-struct Rectangle { // pixels; inside the allocated view size
+struct Rectangle { // pixels, inside the allocated view size.
   uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-// What stands at a port of a pass that the host records: image, buffer or acceleration structure; all null
-// where nothing is bound.
+// Describes the resource bound to a port of a host-recorded pass: an image, a buffer or an
+// acceleration structure. All handles are null if nothing is bound.
 struct HostPort {
   VkImage image = VK_NULL_HANDLE;
-  VkImageView view = VK_NULL_HANDLE; // of the part that the port names; storage images: of one mip
+  VkImageView view = VK_NULL_HANDLE; // of the port's range; storage images: one mip
   VkFormat format = VK_FORMAT_UNDEFINED;
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; // that the image is in, and must be left in
-  uint32_t width = 0, height = 0;                   // of the view's first mip
+  // current layout; the pass must leave the image in it
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  uint32_t width = 0, height = 0; // pixels, of the view's first mip
   VkBuffer buffer = VK_NULL_HANDLE;
-  uint64_t offset = 0, bytes = 0; // of it; the offset is not 0 in buffers of the host alone
+  uint64_t offset = 0, bytes = 0; // of the buffer; offset is 0 except in the host's buffers
   VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
 };
 
-// One call of a host's pass. Everything lives until the call returns.
+// Describes one call of a host-recorded pass. Everything is valid until the call returns.
 struct HostPass {
   PassTypeId type;
   const char* pass = ""; // name
   VkCommandBuffer command_buffer = VK_NULL_HANDLE;
   std::span<const HostPort> ports;        // by PassType::ports
   std::span<const SettingValue> settings; // by PassType::settings
-  Rectangle rectangle;                    // that is rendered
+  Rectangle rectangle;                    // area to render
   uint64_t frame_index = 0;
   void* view_user = nullptr; // FrameInput::view_user
 };
 
-// Records passes whose kind has DispatchShape::host, between the plan's barriers. Must not throw.
+// Records passes whose type has DispatchShape::host, between the plan's barriers. Must not throw.
 using HostPassFunction = void (*)(void* user, const HostPass& call);
 
-struct ExecutorInput { // nothing is kept but `device`; all the rest is copied or consumed during the call
+// Input of Executor::create. `device` and `heap_pool` must outlive the executor. Shared pointers
+// are shared; everything else is copied or consumed during the call.
+struct ExecutorInput {
   const Device* device = nullptr; // must outlive the executor
-  const Graph* graph = nullptr;   // that the plan was compiled from: names
+  const Graph* graph = nullptr;   // the plan's graph; provides names
   const PassTypeRegistry* pass_types = nullptr;
   const Plan* plan = nullptr;                      // compiled with device_profile(*device)
   std::span<const KernelCode> kernels;             // at least those of the plan's pass types
   std::span<const EnvironmentBinding> environment; // may be empty
-  std::shared_ptr<const EnvironmentTables> tables =
-      nullptr;                   // made from `environment`; null: the executor makes them for itself
-  uint32_t frames_in_flight = 2; // 1 .. max_frames_in_flight
+  // made from `environment`; null: the executor makes its own
+  std::shared_ptr<const EnvironmentTables> tables = nullptr;
+  uint32_t frames_in_flight = 2;                   // 1 to max_frames_in_flight
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE; // may be null
-  const HeapPool* heap_pool = nullptr; // made with this plan among others: transients lie in its memory, and
-                                       // no other user of it may run at the same time. Null: its own memory.
-  std::shared_ptr<const Plan> kept_plan =
-      nullptr;                         // the same as `plan`, shared from now on; null: it is copied
-  KernelStore* kernel_store = nullptr; // null: the executor compiles all kernels for itself
+  // Must have been made for a set of plans that includes this one. The executor's transients use
+  // its memory; no other user of the pool may run at the same time. Null: the executor allocates
+  // its own memory.
+  const HeapPool* heap_pool = nullptr;
+  // equal to `plan`, shared from now on; null: `plan` is copied
+  std::shared_ptr<const Plan> kept_plan = nullptr;
+  // null: the executor compiles all kernels itself
+  KernelStore* kernel_store = nullptr;
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid
-  HostPassFunction host_pass =
-      nullptr; // needed where the plan has passes that the host records; called by record()
+  // required if the plan has host-recorded passes; called by record()
+  HostPassFunction host_pass = nullptr;
   void* host_pass_user = nullptr;
-  // For tests: each frame fills whatever the plan says nobody may read, before it is first written, with NaN,
-  // or 0xCD in each byte. The plan must be compiled with CompileInput::poison.
+  // For tests: each frame fills all undefined memory with NaN, or with 0xCD in each byte, before
+  // its first write. The plan must be compiled with CompileInput::poison.
   bool poison = false;
 };
 
 struct HostState {
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  uint32_t queue_family = VK_QUEUE_FAMILY_IGNORED; // the executor's own or IGNORED: no ownership transfer
+  // the executor's own family or IGNORED: no ownership transfer
+  uint32_t queue_family = VK_QUEUE_FAMILY_IGNORED;
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
 };
 
-// What the host binds to slot i (PlanResource::slot). A queue family transfer keeps the layout: the host
-// releases to the executor's family, or acquires from it, with old and new layout both before.layout, or both
-// after.layout.
+// Describes the image that the host binds to slot i (PlanResource::slot). A queue family transfer
+// keeps the layout. The host releases to the executor's family, or acquires from it, with both
+// layouts set to before.layout or after.layout respectively.
 struct HostImage {
   VkImage image = VK_NULL_HANDLE; // null: not bound
   VkImageView view = VK_NULL_HANDLE;
   HostState before, after;
-  // Of the image, that the barriers are about; 0 layers: all from the first.
+  // layers of the image that barriers apply to; 0 layers: all from first_layer
   uint32_t first_layer = 0, layers = 0;
 };
 
-// Buffer of the host: `bytes` of it from `offset`. HostState::layout means nothing.
+// Describes a buffer range of the host. HostState::layout is ignored.
 struct HostBuffer {
   VkBuffer buffer = VK_NULL_HANDLE; // null: not bound
   VkDeviceSize offset = 0, bytes = 0;
   HostState before, after;
 };
 
-// The barriers are about all memory: what lies below the top level is the host's to know. Queue families are
-// IGNORED.
+// Describes an acceleration structure of the host. Its barriers cover all memory, because only the
+// host knows the structure's bottom level. Queue families are IGNORED.
 struct HostStructure {
   VkAccelerationStructureKHR structure = VK_NULL_HANDLE; // null: not bound
   HostState before, after;
 };
 
 struct FrameInput {
-  VkCommandBuffer command_buffer =
-      VK_NULL_HANDLE;                         // recording, outside a render pass, of Device::queue_family
-  std::span<const HostImage> images;          // by slot number; shorter: the rest is not bound
-  std::span<const HostBuffer> buffers;        // likewise
-  std::span<const HostStructure> structures;  // likewise
-  std::span<const std::byte> frame_constants; // for set 1 binding 0; at most its bytes
-  std::span<const SettingValue> settings;     // one per Graph::settings; empty: those of the plan
+  // Must be in the recording state, outside a render pass, and of Device::queue_family.
+  VkCommandBuffer command_buffer = VK_NULL_HANDLE;
+  std::span<const HostImage> images;          // by slot number; slots beyond the end are not bound
+  std::span<const HostBuffer> buffers;        // by slot number, as for images
+  std::span<const HostStructure> structures;  // by slot number, as for images
+  std::span<const std::byte> frame_constants; // for set 1 binding 0; at most its size
+  std::span<const SettingValue> settings;     // one per Graph::settings; empty: the plan's values
   Rectangle rectangle;                        // width 0: the allocated view size
-  uint64_t frame_index = 1;                   // grows; the frame `frame_index - frames_in_flight` is finished
-  bool taken_over = false; // frames ran elsewhere since the last record: the pool's memory was used by
-                           // others, and histories start anew but for what `before` kept
-  const Executor* before = nullptr; // recorded the frame before, another plan of the graph, or of what the
-                                    // graph was before it was reloaded or resized. What both keep is copied
-                                    // from it; it must live until the device has finished this frame
-  bool reset_history = false;       // camera cut: histories with on_cut invalidate become invalid
-  // By plan pass, not 0: the pass does not run, only its barriers are recorded. Histories that it writes
-  // start anew in the frame after such a one. Shorter: the rest runs. What runs must not read what a pass
-  // that is left out would write.
+  // must increase; frame `frame_index - frames_in_flight` must be finished
+  uint64_t frame_index = 1;
+  // True: other plans recorded frames since the last record, so the pool's memory was overwritten.
+  // All histories restart, except those that `before` holds.
+  bool taken_over = false;
+  // The executor that recorded the previous frame with another plan: of this graph, or of the graph
+  // before a reload or resize. Histories that both have are copied from it. It must live until the
+  // device has finished this frame.
+  const Executor* before = nullptr;
+  bool reset_history = false; // camera cut: invalidates histories with on_cut invalidate
+  // By plan pass; nonzero: the pass does not run, and only its barriers are recorded. Histories
+  // that it writes restart in the next frame. Passes beyond the end run. A pass that runs must not
+  // read what a left-out pass would write.
   std::span<const uint8_t> left_out;
-  void* view_user = nullptr; // handed to passes of the host
-  // For whoever wants the commands and no command buffer: its vkCmd... functions are called with
-  // `command_buffer` instead of the device's, and passes of the host go to this function. Null: the device's,
-  // the executor's.
+  void* view_user = nullptr; // passed to host-recorded passes
+  // For hosts that capture commands instead of filling a command buffer: the vkCmd... functions of
+  // `commands` are called with `command_buffer`, and host-recorded passes call `host_pass`. Null:
+  // the device's functions and the executor's host_pass.
   const FunctionTable* commands = nullptr;
   HostPassFunction host_pass = nullptr;
   void* host_pass_user = nullptr;
 };
 
-// Like Error, without memory of its own.
+// Describes an error like Error, but owns no memory.
 struct RecordResult {
   ErrorKind kind = ErrorKind::none;
   VkResult result = VK_SUCCESS;
   const char* text = ""; // static
-  int32_t slot = -1;     // that the error is about; -1: none
+  int32_t slot = -1;     // slot the error is about; -1: none
 
   explicit operator bool() const { return kind != ErrorKind::none; } // true: there is an error
 };
 
 struct HistoryState {
   std::string_view resource; // lives as long as the executor
-  bool valid = false;        // `@-1` holds what the frame before this one wrote
-  uint32_t age = 0;          // number of consecutive frames it holds; `@-N` is valid when age >= N
+  bool valid = false;        // `@-1` holds what the previous frame wrote
+  uint32_t age = 0;          // number of consecutive frames held; `@-N` is valid if age >= N
   HistoryReason reason = HistoryReason::first_frame;
-  HistoryReason lost = HistoryReason::first_frame; // why it held nothing when it last did; never `valid`
+  HistoryReason lost = HistoryReason::first_frame; // reason of its last invalidation; never `valid`
 };
 
 struct PassTiming {
@@ -222,49 +238,54 @@ struct PassTiming {
 
 class Executor {
 public:
-  // Everything a frame needs is allocated here. Errors: argument, unsupported, shader, host_memory,
-  // device_memory, device_lost, vulkan; nothing is left behind and `executor` is unchanged. May throw
-  // std::bad_alloc. Free-threaded.
+  // Creates an executor and allocates everything that a frame needs. Errors: argument, unsupported,
+  // shader, host_memory, device_memory, device_lost, vulkan; everything is then released and
+  // `executor` is unchanged. May throw std::bad_alloc. Free-threaded.
   static Error create(const ExecutorInput& input, std::unique_ptr<Executor>& executor);
   // The device must have finished every recorded frame.
   ~Executor();
 
-  // Records the whole plan. On an error nothing was recorded and nothing changed. Never allocates host memory
-  // of its own, never throws, submits or waits. One thread at a time per executor.
+  // Records the whole plan. On an error nothing is recorded and nothing changes. Allocates no host
+  // memory, throws nothing, and never submits or waits. One thread at a time per executor.
   RecordResult record(const FrameInput& frame) noexcept;
 
-  // The next recorded frame reads `tables`, which have the bindings of those before; frames in flight keep
-  // what they were recorded with. One thread at a time per executor.
+  // Makes the next recorded frame read `tables`, which must have the same bindings as the tables
+  // before. Frames in flight keep the tables that they were recorded with. One thread at a time per
+  // executor.
   void set_tables(const std::shared_ptr<const EnvironmentTables>& tables) noexcept;
-  // Lets go of tables that only frames up to `completed_frame_index` read. One thread at a time per executor.
+  // Releases tables that only frames up to `completed_frame_index` read. One thread at a time per
+  // executor.
   void release_tables(uint64_t completed_frame_index) noexcept;
 
-  // State of history `index` (Plan::histories) as the next recorded frame sees it; give `reset_history` as
-  // that frame will. One thread at a time per executor.
+  // Returns the state of history `index` (Plan::histories) that the next recorded frame will see.
+  // `reset_history` and `before` must have that frame's values. One thread at a time per executor.
   HistoryState history_state(uint32_t index, bool reset_history = false,
                              const Executor* before = nullptr) const noexcept;
   uint32_t history_count() const noexcept;
-  // Rectangle of the frame recorded last, or of that of `before` in pixels of this plan's view; that is what
-  // histories cover. Width 0: none yet.
+  // Returns the rectangle of the last recorded frame, which is the area that histories cover. With
+  // `before`, returns the rectangle of that executor in pixels of this plan's view. Width 0: no
+  // frame yet.
   Rectangle previous_rectangle(const Executor* before = nullptr) const noexcept;
-  // The frame recorded last was not submitted and never will be: everything is as it was before. False: it is
-  // not `frame_index`, or was taken back already. One thread at a time per executor.
+  // Undoes the last recorded frame, which was not submitted and never will be. Returns false if the
+  // last frame is not `frame_index` or was already discarded. One thread at a time per executor.
   bool discard_frame(uint64_t frame_index) noexcept;
 
-  // Device time of each pass, in plan order, of the newest recorded frame <= completed_frame_index; it is
-  // written to `frame_index` and `timings` (one per plan pass). False: none ready, or no timings asked for.
-  // One thread at a time per executor.
+  // Reads the device time of each pass, in plan order, of the newest recorded frame <=
+  // completed_frame_index. Writes its index to `frame_index` and one entry per plan pass to
+  // `timings`. Returns false if no result is ready or timings are disabled. One thread at a time
+  // per executor.
   bool read_timings(uint64_t completed_frame_index, uint64_t& frame_index,
                     std::span<PassTiming> timings) noexcept;
 
-  // What kernels counted in frame `frame_index`, which the device has finished: as many as fit of the words
-  // of the environment's counters. False: that frame was not recorded here, or another took its place since.
-  // One thread at a time per executor.
+  // Copies the counters of frame `frame_index`, which the device must have finished: as many words
+  // as fit. Returns false if the frame was not recorded here or its memory has been reused. One
+  // thread at a time per executor.
   bool read_counters(uint64_t frame_index, std::span<uint32_t> counters) const noexcept;
-  // Reading times told that the device is lost. One thread at a time per executor.
+  // Returns whether reading timings reported a lost device. One thread at a time per executor.
   bool saw_lost_device() const noexcept;
   const Plan& plan() const noexcept;
-  // Device memory that it took for heap `index` (Plan::heaps); bytes 0: it lies in the pool. Throws nothing.
+  // Returns the device memory request of heap `index` (Plan::heaps); 0 bytes: the heap uses the
+  // pool. Throws nothing.
   MemoryRequest heap_request(uint32_t index) const noexcept;
   uint64_t constant_bytes() const noexcept; // device memory for set 1, without the tables
 

@@ -4,8 +4,8 @@ namespace dermis::vulkan {
 
 namespace {
 
-// A device of Vulkan 1.2 gives what became part of 1.3 under the names of the extensions, with the same
-// types.
+// A Vulkan 1.2 device provides functions promoted to 1.3 under their extension names, with
+// identical types.
 PFN_vkVoidFunction find_device_function(const FunctionTable& table, VkDevice device, const char* name) {
   if (table.vkGetDeviceProcAddr == nullptr) return nullptr;
   if (const PFN_vkVoidFunction function = table.vkGetDeviceProcAddr(device, name)) return function;
@@ -27,7 +27,8 @@ std::vector<std::string> load_functions(PFN_vkGetInstanceProcAddr get_instance_p
   DERMIS_INSTANCE_FUNCTIONS(DERMIS_LOAD_INSTANCE)
   DERMIS_DEVICE_FUNCTIONS(DERMIS_LOAD_DEVICE)
   if (labels) {
-    // VK_EXT_debug_utils is an instance extension: some loaders give its functions for the instance only.
+    // VK_EXT_debug_utils is an instance extension; some loaders provide its functions only for the
+    // instance.
     DERMIS_LABEL_FUNCTIONS(DERMIS_LOAD_INSTANCE)
   }
 #undef DERMIS_LOAD_INSTANCE

@@ -1,6 +1,6 @@
 #pragma once
-// Every Vulkan function the library calls, resolved once per device through the host's vkGetInstanceProcAddr.
-// A plain struct: tests replace single entries.
+// Holds every Vulkan function the library calls, resolved once per device through the host's
+// vkGetInstanceProcAddr. A plain struct, so that tests can replace single entries.
 
 #include <string>
 #include <vector>
@@ -36,12 +36,11 @@ struct FunctionTable {
 #define DERMIS_FUNCTION(name) PFN_##name name = nullptr;
   DERMIS_INSTANCE_FUNCTIONS(DERMIS_FUNCTION)
   DERMIS_DEVICE_FUNCTIONS(DERMIS_FUNCTION)
-  DERMIS_LABEL_FUNCTIONS(DERMIS_FUNCTION) // null unless labels were asked for
+  DERMIS_LABEL_FUNCTIONS(DERMIS_FUNCTION) // null unless labels were requested
 #undef DERMIS_FUNCTION
 };
 
-// Fills `table`; the result names every function that could not be had, in table order; empty: complete.
-// Free-threaded.
+// Fills `table` and returns the names of all missing functions, in table order. Free-threaded.
 std::vector<std::string> load_functions(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
                                         VkDevice device, bool labels, FunctionTable& table);
 

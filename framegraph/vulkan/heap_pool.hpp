@@ -1,6 +1,6 @@
 #pragma once
-// Memory that several plans of one view use in turn: transients of plans that never run in the same frame lie
-// in the same bytes.
+// Holds memory that several plans of one view use in turn. Transients of plans that never run in
+// the same frame share the same bytes.
 
 #include "framegraph/compile/plan.hpp"
 #include "framegraph/vulkan/device.hpp"
@@ -14,18 +14,18 @@ namespace dermis::vulkan {
 
 class HeapPool {
 public:
-  // One block for each set of memory types that transient heaps of the plans ask for, as large as the
-  // largest. Errors: unsupported, device_memory, host_memory, vulkan; then `pool` is unchanged. `device` must
-  // outlive it.
+  // Allocates one block for each set of memory types that transient heaps of the plans use; its
+  // size is that of the largest heap. Errors: unsupported, device_memory, host_memory, vulkan;
+  // `pool` is then unchanged. `device` must outlive the pool.
   static Error create(const Device& device, std::span<const Plan* const> plans,
                       std::unique_ptr<HeapPool>& pool);
-  ~HeapPool(); // after all executors that use it
+  ~HeapPool(); // All executors that use the pool must be destroyed before it.
 
   struct Block {
     MemoryRequest request;
     MemoryBlock memory;
   };
-  // Null where no plan given to create() has a transient heap of these types.
+  // Returns null if no plan given to create() has a transient heap with these memory types.
   const Block* find(uint32_t memory_type_bits) const noexcept;
   std::span<const Block> blocks() const noexcept { return blocks_; }
   uint64_t bytes() const noexcept;

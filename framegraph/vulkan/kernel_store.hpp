@@ -1,6 +1,6 @@
 #pragma once
-// Compiled kernels that executors share, so that a graph made beside or after another compiles only what no
-// other had.
+// Shares compiled kernels between executors, so that another graph compiles only the kernels that
+// no earlier graph has.
 
 #include "framegraph/model/pass_type.hpp"
 
@@ -11,20 +11,22 @@
 
 namespace dermis::vulkan {
 
-struct Kernel; // executor/state.hpp
+struct Kernel; // defined in executor/state.hpp
 
-// Of executors with one device, one registry of pass types and environments of the same types; destroyed
-// before the device is. Any thread.
+// Serves executors with one device, one registry of pass types and environments with equal types.
+// Must be destroyed before the device. Any thread.
 class KernelStore {
 public:
   KernelStore() = default;
-  // Has what `shared` has, which must outlive it; what is added `shared` has only once it is handed over.
+  // Also finds the kernels of `shared`, which must outlive this store. Kernels added here reach
+  // `shared` only through hand_over().
   explicit KernelStore(KernelStore& shared) : shared_(&shared) {}
-  // Null: there is none of that pass type and KernelCode::version.
+  // Returns null if there is no kernel with that pass type and KernelCode::version.
   std::shared_ptr<const Kernel> find(PassTypeId type, uint64_t version) const;
   void add(std::shared_ptr<const Kernel> kernel);
-  // For a store that has a `shared` one, which keeps kernels of version 0 until it is destroyed, others as
-  // long as an executor uses them. Where memory for that cannot be had, none of them.
+  // Moves all kernels to the shared store, which must exist. The shared store keeps kernels of
+  // version 0 until it is destroyed, and others as long as an executor uses them. If memory runs
+  // out, no kernel moves.
   void hand_over() noexcept;
 
 private:

@@ -8,7 +8,7 @@
 namespace dermis::vulkan {
 namespace {
 
-// Device functions that became part of Vulkan together with one extension.
+// Names device functions that were promoted to core Vulkan together with one extension.
 struct Group {
   const char* extension;
   uint32_t core_version;
@@ -29,7 +29,7 @@ bool contains(std::span<const std::string> names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// A device that lacks only a part of a group is faulty: neither version nor extension explains this.
+// A device that lacks only part of a group is faulty; neither version nor extension explains that.
 bool is_absent(const Group& group, std::span<const std::string> missing) {
   return std::all_of(group.functions.begin(), group.functions.end(),
                      [&](std::string_view name) { return contains(missing, name); });

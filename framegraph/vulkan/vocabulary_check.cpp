@@ -1,4 +1,5 @@
-// The framegraph keeps Vulkan's numbers without including Vulkan; here is where they are held against it.
+// Checks the framegraph's copies of Vulkan constants against the Vulkan headers, which the
+// framegraph does not include.
 #include "framegraph/model/vocabulary.hpp"
 
 #include <vulkan/vulkan_core.h>

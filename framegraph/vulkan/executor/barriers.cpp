@@ -1,4 +1,4 @@
-// The plan's barriers as Vulkan's, with the host's states where the plan leaves them open.
+// Records the plan's barriers as Vulkan barriers. The host's states fill what the plan leaves open.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 
@@ -18,8 +18,9 @@ bool is_depth_only(VkImageLayout layout) {
          layout == VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
 }
 
-// Aspects of a host's image that change their layout. Passes see only depth: stencil stays as it is where
-// layouts of both may differ, and else moves with depth and comes back in after.layout.
+// Returns the aspects of a host image that change layout. Passes only see depth. Stencil keeps its
+// layout if depth and stencil layouts may differ; otherwise it moves with depth and returns in
+// after.layout.
 VkImageAspectFlags host_aspects(const Device& device, Format format, const HostImage& host) {
   const VkImageAspectFlags all = barrier_aspects(format);
   if ((all & VK_IMAGE_ASPECT_STENCIL_BIT) == 0) return all;
@@ -35,7 +36,7 @@ struct Scopes {
 };
 
 struct HostStates {
-  const HostState *before = nullptr, *after = nullptr; // null: not the host's
+  const HostState *before = nullptr, *after = nullptr; // null: the resource is not the host's
 };
 
 HostStates host_states(const FrameInput& frame, const PlanResource& resource) {
@@ -61,14 +62,15 @@ Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostSta
            static_cast<VkImageLayout>(barrier.old_layout),
            static_cast<VkImageLayout>(barrier.new_layout)};
   if (barrier.from_host) {
-    // After an acquire all that the host did is visible to all commands: only their order is left to keep.
+    // An acquire makes everything the host did visible to all commands, so only the order remains.
     const bool acquired = foreign(device, host.before->queue_family);
     s.source_stages = acquired ? all_commands : host.before->stages;
     s.source_access = acquired ? 0 : host.before->access;
     s.old_layout = host.before->layout;
   }
   if (barrier.to_host) {
-    const bool released = foreign(device, host.after->queue_family); // the release follows, on all commands
+    // the release follows and waits for all commands
+    const bool released = foreign(device, host.after->queue_family);
     s.destination_stages = released ? all_commands : host.after->stages;
     s.destination_access = released ? all_memory : host.after->access;
     s.new_layout = host.after->layout;
@@ -76,8 +78,9 @@ Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostSta
   return s;
 }
 
-// Nothing to wait for and no layout to change. The host's word ends where our commands begin: what it does
-// before and after is ordered by itself when we do not touch the image.
+// Returns whether the barrier has nothing to wait for and no layout to change. The host's states
+// only hold at the frame's borders: if the plan does not use the image, the host orders its own
+// accesses.
 bool nothing_to_do(const PlanBarrier& barrier, const Scopes& s) {
   if (s.old_layout != s.new_layout) return false;
   if (barrier.from_host && barrier.to_host) return true;
@@ -85,7 +88,8 @@ bool nothing_to_do(const PlanBarrier& barrier, const Scopes& s) {
   return false;
 }
 
-// All that the image has where the plan means all that it knows of.
+// Returns the subresource range. A range that is the whole resource to the plan covers the whole
+// image, including mips and layers that the plan does not know.
 VkImageSubresourceRange subresources(const PlanResource& resource, const SubresourceRange& range) {
   const VkImageAspectFlags aspects = barrier_aspects(resource.format);
   if (range == resource.whole()) return {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
@@ -107,7 +111,7 @@ VkImageMemoryBarrier2 image_barrier(VkImage image, VkImageAspectFlags aspects, c
   return out;
 }
 
-// What of its image a host binds.
+// Restricts the barrier to the layers that the host binds.
 VkImageMemoryBarrier2 host_barrier(const HostImage& host, VkImageAspectFlags aspects, const Scopes& s) {
   VkImageMemoryBarrier2 out = image_barrier(host.image, aspects, s);
   out.subresourceRange.baseArrayLayer = host.first_layer;
@@ -128,7 +132,7 @@ VkBufferMemoryBarrier2 buffer_barrier(VkBuffer buffer, const Scopes& s) {
   return out;
 }
 
-// What of its buffer a host binds.
+// Restricts the barrier to the byte range that the host binds.
 VkBufferMemoryBarrier2 host_barrier(const HostBuffer& host, const Scopes& s) {
   VkBufferMemoryBarrier2 out = buffer_barrier(host.buffer, s);
   out.offset = host.offset;
@@ -145,15 +149,17 @@ VkMemoryBarrier2 memory_barrier(const Scopes& s) {
           s.destination_access};
 }
 
-struct Batch { // how many of State::..._barriers are filled
+// Number of State::..._barriers in use.
+struct Batch {
   uint32_t images = 0, buffers = 0, memory = 0;
 };
 
-// What a resource's memory held before was written through other resources, but the barrier of an image or a
-// buffer acts on accesses through that one alone (VkImageMemoryBarrier2, VkBufferMemoryBarrier2): one that
-// names none makes those writes available. It and the resource's own name writes also where only reads are
-// waited for. By then nothing is left to be made available, but the validation layer (1.3.239), which knows
-// images without their padding, may not have seen it.
+// Collects a global barrier for aliased memory. Earlier contents of the memory were written through
+// other resources, but an image or buffer barrier only covers accesses through its own resource
+// (VkImageMemoryBarrier2, VkBufferMemoryBarrier2); a global memory barrier covers those writes.
+// Both barriers name writes even if they only wait for reads. Nothing is left to make available
+// then, but the validation layer (1.3.239), which ignores image padding, may have missed the
+// earlier barrier.
 struct Takeover {
   Scopes scopes{};
 
@@ -198,7 +204,7 @@ void record_takeover(const State& state, VkCommandBuffer commands, Takeover& tak
   takeover = {};
 }
 
-// What the host binds to the resource's slot.
+// Adds a barrier for the resource that the host binds to the slot.
 void add_host_barrier(State& state, const FrameInput& frame, const PlanResource& resource, const Scopes& s,
                       Batch& batch) {
   const auto slot = static_cast<size_t>(resource.slot);
@@ -242,7 +248,8 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     const bool discarded = discards(state.plan, barrier), poison = state.poison && discarded;
     if (discarded && instance.shared) {
       takeover.add(s);
-      if (poison) record_takeover(state, frame.command_buffer, takeover); // what fills it comes first
+      // the fill must come after the other resource's writes
+      if (poison) record_takeover(state, frame.command_buffer, takeover);
     }
     if (resource.type == ResourceType::image) {
       VkImageMemoryBarrier2& image = state.image_barriers[batch.images];
@@ -262,7 +269,7 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
       ++batch.buffers;
   }
   if (takeover.needed()) state.memory_barriers[batch.memory++] = memory_barrier(takeover.scopes);
-  // A shader does not write to a port that is not bound, but only it knows that.
+  // Only the shader knows that it does not write to an unbound port, so its accesses are ordered.
   constexpr Scopes in_order{
       compute, compute, shader_write, shader_write, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL};
   for (const uint32_t index : writable_placeholders) {
@@ -298,7 +305,7 @@ void record_counters_to_host(State& state, const FrameInput& frame) noexcept {
 
 namespace {
 
-// Releases and acquires: the host's layouts stay as they are.
+// Records releases and acquires. The host's layouts do not change.
 template <class Pick>
 void record_transfers(State& state, const FrameInput& frame, bool acquire, const Scopes& scopes, Pick pick) {
   Batch batch;
@@ -321,7 +328,8 @@ void record_transfers(State& state, const FrameInput& frame, bool acquire, const
   submit_batch(state, frame.command_buffer, batch);
 }
 
-constexpr VkImageLayout kept = VK_IMAGE_LAYOUT_UNDEFINED; // filled in for each image
+// placeholder; replaced by each image's layout
+constexpr VkImageLayout kept = VK_IMAGE_LAYOUT_UNDEFINED;
 
 } // namespace
 

@@ -1,6 +1,6 @@
-// Zero for what is read before anything of the plan wrote it: stand-ins of unbound ports, and history
-// instances that are new or hold frames from before a cut. Two batches with the clears between them; nothing
-// when all is ready.
+// Clears memory that is read before the plan writes it: placeholders of unbound ports, and history
+// instances that are new or hold frames from before a cut. Each clear is recorded between two
+// barriers; nothing is recorded if everything is ready.
 #include "framegraph/vulkan/executor/state.hpp"
 
 namespace dermis::vulkan {
@@ -10,11 +10,12 @@ constexpr VkClearColorValue zero{};
 constexpr VkImageSubresourceRange whole_image{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
                                               VK_REMAINING_ARRAY_LAYERS};
 
-// Earlier frames may still use the memory, and all later commands may use the zeros: rare, so all commands.
+// Waits for all commands, because earlier frames may still use the memory and any later command may
+// use the zeros. Clears are rare.
 struct Target {
   VkImage image = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; // to be in afterwards
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; // layout after the clear
   VkImageSubresourceRange range = whole_image;
   bool clear = true; // false: created without transfer usage, contents stay undefined
 };
@@ -78,8 +79,8 @@ void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
     for (uint32_t back = 1; back <= history.frames; ++back) {
       Instance& instance = state.instances[instance_of(state, resource, back)];
       if (instance.ready) continue;
-      const bool clear =
-          (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0; // the same bit for buffers
+      // the bit has the same value for buffers
+      const bool clear = (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0;
       for (uint32_t part = 0; part < history.parts; ++part) {
         const SubresourceRange& range = state.plan.history_parts[history.first_part + part];
         const Layout layout = state.plan.history_layouts[history.first_layout + back * history.parts + part];

@@ -1,4 +1,4 @@
-// Making and unmaking an Executor.
+// Creates and destroys an Executor.
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Error check_input(const ExecutorInput& input) {
       return {ErrorKind::unsupported, VK_SUCCESS,
               fmt::format("pass '{}' runs on a second queue; compile the plan for a single one",
                           input.graph->passes[pass.declared.value].name)};
-  const auto fillable = [](const PlanResource& resource) { // the same bit for buffers
+  const auto fillable = [](const PlanResource& resource) { // the bit has the same value for buffers
     return resource.first_instance == no_instance ||
            (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0;
   };
@@ -52,7 +52,8 @@ void bind_port(const Plan& plan, Pass& pass, uint32_t index) {
     port.history = history_of(plan, access.resource);
     pass.conditional_ports.push_back(access.port);
     break;
-  case ReadWhen::history_invalid: // behind the one that it stands in for: the port is bound in every frame
+  // A fallback follows the conditional access of its port, so the port is bound in every frame.
+  case ReadWhen::history_invalid:
     port.otherwise = index;
     pass.port_mask |= bit;
     pass.conditional_ports.pop_back();
@@ -74,8 +75,8 @@ void make_passes(State& state, const ExecutorInput& input) {
   }
 }
 
-// What a pass type without kernel clears, and that an indirect dispatch has its arguments, known before the
-// first frame.
+// Checks before the first frame that clear passes only clear colour and buffers, and that indirect
+// dispatches have arguments.
 Error check_passes(State& state, const PassTypeRegistry& pass_types) {
   for (size_t p = 0; p < state.passes.size(); ++p) {
     const PlanPass& planned = state.plan.passes[p];
@@ -136,7 +137,7 @@ void make_histories(State& state, const ExecutorInput& input) {
   }
 }
 
-// Room for everything that recording needs, so that it never allocates.
+// Allocates everything that recording needs, so that recording never allocates.
 void reserve_for_recording(State& state) {
   size_t largest = std::max<size_t>(state.plan.final_barrier_count, state.slot_resource.size());
   size_t max_settings = 0;
@@ -147,7 +148,7 @@ void reserve_for_recording(State& state) {
     max_settings = std::max<size_t>(max_settings, kernel->push_bytes / sizeof(uint32_t));
   state.image_barriers.resize(largest);
   state.buffer_barriers.resize(largest);
-  state.memory_barriers.resize(largest + 1); // and one for memory that is taken over
+  state.memory_barriers.resize(largest + 1); // plus the global barrier of aliased memory
   state.push_constants.resize(max_settings);
   state.before_frame.histories.resize(state.histories.size());
   state.before_frame.ready.resize(state.instances.size());

@@ -1,5 +1,5 @@
-// Fills memory whose contents mean nothing, so that whoever reads it all the same is found out: between the
-// two halves of the barrier that takes the memory over.
+// Fills undefined memory so that reads of it are detected. The fill is recorded between two halves
+// of the barrier that discards the contents.
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <limits>
@@ -7,7 +7,8 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint32_t poison_word = 0xcdcdcdcd; // what a debugging allocator leaves: as a float -4.3e8
+// the pattern of debugging allocators; -4.3e8 as a float
+constexpr uint32_t poison_word = 0xcdcdcdcd;
 
 bool is_unsigned(Format format) {
   return format_info(format).name.find("_uint") != std::string_view::npos;

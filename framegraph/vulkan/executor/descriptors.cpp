@@ -1,5 +1,5 @@
-// Descriptor set 0 of every pass, once per frame in flight. Sets are allocated at creation; what they point
-// to is written each frame, because the host's images and the current instance of a history change.
+// Manages descriptor set 0 of every pass, once per frame in flight. Sets are allocated at creation
+// and written each frame, because the host's images and the current history instances change.
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
@@ -119,7 +119,7 @@ void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& fram
     const uint32_t index = access_now(state, state.passes[port.pass].ports[port.port]);
     if (index == no_index) {
       d.images[i].imageView = state.placeholders[port.placeholder].view;
-      d.images[i].imageLayout = VK_IMAGE_LAYOUT_GENERAL; // stand-ins rest in it
+      d.images[i].imageLayout = VK_IMAGE_LAYOUT_GENERAL; // layout of all placeholders
       d.buffers[i].buffer = state.placeholders[port.placeholder].buffer;
       continue;
     }

@@ -1,5 +1,5 @@
-// Descriptor set 1: a host-visible buffer with frame constants and counters of every frame in flight, the
-// shared tables, and a linear sampler.
+// Manages descriptor set 1: a host-visible buffer with frame constants and counters of every frame
+// in flight, the shared tables, and a linear sampler.
 #include "framegraph/model/align_up.hpp"
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
@@ -37,7 +37,8 @@ Error check_bindings(const Device& device, std::span<const EnvironmentBinding> b
   return {};
 }
 
-// Offset of each binding in the executor's own buffer, of frame slot 0; tables have none there.
+// Returns the offset of each binding in the executor's own buffer for frame slot 0; 0 for tables,
+// which have their own buffer.
 std::vector<uint64_t> lay_out(State& state, std::span<const EnvironmentBinding> bindings) {
   const uint64_t alignment = table_alignment(*state.device);
   Environment& environment = state.environment;

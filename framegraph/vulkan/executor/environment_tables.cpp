@@ -1,4 +1,4 @@
-// The static part of descriptor set 1, which may be replaced while frames run.
+// Manages the static part of descriptor set 1, which may be replaced while frames run.
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/shader/signature_check.hpp"
 
@@ -67,7 +67,7 @@ void refresh_tables(State& state, uint32_t frame_slot) noexcept {
 
 void Executor::set_tables(const std::shared_ptr<const EnvironmentTables>& tables) noexcept {
   state_->environment.tables = tables;
-  release_tables(0); // slots that no frame was recorded in
+  release_tables(0); // updates slots in which no frame was recorded
 }
 
 void Executor::release_tables(uint64_t completed_frame_index) noexcept {

@@ -1,10 +1,11 @@
-// What the executor knows about its histories.
+// Tracks age, validity and invalidation reason of the executor's histories.
 #include "framegraph/vulkan/executor/state.hpp"
 
 namespace dermis::vulkan {
 namespace {
 
-// Why nothing came along from another plan: where this one never ran, for what it was made.
+// Returns why no history was copied from another plan: the reason the executor was created for, if
+// it has never run, else `switched`.
 HistoryReason not_carried(const HistoryRecord& record) noexcept {
   const bool replaced = record.reason == HistoryReason::reloaded || record.reason == HistoryReason::resized;
   return replaced && record.age == 0 ? record.reason : HistoryReason::switched;
@@ -124,7 +125,7 @@ bool Executor::discard_frame(uint64_t frame_index) noexcept {
   state.placeholders_ready = before.placeholders_ready;
   state.previous_rectangle = before.previous_rectangle;
   state.last_frame_index = before.last_frame_index;
-  state.frame_of_slot[frame_slot] = 0; // recording cleared the counters of the frame before it there
+  state.frame_of_slot[frame_slot] = 0; // recording cleared the counters of the slot's earlier frame
   if (state.timestamps.pool != VK_NULL_HANDLE) state.timestamps.frame_of_slot[frame_slot] = 0;
   --state.frame_counter;
   before.known = false;

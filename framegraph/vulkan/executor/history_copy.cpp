@@ -1,4 +1,4 @@
-// What another plan kept of earlier frames, copied to where this plan expects it.
+// Copies the histories that another plan's executor holds into the histories of this plan.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 
@@ -7,7 +7,8 @@
 namespace dermis::vulkan {
 namespace {
 
-struct CopyScope { // of the commands that copy
+// Stages and accesses of the commands that copy.
+struct CopyScope {
   VkPipelineStageFlags2 stages;
   VkAccessFlags2 reads, writes;
 };
@@ -16,7 +17,7 @@ constexpr CopyScope transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_T
 constexpr CopyScope rescaling{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                               VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
 
-// Which frames are kept may differ, but not what a texel is.
+// The number of kept frames may differ; the texel layout may not.
 bool same_texels(const PlanResource& a, const PlanResource& b) {
   return a.type == b.type && a.format == b.format && a.mips == b.mips && a.layers == b.layers &&
          a.first_instance != no_instance && b.first_instance != no_instance;
@@ -38,7 +39,8 @@ VkImageMemoryBarrier2 layout_change(VkImage image, const VkImageSubresourceRange
   return out;
 }
 
-// Before: all that earlier commands wrote is seen; after: all later commands see the copy.
+// Records a barrier. `before`: makes all earlier writes visible to the copy; otherwise: makes the
+// copy visible to all later commands.
 void submit(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy,
             VkImageMemoryBarrier2* images, uint32_t count, bool before) {
   VkMemoryBarrier2 memory{};
@@ -79,7 +81,7 @@ struct Kept { // one frame of a history
   const Instance& instance() const { return state.instances[instance_of(state, resource(), frames_back)]; }
 };
 
-// Each part that ports tell apart is in a layout of its own.
+// Changes layouts part by part, because each part of a history has its own layout.
 void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy,
                     const Kept& frame, VkImageLayout other, bool before) {
   for (uint32_t part = 0; part < frame.history.parts; ++part) {
@@ -95,7 +97,7 @@ void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const Cop
   }
 }
 
-// The whole target image: its contents are replaced.
+// Discards the whole target image, because the copy replaces its contents.
 void discard(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy, const Kept& to,
              VkImageLayout layout) {
   VkImageMemoryBarrier2 change = layout_change(
@@ -120,7 +122,8 @@ void copy_image(const FunctionTable& vk, VkCommandBuffer commands, const Kept& f
   change_layouts(vk, commands, transfer, to, target, false);
 }
 
-// The kind of the pass that writes the newest frame last: another pass type means something else by it.
+// Returns the type of the pass that writes the newest frame last. Another pass type may store other
+// data.
 PassTypeId writer_of(const State& state, const PlanHistory& history) {
   PassTypeId writer;
   for (const PlanPass& pass : state.plan.passes)

@@ -1,5 +1,5 @@
-// Histories of another size: a compute kernel copies the nearest texels, so that a queue family without
-// graphics can resize a view.
+// Rescales histories of another size. A compute kernel copies the nearest texels, so that a queue
+// family without graphics can resize a view.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
@@ -23,7 +23,7 @@ struct RescalePush {
 };
 
 struct RescaleCode {
-  PassTypeId type; // in a KernelStore; no registry has as many pass types
+  PassTypeId type; // in a KernelStore; above the ids of all registered pass types
   const char* name;
   std::span<const uint32_t> spirv;
 };
@@ -103,7 +103,7 @@ Error create_array_view(State& state, const PlanResource& resource, VkImage imag
   return call_error(result, "vkCreateImageView", name);
 }
 
-// For each instance: all mips to read, then each mip to write.
+// Creates the views of each instance: all mips to read, then each mip to write.
 Error create_rescale_views(State& state, const PlanResource& resource, HistoryRecord& history) {
   history.first_rescale_view = static_cast<uint32_t>(state.rescaling.views.size());
   for (uint32_t i = 0; i < resource.instance_count; ++i) {

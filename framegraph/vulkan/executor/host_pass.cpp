@@ -1,4 +1,4 @@
-// Passes that the host records itself: what stands at their ports is handed to its function.
+// Calls the host's function for host-recorded passes, with the resources bound to their ports.
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>

@@ -30,7 +30,7 @@ void KernelStore::hand_over() noexcept {
   const std::lock_guard lock(mutex_);
   try {
     shared_->take(kept_);
-  } catch (const std::bad_alloc&) { // the next graph compiles them once more
+  } catch (const std::bad_alloc&) { // The next graph compiles the kernels again.
   }
 }
 
@@ -43,9 +43,10 @@ void KernelStore::take(std::vector<std::shared_ptr<const Kernel>>& kernels) {
     const auto is_same = [&](const std::shared_ptr<const Kernel>& other) {
       return other->type == kernel->type;
     };
+    // Another thread may have added the same kernel.
     if (kernel->version != 0)
       in_use_.push_back({kernel->type, kernel->version, kernel});
-    else if (std::none_of(kept_.begin(), kept_.end(), is_same)) // another thread may have made it as well
+    else if (std::none_of(kept_.begin(), kept_.end(), is_same))
       kept_.push_back(std::move(kernel));
   }
   kernels.clear();

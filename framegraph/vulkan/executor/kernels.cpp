@@ -1,5 +1,5 @@
-// Pipelines of the pass types that the plan runs: layouts from the signature, checked against the kernel's
-// SPIR-V.
+// Creates pipelines for the plan's pass types. Layouts follow the signature and are checked against
+// the kernel's SPIR-V.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
@@ -12,12 +12,12 @@
 namespace dermis::vulkan {
 namespace {
 
-// A format for the stand-in of an unbound port: what port or shader declares, else any that reads as the same
-// number. A driver may compile a kernel once more for another format.
+// Returns the placeholder format of an unbound port: the format that the port or shader declares,
+// else any format with the same numeric type. Some drivers recompile a kernel for another format.
 VkFormat stand_in_format(const Port& port, const ShaderBinding& binding) {
   if (port.usage == Usage::sampled_image && !port.formats.empty() && !format_info(port.formats.front()).depth)
     return vk_format(port.formats.front());
-  // SPIR-V specification, 3.11 Image Format.
+  // values of SPIR-V specification, 3.11 Image Format
   switch (binding.image_format) {
   case 1:
     return VK_FORMAT_R32G32B32A32_SFLOAT;

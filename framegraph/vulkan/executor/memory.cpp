@@ -1,4 +1,4 @@
-// Heaps of the plan as device memory, and the images and buffers that the plan placed in them.
+// Allocates the plan's heaps as device memory, and creates the images and buffers placed in them.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 
@@ -36,7 +36,7 @@ Error create_heaps(State& state) {
   return {};
 }
 
-// The plan was packed from what the driver said; that it says the same now is checked, not trusted.
+// Checks that the driver's answers have not changed since the plan placed the resource.
 Error check_needs(const State& state, const Placement& placement, const VkMemoryRequirements& needs,
                   const std::string& name) {
   const Heap& heap = state.plan.heaps[placement.heap];
@@ -96,7 +96,7 @@ Error create_image(State& state, const PlanResource& resource, const Placement& 
   return create_view(device, resource, instance.image, range, name, instance.first_mip);
 }
 
-// Views for the accesses that see a part of an image: equal ones share theirs.
+// Creates views for accesses to a part of an image. Accesses with equal ranges share their views.
 Error create_part_views(State& state, const Graph& graph) {
   constexpr Access viewed =
       access::shader_sampled_read | access::shader_storage_read | access::shader_storage_write;
@@ -145,7 +145,7 @@ Error create_buffer(State& state, const PlanResource& resource, const Placement&
   return call_error(result, "vkBindBufferMemory2", name);
 }
 
-// Which instances have bytes in common with another one.
+// Marks instances that share bytes with another instance.
 void find_shared(State& state) {
   const std::vector<Placement>& placements = state.plan.placements;
   std::vector<uint32_t> order(placements.size());
@@ -155,7 +155,8 @@ void find_shared(State& state) {
            std::tie(placements[b].heap, placements[b].offset);
   });
   const auto end = [&](uint32_t index) { return placements[index].offset + placements[index].size; };
-  uint32_t furthest = 0; // in `order`: of those in this heap so far, what reaches furthest
+  // index in `order` of the instance with the highest end in this heap so far
+  uint32_t furthest = 0;
   for (uint32_t at = 1; at < order.size(); ++at) {
     const uint32_t before = order[furthest], here = order[at];
     const bool same_heap = placements[before].heap == placements[here].heap;

@@ -1,5 +1,6 @@
-// What unbound optional ports see: images of 3x3 texels and a small buffer, all zero. The shader learns from
-// its port mask that the port is not bound; the stand-in only keeps the descriptor legal.
+// Creates placeholders for unbound optional ports: zeroed images of 3x3 texels and a small zeroed
+// buffer. The port mask tells the shader that a port is unbound; the placeholder only keeps the
+// descriptor legal.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 
@@ -15,7 +16,7 @@ MemoryRequest request_of(const VkMemoryRequirements& needs) {
 
 Error create_image(const Device& device, StandIn& placeholder) {
   VkImageCreateInfo info = image_create_info({});
-  info.extent = {3, 3, 1}; // llvmpipe compiles a kernel once more where sides are powers of two
+  info.extent = {3, 3, 1}; // llvmpipe recompiles a kernel if the sides are powers of two
   info.format = placeholder.format;
   info.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                (placeholder.storage ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT);
@@ -67,7 +68,7 @@ Error create_buffer(const Device& device, StandIn& placeholder) {
 uint32_t placeholder_for(State& state, const KernelPort& port, bool writes) {
   const bool buffer = *port.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   const VkFormat format = buffer ? VK_FORMAT_UNDEFINED : port.placeholder;
-  // What is read is never written: no order between them is needed.
+  // Read-only and writable placeholders are separate, so that reads need no barriers.
   const bool storage = buffer ? writes : *port.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   for (uint32_t i = 0; i < state.placeholders.size(); ++i)
     if (state.placeholders[i].format == format && state.placeholders[i].storage == storage) return i;

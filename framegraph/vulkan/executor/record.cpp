@@ -1,4 +1,4 @@
-// One frame of the plan into the host's command buffer.
+// Records one frame of the plan into the host's command buffer.
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint32_t tile_side = 8;        // pixels; kernels over the view run 8x8 groups
+constexpr uint32_t tile_side = 8;        // pixels; kernels over the view use 8x8 groups
 constexpr uint64_t tiles_per_group = 64; // DispatchShape::over_tile_grid
 constexpr uint32_t block_side = 4;       // tiles; DispatchShape::over_tile_blocks
 
@@ -81,7 +81,7 @@ void invalidate_for_cut(State& state) {
     for (uint32_t i = 0; i < resource.instance_count; ++i)
       state.instances[resource.first_instance + i].ready = false;
   }
-  // A host may cut because it threw a recorded frame away: then what that frame initialised never was.
+  // The host may cut because it discarded a recorded frame, whose initialisation then never ran.
   state.placeholders_ready = false;
 }
 
@@ -108,7 +108,8 @@ VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& ker
       .buffer;
 }
 
-// Where in them its own begin. A setting that names an entry which is not there takes the last.
+// Returns the byte offset of the pass's entry in the indirect arguments. An index beyond the end
+// selects the last entry.
 uint64_t indirect_offset(const State& state, const FrameInput& frame, const PlanPass& planned,
                          const Pass& pass, const Kernel& kernel) {
   if (kernel.entry_setting == no_index) return 0;
@@ -117,7 +118,8 @@ uint64_t indirect_offset(const State& state, const FrameInput& frame, const Plan
          std::min(static_cast<uint64_t>(std::max(entry, int64_t{0})), pass.indirect_entries - 1);
 }
 
-VkExtent2D first_written_size(const State& state, const Pass& pass) { // zero: no image is written
+// Returns zero if the pass writes no image.
+VkExtent2D first_written_size(const State& state, const Pass& pass) {
   for (const PortAccess& port : pass.ports) {
     if (port.access == no_index) continue;
     const PlanAccess& access = state.plan.accesses[port.access];
@@ -216,7 +218,7 @@ bool is_left_out(const FrameInput& frame, size_t p) {
   return p < frame.left_out.size() && frame.left_out[p] != 0;
 }
 
-// Histories of which pass `p` writes this frame: it did not.
+// Invalidates the histories that pass `p` writes, because the pass did not run.
 void forget_written(State& state, size_t p) {
   const PlanPass& pass = state.plan.passes[p];
   for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
@@ -242,7 +244,8 @@ void run_pass(State& state, const FrameInput& frame, uint32_t frame_slot, size_t
     run_kernel(state, frame, frame_slot, p, rectangle);
 }
 
-// Who takes the commands himself learns the passes by their labels.
+// A host that captures commands identifies passes by their labels, so they are recorded even
+// without debug utils.
 bool labelled(const State& state) {
   return state.device->labels || state.commands != &state.device->vk;
 }

@@ -1,5 +1,5 @@
-// Device time of each pass: one timestamp before the first pass and one after each, so that the times of the
-// passes, their barriers included, add up to the time of the plan.
+// Measures the device time of each pass. One timestamp precedes the first pass and one follows each
+// pass, so that the times of the passes, including their barriers, add up to the time of the plan.
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
@@ -14,7 +14,8 @@ VkResult read_ticks(const State& state, uint32_t frame_slot, std::vector<uint64_
                                                 sizeof(uint64_t), VK_QUERY_RESULT_64_BIT);
 }
 
-// The device has finished the frame that had these queries before: its times stay readable after the reset.
+// Keeps the times of the slot's earlier frame, which the device has finished, so that they stay
+// readable after the reset.
 void keep_ticks(State& state, uint32_t frame_slot) noexcept {
   Timestamps& t = state.timestamps;
   const uint64_t frame = t.frame_of_slot[frame_slot];
@@ -86,9 +87,10 @@ bool Executor::read_timings(uint64_t completed_frame_index, uint64_t& frame_inde
   const uint64_t mask = device.timestamp_valid_bits >= all_bits
                             ? ~uint64_t{0}
                             : (uint64_t{1} << device.timestamp_valid_bits) - 1;
-  const double period = static_cast<double>(device.properties.limits.timestampPeriod); // nanoseconds a tick
+  // nanoseconds per tick
+  const double period = static_cast<double>(device.properties.limits.timestampPeriod);
   for (size_t p = 0; p < state.passes.size() && p < timings.size(); ++p) {
-    const uint64_t ticks = (t.ticks[p + 1] - t.ticks[p]) & mask; // right across a wrap, too
+    const uint64_t ticks = (t.ticks[p + 1] - t.ticks[p]) & mask; // the mask handles timer wrap
     timings[p] = {state.passes[p].name, static_cast<uint64_t>(static_cast<double>(ticks) * period)};
   }
   frame_index = kept ? t.kept_frame : t.frame_of_slot[newest];

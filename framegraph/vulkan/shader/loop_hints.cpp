@@ -5,9 +5,9 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint32_t google = 0x1ae0, swiftshader = 0xc0de; // PCI ids that SwiftShader gives itself
+constexpr uint32_t google = 0x1ae0, swiftshader = 0xc0de; // PCI ids that SwiftShader reports
 
-// SPIR-V specification: OpLoopMerge has its control mask behind the two labels.
+// OpLoopMerge: the control mask follows the two labels (SPIR-V specification).
 constexpr uint32_t control_word = 3, control_unroll = 0x1, control_dont_unroll = 0x2;
 
 } // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Hints on loops in a SPIR-V module, for drivers that follow them into the ground.
+// Removes unroll hints from a SPIR-V module, for drivers that unroll without limit.
 
 #include <cstdint>
 #include <span>
@@ -8,13 +8,13 @@
 
 namespace dermis::vulkan {
 
-// Does the device take hints to unroll so far that it cannot be done? SwiftShader does: of
-// subsurface_classify, five loops of 16 steps, it made code for minutes in 24 GiB of memory, and in .1 s
-// without.
+// Returns whether the device unrolls loops with hints without limit. SwiftShader does: it compiled
+// subsurface_classify (five loops of 16 steps) for minutes in 24 GiB of memory, and in 0.1 s
+// without hints.
 bool unrolls_without_end(const VkPhysicalDeviceProperties& device);
 
-// The module with every loop that asks to be unrolled asking not to be. What is not SPIR-V comes back as it
-// is. Free-threaded.
+// Returns the module with every unroll hint replaced by a "do not unroll" hint. Input that is not
+// SPIR-V is returned unchanged. Free-threaded.
 std::vector<uint32_t> without_unrolling(std::span<const uint32_t> spirv);
 
 } // namespace dermis::vulkan

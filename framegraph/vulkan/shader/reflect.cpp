@@ -11,13 +11,14 @@ namespace {
 
 using namespace spirv;
 
-struct Id { // all that is known of one result id; a field is meaningless for ids of other instructions
+// Holds everything known of one result id. Which fields are used depends on the instruction.
+struct Id {
   uint32_t op = 0;
   std::string name;
-  std::array<uint32_t, 3> operands{}; // of types and constants, as each instruction needs
+  std::array<uint32_t, 3> operands{}; // of types and constants; meaning depends on the instruction
   Numeric numeric = Numeric::none;
   uint32_t image_format = 0, image_sampled = 0;
-  uint64_t bytes = 0; // of a type
+  uint64_t bytes = 0; // size of a type
   bool scalar32 = false;
   std::vector<uint32_t> members;        // struct
   std::vector<uint32_t> member_offsets; // by decoration
@@ -33,13 +34,13 @@ struct Module {
   bool has_entry = false;
   uint32_t entry = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};
-  std::array<uint32_t, 3> local_size_ids{}; // 0: not by id
+  std::array<uint32_t, 3> local_size_ids{}; // 0: not given by id
   std::string error;
 };
 
-constexpr size_t max_members = 4096; // of a block; bounds what a hostile member number can cost
+constexpr size_t max_members = 4096; // of a block; limits the cost of hostile member numbers
 
-// The operands of one instruction; reading past the end gives 0 and is remembered.
+// Holds the operands of one instruction. Reading past the end returns 0 and sets `cut`.
 struct Operands {
   std::span<const uint32_t> words;
   bool cut = false;
@@ -180,7 +181,7 @@ private:
     }
   }
 
-  // Types are declared before they are used, so sizes are known when they are needed.
+  // Types are declared before use, so operand sizes are already known.
   void type(uint32_t op, Operands& o) {
     switch (op) {
     case op_type_int:
@@ -234,7 +235,7 @@ private:
       t.matrix_strides.resize(t.members.size());
       for (size_t i = 0; i < t.members.size(); ++i) {
         const Id& member = id(t.members[i]);
-        // A column-major matrix takes its stride for each column.
+        // A column-major matrix has one stride per column.
         const uint64_t bytes =
             member.op == op_type_matrix ? uint64_t{t.matrix_strides[i]} * member.operands[1] : member.bytes;
         t.bytes = std::max(t.bytes, t.member_offsets[i] + bytes);
@@ -256,7 +257,7 @@ private:
 };
 
 BindingType binding_type(const Id& type, uint32_t storage_class) {
-  constexpr uint32_t sampled_yes = 1, sampled_no = 2; // OpTypeImage, operand Sampled
+  constexpr uint32_t sampled_yes = 1, sampled_no = 2; // operand Sampled of OpTypeImage
   if (storage_class == storage_storage_buffer) return BindingType::storage_buffer;
   if (storage_class == storage_uniform)
     return type.buffer_block ? BindingType::storage_buffer : BindingType::uniform_buffer;

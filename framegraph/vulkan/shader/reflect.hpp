@@ -1,6 +1,6 @@
 #pragma once
-// Reads from a SPIR-V compute module what it binds, pushes and how big its workgroups are. Input is not
-// trusted: every word read is checked against the end of the module.
+// Reads the bindings, push constants and workgroup size of a SPIR-V compute module. The input is
+// untrusted: every word read is checked against the end of the module.
 
 #include <array>
 #include <cstdint>
@@ -26,31 +26,32 @@ enum class Numeric : uint8_t { none, real, signed_integer, unsigned_integer };
 struct ShaderBinding {
   uint32_t set = 0, binding = 0;
   BindingType type = BindingType::other;
-  Numeric numeric = Numeric::none; // images: what a texel reads as
+  Numeric numeric = Numeric::none; // images: component type of a texel read
   uint32_t image_format = 0;       // storage images: SPIR-V Image Format; 0: without format
-  bool array = false;              // an array of descriptors
-  uint64_t bytes = 0;              // buffers: size of the block, a run-time array counted as empty
-  std::string name;                // of the variable, or of its block
+  bool array = false;              // array of descriptors
+  // buffers: size of the block, without a run-time array at its end
+  uint64_t bytes = 0;
+  std::string name; // name of the variable or of its block
 };
 
 struct PushMember {
   uint32_t offset = 0;
-  Numeric numeric = Numeric::none; // of a 32-bit scalar; none: anything else
+  Numeric numeric = Numeric::none; // none: not a 32-bit scalar
   std::string name;
 };
 
 struct Reflection {
   std::vector<ShaderBinding> bindings; // by set and binding
   bool has_push_constants = false;
-  std::vector<PushMember> push_members; // in the order of the block
+  std::vector<PushMember> push_members; // in block order
   std::array<uint32_t, 3> local_size{1, 1, 1};
 };
 
-// nullopt with `error` saying what is wrong: not SPIR-V, cut off, without a compute entry point "main".
-// Free-threaded.
+// Returns the reflection, or nullopt with `error` set: not SPIR-V, cut off, or without a compute
+// entry point "main". Free-threaded.
 std::optional<Reflection> reflect(std::span<const uint32_t> spirv, std::string& error);
 
-const char* binding_type_name(BindingType type); // as written in GLSL; static string
+const char* binding_type_name(BindingType type); // GLSL spelling; static string
 const char* numeric_name(Numeric numeric);       // static string
 
 } // namespace dermis::vulkan

@@ -1,6 +1,7 @@
 #version 460
-// Copies one mip of a history into an image of another size. Each texel is the nearest one: depths and
-// profile ids must not mix. RESCALE_UNSIGNED selects unsigned components instead of float.
+// Copies one mip of a history into an image of another size. Takes the nearest texel, because
+// depths and profile ids must not be interpolated. RESCALE_UNSIGNED selects unsigned components
+// instead of float.
 #extension GL_EXT_samplerless_texture_functions : require
 layout(local_size_x = 8, local_size_y = 8) in;
 #ifdef RESCALE_UNSIGNED
@@ -15,6 +16,7 @@ layout(push_constant) uniform push_block { uvec2 source_size, target_size; uint 
 void main() {
   uvec3 texel = gl_GlobalInvocationID;
   if (any(greaterThanEqual(texel.xy, target_size))) return;
-  uvec2 nearest = (2u * texel.xy + 1u) * source_size / (2u * target_size); // floor((x + 0.5) * old / new)
+  // floor((x + 0.5) * old / new)
+  uvec2 nearest = (2u * texel.xy + 1u) * source_size / (2u * target_size);
   imageStore(target, ivec3(texel), texelFetch(source, ivec3(nearest, texel.z), int(mip)));
 }

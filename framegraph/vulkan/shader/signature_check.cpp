@@ -5,7 +5,8 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint32_t group_side = 8; // kernels over the view or its tiles: one invocation per pixel of a tile
+// for kernels over the view or its tiles: one invocation per pixel of a tile
+constexpr uint32_t group_side = 8;
 constexpr uint32_t tile_invocations = 64;
 
 struct Checker {

@@ -1,5 +1,5 @@
 #pragma once
-// Holds a kernel against the signature it claims to follow: bindings, push constants, workgroup size.
+// Checks a kernel against its declared signature: bindings, push constants and workgroup size.
 
 #include "framegraph/model/pass_type.hpp"
 #include "framegraph/vulkan/executor.hpp"
@@ -13,11 +13,13 @@
 
 namespace dermis::vulkan {
 
-// The descriptor of a port; nullopt for ports without one (indirect arguments, clear). Free-threaded.
+// Returns the descriptor type of a port; nullopt for ports without a descriptor (indirect
+// arguments, clear). Free-threaded.
 std::optional<VkDescriptorType> descriptor_type(Usage usage);
 VkDescriptorType descriptor_type(EnvironmentType type);
 
-// Every disagreement, each naming kernel, port and both sides; empty: the kernel fits. Free-threaded.
+// Returns every disagreement, naming the kernel, the port and both sides; empty if the kernel fits.
+// Free-threaded.
 std::vector<std::string> check_signature(const PassType& type,
                                          std::span<const EnvironmentBinding> environment,
                                          const Reflection& reflection);

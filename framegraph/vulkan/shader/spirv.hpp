@@ -1,5 +1,6 @@
 #pragma once
-// The few numbers of SPIR-V 1.6 that reflect.cpp and loop_hints.cpp need (SPIR-V specification, section 3).
+// Lists the SPIR-V 1.6 constants that reflect.cpp and loop_hints.cpp need (SPIR-V specification,
+// section 3).
 
 #include <cstdint>
 
@@ -7,8 +8,8 @@ namespace dermis::vulkan::spirv {
 
 inline constexpr uint32_t magic = 0x07230203;
 inline constexpr uint32_t header_words = 5;
-inline constexpr uint32_t max_id_bound =
-    1u << 20; // a quarter of the universal limit; kernels have some thousands
+// a quarter of the universal limit; kernels have a few thousand ids
+inline constexpr uint32_t max_id_bound = 1u << 20;
 
 enum Op : uint32_t {
   op_name = 5,
