@@ -1,6 +1,6 @@
-// Whether conditions can hold together: a search through the values of the settings that they name. Between
-// the numbers that expressions and ranges name, only the order of values counts, so that few of them have to
-// be tried.
+// Decides whether conditions can hold together, by a search over the values of the settings that
+// they name. Between the numbers that expressions and ranges name, only the order of values
+// matters, so a few candidates suffice.
 
 #include "framegraph/model/expression.hpp"
 
@@ -10,13 +10,13 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t max_steps = 20000; // values that are tried
+constexpr uint32_t max_steps = 20000; // maximum number of values tried
 
 struct Search {
   const Graph& graph;
   std::span<const Condition> conditions;
-  std::vector<SettingId> settings = {}; // that the conditions name
-  std::vector<double> numbers = {};     // to try for those of a number type
+  std::vector<SettingId> settings = {}; // settings that the conditions name
+  std::vector<double> numbers = {};     // candidates for settings with a number type
   PartialValues values = {};
   uint32_t steps = 0;
 
@@ -45,8 +45,8 @@ struct Search {
     collect(node.right);
   }
 
-  // Between two neighbours as many whole numbers, and between these as many others, as settings can differ
-  // in.
+  // Adds candidates around and between the known numbers: as many whole numbers and as many
+  // fractions as there are number settings, so that all settings can differ.
   void add_between() {
     const auto count = std::count_if(settings.begin(), settings.end(),
                                      [&](SettingId id) { return is_number(graph.settings[id.value].type); });

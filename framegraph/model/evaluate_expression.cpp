@@ -10,7 +10,8 @@ constexpr SettingValue reference(bool value) {
   return {SettingType::boolean, value ? 1 : 0, 0.0};
 }
 
-// -1, 0 or 1 as a is less than, equal to or greater than b. Numbers of both types compare by value.
+// Returns -1, 0 or 1 as `a` is less than, equal to or greater than `b`. Integers and reals compare
+// by value.
 int compare(const SettingValue& a, const SettingValue& b) {
   if (a.type == SettingType::real || b.type == SettingType::real) {
     const double left = a.type == SettingType::real ? a.real : static_cast<double>(a.integer);
@@ -20,7 +21,8 @@ int compare(const SettingValue& a, const SettingValue& b) {
   return a.integer < b.integer ? -1 : a.integer > b.integer ? 1 : 0;
 }
 
-bool holds(Expression::Op op, int order) { // of two values that compare as `order`
+// Returns the result of comparison `op` for two values that compare as `order`.
+bool holds(Expression::Op op, int order) {
   switch (op) {
   case Expression::Op::equal:
     return order == 0;

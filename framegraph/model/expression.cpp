@@ -13,7 +13,8 @@ namespace {
 
 using Op = Expression::Op;
 
-enum class Type : uint8_t { boolean, number, option, text }; // text: an option whose setting is not known yet
+// `text` is a quoted option whose setting is not known yet.
+enum class Type : uint8_t { boolean, number, option, text };
 
 std::string_view type_name(Type type) {
   switch (type) {
@@ -32,8 +33,8 @@ std::string_view type_name(Type type) {
 struct Operand {
   Type type = Type::boolean;
   ExpressionId id;       // invalid for text
-  SettingId setting;     // of an option
-  std::string_view text; // of a text
+  SettingId setting;     // setting of an option
+  std::string_view text; // contents of a text
   size_t at = 0;
 };
 
@@ -47,7 +48,8 @@ std::optional<Op> comparison_of(std::string_view symbol) {
   return std::nullopt;
 }
 
-// Recursive descent with one token in hand. After the first error every function returns nullopt.
+// Recursive-descent parser with one token of lookahead. After the first error every function
+// returns nullopt.
 class Parser {
 public:
   Parser(const Document& document, NodeId node, std::string_view what, Graph& graph,
@@ -175,7 +177,7 @@ private:
       Operand other = left;
       if (!agree(other, *one)) return std::nullopt;
       expression.list.push_back(graph_.expressions[one->id.value].literal);
-      graph_.expressions.pop_back(); // the list keeps the value itself
+      graph_.expressions.pop_back(); // the list stores the value itself
     } while (is_symbol(","));
     if (!is_symbol("]")) {
       return fail(DiagnosticId::bad_expression, token_.at,
@@ -186,7 +188,7 @@ private:
     return negated ? append(Op::logical_not, found.id, {}, left.at) : found;
   }
 
-  // Same type on both sides; a text becomes an option of the other side's setting.
+  // Checks that both sides have one type. Resolves a text to an option of the other side's setting.
   bool agree(Operand& left, Operand& right) {
     if (left.type == Type::option && right.type == Type::text) return resolve(right, left.setting);
     if (left.type == Type::text && right.type == Type::option) return resolve(left, right.setting);

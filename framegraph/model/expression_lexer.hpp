@@ -1,5 +1,5 @@
 #pragma once
-// The words of a `when` expression. Inside of expression.hpp.
+// Tokenizes `when` expressions. Internal to expression.hpp.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,16 +10,17 @@ namespace dermis {
 
 struct Token {
   enum class Sort : uint8_t { word, integer, real, text, symbol, end, malformed } sort = Sort::end;
-  std::string_view text; // of a text: what stands between the quotes
+  std::string_view text; // for `text`: the contents between the quotes
   int64_t integer = 0;
   double real = 0.0;
-  size_t at = 0; // byte in the expression
+  size_t at = 0; // byte offset in the expression
 };
 
 class ExpressionLexer {
 public:
   explicit ExpressionLexer(std::string_view text) : text_(text) {}
-  Token next(); // Sort::end for ever behind the last; Sort::malformed for what is no token
+  // Returns Sort::end repeatedly after the last token, and Sort::malformed for invalid input.
+  Token next();
 
 private:
   Token number(size_t begin);
@@ -28,17 +29,17 @@ private:
   size_t at_ = 0;
 };
 
-// and, or, not, in, true, false: no setting may bear such a name.
+// Returns whether `word` is and, or, not, in, true or false. No setting may have such a name.
 bool is_reserved_word(std::string_view word);
 
-// The operator of other languages that covers byte `at`, such as "&&" or "+"; empty where there is none.
+// An operator of other languages, e.g. "&&" or "+".
 struct ForeignOperator {
   std::string_view text;
-  std::string_view instead; // what means the same here; empty: nothing does
+  std::string_view instead; // the equivalent here; empty: none
 };
 ForeignOperator foreign_operator(std::string_view expression, size_t at);
 
-// "'<='", "the end": for messages.
+// Returns the token for messages: "'<='", "the end".
 std::string describe(const Token& token);
 
 } // namespace dermis

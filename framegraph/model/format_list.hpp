@@ -1,6 +1,6 @@
 #pragma once
-// The formats that a resource declares, in order of preference. Held in place, without memory of its own:
-// compiling looks at the list of every resource.
+// Holds the formats that a resource declares, in order of preference. Stored inline, because
+// compiling reads the list of every resource.
 
 #include "framegraph/model/vocabulary.hpp"
 
@@ -18,7 +18,7 @@ public:
       push_back(format);
   }
 
-  // A format that is there already keeps its place.
+  // Appends the format. A format that is already listed keeps its position.
   void push_back(Format format) {
     if (std::find(begin(), end(), format) == end()) formats_[count_++] = format;
   }

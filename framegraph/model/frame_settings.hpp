@@ -1,13 +1,14 @@
 #pragma once
-// Which settings of a graph may differ between the views of the graph.
+// Finds the settings of a graph that may differ between its views.
 
 #include "framegraph/model/graph.hpp"
 
 namespace dermis {
 
-// By setting of the graph, 1: every pass setting that follows it is declared per frame
-// (PassTypeSetting::per_frame), there is at least one, no `when` reads it, and it is no choice by budget. A
-// plan does not depend on the value of such a setting. Thread: any.
+// Returns 1 for each graph setting that may differ between frames and views, else 0. Such a setting
+// is no choice by budget, is not read by any `when`, and at least one pass setting follows it; all
+// that follow are declared per frame (PassTypeSetting::per_frame). A plan does not depend on the
+// setting's value. Thread: any.
 std::vector<uint8_t> frame_settings(const Graph& graph, const PassTypeRegistry& pass_types);
 
 } // namespace dermis

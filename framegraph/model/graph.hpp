@@ -1,6 +1,6 @@
 #pragma once
-// What was declared: a graph read from a file, with every name resolved to an index and every value still
-// knowing where it came from. Pure data; reading it is in read_graph.hpp, compiling it in compile/.
+// Holds a declared graph as read from a file: names are resolved to indices, and every value has
+// its source location. Pure data; read_graph.hpp reads it and compile/ compiles it.
 
 #include "framegraph/model/format_list.hpp"
 #include "framegraph/model/ids.hpp"
@@ -20,40 +20,43 @@ struct Rational {
 
 enum class Rounding : uint8_t { ceil, floor };
 
-// width and height of an image: rational multiples of the view, of another resource, or absolute texels.
-// value = align_up(round(base * factor), align); never below 1.
+// Width and height of an image: rational multiples of the view or of another resource, or absolute
+// texels. value = align_up(round(base * factor), align), at least 1.
 struct SizeExpression {
   enum class Base : uint8_t { view, resource, fixed } base = Base::view;
   ResourceId resource;
-  Rational x, y; // factors; for fixed the sizes themselves over 1
+  Rational x, y; // factors; for `fixed`: sizes with denominator 1
   Rounding rounding = Rounding::ceil;
   uint32_t align = 1;
-  uint32_t border = 0; // images: texels added on every side, last
+  uint32_t border = 0; // images: texels added on every side after rounding and alignment
 };
 
-// Acceleration structures are imports, read by ray queries: without size or format.
+// Acceleration structures are imports without size or format, read by ray queries.
 enum class ResourceType : uint8_t { image, buffer, acceleration_structure };
-std::string_view type_name(ResourceType type);       // "buffer"
-std::string_view type_phrase(ResourceType type);     // "a buffer"
-enum class Origin : uint8_t { imported, transient }; // imported: memory belongs to the host
+std::string_view type_name(ResourceType type);   // "buffer"
+std::string_view type_phrase(ResourceType type); // "a buffer"
+// imported: the memory belongs to the host
+enum class Origin : uint8_t { imported, transient };
 
 struct HistoryDeclaration {
-  uint32_t frames = 0; // 0: no history; N: `name@-1` .. `name@-N` may be read
+  uint32_t frames = 0; // 0: no history; N: `name@-1` .. `name@-N` can be read
   enum class First : uint8_t { discard, clear } first = First::discard;
   enum class OnCut : uint8_t { invalidate, keep } on_cut = OnCut::invalidate;
   enum class OnResize : uint8_t { invalidate, rescale } on_resize = OnResize::invalidate;
 };
 
-struct ResourceDeclaration { // what every compile reads comes first
+// Members that every compile reads come first.
+struct ResourceDeclaration {
   FormatList formats;
-  // Images; buffers: element count = ceil-size x*y + extra_elements, of imports the least the host binds.
+  // Images: size. Buffers: element count = x * y + extra_elements; for imports the minimum that the
+  // host binds.
   SizeExpression size;
-  uint32_t mips = 1; // 0 = full chain
+  uint32_t mips = 1; // 0: full chain
   uint32_t layers = 1;
-  uint32_t stride = 0; // buffers: bytes an element
+  uint32_t stride = 0; // buffers: bytes per element
   ResourceType type = ResourceType::image;
   Origin origin = Origin::transient;
-  bool exported = false;       // its last version is handed to the host
+  bool exported = false;       // the host receives its last version
   bool optional = false;       // import or export that the host may leave unbound
   uint64_t extra_elements = 0; // buffers
   HistoryDeclaration history;
@@ -62,10 +65,10 @@ struct ResourceDeclaration { // what every compile reads comes first
   SourceLocation where;
 };
 
-// What an option of a choice needs to be offered; none: always.
+// Requirements of one option of a choice; if empty, the option is always available.
 struct OptionNeeds {
   Features features = 0;           // of the device
-  std::vector<ResourceId> imports; // optional ones that the host has to bind
+  std::vector<ResourceId> imports; // optional imports that the host must bind
 };
 
 struct SettingDeclaration {
@@ -73,14 +76,14 @@ struct SettingDeclaration {
   SettingType type = SettingType::integer;
   SettingValue default_value;
   double minimum = 0.0, maximum = 0.0;
-  std::vector<std::string> options; // enumeration and choice
-  std::vector<OptionNeeds> needs;   // by option; empty: all are offered on every device
-  bool by_budget = false;           // a choice the library makes
+  std::vector<std::string> options; // for enumeration and choice
+  std::vector<OptionNeeds> needs;   // by option; empty: all are available on every device
+  bool by_budget = false;           // a choice that the library makes
   std::string unit, note;
   SourceLocation where;
 };
 
-// `when`: a total, typed expression over settings. Nodes in a pool; leaves refer to settings or literals.
+// Node of a `when` expression. Nodes form a pool; leaves refer to settings or literals.
 struct Expression {
   enum class Op : uint8_t {
     literal,
@@ -105,20 +108,21 @@ struct Expression {
 // Mips and layers of an image, counted from 0: `name#1..3[0]`.
 struct ImagePart {
   uint8_t first_mip = 0, mips = 0;      // mips 0: to the last
-  uint16_t first_layer = 0, layers = 0; // likewise
+  uint16_t first_layer = 0, layers = 0; // layers 0: to the last
 
   constexpr bool whole() const { return first_mip == 0 && mips == 0 && first_layer == 0 && layers == 0; }
 };
 
-// In which frames a pass reads what is bound to a port. Whether `name@-N` is valid, N frames having been
-// written since it began or was cut, is known when a frame is recorded; no plan depends on it.
+// Says in which frames a pass reads the resource bound to a port. `name@-N` is valid once N
+// frames have been written since the history began or was cut. Validity is known only when a frame
+// is recorded; no plan depends on it.
 enum class ReadWhen : uint8_t { always, history_valid, history_invalid };
 
 struct PortBinding {
   uint32_t port = 0; // index into PassType::ports
   ResourceId resource;
   uint32_t frames_back = 0; // 0: this frame; 1: `name@-1`
-  // history_invalid: this is what the port reads where the history of the binding before this one, at the
+  // history_invalid: the port reads this binding if the history of the previous binding, at the
   // same port, is not valid.
   ReadWhen when = ReadWhen::always;
   ImagePart part; // images that the graph owns
@@ -126,12 +130,12 @@ struct PortBinding {
 
 struct SettingBinding {
   uint32_t setting = 0; // index into PassType::settings
-  SettingId from;       // valid: "$name" of the graph's settings; else the literal
+  SettingId from;       // valid: follows the graph's setting "$name"; else `literal` applies
   SettingValue literal;
   SourceLocation where;
 };
 
-// When the pass is off, readers of what `output` would have produced get `instead`.
+// If the pass is off, readers of `output` get `instead`.
 struct PassThrough {
   ResourceId output, instead;
   SourceLocation where;
@@ -143,22 +147,25 @@ struct Ordering {
   SourceLocation where;
 };
 
-struct PassDeclaration { // what every compile reads comes first
+// Members that every compile reads come first.
+struct PassDeclaration {
   PassTypeId type;
-  ExpressionId when;  // invalid: always
-  bool async = false; // may run beside the others, where there are two queues
-  uint32_t first_binding = 0, read_count = 0, write_count = 0; // into Graph::bindings: reads, then writes
+  ExpressionId when;  // invalid: always on
+  bool async = false; // may run concurrently with other passes if there are two queues
+  // into Graph::bindings: reads, then writes
+  uint32_t first_binding = 0, read_count = 0, write_count = 0;
   std::vector<Ordering> after;
   std::vector<PassThrough> otherwise;
   std::vector<SettingBinding> settings;
   std::string name;
   std::string note;
   SourceLocation where;
-  // Why the pass is off whatever the settings are: the graph has no profile. `when` is never true then.
+  // Reason why the pass is off for all setting values: the graph has no scattering profile. `when`
+  // is then never true.
   enum class Absence : uint8_t {
     none,
     no_profile, // its pass type serves scattering
-    no_input    // only passes that are off for want of a profile write `missing`
+    no_input    // `missing` is only written by passes that are off without a profile
   };
   Absence absence = Absence::none;
   ResourceId missing;
@@ -166,14 +173,15 @@ struct PassDeclaration { // what every compile reads comes first
 
 struct Graph {
   std::string name;
-  Features features = 0; // that the whole graph requires of the device
+  Features features = 0; // device features that the whole graph requires
   SourceLocation requires_where;
   std::vector<SettingDeclaration> settings;
-  std::vector<ResourceDeclaration> resources; // imports first, in file order, then resources
+  std::vector<ResourceDeclaration> resources; // in file order: imports, then resources
   std::vector<Expression> expressions;
-  std::vector<PassDeclaration> passes; // in file order: versions of a resource follow it
-  bool parts = false;                  // some port names a part of an image; if not, nobody looks for any
-  // Of all passes. What compiling looks at lies close together; where it stands in the file lies apart.
+  std::vector<PassDeclaration> passes; // in file order, which determines the versions of a resource
+  bool parts = false;                  // some port names a part of an image
+  // Bindings of all passes. Compiling reads `bindings`; their source locations are stored
+  // separately.
   std::vector<PortBinding> bindings;
   std::vector<SourceLocation> binding_places;
 
@@ -186,11 +194,11 @@ struct Graph {
   std::span<const PortBinding> writes(const PassDeclaration& pass) const {
     return bindings_of(pass).subspan(pass.read_count);
   }
-  // `binding` is one of `bindings`.
+  // `binding` must be an element of `bindings`.
   const SourceLocation& place_of(const PortBinding& binding) const {
     return binding_places[static_cast<size_t>(&binding - bindings.data())];
   }
-  // Adds what the last pass to be bound reads or writes: first everything that it reads.
+  // Adds a binding of the pass that was bound last: first all reads, then all writes.
   void bind(PassDeclaration& pass, PortSide side, const PortBinding& binding, SourceLocation where);
 };
 

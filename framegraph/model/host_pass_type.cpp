@@ -12,9 +12,9 @@
 namespace dermis {
 namespace {
 
-constexpr std::string_view own_prefix = "subsurface."; // names of the library's pass types begin with it
+constexpr std::string_view own_prefix = "subsurface."; // prefix of the library's pass types
 
-// What a host may do at a port: in the order of dermis_port_usage.
+// Usages that a host may declare, in the order of dermis_port_usage.
 constexpr std::array host_usages{Usage::sampled_image,         Usage::storage_image_write,
                                  Usage::storage_image_update,  Usage::storage_buffer_read,
                                  Usage::storage_buffer_write,  Usage::storage_buffer_update,

@@ -1,6 +1,6 @@
 #pragma once
-// pass types that a host registers: their own storage of names, what is wrong with one, and the file that
-// carries them from the host to the tools.
+// Stores and checks pass types that a host registers, and reads and writes the file that passes
+// them to the tools.
 
 #include "framegraph/model/pass_type.hpp"
 #include "framegraph/text/document.hpp"
@@ -23,7 +23,7 @@ struct HostPassTypeSetting {
   std::string name, unit, doc;
   SettingType type = SettingType::boolean; // boolean, integer or real
   double default_value = 0.0, minimum = 0.0, maximum = 0.0;
-  bool per_frame = false; // as PassTypeSetting::per_frame
+  bool per_frame = false; // see PassTypeSetting::per_frame
 };
 
 struct HostPassTypeDeclaration {
@@ -35,24 +35,24 @@ struct HostPassTypeDeclaration {
 };
 
 namespace limits {
-inline constexpr size_t host_pass_types = 256;     // of one context
-inline constexpr size_t host_pass_type_ports = 32; // the port mask holds no more
+inline constexpr size_t host_pass_types = 256;     // per context
+inline constexpr size_t host_pass_type_ports = 32; // limited by the port mask
 inline constexpr size_t host_pass_type_settings = 32;
-inline constexpr double host_pass_type_value = 1e9; // largest magnitude of a range
+inline constexpr double host_pass_type_value = 1e9; // largest magnitude in a range
 } // namespace limits
 
-// What is wrong with a declaration, in words that name the field; no text: nothing.
+// Describes what is wrong with a declaration and names the field. Empty text: no problem.
 struct PassTypeProblem {
   DiagnosticId id = DiagnosticId::bad_name;
   std::string text;
 };
 PassTypeProblem problem_of(const HostPassTypeDeclaration& type);
 
-// Owns what the PassTypes of its declarations refer to. Must live as long as any registry that they were
+// Owns the data that the added PassTypes refer to. Must live as long as any registry that they were
 // added to.
 class HostPassTypes {
 public:
-  // The id in `registry`; invalid if the name exists there. `kind` must have no problem.
+  // Returns the id in `registry`; invalid if the name is taken. problem_of(type) must be empty.
   PassTypeId add(HostPassTypeDeclaration type, PassTypeRegistry& registry);
   size_t size() const { return pass_types_.size(); }
   const HostPassTypeDeclaration& operator[](size_t i) const { return pass_types_[i].declared; }
@@ -63,12 +63,12 @@ private:
     std::vector<Port> ports;
     std::vector<PassTypeSetting> settings;
   };
-  std::deque<Kept> pass_types_; // their addresses stay
+  std::deque<Kept> pass_types_; // a deque, so that addresses stay valid
 };
 
-// {"dermis_pass_types": 2, "pass_types": [...]}; same pass types, same bytes.
+// Returns {"dermis_pass_types": 2, "pass_types": [...]}. Equal pass types give equal bytes.
 std::string write_host_pass_types(const HostPassTypes& pass_types);
-// nullopt with errors in `diagnostics`.
+// Returns nullopt with errors in `diagnostics`.
 std::optional<std::vector<HostPassTypeDeclaration>> read_host_pass_types(const Document& document,
                                                                          Diagnostics& diagnostics);
 

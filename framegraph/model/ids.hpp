@@ -1,5 +1,5 @@
 #pragma once
-// The indices that name objects of a graph.
+// Defines the index types that identify objects of a graph.
 
 #include "framegraph/text/index.hpp"
 

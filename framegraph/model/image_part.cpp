@@ -12,7 +12,7 @@ struct Numbers {
   uint32_t first = 0, count = 0; // count 0: to the last
 };
 
-// "2", "1..3" or "1..", each number below `limit`.
+// Parses "2", "1..3" or "1..", with each number below `limit`.
 std::optional<Numbers> parse_numbers(std::string_view text, uint32_t limit) {
   const auto number = [&](std::string_view digits) -> std::optional<uint32_t> {
     uint32_t value = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// How a graph file names mips and layers of an image, behind its name: "#2", "#1..3", "#1..", "[0]",
-// "#2[0..1]".
+// Parses the suffix that names mips and layers of an image in a graph file: "#2", "#1..3", "#1..",
+// "[0]", "#2[0..1]".
 
 #include "framegraph/model/graph.hpp"
 
@@ -10,10 +10,11 @@
 
 namespace dermis {
 
-// "" is the whole image. nullopt: it is no such text, or names more than images have.
+// Returns the part; "" is the whole image. Returns nullopt if the text is malformed or exceeds the
+// limits of images.
 std::optional<ImagePart> parse_part(std::string_view text);
 
-// As parse_part() reads it.
+// Returns the text that parse_part() reads.
 std::string part_text(const ImagePart& part);
 
 } // namespace dermis

@@ -1,5 +1,6 @@
 #pragma once
-// Passes that read what they write: the one message for it, before settings are known and after.
+// Formats the message for passes that read what they write. Used before and after settings are
+// known.
 
 #include <string>
 #include <string_view>
@@ -9,7 +10,7 @@ namespace dermis {
 struct InPlaceRace {
   std::string_view pass, reading_port, writing_port;
   std::string read, written; // as the pass names them
-  std::string placeholder;   // what is read in place of `read`; "": nothing else
+  std::string placeholder;   // resource that replaces `read`; "": none
 };
 std::string text_of(const InPlaceRace& race);
 

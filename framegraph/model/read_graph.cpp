@@ -30,8 +30,8 @@ std::optional<Graph> read_graph(const Document& document, const PassTypeRegistry
   const NodeId exports = root.array("exports", 0, limits::resources);
   const uint64_t errors_so_far = errors();
   root.finish();
-  // A section is unread when it has the wrong type, and perhaps when it is absent while an unknown key stands
-  // there.
+  // A section is unread if it has the wrong type, or possibly if it is absent while there is an
+  // unknown key.
   const bool misspelt = errors() != errors_so_far;
   const auto unread = [&](std::string_view key, NodeId section) {
     return !section.valid() && (misspelt || root.has(key));

@@ -1,5 +1,6 @@
 #pragma once
-// Document -> Graph: the file format of docs/format.md, every name resolved, every error with both its ends.
+// Converts a Document into a Graph according to docs/format.md. Every name is resolved, and errors
+// name both locations involved.
 
 #include "framegraph/model/graph.hpp"
 #include "framegraph/model/pass_type.hpp"
@@ -9,9 +10,9 @@
 
 namespace dermis {
 
-// The graph, or nullopt with errors in `diagnostics`. Reports all root causes in one run; what only follows
-// from one of them stays silent. Kinds are looked up in `pass_types`; the graph holds PassTypeIds of it.
-// Free-threaded.
+// Returns the graph, or nullopt with errors in `diagnostics`. Reports all root causes in one run,
+// without their consequences. Looks up pass types in `pass_types`, which the graph's PassTypeIds
+// refer to. Free-threaded.
 std::optional<Graph> read_graph(const Document& document, const PassTypeRegistry& pass_types,
                                 Diagnostics& diagnostics);
 

@@ -18,7 +18,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-// A decimal integer in 1 .. limits::size_factor.
+// Parses a decimal integer in 1 .. limits::size_factor.
 std::optional<int64_t> factor_of(std::string_view text) {
   text = trimmed(text);
   int64_t value = 0;

@@ -8,7 +8,7 @@ namespace {
 constexpr auto format_count = static_cast<size_t>(Format::count);
 constexpr auto usage_count = static_cast<size_t>(Usage::count);
 
-// Numbers of VkFormat, Vulkan 1.3 specification, "Format Definition".
+// VkFormat values from the Vulkan 1.3 specification, "Format Definition".
 constexpr std::array<FormatInfo, format_count> formats{{
     {"undefined", 0, 0, false},      {"r8_unorm", 9, 1, false},     {"r8_uint", 13, 1, false},
     {"r16_uint", 74, 2, false},      {"r32_uint", 98, 4, false},    {"r16f", 76, 2, false},
@@ -21,7 +21,8 @@ constexpr std::array<FormatInfo, format_count> formats{{
 }};
 
 // Bits of VkImageUsageFlags and VkBufferUsageFlags.
-constexpr uint32_t transfer_destination_usage = 0x2; // the same bit for images and buffers
+// the bit has the same value for images and buffers
+constexpr uint32_t transfer_destination_usage = 0x2;
 constexpr uint32_t sampled_image_usage = 0x4;
 constexpr uint32_t storage_image_usage = 0x8;
 constexpr uint32_t storage_buffer_usage = 0x20;
@@ -44,8 +45,9 @@ constexpr std::array<UsageInfo, usage_count> usages{{
      false, true, true, true},
     {"indirect_arguments", stage::draw_indirect, access::indirect_command_read, Layout::undefined,
      indirect_buffer_usage, false, true, true, false},
-    // All transfer stages: vkCmdClearColorImage is a clear command, vkCmdFillBuffer a copy to some validation
-    // layers. A buffer has no layout, so readers of this table ignore the layout for buffers.
+    // All transfer stages: vkCmdClearColorImage is a clear command, and some validation layers
+    // treat vkCmdFillBuffer as a copy. A buffer has no layout, so readers of this table ignore the
+    // layout for buffers.
     {"clear", stage::all_transfer, access::transfer_write, Layout::transfer_destination,
      transfer_destination_usage, true, true, false, true},
     {"acceleration_structure", stage::compute_shader, access::acceleration_structure_read, Layout::undefined,

@@ -1,8 +1,7 @@
 #pragma once
-// The words a graph is written in: formats, usages, and the synchronisation scopes that follow from a usage.
-// The numbers of stages, access flags and layouts are those of Vulkan 1.3 (VkPipelineStageFlagBits2,
-// VkAccessFlagBits2, VkImageLayout), kept here without including it; framegraph/vulkan/ asserts that they
-// agree.
+// Defines formats, usages, and the synchronisation scopes that follow from a usage. Stages, access
+// flags and layouts have the values of Vulkan 1.3 (VkPipelineStageFlagBits2, VkAccessFlagBits2,
+// VkImageLayout) without including its headers; framegraph/vulkan/ asserts that they agree.
 
 #include <cstdint>
 #include <optional>
@@ -37,15 +36,18 @@ enum class Format : uint8_t {
 };
 
 struct FormatInfo {
-  std::string_view name;    // as written in a graph file
-  uint32_t vulkan;          // VkFormat
-  uint32_t bytes_per_texel; // packed size; the driver's VkMemoryRequirements decide, never this
-  bool depth;               // has a depth aspect
+  std::string_view name; // as written in a graph file
+  uint32_t vulkan;       // VkFormat
+  // packed size; memory sizes come from the driver's VkMemoryRequirements instead
+  uint32_t bytes_per_texel;
+  bool depth; // has a depth aspect
 };
 
 const FormatInfo& format_info(Format format);
-bool has_unsigned_components(Format format); // shaders read and write it as uint
-// nullopt for an unknown name. The class name "depth" is not a format: see Graph's readers.
+// Returns whether shaders access the format as uint.
+bool has_unsigned_components(Format format);
+// Returns nullopt for an unknown name. The format class "depth" is not a format; the graph reader
+// expands it.
 std::optional<Format> format_from_name(std::string_view name);
 std::optional<Format> format_from_vulkan(uint32_t vk_format);
 
@@ -87,10 +89,12 @@ enum class Layout : uint32_t { // VkImageLayout
   transfer_destination = 7
 };
 
-// What a port does with what is bound to it. Stages, access masks and layouts follow; no file writes them.
+// How a pass uses the resource at a port. Stages, access masks and layouts follow from the usage
+// and are never written in files.
 enum class Usage : uint8_t {
-  sampled_image,        // compute shader, texelFetch or texture(); read only
-  storage_image_write,  // compute shader, imageStore of every texel it owns; previous contents may be kept
+  sampled_image, // compute shader, texelFetch or texture(); read only
+  // compute shader, imageStore; texels that are not stored keep their contents
+  storage_image_write,
   storage_image_update, // compute shader, imageLoad and imageStore of the same texels
   storage_buffer_read,
   storage_buffer_write,
@@ -107,14 +111,14 @@ struct UsageInfo {
   Access access;
   Layout layout;      // undefined for buffers
   uint32_t vk_usage;  // VkImageUsageFlags for images, VkBufferUsageFlags for buffers
-  bool image, buffer; // what may be bound; both for `clear`
+  bool image, buffer; // resource types that may be bound; both for `clear`
   bool reads, writes;
   bool acceleration_structure = false; // may be bound
 };
 
 const UsageInfo& usage_info(Usage usage);
 
-// What a device may lack. Graphs, options of choices and pass types say what they require.
+// A device capability that graphs, options of choices and pass types may require.
 enum class Feature : uint8_t {
   ray_query, // VK_KHR_ray_query and VK_KHR_acceleration_structure
   count

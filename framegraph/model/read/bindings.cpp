@@ -1,4 +1,4 @@
-// "read" and "write" of a pass: which resource, of which frame, stands at which port.
+// Reads "read" and "write" of a pass: the resource and frame bound to each port.
 
 #include "framegraph/model/image_part.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
@@ -13,7 +13,8 @@ namespace dermis {
 
 namespace {
 
-struct Found { // what a port is bound to, and where it says so
+// A binding of a port and its source location.
+struct Found {
   PortBinding binding;
   SourceLocation where;
 };
@@ -29,7 +30,8 @@ public:
     const std::string_view key = side == PortSide::read ? "read" : "write";
     const NodeId list = object_.object(key, Need::optional);
     if (!list.valid()) {
-      // Reported, or will be as an unknown key; nothing is known about its ports.
+      // The error was reported, or will be as an unknown key; nothing is known about the section's
+      // ports.
       const bool mistyped = object_.has(key) || find_misspelt(reader_.document, object_.node(), key).valid();
       complete_ &= !mistyped;
       if (side == PortSide::write) writes_known_ &= !mistyped;
@@ -68,7 +70,7 @@ private:
                               side_of(first) == PortSide::read ? "read" : "write"));
   }
 
-  // False when what is bound could not be read.
+  // Returns false if the binding could not be read.
   bool read_one(PortSide side, NodeId node) {
     const int port = find(side, node);
     const std::string what = fmt::format("port '{}' of {}", reader_.document.key(node), object_.what());
@@ -84,7 +86,7 @@ private:
     const auto text = read_string(reader_.document, node, what, reader_.diagnostics);
     if (!text) return false;
     found.where = reader_.document.where(node);
-    // Kept even where the port is unknown: who writes what must be known to judge the readers.
+    // Stored even if the port is unknown, because checks of readers need to know all writes.
     found.binding.port = port < 0 ? unknown_port : static_cast<uint32_t>(port);
     return parse_reference(*text, what, side, found.where, found);
   }
@@ -95,7 +97,7 @@ private:
       check(kind_->ports[found.binding.port], what, found);
   }
 
-  // { "from": "name@-N", "requires": "valid", "otherwise": "name" }
+  // Reads { "from": "name@-N", "requires": "valid", "otherwise": "name" }.
   bool read_condition(NodeId node, int port, const std::string& what) {
     ObjectReader object(reader_.document, node, what, reader_.diagnostics);
     constexpr std::string_view requirements[] = {"valid"};
@@ -118,7 +120,7 @@ private:
     return true;
   }
 
-  // `instead` without a resource: the port says nothing of other frames.
+  // Checks a conditional read. `instead` has no resource if the port has no "otherwise".
   bool condition_fits(const std::string& what, const Found& history, const Found& instead) {
     const ResourceDeclaration& resource = reader_.graph.resources[history.binding.resource.value];
     const auto refuse = [&](const SourceLocation& where, std::string text) {
@@ -156,7 +158,7 @@ private:
       return port;
     }
     if (const int other = find_port(*kind_, name); other >= 0) {
-      bound_[static_cast<size_t>(other)] = true; // one error is enough
+      bound_[static_cast<size_t>(other)] = true; // reports only one error
       reader_.error(DiagnosticId::port_direction, reader_.document.where_key(node),
                     fmt::format("the port '{}' of type '{}' {}; list it under \"{}\"", name, kind_->name,
                                 usage_info(kind_->ports[static_cast<size_t>(other)].usage).writes
@@ -175,13 +177,13 @@ private:
                     name, side == PortSide::read ? "read" : "write",
                     names.empty() ? std::string() : fmt::format(", but {}", list_words(names))));
     one.suggestion = did_you_mean(name, names);
-    // A misspelt port is not missing as well.
+    // A misspelt port is not also reported as missing.
     const std::string_view meant = nearest(name, names);
     if (!meant.empty()) bound_[static_cast<size_t>(find_port(*kind_, meant, side))] = true;
     return -1;
   }
 
-  // "name", "name#mips[layers]", either of them of an earlier frame: "name@-N", "name#mips[layers]@-N".
+  // Parses "name" or "name#mips[layers]", with "@-N" for an earlier frame.
   bool parse_reference(std::string_view text, const std::string& what, PortSide side,
                        const SourceLocation& where, Found& out) {
     const size_t at = text.find('@');
@@ -230,7 +232,7 @@ private:
     return out.binding.part.whole() || check_part(text, what, out);
   }
 
-  // Whether the resource has such parts, as far as that is known before there is a view.
+  // Checks that the resource has the named part, as far as this is known without a view.
   bool check_part(std::string_view text, const std::string& what, const Found& found) {
     const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
     if (reader_.broken_resources[found.binding.resource.value]) return true;
@@ -255,7 +257,7 @@ private:
     return false;
   }
 
-  // A storage image has one mip: of an image with several the first, unless another one is named.
+  // Selects the single mip of a storage image: the first, unless another is named.
   bool choose_mip(const std::string& what, Found& found) {
     const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
     if (found.binding.port == unknown_port || resource.type != ResourceType::image || resource.mips == 1 ||
@@ -301,8 +303,8 @@ private:
   ObjectReader& object_;
   PassDeclaration& pass_;
   const PassType* kind_;
-  std::vector<bool> bound_; // by port: named by the file, rightly or not
-  bool complete_ = true;    // all bindings were seen
+  std::vector<bool> bound_; // by port: named in the file, correctly or not
+  bool complete_ = true;    // all bindings were read
   bool writes_known_ = true;
 };
 

@@ -1,4 +1,4 @@
-// Which formats of a resource fit a port.
+// Checks which formats of a resource a port supports.
 
 #include "framegraph/model/read/graph_reader.hpp"
 #include "framegraph/text/suggest.hpp"

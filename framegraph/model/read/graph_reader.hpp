@@ -1,5 +1,5 @@
 #pragma once
-// What the parts of read_graph share: the graph as far as it is read, and the names declared in it.
+// Shared state of read_graph: the graph read so far and the names declared in it.
 
 #include "framegraph/model/graph.hpp"
 #include "framegraph/text/document.hpp"
@@ -23,22 +23,22 @@ struct GraphReader {
   Diagnostics& diagnostics;
   Graph graph;
 
-  // All names are declared before anything that refers to them is read.
+  // All names are declared before any reference is read.
   std::map<std::string, SettingId, std::less<>> setting_names;
   std::map<std::string, ResourceId, std::less<>> resource_names;
   std::map<std::string, PassId, std::less<>> pass_names;
-  // Declared, but with errors: whatever depends on them is not checked.
+  // Declared with errors; anything that depends on them is not checked.
   std::vector<bool> broken_settings, broken_resources;
-  // Some names could not be read at all: one that is not found may be among them, and is no error.
+  // Some names could not be read, so an unknown name may be among them and is no error.
   bool unknown_settings = false, unknown_resources = false;
   bool unknown_writes = false; // some pass writes something that could not be read
-  // The message that a resource's formats do not fit a port: further ports are added to it. Indices into
-  // Diagnostics::list.
+  // By resource: index into Diagnostics::list of its format error, to which further ports are
+  // added.
   std::map<ResourceId, size_t> format_mismatches;
-  // "requires" of choices: read when all imports are known.
+  // "requires" of choices; read once all imports are known.
   std::vector<std::pair<SettingId, NodeId>> option_requirements;
   std::set<std::string, std::less<>> unknown_pass_types; // reported, each with all its passes
-  // Where each resource and pass is read from, by id.
+  // Document node of each resource and pass, by id.
   std::vector<NodeId> resource_nodes, pass_nodes;
 
   Diagnostic& error(DiagnosticId id, SourceLocation where, std::string text) {
@@ -46,12 +46,11 @@ struct GraphReader {
   }
 };
 
-// PortBinding::port while reading, where the pass type or its port is unknown. Never in a graph that is
-// handed out.
+// Value of PortBinding::port if the pass type or its port is unknown. Never occurs in a finished
+// graph.
 inline constexpr uint32_t unknown_port = 0xffffffffu;
 
-// In the order in which read_graph calls them. Invalid nodes (a key that is absent or mistyped) read as
-// empty.
+// Steps of read_graph, in call order. Invalid nodes (absent or mistyped keys) read as empty.
 void read_settings(GraphReader& reader, NodeId settings);
 void declare_resources(GraphReader& reader, NodeId list, Origin origin);
 void read_resources(GraphReader& reader);
@@ -61,19 +60,20 @@ void read_exports(GraphReader& reader, NodeId exports);
 void declare_passes(GraphReader& reader, NodeId passes);
 void read_passes(GraphReader& reader);
 void check_producers(GraphReader& reader);
-void check_reads(GraphReader& reader);       // what is read may be, in each state of the settings
-void check_needs(const GraphReader& reader); // of a graph without errors
+void check_reads(GraphReader& reader);       // checks that reads are allowed for all setting values
+void check_needs(const GraphReader& reader); // requires a graph without errors
 
-// Parts of passes. `pass` is the object at /passes/N; `what` names it in messages.
-// read_bindings: false when something that the pass writes is not known.
+// Read parts of passes. `pass` is the object at /passes/N. read_bindings returns false if some
+// write is not known.
 bool read_bindings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out);
 void read_pass_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration& out);
 
-// A resource by name; invalid after an error at `where`, or silently when some names are unknown.
+// Returns a resource by name; invalid after an error at `where`, or silently if some names are
+// unknown.
 ResourceId find_resource(GraphReader& reader, std::string_view name, std::string_view what,
                          const SourceLocation& where);
 
-// Names of a map in order, for suggestions.
+// Returns the names of a map in order, for suggestions.
 template <class Id>
 std::vector<std::string_view> names_of(const std::map<std::string, Id, std::less<>>& map) {
   std::vector<std::string_view> out;
@@ -82,20 +82,23 @@ std::vector<std::string_view> names_of(const std::map<std::string, Id, std::less
   return out;
 }
 
-// Whether two parts of one image have a mip of a layer in common.
+// Returns whether two parts of one image have a mip of a layer in common.
 bool meet(const ImagePart& a, const ImagePart& b);
 // Imports and exports: the host may bind an image of any declared format.
 inline bool may_be_host_owned(const ResourceDeclaration& resource) {
   return resource.origin == Origin::imported || resource.exported;
 }
-// Whether the port works with what `resource` can become: with all formats of which the host may bind one, or
-// with one of those from which the compiler chooses.
+// Returns whether the port supports the resource. For host-owned resources all declared formats
+// must fit; for others at least one, because the compiler chooses.
 bool formats_fit(const Port& port, const ResourceDeclaration& resource);
-std::string formats_taken(const Port& port); // all that it works with: "'r16f' or 'r32f'"
-// One message a resource, however many ports its formats do not fit. `port` says what is bound at `where`.
+// Returns all formats that the port supports: "'r16f' or 'r32f'".
+std::string formats_taken(const Port& port);
+// Reports unsupported formats, with one message per resource for all ports. `port` describes the
+// port bound at `where`.
 void report_formats(GraphReader& reader, ResourceId id, const SourceLocation& where, const std::string& port);
 
-// "note" of an object, "" where there is none or it is no string (which the object's reader reports).
+// Returns "note" of an object; "" if there is none or it is no string (which the object's reader
+// reports).
 std::string note_of(const Document& document, NodeId object);
 
 } // namespace dermis

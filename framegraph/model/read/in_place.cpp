@@ -1,5 +1,6 @@
-// What passes may read once `when` and `otherwise` have decided, whatever the settings are: never what the
-// pass writes itself, unless the port declares `own_texels`; and only what the port can work with.
+// Checks what passes may read for all values of `when` and `otherwise`. A pass must not read what
+// it writes itself, unless the port declares `own_texels`, and the port must support the resource's
+// format.
 
 #include "framegraph/model/in_place.hpp"
 #include "framegraph/model/expression.hpp"
@@ -16,7 +17,7 @@ namespace {
 struct Write {
   PassId pass;
   ImagePart part;
-  ResourceId instead; // valid: what readers get when the pass is off
+  ResourceId instead; // valid: readers get it if the pass is off
   SourceLocation where;
 };
 
@@ -50,19 +51,19 @@ public:
 private:
   const Graph& graph() const { return reader_.graph; }
 
-  // Whether the pass has no `when`, or one that could be read.
+  // Returns whether the pass has no `when`, or a `when` that could be read.
   bool condition_known(PassId id) const {
     return graph().passes[id.value].when.valid() ||
            !reader_.document.find(reader_.pass_nodes[id.value], "when").valid();
   }
 
-  // From the pass backwards: the last write before it is what it reads, or that pass is off.
+  // Walks from the pass backwards. A read sees the last earlier write whose pass is on.
   void follow() {
     conditions_.assign(1, {graph().passes[pass_.value].when, true});
     steps_.clear();
     seen_ = read_->part;
     ResourceId resource = read_->resource;
-    uint32_t before = pass_.value; // passes that count
+    uint32_t before = pass_.value; // only writes of earlier passes count
     for (size_t later = 0; later <= writes_.size();) {
       const std::vector<Write>& writes = writes_[resource.value];
       const auto end = std::partition_point(writes.begin(), writes.end(),
@@ -80,8 +81,8 @@ private:
           done(resource, nullptr);
           return;
         }
-        // Nothing writes it before: then its only producer counts, or where all are off the first that
-        // names a replacement.
+        // No earlier pass writes the resource: its only producer counts, or, if all are off, the
+        // first replacement.
         for (auto at = end; at != writes.end(); ++at) {
           if (!condition_known(at->pass) || !turn_off(at->pass)) return;
           if (!replaced && at->instead.valid()) replaced = &*at;
@@ -96,14 +97,15 @@ private:
     }
   }
 
-  // False: the pass is always on.
+  // Adds the condition that the pass is off. Returns false if the pass is always on.
   bool turn_off(PassId pass) {
     const ExpressionId when = graph().passes[pass.value].when;
     if (when.valid()) conditions_.push_back({when, false});
     return when.valid();
   }
 
-  // What is read is what `write` left, or the host's. True: reported.
+  // Checks the read of `write`, or of the host's contents if it is null. Returns true if an error
+  // was reported.
   bool done(ResourceId resource, const Write* write) {
     const PortBinding* written = port_->own_texels ? nullptr : written_too(resource);
     const ResourceDeclaration& declared = graph().resources[resource.value];
@@ -168,13 +170,13 @@ private:
   };
 
   GraphReader& reader_;
-  std::vector<std::vector<Write>> writes_; // by resource, in the order of the file
+  std::vector<std::vector<Write>> writes_; // by resource, in file order
   PassId pass_;
   const PortBinding* read_ = nullptr;
   const Port* port_ = nullptr;
   ImagePart seen_;
-  std::vector<Condition> conditions_; // under which it comes to this
-  std::vector<Step> steps_;           // what stands for what
+  std::vector<Condition> conditions_; // conditions under which the read happens
+  std::vector<Step> steps_;           // replacements followed so far
 };
 
 } // namespace

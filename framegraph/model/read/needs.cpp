@@ -1,5 +1,5 @@
-// What kernels need of images and buffers, beside what these are declared to have. Sizes follow the view, so
-// some views are tried.
+// Checks declared sizes of images and buffers against the needs of kernels. Sizes follow the view,
+// so several views are tried.
 
 #include "framegraph/model/read/graph_reader.hpp"
 
@@ -14,7 +14,7 @@ struct Size {
   uint64_t width = 0, height = 0; // 0: not known
 };
 
-constexpr uint64_t largest = uint64_t{1} << 32; // beyond it the compiler refuses
+constexpr uint64_t largest = uint64_t{1} << 32; // the compiler rejects larger sizes
 constexpr Size tried_views[] = {{1, 1}, {127, 65}, {1919, 1079}, {3840, 2160}};
 
 uint64_t ceil_div(uint64_t value, uint64_t by) {
@@ -31,8 +31,8 @@ uint64_t side_of(uint64_t base, const Rational& factor, const SizeExpression& si
   return std::min(aligned + 2 * uint64_t{size.border}, largest);
 }
 
-// Sizes of all resources for one view; those whose sizes go in a circle, which the compiler refuses, stay
-// unknown.
+// Returns the sizes of all resources for one view. Sizes that depend on each other in a cycle stay
+// unknown; the compiler rejects them.
 std::vector<Size> sizes_for(const Graph& graph, const Size& view) {
   std::vector<Size> known(graph.resources.size());
   std::vector<uint32_t> chain;
@@ -62,12 +62,13 @@ const PortNeed* need_of(const PassType& type, uint32_t port) {
   return nullptr;
 }
 
-// What is missing, "" where it is large enough.
+// Returns what is missing; "" if the resource is large enough.
 std::string unmet(const ResourceDeclaration& resource, const PortNeed& need, const Size& size,
                   const Size& view) {
   const uint64_t columns = need.square > 0 ? ceil_div(view.width, need.square) : 0;
   const uint64_t rows = need.square > 0 ? ceil_div(view.height, need.square) : 0;
-  if (resource.type == ResourceType::buffer && resource.origin == Origin::imported) return ""; // the host's
+  // the host's
+  if (resource.type == ResourceType::buffer && resource.origin == Origin::imported) return "";
   if (resource.type == ResourceType::image)
     return size.width >= columns && size.height >= rows
                ? ""

@@ -1,4 +1,4 @@
-// "set" of a pass: literals and "$name"s for the settings of its pass type.
+// Reads "set" of a pass: literals and "$name"s for the settings of its pass type.
 
 #include "framegraph/model/read/graph_reader.hpp"
 #include "framegraph/text/suggest.hpp"
@@ -26,7 +26,7 @@ std::string_view type_name(SettingType type) {
   return "";
 }
 
-// Why the graph's setting cannot drive the pass type's; empty when it can.
+// Returns why the graph's setting cannot drive the pass type's setting; empty if it can.
 std::string mismatch(const SettingDeclaration& from, const PassTypeSetting& to) {
   const SettingType type = from.type == SettingType::choice ? SettingType::enumeration : from.type;
   if (type != to.type)
@@ -36,7 +36,7 @@ std::string mismatch(const SettingDeclaration& from, const PassTypeSetting& to) 
     return fmt::format("its range {} .. {} reaches beyond the type's {} .. {}", from.minimum, from.maximum,
                        to.minimum, to.maximum);
   }
-  // Both hold the index of the option. A graph may leave out the pass type's last ones.
+  // Both hold the index of the option. A graph may omit the pass type's last options.
   const auto same = [](const std::string& a, std::string_view b) { return a == b; };
   if (type != SettingType::enumeration ||
       (from.options.size() <= to.options.size() &&

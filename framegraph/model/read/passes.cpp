@@ -1,5 +1,5 @@
-// "passes": kind, condition, ordering and pass-through of each. Ports are in bindings.cpp, settings in
-// pass_settings.cpp.
+// Reads "passes": type, condition, ordering and pass-through of each pass. bindings.cpp reads
+// ports, pass_settings.cpp settings.
 
 #include "framegraph/model/expression.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
@@ -18,7 +18,7 @@ std::string name_of_pass(const GraphReader& reader, size_t index) {
   return name.empty() ? fmt::format("pass number {}", index + 1) : fmt::format("pass '{}'", name);
 }
 
-// The other passes of an unknown kind: one root cause, one message.
+// Returns all passes of an unknown type, which share one message.
 std::vector<size_t> passes_of_type(const GraphReader& reader, std::string_view name) {
   std::vector<size_t> out;
   for (size_t i = 0; i < reader.pass_nodes.size(); ++i) {
@@ -72,7 +72,8 @@ void read_otherwise(GraphReader& reader, ObjectReader& object, PassDeclaration& 
   const NodeId list = object.object("otherwise", Need::optional);
   if (!list.valid()) return;
   const bool serves = pass.type.valid() && reader.pass_types[pass.type].serves_scattering;
-  if (!object.has("when") && !serves) { // pass types that serve scattering are off without a profile, too
+  // pass types that serve scattering are also off without a profile
+  if (!object.has("when") && !serves) {
     reader.error(
         DiagnosticId::bad_otherwise, reader.document.where_key(list),
         fmt::format("{} has no 'when', so it is never off and 'otherwise' never applies", object.what()));

@@ -1,4 +1,5 @@
-// Who writes what: what can be said before any `when` is decided. The rest is the compiler's.
+// Checks the producers of resources as far as possible before any `when` is decided. The compiler
+// checks the rest.
 
 #include "framegraph/model/read/graph_reader.hpp"
 
@@ -14,10 +15,10 @@ struct Producer {
   SourceLocation where;
 };
 
-// Of a resource: a pass that is always on and gives it its first version.
+// Producers of one resource. `first` is always on and creates the resource's first version.
 struct Producers {
-  bool any = false;   // some pass writes it, perhaps only sometimes, perhaps only updating
-  bool fresh = false; // some pass writes it without needing earlier contents
+  bool any = false;   // some pass writes the resource, possibly conditionally or only updating
+  bool fresh = false; // some pass writes the resource without needing earlier contents
   Producer first;
 };
 
@@ -32,7 +33,7 @@ bool reads_now(std::span<const PortBinding> reads, const PortBinding& written) {
   });
 }
 
-// Two ports of one pass cannot write the same memory.
+// Reports passes that write the same memory through two ports.
 void check_written_once(GraphReader& reader, const PassDeclaration& pass) {
   const auto writes = reader.graph.writes(pass);
   for (size_t i = 0; i < writes.size(); ++i) {
@@ -59,7 +60,7 @@ void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
     producers.fresh = true;
     // Passes with a `when` may exclude each other, and an unknown port may update.
     const bool sometimes = reader.document.find(reader.pass_nodes[id.value], "when").valid();
-    // Which parts of an image passes write the compiler says, who knows how many it has.
+    // The compiler checks parts of images, because it knows how many parts there are.
     if (sometimes || binding.port == unknown_port || resource.origin == Origin::imported ||
         !binding.part.whole())
       continue;
@@ -87,13 +88,13 @@ void require_producer(GraphReader& reader, std::vector<Producers>& all, Resource
                          producers.any ? "passes only update: none of them gives it its first contents"
                                        : "no pass writes"))
       .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
-  producers.fresh = true; // one error for each resource
+  producers.fresh = true; // one error per resource
 }
 
 } // namespace
 
 bool meet(const ImagePart& a, const ImagePart& b) {
-  const auto apart = [](uint32_t first, uint32_t count, uint32_t other) { // count 0: without end
+  const auto apart = [](uint32_t first, uint32_t count, uint32_t other) { // count 0: to the last
     return count != 0 && first + count <= other;
   };
   return !apart(a.first_mip, a.mips, b.first_mip) && !apart(b.first_mip, b.mips, a.first_mip) &&
@@ -106,7 +107,8 @@ void check_producers(GraphReader& reader) {
     check_written_once(reader, reader.graph.passes[i]);
     collect(reader, {i}, all);
   }
-  if (reader.unknown_writes) return; // the producer that seems to be missing may be among them
+  // a producer that seems to be missing may be among the unknown writes
+  if (reader.unknown_writes) return;
   for (const PassDeclaration& pass : reader.graph.passes) {
     for (const PortBinding& binding : reader.graph.reads(pass)) {
       require_producer(reader, all, binding.resource, reader.graph.place_of(binding),

@@ -1,5 +1,4 @@
-// "requires" of a graph and of the options of a choice: features of the device, and imports that are
-// optional.
+// Reads "requires" of a graph and of the options of a choice: device features and optional imports.
 
 #include "framegraph/model/read/graph_reader.hpp"
 #include "framegraph/text/limits.hpp"
@@ -18,7 +17,7 @@ std::vector<std::string_view> feature_words() {
   return words;
 }
 
-// One word of an option's list: a feature, or an optional import.
+// Reads one entry of an option's list: a feature or an optional import.
 bool read_need(GraphReader& reader, NodeId node, const std::string& what, OptionNeeds& needs) {
   const auto word = read_string(reader.document, node, what, reader.diagnostics);
   if (!word) return false;

@@ -1,4 +1,4 @@
-// "imports", "resources" and "exports".
+// Reads "imports", "resources" and "exports".
 
 #include "framegraph/model/read/graph_reader.hpp"
 #include "framegraph/model/size_expression.hpp"
@@ -13,7 +13,7 @@ namespace dermis {
 
 namespace {
 
-// What hosts keep depth in, exact formats first.
+// Formats of the class "depth", exact formats first.
 constexpr Format depth_class[] = {Format::d32f,  Format::d24,    Format::d16,
                                   Format::d24s8, Format::d32fs8, Format::r32f};
 
@@ -35,7 +35,7 @@ bool read_format(GraphReader& reader, NodeId node, const std::string& what, Form
     for (Format format : depth_class)
       add(format);
   } else {
-    add(static_cast<Format>(*word)); // words follow the enumeration, whose 0 is no format
+    add(static_cast<Format>(*word)); // words follow the enumeration, whose value 0 is no format
   }
   return true;
 }
@@ -52,7 +52,7 @@ bool read_formats(GraphReader& reader, ObjectReader& object, FormatList& out) {
   return ok;
 }
 
-// "round" and "align", beside "size" or "count".
+// Reads "round" and "align", which may accompany "size" or "count".
 void read_rounding(ObjectReader& object, SizeExpression& size) {
   constexpr std::string_view words[] = {"ceil", "floor"};
   size.rounding =
@@ -61,7 +61,7 @@ void read_rounding(ObjectReader& object, SizeExpression& size) {
       static_cast<uint32_t>(object.integer("align", 1, limits::image_side, Need::optional).value_or(1));
 }
 
-// False after an error; a base that is a buffer is one.
+// Returns false after an error. A buffer as base is an error.
 bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, ResourceId owner,
                SizeExpression& out) {
   SizeExpression rounding;
@@ -117,7 +117,7 @@ bool read_history(GraphReader& reader, ObjectReader& object, ResourceType type, 
 bool read_buffer(GraphReader& reader, NodeId node, ResourceId id, ResourceDeclaration& out) {
   ObjectReader buffer(reader.document, node, fmt::format("buffer '{}'", out.name), reader.diagnostics);
   if (!buffer.ok()) return false;
-  // Storage buffers are arrays of 32-bit words (vkCmdFillBuffer clears in fours).
+  // Storage buffers are arrays of 32-bit words (vkCmdFillBuffer clears in units of 4 bytes).
   constexpr uint32_t word = 4;
   const auto stride = buffer.integer("stride", word, limits::buffer_stride);
   bool ok = stride.has_value();
@@ -128,7 +128,8 @@ bool read_buffer(GraphReader& reader, NodeId node, ResourceId id, ResourceDeclar
         fmt::format("'stride' of {} is {}; it must be a multiple of {}", buffer.what(), *stride, word));
   }
   out.stride = static_cast<uint32_t>(stride.value_or(word));
-  const bool minimum = out.origin != Origin::imported || buffer.has("count"); // hosts may bind any number
+  // hosts may bind any number
+  const bool minimum = out.origin != Origin::imported || buffer.has("count");
   out.extra_elements =
       static_cast<uint64_t>(buffer.integer("extra", 0, limits::buffer_elements, Need::optional).value_or(0));
   if (minimum)
@@ -227,7 +228,7 @@ void declare_resources(GraphReader& reader, NodeId list, Origin origin) {
     const auto [entry, added] = reader.resource_names.emplace(
         declared.name, ResourceId{static_cast<uint32_t>(reader.graph.resources.size())});
     if (!added) {
-      reader.broken_resources[entry->second.value] = true; // which of the two is meant is not known
+      reader.broken_resources[entry->second.value] = true; // the reference is ambiguous
       const SourceLocation first = reader.graph.resources[entry->second.value].where;
       reader
           .error(DiagnosticId::duplicate_name, declared.where,
@@ -267,7 +268,7 @@ void read_exports(GraphReader& reader, NodeId exports) {
     }
     resource.exported = true;
   }
-  if (!all_known) return; // one of those may be meant
+  if (!all_known) return; // unknown exports may be among the resources below
   for (uint32_t i = 0; i < reader.graph.resources.size(); ++i) {
     const ResourceDeclaration& resource = reader.graph.resources[i];
     if (!resource.optional || resource.exported || resource.origin == Origin::imported) continue;

@@ -1,4 +1,4 @@
-// "settings": typed values that the host may change at run time.
+// Reads "settings": typed values that the host may change at run time.
 
 #include "framegraph/model/expression_lexer.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
@@ -22,7 +22,7 @@ constexpr int64_t min_integer = std::numeric_limits<int32_t>::min();
 constexpr int64_t max_integer = std::numeric_limits<int32_t>::max();
 constexpr double max_real = std::numeric_limits<float>::max();
 
-// Does least <= value <= greatest hold? Each by itself is good already.
+// Checks minimum <= value <= maximum. The numbers are already valid individually.
 template <class Number>
 bool check_range(GraphReader& reader, const ObjectReader& object, std::string_view key, Number minimum,
                  Number maximum, Number value) {
@@ -86,7 +86,7 @@ bool read_default(GraphReader& reader, ObjectReader& object, std::string_view ke
   return false;
 }
 
-// A name, or a whole number ("25"): options are quoted wherever they stand.
+// Reads a name or a whole number such as "25". Options are always quoted.
 std::optional<std::string_view> read_option(GraphReader& reader, NodeId node, std::string_view what) {
   const auto text = read_string(reader.document, node, what, reader.diagnostics);
   if (!text) return std::nullopt;
@@ -98,7 +98,7 @@ std::optional<std::string_view> read_option(GraphReader& reader, NodeId node, st
 
 void read_options(GraphReader& reader, ObjectReader& object, std::string_view key, SettingDeclaration& out,
                   bool& ok) {
-  object.any("default"); // asked for, whatever goes wrong below
+  object.any("default"); // marks the key as known, even if reading fails below
   const NodeId list = object.array(key, 1, limits::options);
   if (!list.valid()) return;
   for (NodeId node : children(reader.document, list)) {
@@ -116,7 +116,8 @@ void read_options(GraphReader& reader, ObjectReader& object, std::string_view ke
   if (ok) ok = read_default(reader, object, key, out);
 }
 
-// No key gives the type; one of those that are there may be meant to.
+// Reports a setting without a type key, and suggests the type key that is closest to an unknown
+// key.
 void report_untyped(GraphReader& reader, const ObjectReader& object) {
   constexpr std::string_view other_keys[] = {"min", "max", "default", "by", "unit", "note"};
   const std::string text =
@@ -146,7 +147,8 @@ bool read_setting(GraphReader& reader, NodeId node, SettingId id, SettingDeclara
     return false;
   }
   bool ok = true;
-  object.any(type_keys[found], Need::optional); // asked for, whatever goes wrong below
+  // marks the key as known, even if reading fails below
+  object.any(type_keys[found], Need::optional);
   out.type = types[found];
   out.note = note_of(reader.document, node);
   out.unit = object.string("unit", Need::optional).value_or("");
