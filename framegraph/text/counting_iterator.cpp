@@ -47,7 +47,7 @@ void TextCursor::begin_between(char c) {
 
 void TextCursor::advance() {
   const char c = current();
-  // The parser takes a NUL for the end of the input and would silently ignore what follows.
+  // The parser takes a NUL as the end of the input and would silently ignore the rest.
   if (c == '\0') {
     end(EarlyEnd::nul_byte, position_);
     return;

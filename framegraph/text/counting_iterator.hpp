@@ -1,7 +1,7 @@
 #pragma once
-// The input that the JSON parser reads through: counts lines and columns, remembers where each token starts,
-// and ends early when a limit is passed, so that no limit depends on what the parser would have allocated by
-// then.
+// Provides the input that the JSON parser reads: counts lines and columns and remembers token
+// starts. Ends early if a limit is exceeded, so that limits do not depend on what the parser has
+// allocated.
 
 #include "framegraph/text/limits.hpp"
 
@@ -14,13 +14,13 @@ namespace dermis {
 
 struct TextPosition {
   size_t offset = 0;
-  uint32_t line = 1, column = 1; // bytes
+  uint32_t line = 1, column = 1; // in bytes, from 1
 };
 
 enum class EarlyEnd : uint8_t { none, nul_byte, block_comment, long_string, long_number, deep_nesting };
 
-// A scanner of just enough JSON to know where tokens start. In step with the parser as long as the text is
-// valid; behind the first error nothing it says is used.
+// Scans just enough JSON to find token starts. Agrees with the parser while the text is valid; its
+// output is not used after the first error.
 class TextCursor {
 public:
   explicit TextCursor(std::string_view text) : text_(text) {}
@@ -30,12 +30,12 @@ public:
   void advance();
 
   EarlyEnd early_end() const { return early_end_; }
-  // Where the limit was passed; the start of the string or number for those.
+  // Returns where a limit was exceeded; for strings and numbers their start.
   TextPosition early_end_position() const { return early_end_position_; }
-  // First character of the last key, string, number, word, '{' or '[' that began.
+  // Returns the first character of the last key, string, number, word, '{' or '['.
   TextPosition value_position() const { return value_; }
-  // First character of the last token of any sort that began before `offset`. Looks back over two tokens: the
-  // parser reads one character ahead behind numbers.
+  // Returns the first character of the last token that began before `offset`. Keeps two tokens,
+  // because the parser reads one character beyond a number.
   TextPosition token_position_before(size_t offset) const {
     return token_.offset < offset ? token_ : previous_token_;
   }
@@ -55,7 +55,7 @@ private:
   EarlyEnd early_end_ = EarlyEnd::none;
 };
 
-// Input iterator over a cursor that outlives it; the default-constructed one is the end.
+// Input iterator over a cursor that must outlive it. A default-constructed iterator is the end.
 class CountingIterator {
 public:
   using iterator_category = std::input_iterator_tag;

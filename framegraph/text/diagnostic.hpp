@@ -1,5 +1,6 @@
 #pragma once
-// One message with a stable id: what, where, what was expected, what to do. Errors are values.
+// Defines diagnostics: messages with a stable id that say what is wrong, where, what was expected
+// and what to do. Errors are values.
 
 #include "framegraph/text/index.hpp"
 
@@ -12,10 +13,10 @@
 
 namespace dermis {
 
-// Where a value stands in the text it was read from. Lines and columns count from 1, columns in bytes.
+// Location of a value in its source text. Lines and columns count from 1, columns in bytes.
 struct SourceLocation {
-  FileId file;                   // into Diagnostics::files; invalid: no file at all
-  uint32_t line = 0, column = 0; // 0: the file as a whole
+  FileId file;                   // into Diagnostics::files; invalid: no file
+  uint32_t line = 0, column = 0; // 0: the whole file
   std::string pointer;           // JSON pointer (RFC 6901), "" for the root
 };
 
@@ -32,7 +33,7 @@ struct DiagnosticInfo {
   std::string_view code; // "D0123"
   std::string_view name; // "unknown_key"
   Severity severity;
-  std::string_view hint; // what to do, in general
+  std::string_view hint; // general advice
 };
 
 const DiagnosticInfo& diagnostic_info(DiagnosticId id);
@@ -41,9 +42,10 @@ std::span<const DiagnosticInfo> all_diagnostic_infos(); // sorted by id
 struct Diagnostic {
   DiagnosticId id{};
   SourceLocation where;
-  std::string text;       // names the thing, what was expected and what was found
-  std::string suggestion; // "did you mean 'size'?", may be empty
-  std::vector<std::pair<SourceLocation, std::string>> related; // the other end: "declared here"
+  std::string text;       // names the object, what was expected and what was found
+  std::string suggestion; // "did you mean 'size'?"; may be empty
+  // other locations involved: "declared here"
+  std::vector<std::pair<SourceLocation, std::string>> related;
 };
 
 struct SourceFile {
@@ -51,27 +53,31 @@ struct SourceFile {
   std::string text; // kept for excerpts
 };
 
-// All that was found in one run, in order of discovery; and the texts they point into. At most
-// limits::diagnostics are kept, then one too_many_diagnostics; errors beyond that still count as errors.
+// Holds the diagnostics of one run in order of discovery, and the texts that they refer to. At most
+// limits::diagnostics are kept, then one too_many_diagnostics; further errors are still counted.
 struct Diagnostics {
   std::vector<SourceFile> files;
   std::vector<Diagnostic> list;
   uint64_t dropped_errors = 0;
-  Diagnostic dropped; // what add() returns once the list is full
+  Diagnostic dropped; // returned by add() once the list is full
 
-  // The new entry, to add a suggestion or related locations to; valid until the next add().
+  // Adds an entry and returns it, to add a suggestion or related locations; valid until the next
+  // add().
   Diagnostic& add(DiagnosticId id, SourceLocation where, std::string text);
-  bool full() const; // nothing more will be listed: readers may stop looking
+  // Returns true if nothing more will be listed, so that readers may stop.
+  bool full() const;
   bool has_errors() const;
   uint32_t count(Severity severity) const;
 };
 
-// "file:line:column: error[D0101 unknown_key]: text", excerpt with caret, hint. No trailing newline.
+// Returns "file:line:column: error[D0101 unknown_key]: text", an excerpt with a caret, and the
+// hint, without a trailing newline.
 std::string format_for_people(const Diagnostics& all, const Diagnostic& one, bool excerpt = true);
-// The whole list as a JSON array of {id, name, severity, file, line, column, pointer, text, suggestion, hint,
-// related}.
+// Returns the whole list as a JSON array of {id, name, severity, file, line, column, pointer, text,
+// suggestion, hint, related}.
 std::string format_as_json(const Diagnostics& all);
-// The whole list as a SARIF 2.1.0 log of one run. Columns count code points there, paths are URIs.
+// Returns the whole list as a SARIF 2.1.0 log with one run. Its columns count code points, and its
+// paths are URIs.
 std::string format_as_sarif(const Diagnostics& all, std::string_view tool_version);
 
 } // namespace dermis

@@ -1,5 +1,5 @@
-// Diagnostics as text for people and as JSON for programs. What they quote comes from hostile files: nothing
-// unprintable reaches a terminal, and no excerpt is longer than a line of one.
+// Formats diagnostics as text and as JSON. Quoted text may come from hostile files: unprintable
+// characters are escaped, and excerpts fit in one terminal line.
 
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/text/utf8.hpp"
@@ -13,7 +13,8 @@ namespace dermis {
 
 namespace {
 
-constexpr size_t excerpt_before = 60, excerpt_after = 40; // bytes shown on either side of the column
+// bytes shown on either side of the column
+constexpr size_t excerpt_before = 60, excerpt_after = 40;
 
 std::string_view severity_name(Severity severity) {
   switch (severity) {
@@ -45,7 +46,7 @@ bool is_continuation(char c) {
   return (static_cast<uint8_t>(c) & 0xc0) == 0x80;
 }
 
-// "\n   12 | the line\n      |     ^", or nothing where the text is not at hand.
+// Appends "\n   12 | the line\n      |     ^", or nothing if the text is not available.
 void append_excerpt(std::string& out, const Diagnostics& all, const SourceLocation& where) {
   if (!where.file.valid() || where.file.value >= all.files.size() || where.line == 0 || where.column == 0)
     return;
@@ -67,7 +68,7 @@ void append_excerpt(std::string& out, const Diagnostics& all, const SourceLocati
   while (last < line.size() && is_continuation(line[last]))
     ++last;
 
-  // One column of the terminal for each code point, so that the caret stands below its character.
+  // Uses one terminal column per code point, so that the caret is below its character.
   const auto one_column_each = [](std::string_view part) {
     std::string columns(part);
     for (char& c : columns) {

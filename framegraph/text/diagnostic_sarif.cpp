@@ -1,4 +1,5 @@
-// Diagnostics as SARIF 2.1.0 (OASIS), which code hosts and editors show beside the lines they are about.
+// Formats diagnostics as SARIF 2.1.0 (OASIS), which code hosts and editors show next to the
+// affected lines.
 
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/text/json_writer.hpp"
@@ -21,7 +22,7 @@ std::string printable(std::string_view text) {
   return out;
 }
 
-// A path as a URI reference (RFC 3986): relative ones stay relative.
+// Returns a path as a URI reference (RFC 3986); relative paths stay relative.
 std::string uri_of(std::string_view path) {
   constexpr std::string_view unreserved = "-._~/";
   std::string out = path.starts_with('/') ? "file://" : "";
@@ -35,7 +36,7 @@ std::string uri_of(std::string_view path) {
   return out;
 }
 
-// Our columns count bytes, those of the log code points.
+// Converts a column in bytes to the log's column in code points.
 uint32_t column_in_code_points(const SourceFile& file, const SourceLocation& where) {
   size_t begin = 0;
   for (uint32_t line = 1; line < where.line; ++line) {
@@ -50,7 +51,7 @@ uint32_t column_in_code_points(const SourceFile& file, const SourceLocation& whe
          }));
 }
 
-// The members of a location object; nothing where there is no file.
+// Writes the members of a location object; nothing without a file.
 void write_location(JsonWriter& out, const Diagnostics& all, const SourceLocation& where) {
   if (!where.file.valid() || where.file.value >= all.files.size()) return;
   const SourceFile& file = all.files[where.file.value];
@@ -99,7 +100,7 @@ void write_result(JsonWriter& out, const Diagnostics& all, const Diagnostic& one
 } // namespace
 
 std::string format_as_sarif(const Diagnostics& all, std::string_view tool_version) {
-  std::vector<DiagnosticId> rules; // those that occur
+  std::vector<DiagnosticId> rules; // diagnostics that occur
   for (const Diagnostic& one : all.list)
     if (std::find(rules.begin(), rules.end(), one.id) == rules.end()) rules.push_back(one.id);
   std::sort(rules.begin(), rules.end());

@@ -95,7 +95,7 @@ SourceLocation where_in_string(const Document& document, NodeId id, size_t decod
   }
   SourceLocation out = document.where(id);
   const std::string_view text = all.files[document.file.value].text;
-  size_t at = document[id].offset + 1; // behind the opening quote
+  size_t at = document[id].offset + 1; // after the opening quote
   for (size_t produced = 0; produced < decoded && at < text.size();) {
     if (text[at] != '\\') {
       ++at;
@@ -135,7 +135,7 @@ std::optional<Document> read_document(const std::string& path, Diagnostics& diag
                       ? fmt::format("cannot read the file: {}", error.message())
                       : "the file does not exist");
   }
-  // A pipe or a device could deliver without end.
+  // A pipe or a device could deliver data without end.
   if (!std::filesystem::is_regular_file(status))
     return refuse(DiagnosticId::file_unreadable, "not a regular file");
   const uintmax_t size = std::filesystem::file_size(path, error);

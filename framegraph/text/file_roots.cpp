@@ -17,7 +17,7 @@ fs::path or_working_folder(const fs::path& folder) {
   return folder.empty() ? fs::path(".") : folder;
 }
 
-// Without links and steps; what is not there yet stays as it is called.
+// Resolves links and steps such as "..". Parts that do not exist stay as given.
 fs::path real_path(const fs::path& path, std::error_code& error) {
   fs::path real = fs::absolute(or_working_folder(path), error);
   if (!error) real = fs::weakly_canonical(real, error);
@@ -36,7 +36,8 @@ PlacedFile place_file(const fs::path& folder, std::string_view name, std::span<c
     placed.problem = "it is no name of a file";
     return placed;
   }
-  placed.path = (folder / fs::path(name)).lexically_normal(); // what is looked at is what will be opened
+  // exactly the path that will be opened
+  placed.path = (folder / fs::path(name)).lexically_normal();
   std::error_code error;
   placed.real = real_path(placed.path, error);
   if (error) {
@@ -59,7 +60,7 @@ fs::path home_of(const fs::path& file) {
   const std::string name = folder.filename().string();
   const bool project =
       std::find(project_folders.begin(), project_folders.end(), name) != project_folders.end();
-  // As the file was called, so that messages show what their reader wrote.
+  // Returns the folder as the file was named, so that messages show what the user wrote.
   const fs::path own = file.parent_path();
   if (!project) return own;
   return (or_working_folder(own) / "..").lexically_normal();

@@ -1,5 +1,5 @@
 #pragma once
-// Where files that other files name may lie: below declared folders and nowhere else (docs/security.md).
+// Restricts the files that other files may name to declared folders (docs/security.md).
 
 #include <filesystem>
 #include <span>
@@ -9,18 +9,19 @@
 namespace dermis {
 
 struct PlacedFile {
-  std::filesystem::path path; // of folder and name, without steps that lead back; to be opened
-  std::filesystem::path real; // what links make of it; nothing may be there
-  std::string problem;        // "": the place is below one of the roots
+  std::filesystem::path path; // folder and name without ".." steps; the path to open
+  std::filesystem::path real; // path with links resolved; may not exist
+  std::string problem;        // "": the path is below one of the roots
 };
 
-// The place that `name` means to a file in `folder` ("": the working folder), if it is below one of `roots`
-// once all links are followed. Looks at folders and links, opens nothing. Any thread.
+// Resolves `name`, as written in a file in `folder` ("": the working folder). The result must be
+// below one of `roots` after all links are followed. Inspects folders and links, but opens nothing.
+// Any thread.
 PlacedFile place_file(const std::filesystem::path& folder, std::string_view name,
                       std::span<const std::filesystem::path> roots);
 
-// What a file may name without being asked: the folder that it is in or, where that is the folder "graphs",
-// "overlays", "profiles" or "scenes" of a project, the project's. Any thread.
+// Returns the folder that a file may always name: its own folder or, if that is a project's
+// "graphs", "overlays", "profiles" or "scenes" folder, the project's folder. Any thread.
 std::filesystem::path home_of(const std::filesystem::path& file);
 
 } // namespace dermis

@@ -1,5 +1,6 @@
 #pragma once
-// Small integers that name objects in lists. Distinct types, so that a pass is never used to index resources.
+// Small integers that identify objects in lists. Types are distinct, so that a pass never indexes
+// resources.
 
 #include <compare>
 #include <cstdint>
@@ -15,6 +16,6 @@ template <class Tag> struct Index {
 };
 
 using NodeId = Index<struct NodeTag>; // into Document
-using FileId = Index<struct FileTag>; // into the list of files a document was read from
+using FileId = Index<struct FileTag>; // into Diagnostics::files
 
 } // namespace dermis

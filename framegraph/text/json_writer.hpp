@@ -1,6 +1,6 @@
 #pragma once
-// Writes JSON whose bytes depend on nothing but the values: fixed key order (that of the calls), two spaces
-// of indentation, shortest numbers that read back exactly.
+// Writes JSON whose bytes only depend on the values: keys in call order, two spaces of indentation,
+// and the shortest numbers that read back exactly.
 
 #include <cstdint>
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace dermis {
 
-// Calls must nest: key() before each value inside an object, no key() inside an array. An object or array
-// opened as `compact` is written on one line, and so is all it holds.
+// Calls must nest: key() before each value inside an object, no key() inside an array. An object or
+// array opened as `compact` is written on one line, with all its contents.
 class JsonWriter {
 public:
   JsonWriter& open_object(bool compact = false) { return open('{', compact); }
   JsonWriter& open_array(bool compact = false) { return open('[', compact); }
-  JsonWriter& close(); // the innermost object or array
+  JsonWriter& close(); // closes the innermost object or array
   JsonWriter& key(std::string_view name);
 
   JsonWriter& value(std::string_view text); // UTF-8; control characters, '"' and '\' are escaped
@@ -27,13 +27,14 @@ public:
   JsonWriter& value(int32_t number) { return value(static_cast<int64_t>(number)); }
   JsonWriter& value(uint32_t number) { return value(static_cast<uint64_t>(number)); }
   JsonWriter& null() { return raw("null"); }
-  JsonWriter& json(std::string_view text) { return raw(text); } // a whole value that is JSON already
+  // a whole value that already is JSON
+  JsonWriter& json(std::string_view text) { return raw(text); }
 
   template <class T> JsonWriter& member(std::string_view name, const T& what) {
     return key(name).value(what);
   }
 
-  // What was written, with a newline at the end.
+  // Returns the written text, with a newline at the end.
   std::string finish() &&;
 
 private:

@@ -1,4 +1,4 @@
-// The only file that knows the JSON parser: its SAX events become nodes.
+// Converts the SAX events of the JSON parser into nodes. No other file depends on the parser.
 
 #include "framegraph/text/counting_iterator.hpp"
 #include "framegraph/text/document.hpp"
@@ -62,8 +62,8 @@ public:
     if (token.find_first_of(".eE") == std::string_view::npos) return reject_integer();
     Node* node = add(NodeKind::real);
     if (node == nullptr) return false;
-    // The parser's value went through strtod and the host's locale; from_chars knows no locale. It may refuse
-    // what underflows to a denormal, for which the parser's value stands.
+    // The parser converts with strtod, which depends on the host's locale; from_chars does not.
+    // from_chars may reject denormals, for which the parser's value is used.
     double exact = 0.0;
     const auto result = std::from_chars(token.data(), token.data() + token.size(), exact);
     node->real = result.ec == std::errc() ? exact : value;
@@ -189,7 +189,8 @@ bool NodeBuilder::key(string_t& value) {
 bool NodeBuilder::end_object() {
   const NodeId object = open_.back().node;
   open_.pop_back();
-  // Sorted rather than compared pairwise: a hostile object may have hundreds of thousands of keys.
+  // Sorts instead of comparing pairs, because a hostile object may have hundreds of thousands of
+  // keys.
   std::vector<NodeId> members;
   for (NodeId child = document_[object].first_child; child.valid(); child = document_[child].next) {
     members.push_back(child);
@@ -221,14 +222,14 @@ bool NodeBuilder::end_object() {
 bool NodeBuilder::parse_error(size_t position, const std::string&,
                               const nlohmann::detail::exception& exception) {
   failed_ = true;
-  if (cursor_.early_end() != EarlyEnd::none) return false; // reported by the caller, who knows the limit
+  if (cursor_.early_end() != EarlyEnd::none) return false; // the caller reports the limit
   if (exception.id == out_of_range_exception) {
     return refuse(
         DiagnosticId::out_of_range, cursor_.value_position(),
         fmt::format("the number {} is beyond the range of double precision", shown_token(number_token())));
   }
-  // "[json.exception...] parse error at line L, column C: syntax error while parsing W - what; last read:
-  // '...'"
+  // Format: "[json.exception...] parse error at line L, column C: syntax error while parsing W -
+  // what; last read: '...'"
   std::string_view what = exception.what();
   std::string_view where_in_grammar;
   constexpr std::string_view while_parsing = "while parsing ", separator = " - ",
@@ -242,11 +243,11 @@ bool NodeBuilder::parse_error(size_t position, const std::string&,
   }
   std::string reason(what.substr(0, what.find(last_read)));
   if (const size_t begin = what.find(last_read); begin != std::string_view::npos) {
-    // Behind the quoted token: "; expected ...".
+    // Text after the quoted token: "; expected ...".
     const size_t end = what.rfind("'; expected ");
     if (end != std::string_view::npos && end > begin) reason += what.substr(end + 1);
   }
-  // The two slips that are made most, by their name. An empty object or array is well-formed.
+  // Names the two most common mistakes. An empty object or array is well-formed.
   const bool in_array = !open_.empty() && document_[open_.back().node].kind == NodeKind::array;
   if ((where_in_grammar == "object key" && reason.starts_with("unexpected '}'")) ||
       (where_in_grammar == "value" && in_array && reason.starts_with("unexpected ']'")))
@@ -321,7 +322,7 @@ std::optional<Document> parse_document(std::string name, std::string text, Diagn
     parsed = nlohmann::json::sax_parse(CountingIterator(cursor), CountingIterator(), &builder,
                                        nlohmann::json::input_format_t::json, true, true);
   } catch (const std::bad_alloc&) {
-    throw; // not the text's fault: the caller tells it as what it is
+    throw; // not the text's fault; the caller reports it as out of memory
   } catch (const std::exception& exception) {
     diagnostics.add(DiagnosticId::syntax, {document.file, 0, 0, ""},
                     fmt::format("the JSON parser gave up: {}", exception.what()));

@@ -132,7 +132,7 @@ std::vector<NodeId> children(const Document& document, NodeId node) {
 
 namespace {
 
-// The key by which a file of another kind says what it is ("dermis": a graph); invalid: there is none.
+// Returns the key that states another file type ("dermis": a graph); invalid if there is none.
 NodeId find_other_type(const Document& document) {
   for (const NodeId node : children(document, document.root()))
     if ((document.key(node) == "dermis" || document.key(node).starts_with("dermis_")) &&
@@ -298,7 +298,8 @@ bool ObjectReader::finish() {
     const std::string_view key = document_.key(child);
     if (std::find(requested_.begin(), requested_.end(), key) != requested_.end()) continue;
     ok_ = false;
-    if (diagnostics_.full()) break; // a hostile object may have hundreds of thousands of unknown keys
+    // a hostile object may have hundreds of thousands of unknown keys
+    if (diagnostics_.full()) break;
     const std::string_view meant = nearest(key, requested_);
     const auto missing =
         std::find_if(missing_.begin(), missing_.end(), [&](const Missing& one) { return one.key == meant; });
@@ -307,7 +308,7 @@ bool ObjectReader::finish() {
                      fmt::format("{} has no key '{}'", what_, shown_token(key)),
                      did_you_mean(key, requested_),
                      {}};
-    if (missing != missing_.end()) { // one root cause: the key is there, misspelt
+    if (missing != missing_.end()) { // one root cause: the key is misspelt, not missing
       diagnostics_.list[missing->diagnostic] = std::move(fresh);
       missing_.erase(missing);
     } else {

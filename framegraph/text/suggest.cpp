@@ -8,7 +8,7 @@ namespace dermis {
 
 namespace {
 
-constexpr size_t longest_compared = 64; // longer words are not typing slips of ours
+constexpr size_t longest_compared = 64; // longer words are not typing mistakes
 constexpr size_t longest_list = 12;
 
 char lower(char c) {
@@ -45,7 +45,7 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
   for (std::string_view candidate : candidates) {
     if (candidate.empty() || candidate.size() > longest_compared) continue;
     const size_t distance = edit_distance(word, candidate, best_distance - 1);
-    // A word of which nothing is kept is no slip of the pen.
+    // A word that shares no characters with the candidate is no typing mistake.
     if (distance < best_distance && distance < std::max(word.size(), candidate.size())) {
       best_distance = distance;
       best = candidate;

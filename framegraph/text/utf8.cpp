@@ -16,7 +16,8 @@ size_t utf8_sequence_bytes(std::string_view text) {
   for (size_t i = 1; i < length; ++i) {
     if ((byte(i) & 0xc0) != 0x80) return 0;
   }
-  // RFC 3629 section 4: the second byte is narrower after E0 and F0 (overlong), ED (surrogates), F4 (range).
+  // RFC 3629 section 4: the second byte is restricted after E0 and F0 (overlong), ED (surrogates)
+  // and F4 (range).
   if (lead == 0xe0 && byte(1) < 0xa0) return 0;
   if (lead == 0xed && byte(1) > 0x9f) return 0;
   if (lead == 0xf0 && byte(1) < 0x90) return 0;
