@@ -11,10 +11,11 @@ namespace dermis {
 
 namespace {
 
-// Entries of the graph's own passes that stand for files give way to those files' passes.
+// Replaces entries of the graph's passes that include files by the passes of those files.
 void expand_graph(Composer& composer) {
   const ItemId passes = composer.tree.find({0}, "passes");
-  if (!passes.valid() || composer.tree.kind(passes) != NodeKind::array) return; // the graph's reader says so
+  // the graph's reader reports it
+  if (!passes.valid() || composer.tree.kind(passes) != NodeKind::array) return;
   std::vector<ItemId> expanded;
   const std::vector<ItemId> entries = composer.tree[passes].children;
   for (const ItemId entry : entries) {

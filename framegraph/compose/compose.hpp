@@ -1,6 +1,6 @@
 #pragma once
-// One graph out of several files: fragments that its passes include, then overlays in the order in which they
-// are given. Every value of the result knows the file that set it. Formats: docs/overlays.md.
+// Composes one graph of several files: fragments that its passes include, then overlays in the
+// given order. Every value of the result records the file that set it. Formats: docs/overlays.md.
 
 #include "framegraph/text/document.hpp"
 
@@ -13,19 +13,19 @@
 
 namespace dermis {
 
-// A file by the name that an "include" gives. Names are relative, with '/' between folders and without "..":
-// whoever opens them decides where that is.
+// Contents of a file that an "include" names. Names are relative, with '/' between folders and
+// without ".."; the function that opens files chooses the base folder.
 struct FileText {
   std::string name;    // for messages
   std::string text;    // of the file
-  std::string problem; // why there is none; "" for success
+  std::string problem; // why the file cannot be read; "" on success
 };
 using OpenFile = std::function<FileText(std::string_view name)>;
 
-// Is it a name that may be opened? Else an error at `where`.
+// Returns whether the name may be opened; else reports an error at `where`.
 bool check_file_name(std::string_view name, std::string_view what, const SourceLocation& where, Diagnostics&);
 
-// What a file other than the graph's did, in the order in which it happened.
+// Records a change that a file other than the graph's made, in order.
 struct Change {
   enum class What : uint8_t { include, insert, replace, remove, set } what;
   std::string at; // path in the graph as an overlay writes it: "/passes/scatter/set/samples"
@@ -34,7 +34,8 @@ struct Change {
 
 std::string_view change_name(Change::What what);
 
-// Who set what, for whoever explains a graph: changes and the files that their places name.
+// Records which file set what, to explain a graph: changes and the files that their locations refer
+// to.
 struct Provenance {
   std::span<const Change> changes = {};
   std::span<const SourceFile> files = {};
@@ -47,15 +48,16 @@ struct Composition {
   std::vector<Change> changes;
 };
 
-// `graph` with its includes and `overlays` applied; as it is where there are none. nullopt with errors in
-// `diagnostics`. An empty `open` opens nothing. Free-threaded if `open` is.
+// Returns `graph` with its includes and `overlays` applied; unchanged if there are none. Returns
+// nullopt with errors in `diagnostics`. An empty `open` opens nothing. Free-threaded if `open` is.
 std::optional<Composition> compose(Document graph, std::vector<Document> overlays, const OpenFile& open,
                                    Diagnostics& diagnostics);
 
-// An overlay by itself, without a graph to apply it to. False with errors in `diagnostics`.
+// Checks an overlay without a graph. Returns false with errors in `diagnostics`.
 bool check_overlay(const Document& document, Diagnostics& diagnostics);
 
-// A graph that consists of a fragment alone, so that the fragment can be checked. nullopt with errors.
+// Returns a graph that consists only of a fragment, so that the fragment can be checked. Returns
+// nullopt with errors in `diagnostics`.
 std::optional<Composition> compose_fragment(Document fragment, const OpenFile& open,
                                             Diagnostics& diagnostics);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the parts of compose share: the tree as far as it is put together, and what may still be opened.
+// Shared state of compose: the tree composed so far, and how to open further files.
 
 #include "framegraph/compose/compose.hpp"
 #include "framegraph/compose/tree.hpp"
@@ -18,10 +18,10 @@ struct Composer {
 
   struct Included {
     std::string name;
-    SourceLocation where; // of the include that brought it
+    SourceLocation where; // of the include that named it
   };
   std::vector<Included> included = {}; // each file once
-  std::vector<Included> chain = {};    // of files that are being included now
+  std::vector<Included> chain = {};    // files that are being included now
   uint64_t bytes = 0, nodes = 0;       // of all documents
 
   Diagnostic& error(DiagnosticId id, SourceLocation where, std::string text) {
@@ -29,21 +29,21 @@ struct Composer {
   }
 };
 
-// Takes a document in; false with an error at `where` when that is more than one graph may consist of.
+// Adds a document. Returns false with an error at `where` if the graph then exceeds a limit.
 bool add_document(Composer& composer, Document document, const SourceLocation& where);
 
-// Does an entry of "passes" stand for a file?
+// Returns whether an entry of "passes" includes a file.
 bool is_include(const Document& document, NodeId entry);
 
-// The passes that entry `node` of a list of passes stands for: itself, or those of the file that it includes,
-// whose other members join the graph's. Appended to `out`.
+// Appends to `out` the passes for entry `node` of a list of passes: itself, or the passes of the
+// file that it includes. The file's other members join the graph's.
 void expand_pass(Composer& composer, uint32_t document, NodeId node, Change::What what,
                  std::vector<ItemId>& out);
 
-// Passes of the fragment, appended to `out`; its other members join the graph's.
+// Appends the passes of the fragment to `out`; its other members join the graph's.
 void join_fragment(Composer& composer, uint32_t document, std::vector<ItemId>& out);
 
-// Applies the edits of document number `overlay`, in their order.
+// Applies the edits of document number `overlay` in order.
 void apply_overlay(Composer& composer, uint32_t overlay);
 
 } // namespace dermis

@@ -4,7 +4,7 @@
 
 namespace dermis {
 
-// The version that graphs, fragments and overlays state. Older files are converted by `dermis upgrade`.
+// Version that graphs, fragments and overlays state. `dermis upgrade` converts older files.
 inline constexpr int64_t graph_format_version = 2;
 
 } // namespace dermis

@@ -1,5 +1,5 @@
-// { "include": "file" } among passes: the passes of a fragment, whose settings, images and buffers join the
-// graph's.
+// Expands { "include": "file" } among passes: the passes of a fragment, whose settings, imports and
+// resources join the graph's.
 
 #include "framegraph/compose/composer.hpp"
 #include "framegraph/compose/format_version.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view sections[] = {"settings", "imports", "resources"};
 
-// "'a' includes 'b' includes 'a'".
+// Returns "'a' includes 'b' includes 'a'".
 std::string chain_text(const Composer& composer, std::string_view name) {
   std::string text;
   for (const Composer::Included& one : composer.chain)
@@ -22,7 +22,7 @@ std::string chain_text(const Composer& composer, std::string_view name) {
   return text + fmt::format("'{}'", name);
 }
 
-// The document of a file; invalid index after an error at `where`.
+// Opens and parses a file. Returns the document's index, or nullopt after an error at `where`.
 std::optional<uint32_t> open_fragment(Composer& composer, const std::string& name,
                                       const SourceLocation& where) {
   if (!composer.open) {
@@ -43,16 +43,16 @@ std::optional<uint32_t> open_fragment(Composer& composer, const std::string& nam
   return static_cast<uint32_t>(composer.tree.documents.size() - 1);
 }
 
-// Members of an object of the fragment become members of the graph's object of that name.
+// Adds the members of a fragment's section to the graph's section with that name.
 void join_section(Composer& composer, std::string_view section, uint32_t document, NodeId list) {
   EditTree& tree = composer.tree;
   ItemId into = tree.find({0}, section);
-  if (!into.valid()) { // the first members, under the key of the fragment's section
+  if (!into.valid()) { // first members; the key is that of the fragment's section
     into = tree.graft(document, list);
     tree[into].children.clear();
     tree[{0}].children.push_back(into);
   }
-  if (tree.kind(into) != NodeKind::object) return; // the graph's reader says so
+  if (tree.kind(into) != NodeKind::object) return; // the graph's reader reports it
   for (const NodeId node : children(tree.documents[document], list)) {
     const ItemId fresh = tree.graft(document, node);
     const std::string key = tree[fresh].key;
@@ -73,7 +73,7 @@ void join_section(Composer& composer, std::string_view section, uint32_t documen
 void join_exports(Composer& composer, uint32_t document, NodeId list) {
   EditTree& tree = composer.tree;
   const ItemId into = tree.find({0}, "exports");
-  if (!into.valid() || tree.kind(into) != NodeKind::array) return; // the graph's reader says so
+  if (!into.valid() || tree.kind(into) != NodeKind::array) return; // the graph's reader reports it
   for (const NodeId node : children(tree.documents[document], list)) {
     const ItemId fresh = tree.graft(document, node);
     const std::vector<ItemId>& known = tree[into].children;
@@ -105,7 +105,7 @@ void include(Composer& composer, uint32_t document, NodeId entry, std::vector<It
         .related.emplace_back(open->where, fmt::format("'{}' is included here", name));
     return;
   }
-  // A fragment that several others need is there once, where it is included first.
+  // A fragment that several others include is expanded only at its first include.
   if (std::any_of(composer.included.begin(), composer.included.end(), named)) return;
   if (composer.chain.size() >= limits::include_nesting) {
     composer.error(DiagnosticId::limit_exceeded, where,

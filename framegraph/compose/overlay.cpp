@@ -1,4 +1,4 @@
-// The edits of an overlay, applied one after the other to the graph as the edits before left it.
+// Applies the edits of an overlay in order, each to the result of the edits before.
 
 #include "framegraph/compose/composer.hpp"
 #include "framegraph/compose/format_version.hpp"
@@ -26,10 +26,10 @@ std::string shown(std::string_view text) {
 
 struct Edit {
   Composer& composer;
-  uint32_t overlay; // its document
+  uint32_t overlay; // index of its document
   NodeId target_node;
   std::string what;        // for messages: "'set' of edit 3"
-  NodeId edits, self = {}; // the list of edits, and this one
+  NodeId edits, self = {}; // the list of edits, and this edit
 
   EditTree& tree() const { return composer.tree; }
   SourceLocation target_place() const { return tree().documents[overlay].where(target_node); }
@@ -50,7 +50,7 @@ struct Edit {
     composer.changes.push_back({did, std::move(at), target_place()});
   }
 
-  // The list of the graph's passes and the position of the one that is named; -1 after an error.
+  // Returns the graph's list of passes and the position of the named pass; -1 after an error.
   std::pair<ItemId, int> named_pass(std::string_view name) const {
     const ItemId passes = tree().find({0}, "passes");
     const bool list = passes.valid() && tree().kind(passes) == NodeKind::array;
@@ -76,8 +76,9 @@ struct Edit {
     all.insert(place, fresh.begin(), fresh.end());
   }
 
-  // The item that all steps of the path but the last lead to; invalid after an error. `depth`: of that item.
-  // With `make`, what a graph or a pass may leave out is made where it is not there.
+  // Returns the item that all steps of the path except the last lead to; invalid after an error.
+  // `depth` receives that item's depth. With `make`, optional members of a graph or a pass are
+  // created if they are absent.
   ItemId parent_of(std::string_view path, const std::vector<std::string>& steps, uint32_t& depth,
                    bool make = false) const {
     if (steps.empty()) {
@@ -97,8 +98,8 @@ struct Edit {
     return at;
   }
 
-  // The position of a new, empty member of `parent` for step `depth` of the path; -1 where the format has
-  // none. Its place in the files is that of the edit.
+  // Adds a new, empty member of `parent` for step `depth` of the path and returns its position; -1
+  // if the format has no such member. Its source location is that of the edit.
   int make_member(ItemId parent, const std::vector<std::string>& steps, uint32_t depth) const {
     constexpr std::string_view of_graph[] = {"settings", "imports", "resources"};
     constexpr std::string_view of_pass[] = {"set", "read", "write", "otherwise"};
@@ -170,7 +171,7 @@ Verb verb_of(const Document& document, NodeId node) {
   return Verb::none;
 }
 
-// No verb is there; one of the keys may be meant to be.
+// Reports an edit without a verb, and suggests the verb that a misspelt key resembles.
 void report_no_verb(const Document& document, NodeId node, const std::string& what,
                     Diagnostics& diagnostics) {
   const std::string text =
@@ -186,7 +187,7 @@ void report_no_verb(const Document& document, NodeId node, const std::string& wh
 
 struct EditDeclaration {
   Verb verb = Verb::none;
-  NodeId target, operand; // operand: passes, or what is set; invalid for remove
+  NodeId target, operand; // operand: passes, or the value to set; invalid for remove
 };
 
 std::optional<EditDeclaration> read_edit(const Document& document, NodeId node, const std::string& what,
@@ -216,7 +217,8 @@ std::string edit_name(size_t index) {
   return fmt::format("edit {}", index + 1);
 }
 
-// By their order; those with errors are absent. Empty when the overlay itself has errors.
+// Returns the edits in order; edits with errors are nullopt. Empty if the overlay itself has
+// errors.
 std::vector<std::optional<EditDeclaration>> read_edits(const Document& document, Diagnostics& diagnostics) {
   std::vector<std::optional<EditDeclaration>> out;
   if (!check_version(document, "dermis_overlay", graph_format_version, diagnostics)) return out;

@@ -6,7 +6,7 @@ namespace dermis {
 
 namespace {
 
-// What stands for an element of an array; "" for those that go by their index.
+// Returns the name that identifies an array element; "" if only its index does.
 std::string_view element_name(const EditTree& tree, ItemId element) {
   if (tree.kind(element) == NodeKind::string) return tree.text(element);
   const ItemId pass = tree.find(element, "pass");

@@ -7,9 +7,9 @@ namespace dermis {
 
 namespace {
 
-constexpr size_t max_compared = 256; // members of an object; every member is looked for among the others
+constexpr size_t max_compared = 256; // members of an object; comparing takes quadratic time
 
-// Depth of recursion is that of the tree, which limits::nesting bounds.
+// Recursion is as deep as the tree, which limits::nesting bounds.
 ItemId copy(EditTree& tree, uint32_t document, NodeId node) {
   const ItemId id{static_cast<uint32_t>(tree.items.size())};
   tree.items.emplace_back();
@@ -32,7 +32,7 @@ struct Flattener {
     const Item& item = tree[id];
     const Document& from = tree.documents[item.document];
     const NodeId made{static_cast<uint32_t>(out.nodes.size())};
-    Node node = from[item.node]; // kind, number and place
+    Node node = from[item.node]; // kind, number and location
     node.parent = parent;
     node.first_child = node.next = {};
     node.child_count = static_cast<uint32_t>(item.children.size());
