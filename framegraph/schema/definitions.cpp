@@ -24,7 +24,8 @@ std::string feature_names() {
   return out;
 }
 
-// `text` with every <word> replaced: limits by their number, <pass types> and <formats> by their names.
+// Returns `text` with every <word> replaced: limits by their number, <pass types> and <formats> by
+// their names.
 std::string filled(std::string_view text, std::string_view pass_types = {}) {
   const std::pair<std::string_view, std::string> values[] = {
       {"<formats>", format_names()},
@@ -58,7 +59,7 @@ std::string filled(std::string_view text, std::string_view pass_types = {}) {
 
 constexpr std::string_view note = R"("note": { "type": "string", "description": "for people" })";
 
-// Settings hold their default under the name of their type; the first type that is there decides.
+// A setting holds its default under the name of its type. If there are several, the first decides.
 std::string setting_definition() {
   const std::string common =
       fmt::format(R"("unit": {{ "type": "string", "description": "for people" }}, {})", note);

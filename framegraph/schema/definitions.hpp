@@ -1,5 +1,6 @@
 #pragma once
-// The parts of the graph's schema that do not depend on the pass types. Inside of graph_schema.hpp.
+// Provides the parts of the graph's schema that do not depend on the pass types. Internal to
+// graph_schema.hpp.
 
 #include <string>
 #include <string_view>
@@ -10,12 +11,12 @@ namespace dermis {
 
 inline constexpr std::string_view schema_dialect = "http://json-schema.org/draft-07/schema#";
 
-// Key and JSON text, in the order in which they are written.
+// Key and JSON text, in output order.
 using SchemaMembers = std::vector<std::pair<std::string_view, std::string>>;
 
 SchemaMembers graph_root_members();
 SchemaMembers fragment_root_members();
-// `pass_type_names`: the names of all pass types as the inside of a JSON array.
+// `pass_type_names`: the contents of a JSON array with the names of all pass types.
 SchemaMembers graph_definitions(std::string_view pass_type_names);
 
 } // namespace dermis

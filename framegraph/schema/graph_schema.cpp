@@ -42,7 +42,7 @@ void write_setting(JsonWriter& out, const PassTypeSetting& setting) {
   out.close().close();
 }
 
-// True if a port of this side must be bound.
+// Returns whether a port of this side must be bound.
 bool write_ports(JsonWriter& out, const PassType& type, PortSide side) {
   std::vector<std::string_view> required;
   out.key(side == PortSide::read ? "read" : "write").open_object();
