@@ -37,7 +37,7 @@ constexpr Bit access_bits[] = {
     {access::shader_storage_write, "shader_storage_write"},
 };
 
-// As in VkImageUsageFlagBits and VkBufferUsageFlagBits.
+// Values of VkImageUsageFlagBits and VkBufferUsageFlagBits.
 constexpr Bit image_usage_bits[] = {
     {0x1, "transfer_source"}, {0x2, "transfer_destination"}, {0x4, "sampled"},
     {0x8, "storage"},         {0x10, "color_attachment"},    {0x20, "depth_stencil_attachment"},

@@ -10,7 +10,7 @@
 namespace dermis {
 namespace {
 
-// One line for each thing of a section; the same name twice gets a number.
+// Collects one line per entry of a section. Repeated names get a number.
 class Lines {
 public:
   void add(std::string name, std::string text) {
@@ -31,7 +31,7 @@ std::string object_text(const SavedPlan& saved, uint32_t resource, uint32_t fram
   return frames_back == 0 ? name : fmt::format("{}@-{}", name, frames_back);
 }
 
-// A resource of the graph by name where one of two plans of one graph has it, else by number.
+// Returns the resource's name if one of two plans of one graph has it, else its number.
 std::string declared_text(uint32_t declared, const SavedPlan& saved, const SavedPlan& other) {
   for (const SavedPlan* plan : {&saved, &other})
     for (size_t r = 0; plan->key.graph == saved.key.graph && r < plan->plan.resources.size(); ++r)
@@ -186,7 +186,8 @@ Lines barriers(const SavedPlan& saved) {
   return lines;
 }
 
-// What stands on one side only or is not the same: in the order of a, then what only b has.
+// Returns the entries that differ or exist on one side only: in the order of a, then those that
+// only b has.
 std::vector<PlanDifference> differences(const Lines& a, const Lines& b) {
   const std::map<std::string, std::string> in_a(a.all().begin(), a.all().end());
   const std::map<std::string, std::string> in_b(b.all().begin(), b.all().end());
@@ -203,21 +204,23 @@ std::vector<PlanDifference> differences(const Lines& a, const Lines& b) {
   return out;
 }
 
-// Passes of both that a longest run of passes in the same order does not hold: the fewest that have moved.
+// Returns the minimal set of passes that moved: passes of both plans that are not part of the
+// longest common order.
 std::vector<PlanDifference> moved(const SavedPlan& a, const SavedPlan& b) {
   std::map<std::string, size_t> place_in_b;
   for (size_t p = 0; p < b.names.passes.size(); ++p)
     place_in_b.emplace(b.names.passes[p], p);
   struct Common {
     size_t in_a, in_b;
-    size_t before = SIZE_MAX; // in the longest rising run that ends here
+    size_t before = SIZE_MAX; // predecessor in the longest rising run that ends here
     bool kept = false;
   };
   std::vector<Common> common;
   for (size_t p = 0; p < a.names.passes.size(); ++p)
     if (const auto at = place_in_b.find(a.names.passes[p]); at != place_in_b.end())
       common.push_back({p, at->second});
-  std::vector<size_t> tails; // by length - 1: the common pass with the lowest place in b that ends such a run
+  // by length - 1: the common pass with the lowest place in b that ends a run of that length
+  std::vector<size_t> tails;
   for (size_t i = 0; i < common.size(); ++i) {
     const auto at = std::lower_bound(tails.begin(), tails.end(), common[i].in_b,
                                      [&](size_t tail, size_t place) { return common[tail].in_b < place; });

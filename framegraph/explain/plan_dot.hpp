@@ -1,5 +1,5 @@
 #pragma once
-// Pictures for Graphviz: the graph as declared, and the plan as it will run.
+// Draws the declared graph and the plan for Graphviz.
 
 #include "framegraph/compile/plan.hpp"
 #include "framegraph/model/graph.hpp"
@@ -8,12 +8,12 @@
 
 namespace dermis {
 
-// Passes are boxes (dashed: with a `when`), resources ellipses (imports and exports drawn double); an arrow
-// is a port, dashed where it reads an earlier frame.
+// Passes are boxes (dashed: with a `when`), resources are ellipses (double for imports and
+// exports). An arrow is a port; it is dashed if the port reads an earlier frame.
 std::string graph_dot(const Graph& graph, const PassTypeRegistry& pass_types);
 
-// The passes that run, numbered, and the resources they touch with format and size; passes that do not run
-// are grey, with the reason as a tooltip.
+// Shows the passes that run, numbered, and the resources they use with format and size. Passes that
+// do not run are grey, with the reason as a tooltip.
 std::string plan_dot(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled);
 
 } // namespace dermis

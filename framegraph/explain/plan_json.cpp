@@ -11,7 +11,7 @@
 namespace dermis {
 namespace {
 
-// By the value of the enumeration.
+// Indexed by the value of the enumeration.
 constexpr std::string_view setting_types[] = {"bool", "int", "real", "enum", "choice"};
 constexpr std::string_view dispatch_shapes[] = {
     "over_view",    "over_tiles",   "over_tile_grid", "over_tile_blocks",
@@ -50,7 +50,7 @@ struct Exporter {
     out.member("name", layout_name(which)).close();
   }
 
-  // Options are written by name; everything else as it is.
+  // Options are written by name, other values as they are.
   template <class Options> void setting_value(const SettingValue& value, const Options& options) {
     const bool named = (value.type == SettingType::enumeration || value.type == SettingType::choice) &&
                        value.integer >= 0 && static_cast<size_t>(value.integer) < options.size();

@@ -1,5 +1,5 @@
 #pragma once
-// The whole plan as JSON, complete enough for a stranger's program to check or to run it.
+// Writes the whole plan as JSON, complete enough for another program to check or run it.
 
 #include "framegraph/compile/plan.hpp"
 #include "framegraph/compose/compose.hpp"
@@ -9,12 +9,13 @@
 
 namespace dermis {
 
-inline constexpr uint32_t plan_json_version = 2; // of the layout below; raised when a reader could be misled
+// version of the layout; raised if a change could mislead readers
+inline constexpr uint32_t plan_json_version = 2;
 
-// Every index that the document uses is the position in the array it refers to. Masks are written as a hex
-// string (they have 64 bits, which JSON numbers do not) and as names. `graph` and `pass_types` are those it
-// was compiled from; `provenance` tells what other files than the graph's did to it. The same plan gives the
-// same bytes.
+// Returns the document. Every index is the position in the array that it refers to. Masks are
+// written as a hex string, because JSON numbers do not have 64 bits, and as names. The plan must
+// have been compiled from `graph` and `pass_types`; `provenance` lists what other files changed in
+// the graph. Equal plans give equal bytes.
 std::string plan_json(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
                       const Provenance& provenance = {});
 

@@ -38,7 +38,7 @@ struct TextExporter {
       line("  " + reason(Reason::About::choice, i));
   }
 
-  // The first pass from `position` on that accesses what the barrier is for.
+  // Returns the position of the first pass from `position` on that accesses the barrier's resource.
   uint32_t user(const PlanBarrier& barrier, uint32_t position) const {
     for (; position < plan.passes.size(); ++position) {
       const PlanPass& pass = plan.passes[position];
@@ -54,7 +54,7 @@ struct TextExporter {
     return graph.passes[plan.passes[position].declared.value].name;
   }
 
-  // Behind which pass a queue reaches a point; 0: the last one of its frame.
+  // Names the pass after which a queue reaches a point; 0: the last point of its frame.
   std::string behind(Queue queue, uint32_t point) const {
     uint32_t found = static_cast<uint32_t>(plan.passes.size());
     for (uint32_t p = 0; p < plan.passes.size(); ++p)
@@ -64,7 +64,7 @@ struct TextExporter {
     return found == plan.passes.size() ? std::string() : fmt::format(", behind '{}'", pass_name(found));
   }
 
-  // `position`: of the pass that it stands before.
+  // `position` is that of the pass that the barrier precedes.
   void barrier(uint32_t index, uint32_t position) {
     const PlanBarrier& one = plan.barriers[index];
     const std::string from =

@@ -1,5 +1,6 @@
 #pragma once
-// The plan as a text for people: what runs, what waits for what and why, where it lies in memory.
+// Writes the plan as text for people: what runs, what waits for what and why, and the memory
+// layout.
 
 #include "framegraph/compile/plan.hpp"
 #include "framegraph/compose/compose.hpp"
@@ -9,7 +10,8 @@
 
 namespace dermis {
 
-// Several lines, newline at the end. `provenance` tells what other files than the graph's did to it.
+// Returns several lines with a newline at the end. `provenance` lists what other files changed in
+// the graph.
 std::string plan_text(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
                       const Provenance& provenance = {});
 

@@ -47,7 +47,7 @@ struct ReasonFormatter {
                        missing_text(graph, unmet));
   }
 
-  // With the values that its `when` asks for.
+  // Names the values of the settings that `when` reads.
   std::string off() const {
     const PassDeclaration& declared = graph.passes[reason.index];
     if (declared.absence == PassDeclaration::Absence::no_profile)
@@ -223,7 +223,7 @@ bool meet(const Placement& a, const Placement& b) {
   return a.first_use <= b.last_use && b.first_use <= a.last_use;
 }
 
-// In large plans only the nearest in time are named.
+// In large plans only the neighbours nearest in time are named.
 constexpr size_t named_neighbours = 24;
 
 } // namespace
@@ -252,12 +252,12 @@ std::string ReasonIndex::about(Reason::About about, uint32_t index) const {
     const auto alike = [&](const Reason* other) {
       return one.why == Reason::ReasonKind::takes_memory && other->why == one.why && other->b == one.b;
     };
-    if (std::any_of(first, at, alike)) continue; // named there
+    if (std::any_of(first, at, alike)) continue; // already named there
     all += (all.empty() ? "" : "; ") + reason_text(graph_, pass_types_, compiled_.plan, one);
     std::string others;
     for (auto later = at + 1; later != sorted_.end() && subject(**later) == wanted; ++later)
       if (alike(*later)) others += fmt::format(", '{}'", graph_.resources[(*later)->a].name);
-    if (!others.empty()) all.insert(all.rfind('\'') + 1, others); // behind the name of the first
+    if (!others.empty()) all.insert(all.rfind('\'') + 1, others); // after the name of the first
   }
   return all;
 }

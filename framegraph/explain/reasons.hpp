@@ -1,6 +1,6 @@
 #pragma once
-// Sentences of what the compiler noted down: why a pass runs or not, where a barrier comes from, what a
-// resource became, which memory is shared.
+// Formats the compiler's recorded reasons as sentences: why a pass runs or not, why a barrier
+// exists, what a resource became, and which memory is shared.
 
 #include "framegraph/compile/plan.hpp"
 #include "framegraph/model/graph.hpp"
@@ -10,12 +10,12 @@
 
 namespace dermis {
 
-// One reason as part of a sentence: "runs: 'blur' reads its 'light'". `graph`, `pass_types` and `plan` are
-// those it was noted for.
+// Returns one reason as part of a sentence: "runs: 'blur' reads its 'light'". The reason must have
+// been recorded for `graph`, `pass_types` and `plan`.
 std::string reason_text(const Graph& graph, const PassTypeRegistry& pass_types, const Plan& plan,
                         const Reason& reason);
 
-// All reasons about one thing, in the order in which they were found, with "; " between them; "" for none.
+// Finds all reasons about one subject.
 class ReasonIndex {
 public:
   // Keeps references to all three.
@@ -26,10 +26,10 @@ private:
   const Graph& graph_;
   const PassTypeRegistry& pass_types_;
   const CompiledPlan& compiled_;
-  std::vector<const Reason*> sorted_; // by what they are about
+  std::vector<const Reason*> sorted_; // by subject
 };
 
-// By placement: with what it shares memory, and with what it cannot.
+// Returns for each placement what it shares memory with, and what it cannot share with.
 std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan);
 
 } // namespace dermis
