@@ -1,6 +1,7 @@
 #pragma once
-// Both directions of the serialised form from one description: a function fields(archive, value) names the
-// members of a struct in order, and an archive writes or reads them. Numbers are little endian.
+// Writes and reads the serialised form from one description: a function fields(archive, value)
+// names the members of a struct in order, and an archive writes or reads them. Numbers are little
+// endian.
 
 #include "framegraph/text/utf8.hpp"
 
@@ -16,7 +17,7 @@
 
 namespace dermis::serial {
 
-// What fields() takes of a T: changeable where it is read.
+// Type of the value that fields() takes: mutable when reading, const when writing.
 template <class Archive, class T> using Of = std::conditional_t<Archive::reads, T, const T>;
 
 class Writer {
@@ -50,13 +51,13 @@ private:
   std::string bytes_;
 };
 
-// Never reads beyond its end and never makes more elements than the bytes left can hold. The first thing
-// wrong is kept; everything read after that is zero.
+// Reads safely: never beyond the end, and never creates more elements than the remaining bytes can
+// hold. Keeps the first problem; everything read after it is zero.
 class Reader {
 public:
   static constexpr bool reads = true;
 
-  // `before`: bytes of the file that stand in front of these, for messages.
+  // `before`: number of bytes of the file that precede `bytes`, for messages.
   Reader(std::string_view bytes, size_t before) : bytes_(bytes), before_(before) {}
 
   template <class Number> void number(const char* what, Number& value) {
@@ -98,7 +99,7 @@ public:
     if (find_invalid_utf8(value) != std::string_view::npos) fail(fmt::format("'{}' is not UTF-8", what));
   }
   template <class T> void list(const char* what, std::vector<T>& values, size_t maximum) {
-    Writer smallest; // empty strings and lists: no T takes less
+    Writer smallest; // with empty strings and lists, the minimum size of a T
     fields(smallest, static_cast<const T&>(T{}));
     values.clear();
     values.resize(count(what, smallest.size(), maximum));

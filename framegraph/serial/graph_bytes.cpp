@@ -1,4 +1,4 @@
-// What compiling reads of a graph, in order, so that equal bytes mean equal plans.
+// Serialises everything that compiling reads of a graph, so that equal bytes mean equal plans.
 
 #include "framegraph/serial/plan_fields.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
-// Plans that were compiled before, by the whole key of what they were compiled from: a setting that flips
-// back and forth compiles once for each side.
+// Caches compiled plans by the whole key of their input, so that a setting that switches back and
+// forth compiles once per value.
 
 #include "framegraph/serial/plan_key.hpp"
 
@@ -11,7 +11,7 @@
 
 namespace dermis {
 
-inline constexpr size_t plan_cache_capacity = 8; // plans; the one that was not used for longest is dropped
+inline constexpr size_t plan_cache_capacity = 8; // plans; the least recently used plan is dropped
 
 // Pure data: copies are independent. One thread at a time.
 struct PlanCache {
@@ -19,12 +19,12 @@ struct PlanCache {
     std::string key; // key_bytes(), and whether reasons were collected
     CompiledPlan compiled;
   };
-  std::vector<Entry> entries; // the one used last stands last
+  std::vector<Entry> entries; // the most recently used entry is last
   uint64_t hits = 0, misses = 0;
 };
 
-// The same as compile(), from the cache where the whole key is there. Inputs that compile with messages are
-// compiled each time, so that the messages are told each time.
+// Returns the result of compile(), from the cache if it has the whole key. Inputs that compile with
+// messages are not cached, so that each call reports the messages.
 std::optional<CompiledPlan> compile(const CompileInput& input, PlanCache& cache, Diagnostics& diagnostics);
 
 } // namespace dermis

@@ -1,5 +1,5 @@
 #pragma once
-// The members of everything in a plan file, in their order in it. Private to serial/.
+// Lists the members of everything in a plan file in file order. Private to serial/.
 
 #include "framegraph/serial/archive.hpp"
 #include "framegraph/serial/plan_file.hpp"
@@ -9,8 +9,10 @@
 
 namespace dermis::serial {
 
-inline constexpr size_t many = std::numeric_limits<uint32_t>::max(); // bounded by the size of the file alone
-inline constexpr size_t setting_text_bytes = 2 * limits::name_bytes; // an option in quotes, or a number
+// only bounded by the size of the file
+inline constexpr size_t many = std::numeric_limits<uint32_t>::max();
+// an option in quotes, or a number
+inline constexpr size_t setting_text_bytes = 2 * limits::name_bytes;
 
 template <class A> void fields(A& a, Of<A, uint8_t>& value) {
   a.number("byte", value);

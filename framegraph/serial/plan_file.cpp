@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view magic = "DERMPLAN";
 
-// The value as a graph file would write it; options by name where they are known.
+// Returns the value as a graph file writes it; options by name if they are known.
 template <class Options> std::string value_text(const SettingValue& value, const Options& options) {
   switch (value.type) {
   case SettingType::boolean:
@@ -51,7 +51,8 @@ PlanNames names_of(const Graph& graph, const PassTypeRegistry& pass_types, const
   return names;
 }
 
-// What verify_structure() cannot see: what stands beside the plan, and what only an executor follows.
+// Checks what verify_structure() does not see: key and names, and values that only an executor
+// uses.
 std::string first_misfit(const SavedPlan& saved) {
   const Plan& plan = saved.plan;
   const PlanNames& names = saved.names;

@@ -1,6 +1,6 @@
 #pragma once
-// A plan as a file: little endian, versioned, with the whole key of what it was compiled from and the names
-// that people know its parts by. The layout is in docs/plans.md.
+// Saves a plan as a file: little endian, versioned, with the whole key of its input and the names
+// of its parts. docs/plans.md describes the layout.
 
 #include "framegraph/compile/plan.hpp"
 #include "framegraph/serial/plan_key.hpp"
@@ -19,7 +19,7 @@ struct NamedSettingValue {
   std::string name, text; // text: the value as a graph file would write it
 };
 
-// What the plan's indices into graph and pass types mean.
+// Names for the plan's indices into graph and pass types.
 struct PlanNames {
   std::vector<std::string> passes, pass_types;  // one each per Plan::passes
   std::vector<std::string> resources;           // one per Plan::resources
@@ -34,21 +34,21 @@ struct SavedPlan {
   Plan plan;
 };
 
-// `plan` must be what compiling `input` gives.
+// `plan` must be the result of compiling `input`.
 SavedPlan saved_plan(const CompileInput& input, const Plan& plan);
 
-// Canonical bytes of the plan alone, names and key left out: what two compilers must agree on.
+// Returns the canonical bytes of the plan without names and key. Two compilers must agree on them.
 std::string plan_bytes(const Plan& plan);
 
-// The file. The same value gives the same bytes.
+// Returns the file. Equal values give equal bytes.
 std::string write_plan(const SavedPlan& saved);
 
-// Does the file begin as one of plans does?
+// Returns whether the bytes begin like a plan file.
 bool is_plan_file(std::string_view bytes);
 
-// The value that gave these bytes, or nullopt with one error in `diagnostics`. Any bytes may be given: counts
-// are checked before memory is taken for them, and a plan that is returned has passed verify_structure(), so
-// that each of its indices can be followed. Whether it can be run without hazards says verify().
+// Returns the plan that gave these bytes, or nullopt with one error in `diagnostics`. Accepts any
+// bytes: counts are checked before memory is allocated for them. A returned plan has passed
+// verify_structure(), so each of its indices can be followed; verify() checks it for hazards.
 // Free-threaded.
 std::optional<SavedPlan> read_plan(const std::string& name, std::string_view bytes, Diagnostics& diagnostics);
 

@@ -1,5 +1,5 @@
 #pragma once
-// SHA-256 (FIPS 180-4): 32 bytes that stand for any number of them.
+// SHA-256 (FIPS 180-4).
 
 #include <array>
 #include <cstdint>
