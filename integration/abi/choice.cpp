@@ -1,4 +1,4 @@
-// Budgets, what was chosen, and what is known of times.
+// Implements budgets, descriptions of the choice, and calibration.
 
 #include "framegraph/text/document.hpp"
 #include "integration/abi/graph.hpp"
@@ -43,15 +43,15 @@ dermis_result read_tables(const Log& log, const dermis_budget& budget, Tables& o
   return DERMIS_OK;
 }
 
-// What changes in a view with new tables. The programs are named: recording may put `next` in the place of
-// `running` meanwhile.
+// Holds the parts of a view that depend on new tables. The programs are recorded by name, because
+// recording may replace `running` by `next` meanwhile.
 struct ViewTables {
   choice::ErrorModel errors;
   choice::ErrorCorrection found;
   choice::Calibration calibration;
   choice::CostModel costs;
   struct Described {
-    std::shared_ptr<Program> program; // or null
+    std::shared_ptr<Program> program; // may be null
     std::vector<choice::Outcome> outcomes;
   };
   std::array<Described, 2> programs;
@@ -87,7 +87,8 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   if (const SizedRead read = read_sized(given, budget); read != SizedRead::ok)
     return rejected_size(log, read, "dermis_graph_set_budget: budget", stated_size(given),
                          first_version_size<dermis_budget>);
-  if (!(budget.milliseconds >= 0 && budget.milliseconds <= largest_budget_ms)) // NaN is refused, too
+  // NaN is refused, too
+  if (!(budget.milliseconds >= 0 && budget.milliseconds <= largest_budget_ms))
     return bad_argument(log, "dermis_graph_set_budget: milliseconds is {}, expected 0..{}",
                         budget.milliseconds, largest_budget_ms);
   if ((budget.flags & ~DERMIS_BUDGET_DETERMINISTIC) != 0)
@@ -109,7 +110,7 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   if (const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
       result != DERMIS_OK)
     return result;
-  size_t v = 0; // from here on nothing fails
+  size_t v = 0; // nothing fails from here on
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
     if (anew) take_over(view, views[v++]);
@@ -131,10 +132,10 @@ uint32_t skips_of(const FrameChoice& frame, const Program& program) {
   return skips;
 }
 
-// Why a frame took longer than its budget and what was predicted.
+// Returns why a frame took longer than its budget and its prediction.
 const char* miss_of(const FrameChoice& frame) {
-  constexpr double tolerance = 1.15; // of the budget, as dermis bench budget judges
-  constexpr double changed_by = 0.1; // share of the tiles
+  constexpr double tolerance = 1.15; // times the budget, as in dermis bench budget
+  constexpr double changed_by = 0.1; // fraction of the tiles
   if (!frame.timed || frame.budget_ms <= 0 || frame.measured_ms <= tolerance * frame.budget_ms) return "";
   if (frame.decision.why == choice::ReasonKind::nothing_fits) return "no outcome fits the budget";
   const double expected = static_cast<double>(frame.expected_tiles);

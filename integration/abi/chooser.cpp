@@ -12,10 +12,10 @@
 namespace dermis::abi {
 namespace {
 
-constexpr double assumed_d_px = 1; // before any frame was counted
+constexpr double assumed_d_px = 1; // pixels; before any frame has been counted
 constexpr double ns_per_ms = 1e6;
 
-// Both files are in tests: they are read without an error.
+// Tests ensure that both built-in files read without errors.
 choice::ErrorModel default_errors() {
   Diagnostics diagnostics;
   const auto document = parse_document("errors", std::string(choice::default_errors_text()), diagnostics);
@@ -41,7 +41,7 @@ choice::FrameLoad load_of(const subsurface::FrameCounters& counters, uint64_t vi
 
 uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
                   const subsurface::FrameCounters& counters) {
-  if (pass.groups == choice::PassLoad::Groups::sample_units) // a group a tile
+  if (pass.groups == choice::PassLoad::Groups::sample_units) // one group per tile
     return uint64_t{counters.sampled_tiles[0]} + counters.sampled_tiles[1] + counters.sampled_tiles[2];
   if (pass.level < 0) return groups_of(pass, load);
   return counters
@@ -73,12 +73,12 @@ void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, FrameChoi
   }
 }
 
-// What the error probe found beside what the table says of what was counted.
+// Learns the ratio of the error that the probe measured to the error that the table predicts.
 void learn_error(Chooser& chooser, const choice::Outcome& outcome,
                  const subsurface::FrameCounters& counters) {
   const subsurface::ProbedError probed = subsurface::probed_error(counters);
   if (probed.tiles == 0 || counters.scattering_tiles == 0) return;
-  // The probe's truth is the screen's: what rays find beyond it is no error.
+  // The probe's reference only sees the screen, so light that rays find beyond it is no error.
   if (outcome.technique >= 0 && chooser.errors.techniques[static_cast<size_t>(outcome.technique)].by_rays)
     return;
   const double expected = expected_rmse(chooser.errors, outcome, mean_d_px(counters), counters.sample_units,
@@ -113,7 +113,7 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
-  if (!counted || frame.left_out) return; // nothing was looked at
+  if (!counted || frame.left_out) return; // no tile was classified
   if (outcome.takes_samples && frame.counters.scattering_tiles > 0)
     found_units(chooser.wanted, subsurface::mean_d_px(frame.counters),
                 double(frame.counters.sample_demand) / frame.counters.scattering_tiles);
@@ -160,8 +160,8 @@ void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index)
 FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, double delta_seconds,
                    uint64_t view_tiles, uint64_t view_blocks, std::span<choice::Forecast> forecasts,
                    choice::DecisionState& state) noexcept {
-  choice::FrameLoad load{view_tiles, view_tiles, 0, 0,
-                         view_blocks}; // nothing counted yet: all of the view may scatter
+  // Before any frame is counted, the whole view may scatter.
+  choice::FrameLoad load{view_tiles, view_tiles, 0, 0, view_blocks};
   double d_px = assumed_d_px, through = 0;
   uint64_t scattering = view_tiles;
   if (chooser.counted) {

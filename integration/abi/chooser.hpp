@@ -1,6 +1,6 @@
 #pragma once
-// The library's choice for one view of a graph: what it knows of costs and errors, what it decided for recent
-// frames and what became of them.
+// Holds the library's choice for one view of a graph: cost and error models, decisions for recent
+// frames, and their measured outcomes.
 
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
@@ -21,72 +21,75 @@ namespace dermis::abi {
 
 struct Program;
 
-// A frame that was recorded: what was expected, and once the device has finished it, what was.
+// A recorded frame: its forecast and, once the device has finished the frame, its measurements.
 struct FrameChoice {
   uint64_t frame_index = 0; // 0: none
   uint64_t program = 0;     // Program::serial
   uint32_t outcome = 0;     // into Program::outcomes
-  uint32_t variant =
-      0; // into Program::variants: of the outcome, or in its place in a frame with empty bounds
+  // into Program::variants: the outcome's plan, or its replacement for empty bounds
+  uint32_t variant = 0;
   choice::Decision decision;
-  uint32_t switches = 0; // since the graph began
-  double budget_ms = 0;  // 0: none
+  uint32_t switches = 0; // since the graph was created
+  double budget_ms = 0;  // 0: no budget
   choice::Forecast forecast;
   uint64_t view_tiles = 0, view_blocks = 0;
-  bool first_of_plan =
-      false;             // drivers finish kernels when they first run: nothing is learned from such a frame
-  bool left_out = false; // its bounds were empty: passes that serve scattering did not run
+  // drivers finish kernels at their first run, so such a frame is not learned from
+  bool first_of_plan = false;
+  bool left_out = false; // empty bounds: passes that serve scattering did not run
   bool history_invalid = false;
-  uint64_t expected_tiles = 0;        // that the forecast counted on
-  uint32_t sample_units = UINT32_MAX; // that tiles may take
+  uint64_t expected_tiles = 0;        // number of tiles that the forecast assumed
+  uint32_t sample_units = UINT32_MAX; // limit on the samples of tiles
   bool observed = false;
   bool timed = false;
-  double measured_ms = 0; // where timed
-  double metered_ms = 0;  // by the calibration alone, for what was counted
+  double measured_ms = 0; // valid if `timed`
+  double metered_ms = 0;  // cost by the calibration only, for the counted work
   uint32_t dispatches = 0;
-  uint64_t groups = 0; // that these launched
+  uint64_t groups = 0; // launched by the dispatches
   subsurface::FrameCounters counters;
 };
 
 struct Chooser {
   choice::ErrorModel errors;
-  choice::Calibration calibration; // costs start from it
+  choice::Calibration calibration; // initial values of `costs`
   choice::CostModel costs;
-  choice::ErrorCorrection found; // by the error probe, beside `errors`
+  choice::ErrorCorrection found; // measured by the error probe; corrects `errors`
   double budget_ms = 0;          // 0: choices keep their defaults
   bool deterministic = false;    // DERMIS_BUDGET_DETERMINISTIC
   choice::DecisionState state;
-  uint64_t decided_for = 0;           // Program::serial that `state` is about
+  uint64_t decided_for = 0;           // Program::serial that `state` belongs to
   subsurface::FrameCounters counters; // of the newest observed frame
   bool counted = false;
-  choice::TileGrowth trend;    // of tiles with subsurface
-  choice::SampleDemand wanted; // of tiles where samples are given by tile
+  choice::TileGrowth trend; // of tiles with subsurface
+  // of tiles that get samples individually
+  choice::SampleDemand wanted;
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
-  uint64_t programs = 0;                                            // built so far
-  // Room, so that recording allocates nothing: see reserve().
+  // number of programs adopted so far
+  uint64_t programs = 0;
+  // Preallocated by adopt(), so that recording allocates nothing.
   std::vector<choice::Forecast> forecasts;
   std::vector<vulkan::PassTiming> times;
 };
 
-// With the tables that the library carries.
+// Returns a chooser with the library's built-in tables.
 Chooser make_chooser();
 
-// Makes a program one of this chooser's: what deciding and observing need is allocated. Before its first
-// record.
+// Prepares a program for this chooser: allocates everything that deciding and observing need. Must
+// be called before the program's first record.
 void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, Program& program);
 
 // Learns from frames of `program` that the device has finished. Allocates nothing.
 void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;
 
-// The outcome for frame `frame_index`, whose render rectangle has `view_tiles` tiles and `view_blocks` of
-// 4x4, with what is expected of it; `delta_seconds` after the frame before, 0: unknown. Remembered by
-// remember() once the frame is recorded. Allocates nothing. Changes `chooser` only through remember().
+// Returns the choice and forecast for frame `frame_index`. The render rectangle has `view_tiles`
+// tiles and `view_blocks` blocks of 4x4 tiles. `delta_seconds` is the time since the previous
+// frame; 0: unknown. Call remember() once the frame is recorded. Allocates nothing and does not
+// change `chooser`.
 FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, double delta_seconds,
                    uint64_t view_tiles, uint64_t view_blocks, std::span<choice::Forecast> forecasts,
                    choice::DecisionState& state) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
-// The frame was never submitted: nothing will be learned from it.
+// Forgets a frame that was never submitted, so that nothing is learned from it.
 void forget(Chooser& chooser, uint64_t frame_index) noexcept;
 
 } // namespace dermis::abi

@@ -85,7 +85,7 @@ dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   return DERMIS_OK;
 }
 
-// All that is missing in one message.
+// Reports all missing requirements in one message.
 dermis_result check_requirements(const dermis_context_desc& desc, const Log& log) {
   std::string missing;
   const bool rays = (desc.flags & DERMIS_CONTEXT_RAY_QUERY) != 0;

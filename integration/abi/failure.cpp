@@ -11,7 +11,7 @@ struct LastError {
   char text[failure_text_size + 1] = {};
 };
 
-// Per thread by contract: dermis_last_error speaks of the calling thread alone.
+// Per thread, because dermis_last_error only reports failures of the calling thread.
 constinit thread_local LastError last_error;
 
 } // namespace
@@ -21,7 +21,7 @@ void send(const Log& log, const dermis_message& message) noexcept {
   try {
     log.function(log.user, &message);
   } catch (...) {
-    // A host in C++ may throw from its callback; the failure that is being told matters more.
+    // A C++ host may throw from its callback; the failure being reported matters more.
   }
 }
 

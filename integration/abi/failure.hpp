@@ -1,6 +1,7 @@
 #pragma once
-// How a call fails: the result goes back, the text becomes this thread's last error and reaches the log.
-// Nothing here allocates, so that running out of memory can be told too; and no exception leaves `guarded`.
+// Reports failures: returns a result, stores the text as the thread's last error and sends it to
+// the log. Nothing here allocates, so that out-of-memory can be reported; no exception leaves
+// `guarded`.
 
 #include "framegraph/text/diagnostic.hpp"
 #include "integration/abi/memory/host_memory.hpp"
@@ -20,18 +21,18 @@ namespace dermis::abi {
 struct Log {
   dermis_log_fn function = nullptr;
   void* user = nullptr;
-  HostAllocator memory{}; // of calls that fail, or do not, with this log
+  HostAllocator memory{}; // allocator of the calls that use this log
 };
 
 inline constexpr size_t failure_text_size = 2048; // longer texts are cut
 
-// Calls the host; an exception of its callback is swallowed. Thread: any.
+// Calls the host and ignores exceptions of its callback. Thread: any.
 void send(const Log& log, const dermis_message& message) noexcept;
 
-// Remembers `text` as the thread's last error; it is cut at failure_text_size.
+// Stores `text` as the thread's last error, cut at failure_text_size.
 void remember_failure(std::string_view text) noexcept;
 
-// Remembers `text` as the thread's last error and logs it. Returns `result`.
+// Stores `text` as the thread's last error and logs it. Returns `result`.
 dermis_result fail_with(const Log& log, dermis_result result, DiagnosticId id,
                         std::string_view text) noexcept;
 
@@ -55,7 +56,7 @@ dermis_result bad_argument(const Log& log, fmt::format_string<Arguments...> form
               std::forward<Arguments>(arguments)...);
 }
 
-// Turns a refused struct_size into its result. `what` names function and struct.
+// Converts a rejected struct_size into its result. `what` names the function and the struct.
 inline dermis_result rejected_size(const Log& log, SizedRead why, std::string_view what, size_t stated,
                                    size_t minimum) noexcept {
   if (why == SizedRead::unknown_fields)
@@ -71,8 +72,8 @@ inline dermis_result rejected_size(const Log& log, SizedRead why, const char* fu
   return rejected_size(log, why, fmt::format("{}: {}", function, argument), stated, minimum);
 }
 
-// Runs the body of an exported function, with the host's memory: whatever is thrown inside (by the standard
-// library, by fmt) becomes a result.
+// Runs the body of an exported function with the host's allocator. Converts every exception, e.g.
+// of the standard library or fmt, into a result.
 template <class Body> dermis_result guarded(const Log& log, const char* function, Body&& body) noexcept {
   const MemoryScope memory(log.memory);
   try {

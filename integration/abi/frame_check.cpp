@@ -75,14 +75,14 @@ dermis_result check_rectangle(const Log& log, const char* function, const Plan& 
                       function, out.width, out.height, out.x, out.y, plan.view_width, plan.view_height);
 }
 
-// The part of `first` .. `first + size` that lies in 0 .. `extent`, counted from `corner`.
+// Clips `first` .. `first + size` to 0 .. `extent`, relative to `corner`.
 std::pair<int32_t, int32_t> clip(uint32_t first, uint32_t size, uint32_t corner, uint32_t extent) {
   const int64_t low = std::clamp<int64_t>(int64_t{first} - corner, 0, extent);
   const int64_t high = std::clamp<int64_t>(int64_t{first} + size - corner, low, extent);
   return {static_cast<int32_t>(low), static_cast<int32_t>(high - low)};
 }
 
-// Where subsurface may be, from the rectangle's corner.
+// Returns the bounds of subsurface relative to the rectangle's corner.
 dermis_result check_bounds(const Log& log, const char* function, const dermis_frame& frame,
                            const vulkan::Rectangle& rectangle, std::array<int32_t, 4>& out) {
   if ((frame.flags & DERMIS_FRAME_BOUNDS) == 0) {
@@ -154,7 +154,7 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
   return check_state(view, index, slot, "after", binding.after);
 }
 
-// The image view of a binding that brings none.
+// Provides the image view of a binding without one.
 dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, const dermis_frame& frame,
                         dermis_image_binding& binding) {
   if (binding.view != VK_NULL_HANDLE) return DERMIS_OK;
@@ -183,9 +183,9 @@ dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, c
               vulkan::result_name(result));
 }
 
-// Every slot without a binding in one message.
+// Reports all slots without a binding in one message.
 dermis_result check_complete(const Log& log, const char* function, const Program& program) {
-  constexpr size_t rest_of_message = 256; // so that a long list leaves room for the advice
+  constexpr size_t rest_of_message = 256; // reserves space for the advice after a long list
   std::array<char, failure_text_size - rest_of_message> names;
   size_t used = 0;
   bool optional = false;
@@ -255,8 +255,8 @@ dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis
   return check_shared_resources(view, program);
 }
 
-// Clip space without the jitter: a picture shifted by `pixels` of `extent` is shifted by 2 pixels / extent
-// there.
+// Removes the jitter: shifting the picture by `pixels` of `extent` shifts clip space by 2 * pixels
+// / extent.
 void remove_jitter(subsurface::Matrix4& clip_from_view, int row, double pixels, double extent) {
   for (size_t c = 0; c < 4; ++c)
     clip_from_view[row * 4 + c] -= 2.0 * pixels / extent * clip_from_view[12 + c];
@@ -302,7 +302,7 @@ subsurface::CameraFault fill_constants(const dermis_frame& frame, const Program&
                                                             : subsurface::CameraFault::no_projection;
 }
 
-// Adds to a message about a camera how view space is declared, if that may be the cause.
+// Returns advice on how to declare view space, if that may be the cause.
 std::string_view hint_of(subsurface::CameraFault fault) {
   const bool of_handedness =
       fault != subsurface::CameraFault::no_projection && fault != subsurface::CameraFault::stored_by_columns;
@@ -354,7 +354,7 @@ dermis_result fill_frame(const dermis_view_t& view, const Program& program, cons
   checked.input.settings = program.outcomes[chosen.outcome].settings;
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
-  checked.input.taken_over = before != nullptr && program.last_frame > 0; // of its pool of memory
+  checked.input.taken_over = before != nullptr && program.last_frame > 0; // of the memory pool
   checked.input.before = before;
   checked.input.view_user = view.user;
   checked.history_invalid = history_invalid;

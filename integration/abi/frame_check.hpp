@@ -1,29 +1,31 @@
 #pragma once
-// A host's frame against the program that would record it. Nothing here allocates host memory or changes the
-// graph, but that image views are made for bindings without.
+// Checks a host's frame against the program that will record it. Allocates no host memory and
+// leaves the graph unchanged, except that it creates image views for bindings without one.
 
 #include "integration/abi/graph.hpp"
 
 namespace dermis::abi {
 
-// The frame as checked: what the executor needs. Spans point into the program or into `constants`.
+// A checked frame, ready for the executor. Spans refer to the program or to `constants`.
 struct CheckedFrame {
   vulkan::FrameInput input;
   subsurface::FrameConstants constants{};
-  std::array<int32_t, 4> bounds{}; // as FrameConstants::bounds
-  bool history_invalid = false;    // of any history
+  std::array<int32_t, 4> bounds{}; // see FrameConstants::bounds
+  bool history_invalid = false;    // some history is invalid
 
   bool empty_bounds() const { return bounds[2] == 0 || bounds[3] == 0; }
 };
 
-// Checks every field, fills program.images and what of `checked` does not hang on the outcome. ARGUMENT or
-// VERSION with a message that names the field.
+// Checks every field, and fills program.images and the parts of `checked` that do not depend on the
+// chosen outcome. Returns ARGUMENT or VERSION with a message that names the field.
 dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_frame& frame,
                           CheckedFrame& checked);
-struct Chosen {                             // what records the frame
-  uint32_t outcome = 0, variant = 0;        // of the program
-  const vulkan::Executor* before = nullptr; // that recorded the last frame, if the variant did not
-  uint32_t sample_units = 0;                // as FrameConstants
+// The plan that records the frame.
+struct Chosen {
+  uint32_t outcome = 0, variant = 0; // into the program
+  // executor of the last frame, if it differs from the variant's
+  const vulkan::Executor* before = nullptr;
+  uint32_t sample_units = 0; // see FrameConstants
 };
 // Fills the rest of `checked`.
 dermis_result fill_frame(const dermis_view_t& view, const Program& program, const Chosen& chosen,

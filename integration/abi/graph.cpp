@@ -18,10 +18,10 @@ dermis_graph_t::~dermis_graph_t() {
 namespace dermis::abi {
 namespace {
 
-using Candidates = std::vector<std::shared_ptr<Program>>; // by view, the graph's own first
+using Candidates = std::vector<std::shared_ptr<Program>>; // by view, the graph's own view first
 
-// Reports each history of `program` that goes on from none of what the view recorded last. Under the view's
-// mutex.
+// Reports each history of `program` that cannot continue from the view's last frame. Requires the
+// view's mutex.
 void report_lost_histories(const dermis_view_t& view, const Program& program, vulkan::HistoryReason reason,
                            Diagnostics& diagnostics) {
   const Program& last = *view.running;
@@ -38,7 +38,7 @@ void report_lost_histories(const dermis_view_t& view, const Program& program, vu
   }
 }
 
-// Builds for every view beside what runs. Nothing has changed for any of them yet.
+// Builds a program for every view next to the running one. Changes nothing visible to the views.
 dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulkan::HistoryReason reason,
                                Diagnostics& diagnostics, Candidates& candidates) {
   dermis_context_t& context = *graph.context;
@@ -50,7 +50,7 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
   const vulkan::HistoryReason history = recorded ? reason : vulkan::HistoryReason::first_frame;
   choice::ErrorModel errors;
   choice::CostModel costs;
-  { // recording learns meanwhile
+  { // recording may learn concurrently
     const std::lock_guard lock(graph.own.mutex);
     errors = graph.own.chooser.errors;
     costs = graph.own.chooser.costs;
@@ -62,10 +62,10 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
     result = copy_program(context, input, *candidates[0], history, diagnostics, candidates[v]);
   for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
     apply_own_settings(*graph.others[v - 1], *candidates[v], diagnostics);
-  if (result != DERMIS_OK || diagnostics.has_errors())
-    return result; // errors of profiles come from the caller
+  // the caller handles errors of profiles
+  if (result != DERMIS_OK || diagnostics.has_errors()) return result;
   size_t v = 0;
-  bool reported = false; // views share the declarations: one of them speaks for all
+  bool reported = false; // views share the declarations, so one report is enough
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
     if (!reported && view.running && view.running->last_frame > 0) {
@@ -78,10 +78,11 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
   return DERMIS_OK;
 }
 
-// They take over at the next record of each view. One that waited was never recorded.
+// Makes the candidates take over at the next record of each view. A program that was still waiting
+// was never recorded.
 void hand_over(dermis_graph_t& graph, Candidates& candidates) noexcept {
   for (const std::shared_ptr<Program>& candidate : candidates)
-    share_kernels(*candidate); // before any view is locked, whose recording would wait
+    share_kernels(*candidate); // before any view is locked, so that recording does not wait
   size_t v = 0;
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
@@ -108,7 +109,8 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   Candidates candidates;
   dermis_result result =
       build_candidates(*graph, graph->input, vulkan::HistoryReason::first_frame, diagnostics, candidates);
-  if (result == DERMIS_OK && diagnostics.has_errors()) result = DERMIS_ERROR_CONFIG; // of a profile
+  // error of a profile
+  if (result == DERMIS_OK && diagnostics.has_errors()) result = DERMIS_ERROR_CONFIG;
   result = conclude(log, result, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
   hand_over(*graph, candidates);
@@ -116,7 +118,7 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   return DERMIS_OK;
 }
 
-// Rebuilds the graph from what it was built from and what the description replaces of that.
+// Rebuilds the graph from its stored input and the parts that the description replaces.
 dermis_result reload(dermis_graph_t& graph, const dermis_graph_desc* given, dermis_report* report) {
   constexpr const char* function = "dermis_graph_reload";
   const Log& log = graph.context->log;

@@ -1,6 +1,6 @@
 #pragma once
-// A graph of the host and its views. Each view has the program that it runs, the one that waits for its next
-// record, and those that the device may still be executing.
+// A graph of the host and its views. Each view holds its running program, the program that takes
+// over at its next record, and replaced programs that the device may still execute.
 
 #include "integration/abi/chooser.hpp"
 #include "integration/abi/commands/capture.hpp"
@@ -10,8 +10,8 @@
 #include <array>
 #include <mutex>
 
-// One camera: what frames leave behind for the next. Recording takes `mutex` alone, so that another thread
-// may change the graph meanwhile: a change builds beside and takes `mutex` only to hand over.
+// One camera with its histories. Recording only locks `mutex`, so another thread can change the
+// graph meanwhile: it builds without `mutex` and locks `mutex` only to hand over.
 struct dermis_view_t {
   dermis_view_t(dermis_context from, dermis_graph of, void* pointer)
       : context(from), graph(of), user(pointer), chooser(dermis::abi::make_chooser()),
@@ -19,31 +19,33 @@ struct dermis_view_t {
 
   dermis_context context = nullptr;
   dermis_graph graph = nullptr;
-  void* user = nullptr;                           // handed to passes of the host
-  std::vector<dermis::abi::HostSetting> settings; // the view's own values. Guarded by graph->changing
-  mutable std::mutex mutex;                       // guards all that follows
-  std::shared_ptr<dermis::abi::Program> running;  // recorded last; null before the first record
-  std::shared_ptr<dermis::abi::Program> next;     // takes over at the next record; null: none
-  // Replaced programs, until the frame they were recorded with last has completed. Each was replaced at a
-  // different frame, and at most frames_in_flight frames are not complete.
+  void* user = nullptr; // passed to host-recorded passes
+  // the view's own values; guarded by graph->changing
+  std::vector<dermis::abi::HostSetting> settings;
+  mutable std::mutex mutex;                      // guards all following members
+  std::shared_ptr<dermis::abi::Program> running; // recorded last; null before the first record
+  std::shared_ptr<dermis::abi::Program> next;    // takes over at the next record; null: none
+  // Replaced programs, until their last recorded frame has completed. Each was replaced at a
+  // different frame, and at most frames_in_flight frames are incomplete.
   std::array<std::shared_ptr<dermis::abi::Program>, dermis::vulkan::max_frames_in_flight + 1> retired;
   uint64_t last_frame = 0;
-  // What the last record changed, until it is taken back or the next one comes.
+  // State before the last record, until that is discarded or another frame is recorded.
   struct Recorded {
     bool known = false;
     uint64_t last_frame = 0; // of the view
-    bool took_over = false;  // a new program: it was `next`
-    size_t retired = 0;      // where the program before went, if took_over; the number of places: nowhere
+    bool took_over = false;  // a new program, formerly `next`, took over
+    // index of the previous program in `retired`; retired.size(): not stored
+    size_t retired = 0;
     uint64_t program_last_frame = 0;
     std::array<double, 2> last_jitter_px{};
     uint32_t outcome = 0, variant = 0, program_variant = 0;
     bool variant_recorded = false;
     dermis::choice::DecisionState decision;
-    uint64_t decided_for = 0; // as in Chooser
+    uint64_t decided_for = 0; // see Chooser
   } recorded;
   dermis::abi::Chooser chooser;
   dermis::abi::ImageViews image_views;
-  dermis::abi::Capture capture; // the commands that were asked for last
+  dermis::abi::Capture capture; // commands of the last capture
 };
 
 struct dermis_graph_t {
@@ -53,7 +55,8 @@ struct dermis_graph_t {
   dermis_graph_t& operator=(const dermis_graph_t&) = delete;
 
   dermis_context context = nullptr;
-  std::mutex changing; // one change of the graph at a time; guards the rest. Taken before the mutex of a view
+  // Serialises changes of the graph and guards the rest. Locked before the mutex of a view.
+  std::mutex changing;
   dermis::abi::ProgramInput input; // of the newest program
   dermis::PlanCache plans;         // of programs built before: what a setting flips back to
   dermis_view_t own;               // that dermis_graph_record records
@@ -62,11 +65,12 @@ struct dermis_graph_t {
 
 namespace dermis::abi {
 
-// The program that the next record will use. Under the view's mutex.
+// Returns the program that the next record will use. Requires the view's mutex.
 inline Program& newest(dermis_view_t& view) {
   return view.next ? *view.next : *view.running;
 }
-// The same, kept while another thread records.
+// Returns the program that the next record will use, and keeps it alive while another thread
+// records.
 inline std::shared_ptr<Program> keep_newest(const dermis_view_t& view) {
   const std::lock_guard lock(view.mutex);
   return view.next ? view.next : view.running;
@@ -75,27 +79,29 @@ inline const char* record_function(const dermis_view_t& view) {
   return &view == &view.graph->own ? "dermis_graph_record" : "dermis_view_record";
 }
 
-// DEVICE_LOST where reading times of the running program told so; from then on for the whole context. Under
-// the view's mutex.
+// Returns DEVICE_LOST if reading timings of the running program reported a lost device; the whole
+// context is then lost. Requires the view's mutex.
 dermis_result check_loss(const dermis_view_t& view, const char* function);
 
-// Calls use(view) for each view of the graph, its own first. Under graph.changing.
+// Calls use(view) for each view of the graph, its own first. Requires graph.changing.
 template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
   use(graph.own);
   for (const auto& view : graph.others)
     use(*view);
 }
 
-// Who recorded the frame before, where that was another plan than `variant`: of this program, or of the one
-// that it replaces. Under the view's mutex.
+// Returns the executor of the previous frame if it is not that of `variant`: another plan of this
+// program, or of the program that it replaces. Requires the view's mutex.
 const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant);
 
-// Builds candidates for all views from `input`; they take over at the next record. On failure nothing has
-// changed. Under graph.changing. `diagnostics`: what reading `input` found; an error fails the call.
+// Builds programs for all views from `input`; they take over at the next record. On failure nothing
+// has changed. Requires graph.changing. `diagnostics` holds findings of reading `input`; an error
+// in it fails the call.
 dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
                                dermis_report* report, Diagnostics&& diagnostics = {});
 
-// Gives the view's own values to a program that it will record; what does not fit is reported.
+// Applies the view's own settings to a program that it will record. Reports settings that no longer
+// fit.
 void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics& diagnostics);
 
 // What both the functions of a graph and of a view do; `function` names the one that was called.

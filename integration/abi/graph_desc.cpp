@@ -8,7 +8,8 @@
 namespace dermis::abi {
 namespace {
 
-// Calls `use(i, element)` for each element of a caller's array, stepped by the first element's struct_size.
+// Calls `use(i, element)` for each element of a caller's array, whose stride is the first element's
+// struct_size.
 template <class T, class Use>
 dermis_result for_each(const Log& log, const char* function, const char* field, const T* items,
                        uint32_t count, const T& defaults, Use use) {
@@ -98,7 +99,7 @@ dermis_result read_formats(const Log& log, const char* function, const dermis_gr
 
 dermis_result read_source(const Log& log, const char* what, const dermis_source& source, std::string& name,
                           std::string& text) {
-  if (source.struct_size != sizeof(dermis_source)) // a member of other structs: never grows
+  if (source.struct_size != sizeof(dermis_source)) // a member of other structs, so it never grows
     return bad_argument(log, "{}.struct_size is {}, expected {}: use DERMIS_SOURCE_INIT", what,
                         source.struct_size, sizeof(dermis_source));
   if (source.text == nullptr) return bad_argument(log, "{}.text is NULL", what);

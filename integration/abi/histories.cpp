@@ -1,4 +1,4 @@
-// What a view's histories hold, and why they held nothing.
+// Describes the state of a view's histories.
 
 #include "integration/abi/graph.hpp"
 #include "integration/abi/settling.hpp"
@@ -23,7 +23,7 @@ dermis_history_reason reason_of(vulkan::HistoryReason reason) {
     return DERMIS_HISTORY_OTHER_PLAN;
   case vulkan::HistoryReason::left_out:
     return DERMIS_HISTORY_LEFT_OUT;
-  case vulkan::HistoryReason::valid: // it is no reason
+  case vulkan::HistoryReason::valid: // not a reason
   case vulkan::HistoryReason::first_frame:
     break;
   }
@@ -35,7 +35,7 @@ struct KnownHistory {
   uint32_t settles_after = 1; // frames
 };
 
-// Those of a plan that are not among `all` yet, as its next frame would find them.
+// Adds the histories of a plan that are not yet in `all`, as its next frame will find them.
 void add_histories(const PassTypeRegistry& pass_types, const Program& program, const Variant& variant,
                    const vulkan::Executor* before, std::vector<KnownHistory>& all) {
   for (uint32_t i = 0; i < variant.executor->history_count(); ++i) {
@@ -44,13 +44,13 @@ void add_histories(const PassTypeRegistry& pass_types, const Program& program, c
     if (std::any_of(all.begin(), all.end(), same)) continue;
     const vulkan::HistoryState own = variant.executor->history_state(i);
     if (!state.valid && !variant.recorded && own.lost == vulkan::HistoryReason::first_frame)
-      state.lost = own.lost; // no plan was in between: it never ran
+      state.lost = own.lost; // the plan never ran, so no other plan ran in between
     all.push_back({state, settling_frames(pass_types, variant.compiled->plan, i,
                                           program.outcomes[program.outcome].settings)});
   }
 }
 
-// The plan that ran last, or will run first, before the others.
+// Lists the plan that ran last, or will run first, before the others.
 std::vector<KnownHistory> histories_of(const dermis_view_t& view, const Program& program) {
   const PassTypeRegistry& pass_types = view.context->pass_types;
   std::vector<KnownHistory> all;

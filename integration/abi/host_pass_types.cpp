@@ -16,7 +16,7 @@ std::string text_of(const char* text) {
   return text == nullptr ? "" : text;
 }
 
-// One element of an array that is stepped by what its first element states.
+// Returns an element of an array whose stride is the first element's struct_size.
 template <class T> const void* element(const T* items, uint32_t i) {
   return reinterpret_cast<const std::byte*>(items) + i * stated_size(items);
 }
@@ -123,7 +123,8 @@ dermis_result add_host_pass_type(dermis_context_t& context, HostPassTypeDeclarat
                         limits::host_pass_types);
   if (context.pass_types.find(type.name).valid())
     return bad_argument(log, "{}: there is a pass type '{}' already", registering, type.name);
-  passes.recorders.reserve(passes.recorders.size() + 1); // from here on nothing may fail half way
+  // nothing may fail between here and the end
+  passes.recorders.reserve(passes.recorders.size() + 1);
   const PassTypeId id = passes.pass_types.add(std::move(type), context.pass_types);
   passes.recorders.push_back({id, record, user});
   return DERMIS_OK;

@@ -38,7 +38,7 @@ VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t fr
     view = known->view;
     return VK_SUCCESS;
   }
-  // The one that was not used for longest; those that were never used come first.
+  // Selects the least recently used entry; unused entries come first.
   const auto oldest =
       std::min_element(slot.begin(), slot.end(), [](const ImageViews::Entry& a, const ImageViews::Entry& b) {
         return a.last_frame < b.last_frame;

@@ -1,6 +1,6 @@
 #pragma once
-// Image views of images that the host binds without one: made once for each content_id, kept while it comes
-// back.
+// Creates image views for images that the host binds without one. A view is created once per
+// content_id and kept while that id recurs.
 
 #include "framegraph/vulkan/device.hpp"
 
@@ -9,12 +9,12 @@
 
 namespace dermis::abi {
 
-inline constexpr size_t image_views_a_slot = 8; // images that a host may take turns with
+inline constexpr size_t image_views_a_slot = 8; // images that a host may alternate between
 
 struct ImageViewKey {
   uint32_t slot = 0;
   VkImage image = VK_NULL_HANDLE;
-  uint64_t content_id = 0; // an image handle may be another image later on, this may not
+  uint64_t content_id = 0; // unlike the image handle, never reused for another image
   VkFormat format = VK_FORMAT_UNDEFINED;
   VkImageAspectFlags aspect = 0;
   uint32_t layer = 0;
@@ -23,25 +23,25 @@ struct ImageViewKey {
 
 struct ImageViews {
   explicit ImageViews(const vulkan::Device& owner) : device(owner) {}
-  ~ImageViews(); // the device has finished all frames
+  ~ImageViews(); // requires that the device has finished all frames
   ImageViews(const ImageViews&) = delete;
   ImageViews& operator=(const ImageViews&) = delete;
 
   struct Entry {
     ImageViewKey key;
     VkImageView view = VK_NULL_HANDLE;
-    uint64_t last_frame = 0; // that used it
+    uint64_t last_frame = 0; // last frame that used the view
   };
   const vulkan::Device& device;
-  std::vector<Entry> entries; // those of a slot lie together
+  std::vector<Entry> entries; // entries of one slot are adjacent
 };
 
-// Room for so many slots. May throw std::bad_alloc; then nothing changed.
+// Allocates entries for `slots` slots. May throw std::bad_alloc; then nothing has changed.
 void reserve(ImageViews& views, size_t slots);
 
-// The view for `key`, used by frame `frame_index`. Views that no frame after `completed` uses make room.
-// Errors: of vkCreateImageView; VK_ERROR_TOO_MANY_OBJECTS when more images take turns than there is room for.
-// Allocates no host memory of the library.
+// Returns the view for `key`, for use by frame `frame_index`. Replaces views that no frame after
+// `completed` uses. Errors: those of vkCreateImageView; VK_ERROR_TOO_MANY_OBJECTS if more images
+// alternate than there are entries. Allocates no host memory of the library.
 VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t frame_index, uint64_t completed,
                          VkImageView& view) noexcept;
 

@@ -1,4 +1,4 @@
-// What a graph tells about itself: slots, plan, memory, times.
+// Describes a graph to the host: slots, plan, memory and times.
 
 #include "framegraph/explain/plan_dot.hpp"
 #include "framegraph/explain/plan_json.hpp"
@@ -31,9 +31,9 @@ dermis_slot describe_slot(const Slot& slot, uint32_t id) {
   return out;
 }
 
-// What transients would take side by side, by the memory types that they allow. Packing puts each at the end
-// of another, rounded up to its own alignment, so that sizes rounded up to the largest of the heap are never
-// less.
+// Returns the size of the transients without aliasing, by memory type mask. Sizes are rounded up to
+// the largest alignment of the heap, so the result is never below the packed size, for which each
+// placement only has its own alignment.
 using BytesByTypes = std::map<uint32_t, uint64_t>;
 BytesByTypes unaliased_bytes(const Plan& plan) {
   BytesByTypes sums;
@@ -47,7 +47,7 @@ BytesByTypes unaliased_bytes(const Plan& plan) {
 
 dermis_memory describe_view_memory(const Program& program) {
   dermis_memory out = DERMIS_MEMORY_INIT;
-  BytesByTypes maximum; // of the variants, of which one runs in a frame
+  BytesByTypes maximum; // over the variants, because only one runs per frame
   for (const Variant& variant : program.variants) {
     const Plan& plan = variant.compiled->plan;
     for (const auto& [types, bytes] : unaliased_bytes(plan))
@@ -75,7 +75,7 @@ dermis_memory describe_memory(dermis_graph_t& graph) {
   return sum;
 }
 
-// Of one view, in an order that stays: shared transients, then plan by plan.
+// Returns the heaps of one view in a stable order: shared transients, then plan by plan.
 std::vector<vulkan::MemoryRequest> heaps_of(const Program& program) {
   std::vector<vulkan::MemoryRequest> heaps;
   if (program.heap_pool)
@@ -147,7 +147,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
     std::shared_ptr<const Program> kept;
     std::shared_ptr<const dermis::CompiledPlan> plan;
     {
-      const std::lock_guard lock(graph->own.mutex); // which outcome is the newest changes with each frame
+      const std::lock_guard lock(graph->own.mutex); // the newest outcome changes with each frame
       kept = graph->own.next ? graph->own.next : graph->own.running;
       plan = kept->current().compiled;
     }

@@ -12,7 +12,7 @@ bool is_off(const PassDeclaration& pass) {
   return pass.absence != PassDeclaration::Absence::none;
 }
 
-// Subresources of a graph or plan; a buffer is one.
+// A set of subresources of a graph or plan. A buffer is one subresource.
 class Subresources {
 public:
   explicit Subresources(size_t resources) : ranges_(resources) {}
@@ -30,7 +30,7 @@ public:
   }
 
 private:
-  // Returns the layer after those that are known from `layer` on; `layer` if it is not.
+  // Returns the first unknown layer at or after `layer`; `layer` itself if it is unknown.
   uint32_t end_of_known(uint32_t resource, uint32_t mip, uint32_t layer) const {
     for (const SubresourceRange& known : ranges_[resource]) {
       const uint32_t end = uint32_t{known.first_layer} + known.layers;
@@ -58,8 +58,8 @@ SubresourceRange declared_range(const ResourceDeclaration& resource, const Image
   return range;
 }
 
-// What can be read: imported, written by a pass that is not turned off, or replaced by what can. Ports that
-// update need contents themselves.
+// Returns the readable subresources: imported, written by a pass that is on, or replaced by a
+// readable resource. Update ports do not count as writes, because they need earlier contents.
 Subresources provided_subresources(const Graph& graph, const PassTypeRegistry& pass_types) {
   Subresources provided(graph.resources.size());
   for (uint32_t r = 0; r < graph.resources.size(); ++r)
@@ -95,7 +95,8 @@ bool turned_off_writer(const Graph& graph, ResourceId resource) {
   });
 }
 
-// A resource that the pass has to read and that only passes which are turned off write; or none.
+// Returns a resource that the pass must read but that only passes that are off write; invalid if
+// there is none.
 ResourceId missing_input(const Graph& graph, const Subresources& provided, const PassType& type,
                          const PassDeclaration& pass) {
   for (const PortBinding& binding : graph.bindings_of(pass)) {
@@ -132,7 +133,7 @@ void turn_scattering_off(Graph& graph, const PassTypeRegistry& pass_types) {
       pass.when = id;
       pass.absence = PassDeclaration::Absence::no_profile;
     }
-  for (bool again = true; again;) { // what lacks its input leaves others without theirs
+  for (bool again = true; again;) { // turning a pass off may leave further passes without input
     again = false;
     const Subresources provided = provided_subresources(graph, pass_types);
     for (PassDeclaration& pass : graph.passes) {
@@ -151,7 +152,7 @@ std::vector<uint8_t> left_out_without_bounds(const PassTypeRegistry& pass_types,
   std::vector<uint8_t> left_out(plan.passes.size(), 1), wanted(plan.resources.size(), 0);
   for (size_t r = 0; r < plan.resources.size(); ++r)
     wanted[r] = plan.resources[r].slot >= 0;
-  for (bool again = true; again;) { // passes before the writers of a history want it, too
+  for (bool again = true; again;) { // passes that feed the writers of a history are needed too
     again = false;
     for (size_t p = plan.passes.size(); p-- > 0;) {
       const PassType& type = pass_types[plan.passes[p].type];

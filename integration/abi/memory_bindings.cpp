@@ -5,7 +5,7 @@
 namespace dermis::abi {
 namespace {
 
-struct Place { // of one binding, for messages
+struct Place { // identifies one binding in messages
   const Log& log;
   const char* function;
   const char* array;
@@ -33,7 +33,7 @@ dermis_result check_state(const dermis_view_t& view, const Place& place, const S
   return DERMIS_OK;
 }
 
-// The slot that is meant; null after a message in `result`, or where it is not bound.
+// Returns the bound slot; null after an error in `result`, or if the plan does not bind the slot.
 const Slot* find_slot(const Place& place, const Program& program, uint32_t number, uint32_t reserved,
                       ResourceType type, bool bound_before, dermis_result& result) {
   result = DERMIS_OK;
@@ -48,7 +48,8 @@ const Slot* find_slot(const Place& place, const Program& program, uint32_t numbe
   return result == DERMIS_OK && slot.bound ? &slot : nullptr;
 }
 
-// Calls `use(place, binding)` for each element of a caller's array, stepped by the first one's struct_size.
+// Calls `use(place, binding)` for each element of a caller's array, whose stride is the first
+// element's struct_size.
 template <class T, class Use>
 dermis_result for_each(const Place& array, const Program& program, const T* items, uint32_t count,
                        const T& defaults, Use use) {
@@ -104,7 +105,7 @@ dermis_result check_states(const dermis_view_t& view, const Place& place, const 
   return check_state(view, place, slot, "after", after);
 }
 
-// "3", or the name of a special value.
+// Returns "3", or the name of a special value.
 fmt::string_view family_name(uint32_t family, std::array<char, 16>& number) {
   switch (family) {
   case VK_QUEUE_FAMILY_IGNORED:

@@ -1,6 +1,6 @@
 #pragma once
-// Buffers and acceleration structures of a host's frame against the slots of the program that would record
-// it.
+// Checks buffers and acceleration structures of a host's frame against the slots of the program
+// that will record it.
 
 #include "integration/abi/graph.hpp"
 
@@ -11,13 +11,14 @@ inline vulkan::HostState host_state(const dermis_image_state& state) {
   return {state.layout, family, state.stages, state.access};
 }
 
-// What is wrong with the queue family of a state, as "field is value, explanation"; empty: nothing.
+// Returns what is wrong with the queue family of a state, as "field is value, explanation"; empty:
+// nothing.
 using FamilyText = std::array<char, 256>;
 std::string_view family_problem(const dermis_context_t& context, ResourceType type,
                                 const dermis_image_state& state, FamilyText& text);
 
-// Checks every field and fills program.buffers and program.structures. ARGUMENT or VERSION with a message
-// that names the field. Allocates nothing.
+// Checks every field and fills program.buffers and program.structures. Returns ARGUMENT or VERSION
+// with a message that names the field. Allocates nothing.
 dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame);
 
 } // namespace dermis::abi

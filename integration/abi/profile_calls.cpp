@@ -1,4 +1,4 @@
-// Profiles of a graph, replaced while it runs.
+// Replaces profiles of a graph while it runs.
 #include "integration/abi/graph.hpp"
 #include "integration/abi/graph_desc.hpp"
 #include "integration/abi/report.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* function = "dermis_graph_set_profile";
 
-// How long the histories of the graph's own view show the profile that was replaced.
+// Reports how long the histories of the graph's own view show the replaced profile.
 void add_settling(const PassTypeRegistry& pass_types, const Program& program, uint32_t outcome, uint32_t id,
                   Diagnostics& diagnostics) {
   std::vector<ResourceId> known;
@@ -32,7 +32,7 @@ void add_settling(const PassTypeRegistry& pass_types, const Program& program, ui
   }
 }
 
-// `input.profiles` has changed; passes and plans are the same.
+// Replaces the tables after `input.profiles` has changed. Passes and plans stay unchanged.
 dermis_result replace_tables(dermis_graph_t& graph, ProgramInput&& input, uint32_t id,
                              dermis_report* report) {
   dermis_context_t& context = *graph.context;
@@ -48,7 +48,7 @@ dermis_result replace_tables(dermis_graph_t& graph, ProgramInput&& input, uint32
   }
   const dermis_result result = conclude(context.log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
-  for_each_view(graph, [&](dermis_view_t& view) { // from here on nothing fails
+  for_each_view(graph, [&](dermis_view_t& view) { // nothing fails from here on
     const std::lock_guard lock(view.mutex);
     for (const std::shared_ptr<Program>& program : {std::cref(view.running), std::cref(view.next)})
       if (program)
@@ -88,7 +88,7 @@ dermis_result set_profile(dermis_graph_t& graph, uint32_t id, const dermis_sourc
   }
   if (input.profiles.empty() == graph.input.profiles.empty())
     return replace_tables(graph, std::move(input), id, report);
-  input.tables.reset(); // passes that serve scattering come into the plan, or leave it
+  input.tables.reset(); // the plan gains or loses passes that serve scattering
   return replace_programs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
 }
 

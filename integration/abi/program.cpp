@@ -15,8 +15,8 @@
 namespace dermis::abi {
 namespace {
 
-// Values by setting: the declared default, or what the host set. What no longer fits is told and left at the
-// default.
+// Returns the values of all settings: the host's value or the declared default. Host values that no
+// longer fit are reported and replaced by the default.
 std::vector<SettingValue> settings_of(const Graph& graph, const std::vector<HostSetting>& given,
                                       Diagnostics& diagnostics) {
   std::vector<SettingValue> values;
@@ -26,7 +26,7 @@ std::vector<SettingValue> settings_of(const Graph& graph, const std::vector<Host
     const auto at =
         std::find_if(graph.settings.begin(), graph.settings.end(),
                      [&](const SettingDeclaration& declared) { return declared.name == setting.name; });
-    Diagnostics scratch; // the host's value was right for the graph before: not an error of this one
+    Diagnostics scratch; // the value fitted the previous graph, so it is no error of this graph
     std::optional<SettingValue> value;
     if (at != graph.settings.end()) value = read_setting(*at, setting.json, scratch);
     if (value)
@@ -41,18 +41,18 @@ std::vector<SettingValue> settings_of(const Graph& graph, const std::vector<Host
   return values;
 }
 
-// Settings that the host set: the library leaves them as they are.
+// Marks settings that the host set; the library does not change them.
 std::vector<bool> pinned_settings(const Graph& graph, const std::vector<HostSetting>& given) {
   std::vector<bool> pinned;
   for (const SettingDeclaration& declared : graph.settings)
     pinned.push_back(std::any_of(given.begin(), given.end(), [&](const HostSetting& setting) {
-      Diagnostics scratch; // a value that does not fit was told and left at the default
+      Diagnostics scratch; // a value that does not fit was already reported
       return setting.name == declared.name && read_setting(declared, setting.json, scratch).has_value();
     }));
   return pinned;
 }
 
-// Asks the host once for each name.
+// Asks the host only once for each name.
 FileText open_file(ProgramInput& input, std::string_view name) {
   const auto known = input.included.find(name);
   if (known != input.included.end()) return {known->second.name, known->second.text, ""};
@@ -79,7 +79,7 @@ template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& val
 using Environment = std::array<vulkan::EnvironmentBinding, 7>;
 static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 7);
 
-Environment environment_of(const subsurface::KernelTables& tables) { // points into `tables`
+Environment environment_of(const subsurface::KernelTables& tables) { // refers to `tables`
   return {{
       {vulkan::EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
       {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.profiles).size(), bytes_of(tables.profiles)},
@@ -92,7 +92,7 @@ Environment environment_of(const subsurface::KernelTables& tables) { // points i
   }};
 }
 
-// One executor for each plan; where there are several, their transients share memory.
+// Creates one executor per plan. If there are several plans, their transients share memory.
 vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
                              vulkan::KernelStore& kernels, Program& program) {
   const std::vector<vulkan::KernelCode> codes = kernel_codes(input.shaders);
@@ -143,7 +143,7 @@ void name_options(Program& program) {
   }
 }
 
-// What any of the plans wants of an image the host must provide.
+// Merges the plans' requirements on images that the host must provide.
 std::vector<Slot> slots_of(const Program& program) {
   std::vector<Slot> slots = make_slots(program.graph, program.variants.front().compiled->plan);
   for (const Variant& variant : program.variants) {
@@ -158,8 +158,8 @@ std::vector<Slot> slots_of(const Program& program) {
   return slots;
 }
 
-// The plan of frames with empty bounds in place of plan `number`, whose passes that it turns off get a
-// reason.
+// Compiles the plan for frames with empty bounds that replaces plan `number`. Adds a reason for
+// each pass of `instead_of` that the new plan turns off.
 std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
                                                    const std::vector<choice::Outcome>& outcomes,
                                                    uint32_t number, PlanCache& plans,
@@ -167,13 +167,14 @@ std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
   Graph graph = *input.graph;
   turn_scattering_off(graph, *input.pass_types);
   explain_lacking_inputs(graph, instead_of);
-  for (ResourceDeclaration& resource : graph.resources) // an export that no pass writes then stays as it is
+  // an export that no pass writes keeps its contents
+  for (ResourceDeclaration& resource : graph.resources)
     if (resource.exported && resource.origin != Origin::imported) resource.optional = true;
   CompileInput one = input;
   one.graph = &graph;
   const auto runs = [&](const choice::Outcome& outcome) { return outcome.plan == number; };
   one.settings = std::find_if(outcomes.begin(), outcomes.end(), runs)->settings;
-  Diagnostics reported; // warnings are about passes that the graph's own plans have as well
+  Diagnostics reported; // warnings repeat those of the graph's own plans
   auto compiled = compile(one, plans, reported);
   for (Diagnostic& message : reported.list) {
     if (compiled) break;
@@ -188,8 +189,7 @@ std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
 dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
   diagnostics.add(diagnostic_of(error.kind), {}, error.text);
   if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
-  // The library built the executor's input: what does not fit there is a defect of the library, not of the
-  // host.
+  // The library built the executor's input, so an argument error is a defect of the library.
   return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
 }
 
@@ -257,7 +257,8 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
       compile_input, errors, costs,
       [&](const CompileInput& one, Diagnostics& reported) { return compile(one, plans, reported); },
       diagnostics, pinned_settings(candidate->graph, input.settings));
-  if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // also those of profiles and slots
+  // including errors of profiles and slots
+  if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG;
   candidate->outcomes = std::move(made->outcomes);
   std::vector<CompiledPlan> empty_plans;
   for (uint32_t p = 0; p < made->plans.size(); ++p) {

@@ -28,7 +28,7 @@ void take_over(dermis_view_t& view) {
   view.running = std::move(view.next);
 }
 
-// As if the frame had not been recorded. Host memory stays as it is.
+// Restores the state before the frame was recorded. Host memory is not released.
 dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_index) {
   const Log& log = view.context->log;
   dermis_view_t::Recorded& recorded = view.recorded;
@@ -63,7 +63,7 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   return DERMIS_OK;
 }
 
-// The jitter of the frame before, in pixels of the size that the view has now.
+// Returns the jitter of the previous frame, in pixels of the current view size.
 std::array<double, 2> rescaled_jitter(const dermis_view_t& view, const vulkan::Executor& executor,
                                       const vulkan::Executor& before) {
   const vulkan::Rectangle was = before.previous_rectangle(), is = executor.previous_rectangle(&before);
@@ -79,12 +79,12 @@ uint32_t variant_of(const Program& program, uint32_t outcome, bool empty_bounds)
 
 constexpr uint64_t tile_side = 8, block_side = 32; // pixels
 
-// Squares of `side` pixels.
+// Returns the number of squares with `side` pixels that cover the rectangle.
 uint64_t squares_of(const vulkan::Rectangle& rectangle, uint64_t side) {
   return (rectangle.width + side - 1) / side * ((rectangle.height + side - 1) / side);
 }
 
-// `capture`: where the commands go instead of the frame's command buffer; or null.
+// `capture` receives the commands instead of the frame's command buffer; may be null.
 dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
   const Log& log = view.context->log;
   const char* const function = record_function(view);
@@ -106,7 +106,8 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   FrameChoice chosen =
       choose(chooser, program, frame.frame_index, double(frame.delta_seconds), squares_of(seen, tile_side),
              squares_of(seen, block_side), chooser.forecasts, state);
-  if (!chooser.counted) state = {}; // decided for a view full of subsurface: no reason to stay
+  // decided for a view full of subsurface, so hysteresis must not keep it
+  if (!chooser.counted) state = {};
   chosen.frame_index = frame.frame_index;
   const uint32_t variant = variant_of(program, chosen.outcome, checked.empty_bounds());
   chosen.variant = variant;
@@ -147,7 +148,8 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   view.recorded.variant_recorded = program.variants[variant].recorded;
   view.recorded.decision = chooser.state;
   view.recorded.decided_for = chooser.decided_for;
-  if (replaces) view.running->last_frame = frame.frame_index; // whose histories it copies
+  // its histories are copied by this frame
+  if (replaces) view.running->last_frame = frame.frame_index;
   program.last_frame = frame.frame_index;
   program.last_jitter_px = {frame.jitter_x, frame.jitter_y};
   program.outcome = chosen.outcome;

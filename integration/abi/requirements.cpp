@@ -66,7 +66,7 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
     get_properties(physical_device, &properties);
     version = properties.apiVersion;
   }
-  const bool core = version >= VK_API_VERSION_1_3; // else extensions of 1.2
+  const bool core = version >= VK_API_VERSION_1_3; // otherwise extensions of 1.2
   const std::vector<std::string> extensions =
       extensions_of(get_instance_proc_addr, instance, physical_device);
   const bool rays = has(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&

@@ -1,4 +1,4 @@
-// Settings of a graph: listed for the host, and set by it.
+// Lists and changes settings of a graph.
 #include "framegraph/model/expression.hpp"
 #include "framegraph/model/frame_settings.hpp"
 #include "integration/abi/graph.hpp"
@@ -30,7 +30,7 @@ bool is_set(const std::vector<HostSetting>& given, const std::string& name) {
   return std::any_of(given.begin(), given.end(), [&](const HostSetting& one) { return one.name == name; });
 }
 
-// The settings of the program that the view records next.
+// Returns the settings of the program that the view will record next.
 dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* count, dermis_setting* out) {
   const Log& log = view.context->log;
   const std::lock_guard changing(view.graph->changing);
@@ -91,7 +91,7 @@ void set_in(std::vector<HostSetting>& given, const std::string& name, const std:
     at->json = json;
 }
 
-// Does a new value change which passes run?
+// Returns whether the new values change which passes run.
 bool changes_passes(const Program& program, const std::vector<SettingValue>& values) {
   for (const PassDeclaration& pass : program.graph.passes)
     if (pass.when.valid() &&
@@ -122,7 +122,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   const auto index = static_cast<uint32_t>(at - declared.begin());
   if (at->by_budget || changes_passes(program, values))
     return replace_programs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
-  std::vector<std::vector<choice::Outcome>> outcomes; // by view that has no value of its own
+  std::vector<std::vector<choice::Outcome>> outcomes; // by view without its own value
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
@@ -131,7 +131,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   });
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
-  size_t v = 0; // from here on nothing fails
+  size_t v = 0; // nothing fails from here on
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
@@ -143,7 +143,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   return result;
 }
 
-// `json` NULL: the value of the graph again.
+// Sets the view's own value. `json` NULL: the graph's value applies again.
 dermis_result set_view_setting(dermis_view_t& view, const std::string& name, const char* json,
                                dermis_report* report) {
   constexpr const char* function = "dermis_view_set_setting";
@@ -188,7 +188,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   }
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
-  const std::lock_guard lock(view.mutex); // from here on nothing fails
+  const std::lock_guard lock(view.mutex); // nothing fails from here on
   Program& changed = newest(view);
   changed.settings[index] = *value;
   changed.outcomes.swap(outcomes);
@@ -205,7 +205,7 @@ void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics
   for (const HostSetting& own : view.settings) {
     const auto at = find_declared(graph, own.name);
     const auto index = static_cast<size_t>(at - graph.settings.begin());
-    Diagnostics scratch; // the value was right for the graph before: not an error of this one
+    Diagnostics scratch; // the value fitted the previous graph, so it is no error of this graph
     std::optional<SettingValue> value;
     if (at != graph.settings.end() && per_frame[index] != 0) value = read_setting(*at, own.json, scratch);
     if (!value) {

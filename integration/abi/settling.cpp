@@ -6,10 +6,10 @@
 namespace dermis::abi {
 namespace {
 
-constexpr double remainder = 0.01; // of the history, from before the change
+constexpr double remainder = 0.01; // fraction of the history from before the change
 
-// Of a running mean x' = (1 - share) x + share * new, (1 - share)^n of the first value are left after n
-// frames.
+// A running mean x' = (1 - fraction) x + fraction * new keeps (1 - fraction)^n of the first value
+// after n frames.
 double frames_of(const HistoryWeight& mix, double value) {
   const double fraction = mix.by == HistoryWeight::By::cap ? 1 / (1 + value) : value;
   if (fraction >= 1) return mix.frames;

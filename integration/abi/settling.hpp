@@ -1,13 +1,13 @@
 #pragma once
-// How long a history remembers what was before a change.
+// Estimates how long a history contains data from before a change.
 
 #include "framegraph/compile/plan.hpp"
 
 namespace dermis::abi {
 
-// Frames after which at most 1 % of history `index` of the plan (Plan::histories) is from before a change of
-// a profile or of light, by the weights that its writers mix with. 1: the history holds the last frame only.
-// `settings`: by Graph::settings.
+// Returns the number of frames after which at most 1 % of history `index` of the plan
+// (Plan::histories) is from before a change of a profile or of light, according to its writers'
+// blend weights. 1: the history only holds the last frame. `settings`: by Graph::settings.
 uint32_t settling_frames(const PassTypeRegistry& pass_types, const Plan& plan, uint32_t index,
                          const std::vector<SettingValue>& settings);
 

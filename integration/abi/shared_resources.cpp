@@ -14,7 +14,8 @@ bool moves(const vulkan::HostState& state) {
   return state.queue_family != VK_QUEUE_FAMILY_IGNORED;
 }
 
-// Only reads, equal states and no ownership transfer: whatever has no layout may be shared then.
+// Returns whether both slots only read, with equal states and no ownership transfer. Resources
+// without a layout may then be shared.
 template <class Host> bool only_read(const Slot& a, const Host& x, const Slot& b, const Host& y) {
   return !a.written && !b.written && same(x.before, y.before) && same(x.after, y.after) && !moves(x.before) &&
          !moves(x.after);
@@ -25,7 +26,7 @@ uint64_t end_of_layers(const vulkan::HostImage& image) {
                            : uint64_t{image.first_layer} + image.layers;
 }
 
-// Slots of depth formats see the depth aspect, all others do not.
+// Slots with depth formats use the depth aspect, all others the colour aspect.
 bool overlap(const Slot& a, const vulkan::HostImage& x, const Slot& b, const vulkan::HostImage& y) {
   return x.image == y.image && format_info(a.format).depth == format_info(b.format).depth &&
          x.first_layer < end_of_layers(y) && y.first_layer < end_of_layers(x);

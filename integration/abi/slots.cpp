@@ -19,11 +19,11 @@ const ResourceDeclaration* find_slot(const Graph& graph, const std::string& name
   return nullptr;
 }
 
-// More edits than this also lie between right names of different slots ("lights" and "lighting").
+// A larger limit would also match valid names of different slots ("lights" and "lighting").
 constexpr size_t max_slips = 2;
 
-// Warns of a name that is probably a misspelt slot; other names are added to `others`. A slot that the
-// same list names as well is not what was meant.
+// Warns of a name that is probably a misspelt slot, and adds other names to `others`. A slot that
+// the list also names itself is not suggested.
 void check_name(const Graph& graph, const char* list, std::span<const std::string_view> names,
                 std::string_view name, std::vector<std::string_view>& others, Diagnostics& diagnostics) {
   std::vector<std::string_view> slots;
@@ -45,7 +45,7 @@ void check_name(const Graph& graph, const char* list, std::span<const std::strin
       .suggestion = std::move(suggestion);
 }
 
-// The first access of each resource decides in which layout it comes best.
+// Returns the best layout for the resource on entry: that of its first access.
 Layout first_layout(const Plan& plan, uint32_t resource) {
   for (const PlanPass& pass : plan.passes)
     for (uint32_t i = 0; i < pass.access_count; ++i)
@@ -58,7 +58,8 @@ struct Touch {
   bool read = false, written = false;
 };
 
-// What the host's contents are to the plan: read if the first pass to touch them reads them.
+// Returns how the plan uses the host's contents: `read` if the first pass that accesses them reads
+// them.
 Touch touch(const Plan& plan, uint32_t resource) {
   Touch result;
   for (const PlanPass& pass : plan.passes) {
@@ -108,7 +109,8 @@ std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {
     slot.type = declared.type;
     slot.stride = declared.stride;
     slot.required = !declared.optional;
-    if (!declared.formats.empty()) slot.format = declared.formats.front(); // when the plan has no use for it
+    // if the plan does not use the slot
+    if (!declared.formats.empty()) slot.format = declared.formats.front();
     const auto id = static_cast<int32_t>(slots.size());
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       const PlanResource& resource = plan.resources[r];

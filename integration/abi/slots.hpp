@@ -1,5 +1,6 @@
 #pragma once
-// The slots of a graph: its imports and exports in file order, with what the compiled plan made of them.
+// Describes the slots of a graph: its imports and exports in file order, with the compiled plan's
+// use of them.
 
 #include "integration/abi/program.hpp"
 
@@ -7,20 +8,20 @@
 
 namespace dermis::abi {
 
-// Position i is PlanResource::slot i, which is the host's slot id.
+// Position i is PlanResource::slot i, the host's slot id.
 std::vector<Slot> make_slots(const Graph& graph, const Plan& plan);
 
-// Reports names in the host's lists that are no slot of the graph: each one that is probably misspelt as a
-// warning, all others together in one note, so that one list may serve several graphs.
+// Reports names in the host's lists that are no slot of the graph. Each probably misspelt name gets
+// a warning; all others share one note, so that a list may serve several graphs.
 void report_unknown_slots(const Graph& graph, std::span<const std::string> unbound,
                           std::span<const HostFormat> formats, Diagnostics& diagnostics);
 
-// By resource: false for the optional slots that the host names as unbound. Names of required slots are
-// errors; names without a slot are ignored.
+// Returns for each resource false if it is an optional slot that the host names as unbound. Names
+// of required slots are errors; names without a slot are ignored.
 std::vector<bool> bound_resources(const Graph& graph, std::span<const std::string> unbound,
                                   Diagnostics& diagnostics);
 
-// By resource: the formats that the host will bind, undefined where the host names none.
+// Returns for each resource the format that the host will bind; undefined if the host names none.
 std::vector<Format> host_formats(const Graph& graph, std::span<const HostFormat> formats);
 
 } // namespace dermis::abi

@@ -1,5 +1,5 @@
 #pragma once
-// The two-call array: items NULL asks for the count, else as many as fit are written.
+// The two-call array: items NULL returns the count; otherwise as many items as fit are written.
 
 #include "integration/abi/failure.hpp"
 #include "integration/abi/sized_struct.hpp"
@@ -8,7 +8,7 @@
 
 namespace dermis::abi {
 
-// `at(i)` gives item i. *count in: room in `items`; out: how many there are.
+// `at(i)` returns item i. *count in: capacity of `items`; out: number of items.
 template <class T, class At>
 dermis_result fill_array(const Log& log, const char* what, uint32_t* count, T* items, uint32_t available,
                          At at) {
@@ -30,7 +30,7 @@ dermis_result fill_array(const Log& log, const char* what, uint32_t* count, T* i
   return capacity < available ? DERMIS_INCOMPLETE : DERMIS_OK;
 }
 
-// The two-call text: *size in: room in `text`; out: bytes needed with the final 0.
+// The two-call text: *size in: capacity of `text`; out: bytes needed, including the final 0.
 inline dermis_result fill_text(const std::string& whole, size_t* size, char* text) {
   const size_t capacity = *size;
   *size = whole.size() + 1;

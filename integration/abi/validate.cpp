@@ -9,7 +9,7 @@
 namespace dermis::abi {
 namespace {
 
-// Any view will do to find cycles, missing producers and formats; sizes are judged again at creation.
+// Any view size reveals cycles, missing producers and formats; creation checks sizes again.
 constexpr uint32_t validation_width = 1920, validation_height = 1080;
 
 dermis_result validate(const dermis_source* given, dermis_report* report) {

@@ -1,4 +1,4 @@
-// Views: cameras of one graph, each with histories of its own.
+// Implements views: cameras of one graph, each with its own histories.
 #include "integration/abi/graph.hpp"
 #include "integration/abi/report.hpp"
 
@@ -7,7 +7,7 @@
 namespace dermis::abi {
 namespace {
 
-// A view that takes part in the graph as it is now: the first record takes the program over.
+// Creates a view of the graph's current program, which takes over at the first record.
 dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermis_view* out,
                      dermis_report* report) {
   const Log& log = graph.context->log;

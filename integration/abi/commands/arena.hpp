@@ -1,6 +1,5 @@
 #pragma once
-// Memory that is handed out piece by piece and taken back all at once: after the first frames nothing is
-// allocated any more.
+// A linear allocator: pieces are freed all at once. Nothing is allocated after the first frames.
 
 #include <algorithm>
 #include <cstddef>
@@ -14,7 +13,7 @@ namespace dermis::abi {
 
 class Arena {
 public:
-  // Aligned for anything. Null: out of host memory.
+  // Returns memory aligned for any type. Null: out of host memory.
   std::byte* take(size_t bytes) noexcept {
     bytes = (bytes + alignment - 1) / alignment * alignment;
     while (chunk_ < chunks_.size() && used_ + bytes > chunks_[chunk_].size) {
@@ -26,10 +25,10 @@ public:
     used_ += bytes;
     return out;
   }
-  // Everything that was taken is void.
+  // Invalidates all memory that was taken.
   void reset() noexcept { chunk_ = used_ = 0; }
 
-  // A copy of `items`; null where there are none, or no memory.
+  // Returns a copy of `items`; null if `items` is empty or memory runs out.
   template <class T> T* copy(std::span<const T> items) noexcept {
     std::byte* out = items.empty() ? nullptr : take(items.size_bytes());
     if (out != nullptr) std::memcpy(out, items.data(), items.size_bytes());

@@ -9,7 +9,7 @@ Capture& capture_of(VkCommandBuffer commands) {
   return *reinterpret_cast<Capture*>(commands);
 }
 
-// A command of the list, or room that nobody sees where there is no memory.
+// Appends a command. If memory runs out, returns a scratch command that is not in the list.
 dermis_command& add(Capture& capture, dermis_command_type type) noexcept {
   static thread_local dermis_command lost;
   dermis_command command = DERMIS_COMMAND_INIT;
@@ -178,7 +178,7 @@ void capture_host_pass(void* list, const vulkan::HostPass& call) {
   Capture& capture = *static_cast<Capture*>(list);
   HostPassCall whole;
   fill_host_pass(call, whole);
-  whole.call.command_buffer = VK_NULL_HANDLE; // the host's own: it knows which
+  whole.call.command_buffer = VK_NULL_HANDLE; // the host records into its own command buffer
   whole.call.ports = keep(capture, whole.ports.data(), whole.call.port_count);
   whole.call.settings = keep(capture, whole.settings.data(), whole.call.setting_count);
   add(capture, DERMIS_COMMAND_HOST_PASS).call = keep(capture, &whole.call, 1);

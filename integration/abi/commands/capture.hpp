@@ -1,6 +1,6 @@
 #pragma once
-// A frame as data: in place of a command buffer stands a list, and in place of Vulkan's commands functions
-// that add to it. So it is what would have been recorded, command by command.
+// Captures a frame as data: a list replaces the command buffer, and functions that append to it
+// replace Vulkan's commands. The list holds exactly what would have been recorded.
 
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/abi/commands/arena.hpp"
@@ -10,9 +10,9 @@ namespace dermis::abi {
 
 struct Capture {
   std::vector<dermis_command> commands;
-  Arena arena;         // of all that they point to
-  bool failed = false; // out of host memory: the list is not whole
-  // What the next dispatch will run with, and where it stands.
+  Arena arena;         // holds everything that the commands point to
+  bool failed = false; // out of host memory: the list is incomplete
+  // State of the next dispatch and the current pass.
   VkPipeline pipeline = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
   const VkDescriptorSet* sets = nullptr;
@@ -22,10 +22,10 @@ struct Capture {
   const char* pass = "";
 };
 
-// Begins an empty list. Its memory stays.
+// Clears the list and keeps its memory.
 void clear(Capture& capture) noexcept;
-// Makes a frame go into the list.
+// Redirects a frame into the list.
 void capture_into(Capture& capture, vulkan::FrameInput& frame) noexcept;
-VkCommandBuffer handle_of(Capture& capture) noexcept; // stands for it; no Vulkan handle
+VkCommandBuffer handle_of(Capture& capture) noexcept; // represents the capture; not a Vulkan handle
 
 } // namespace dermis::abi

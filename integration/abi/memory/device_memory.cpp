@@ -10,7 +10,7 @@ VkResult take(void* allocator, const vulkan::MemoryRequest& request, vulkan::Mem
   try {
     const VkResult result = host.take(host.user, &wanted, &given);
     if (result != VK_SUCCESS) return result;
-  } catch (...) { // a C++ host's
+  } catch (...) { // exceptions of a C++ host
     return VK_ERROR_UNKNOWN;
   }
   block = {given.memory, given.offset, given.mapped, given.user};

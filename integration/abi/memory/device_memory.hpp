@@ -1,5 +1,5 @@
 #pragma once
-// Device memory of the host's heaps, between dermis.h and the executor.
+// Connects the host's device memory allocator in dermis.h to the executor.
 
 #include "framegraph/vulkan/device.hpp"
 #include "integration/include/dermis/dermis.h"

@@ -1,6 +1,7 @@
 #pragma once
-// Host memory: from the host's allocator inside of calls that know one, else from the C library. The C++ run
-// time of the shared library asks here (operators.cpp); a static library leaves operator new to its program.
+// Selects the source of host memory: the host's allocator inside calls that have one, else the C
+// library. The shared library's operator new uses it (operators.cpp); a static library uses the
+// program's operator new.
 
 #include "integration/include/dermis/dermis.h"
 
@@ -12,14 +13,14 @@ struct HostAllocator {                   // copied from dermis_allocator
   void* user = nullptr;
 };
 
-// True: what this library allocates goes through current_allocator(). Free-threaded.
+// Returns whether the library's allocations go through current_allocator(). Free-threaded.
 bool serves_host_allocator() noexcept;
 
-// That of the call which this thread is in.
+// Returns the allocator of the thread's current call.
 const HostAllocator& current_allocator() noexcept;
 
-// Makes an allocator that of this thread until the end of the scope. Memory knows whom it came from: it may
-// be given back in any scope.
+// Makes an allocator the current one of this thread until the end of the scope. Each allocation
+// stores its allocator, so memory may be freed in any scope.
 class MemoryScope {
 public:
   explicit MemoryScope(const HostAllocator& allocator) noexcept;

@@ -1,4 +1,5 @@
-// operator new is the program's: a static library must not take it over, and sanitizers bring their own.
+// Leaves operator new to the program: a static library must not replace it, and sanitizers have
+// their own.
 #include "integration/abi/memory/host_memory.hpp"
 
 bool dermis::abi::serves_host_allocator() noexcept {

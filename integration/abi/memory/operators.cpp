@@ -1,5 +1,6 @@
-// operator new and delete of the shared library, which no other library sees: it has a C++ run time of its
-// own, hidden as everything but dermis_*, so that every container of it comes here.
+// Defines operator new and delete of the shared library. No other library sees them: the shared
+// library has its own C++ run time, hidden like everything except dermis_*, so all of its
+// containers allocate here.
 #include "integration/abi/memory/host_memory.hpp"
 
 #include <algorithm>
@@ -14,11 +15,11 @@
 namespace dermis::abi {
 namespace {
 
-// In front of each allocation: whom it goes back to, wherever and whenever that happens.
+// Precedes each allocation and stores how to free it, in any scope and at any time.
 struct Header {
   dermis_release_fn release;
   void* user;
-  size_t size, alignment; // as asked of the allocator
+  size_t size, alignment; // as requested from the allocator
 };
 constexpr size_t min_alignment = alignof(std::max_align_t);
 
@@ -26,7 +27,7 @@ constexpr size_t header_space(size_t alignment) {
   return (sizeof(Header) + alignment - 1) / alignment * alignment;
 }
 
-#if defined(_WIN32) // it has no aligned_alloc
+#if defined(_WIN32) // Windows has no aligned_alloc
 void* from_c_library(size_t alignment, size_t size) {
   return _aligned_malloc(size, alignment);
 }
@@ -44,7 +45,8 @@ void to_c_library(void* memory) {
 
 void* take(size_t size, size_t wanted) noexcept {
   const size_t alignment = std::max(wanted, min_alignment), front = header_space(alignment);
-  const size_t total = (front + size + alignment - 1) / alignment * alignment; // as aligned_alloc wants it
+  // aligned_alloc requires a multiple of the alignment
+  const size_t total = (front + size + alignment - 1) / alignment * alignment;
   if (total < size) return nullptr;
   const HostAllocator& host = current_allocator();
   void* memory = host.allocate == nullptr ? from_c_library(alignment, total)
@@ -84,7 +86,7 @@ using dermis::abi::give_back;
 using dermis::abi::take;
 using dermis::abi::take_or_throw;
 
-// The forms for arrays call these.
+// The array forms call these.
 void* operator new(size_t size) {
   return take_or_throw(size, 1);
 }

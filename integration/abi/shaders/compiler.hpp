@@ -1,5 +1,5 @@
 #pragma once
-// Kernels from GLSL text while the program runs. Of glslang_compiler.cpp and no_compiler.cpp one is linked.
+// Compiles kernels from GLSL at run time. Either glslang_compiler.cpp or no_compiler.cpp is linked.
 
 #include "framegraph/compose/compose.hpp"
 
@@ -10,14 +10,14 @@
 
 namespace dermis::abi {
 
-// "glslang 12.0.0"; "" where this build has none. Free-threaded.
+// Returns e.g. "glslang 12.0.0"; "" if this build has no compiler. Free-threaded.
 std::string shader_compiler();
 
-// Compiles each kernel of `shaders` (PassType::shader) from "NAME.comp" and from what that includes:
-// "FILE" of `open` for #include "FILE", but for headers that come from signatures (*.bindings.glsl,
-// constants.glsl), which are the library's. Names that lead out are refused before `open` is asked. spirv[i]
-// is empty where `open` has no such kernel. False with errors of all kernels in `diagnostics`. Takes its
-// memory from the C library. Free-threaded if `open` is.
+// Compiles each kernel of `shaders` (PassType::shader) from "NAME.comp" and its includes. #include
+// "FILE" calls `open`, except for headers generated from signatures (*.bindings.glsl,
+// constants.glsl), which the library provides. Names that leave the folder are rejected before
+// `open` is called. spirv[i] is empty if `open` has no such kernel. Returns false with the errors
+// of all kernels in `diagnostics`. Allocates from the C library. Free-threaded if `open` is.
 bool compile_shaders(std::span<const std::string> shaders, const OpenFile& open,
                      std::vector<std::vector<uint32_t>>& spirv, Diagnostics& diagnostics);
 

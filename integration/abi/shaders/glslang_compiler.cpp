@@ -1,5 +1,5 @@
-// glslang as the build calls it (shaders/CMakeLists.txt), so that a kernel that has not changed has the same
-// words.
+// Runs glslang as the build does (shaders/CMakeLists.txt), so that an unchanged kernel gives the
+// same SPIR-V.
 #include "framegraph/text/limits.hpp"
 #include "integration/abi/memory/host_memory.hpp"
 #include "integration/abi/shaders/compiler.hpp"
@@ -20,17 +20,18 @@ namespace dermis::abi {
 namespace {
 
 constexpr size_t include_nesting = 16;
-constexpr size_t includes = 256;     // of one kernel, each one counted as often as it is included
-constexpr int default_version = 100; // of a text without #version: glslangValidator's
+constexpr size_t includes = 256;     // per kernel; repeated includes count each time
+constexpr int default_version = 100; // of a text without #version, as in glslangValidator
 
-struct Process { // what glslang keeps for all that a program compiles
+// glslang's process-wide state.
+struct Process {
   Process() { glslang::InitializeProcess(); }
   ~Process() { glslang::FinalizeProcess(); }
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 };
 
-// Files by the name that glslang knows them by, of one kernel.
+// Files of one kernel, by the name that glslang uses.
 using Files = std::map<std::string, FileText, std::less<>>;
 
 std::string why_not_to_be_opened(std::string_view name) {
@@ -43,7 +44,7 @@ public:
   Includer(const std::vector<GeneratedFile>& generated, const OpenFile& open, Files& files)
       : generated_(generated), open_(open), files_(files) {}
 
-  // Where this returns null glslang asks includeSystem, too, and takes the message from there.
+  // If this returns null, glslang calls includeSystem and takes the message from there.
   IncludeResult* includeLocal(const char* header, const char*, size_t depth) override {
     problem_.clear();
     if (depth > include_nesting)
@@ -80,7 +81,7 @@ private:
   const OpenFile& open_;
   Files& files_;
   size_t count_ = 0;
-  std::string problem_; // of the include that was refused last
+  std::string problem_; // of the include that was rejected last
 };
 
 struct Complaint {
@@ -89,7 +90,8 @@ struct Complaint {
   std::string text;
 };
 
-// Where the word that the complaint quotes first stands; glslang tells no columns. From 1.
+// Returns the column, from 1, where the word that the complaint quotes first occurs. glslang
+// reports no columns.
 uint32_t column_of(std::string_view line, std::string_view complaint) {
   const size_t begin = complaint.find('\''), end = complaint.find('\'', begin + 1);
   const auto in_word = [&](size_t at) {
@@ -113,8 +115,8 @@ std::string_view line_of(std::string_view text, uint32_t number) {
   return text.substr(0, text.find('\n'));
 }
 
-// "ERROR: afis/afis.glsl:12: 'x' : undeclared identifier", a line each; what glslang sums up behind is
-// left out.
+// Parses "ERROR: afis/afis.glsl:12: 'x' : undeclared identifier", one per line. Ignores glslang's
+// summary.
 std::vector<Complaint> complaints_in(std::string_view log, const std::string& kernel, const Files& files) {
   constexpr std::string_view mark = "ERROR: ";
   std::vector<Complaint> found;
@@ -161,7 +163,7 @@ Answer compile_one(const std::string& shader, const std::vector<GeneratedFile>& 
   const FileText& kept = files.try_emplace(name, std::move(file)).first->second;
   const char* const text = kept.text.data();
   const char* const text_name = name.c_str();
-  const int length = static_cast<int>(kept.text.size()); // of at most limits::file_bytes
+  const int length = static_cast<int>(kept.text.size()); // at most limits::file_bytes
   glslang::TShader compiled(EShLangCompute);
   compiled.setStringsWithLengthsAndNames(&text, &length, &text_name, 1);
   compiled.setEnvInput(glslang::EShSourceGlsl, EShLangCompute, glslang::EShClientVulkan, 100);
@@ -197,16 +199,17 @@ bool compile_shaders(std::span<const std::string> shaders, const OpenFile& open,
                      std::vector<std::vector<uint32_t>>& spirv, Diagnostics& diagnostics) {
   std::vector<Answer> answers;
   {
-    const MemoryScope memory(HostAllocator{}); // glslang is not made for memory that runs out
+    const MemoryScope memory(HostAllocator{}); // glslang does not handle allocation failures
     const Process process;
     const std::vector<GeneratedFile> generated = generated_glsl();
     for (const std::string& shader : shaders)
       answers.push_back(compile_one(shader, generated, open));
   }
-  // Copies, so that what stays is the host's memory.
+  // Copies, so that the result is in the host's memory.
   spirv.clear();
   bool fine = true;
-  std::vector<const Complaint*> reported; // a file that many kernels include has its errors once
+  // errors of a file that many kernels include are reported once
+  std::vector<const Complaint*> reported;
   for (const Answer& answer : answers) {
     spirv.emplace_back(answer.spirv.begin(), answer.spirv.end());
     for (const Complaint& one : answer.complaints) {

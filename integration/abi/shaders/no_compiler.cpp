@@ -1,4 +1,4 @@
-// A library that links nothing for it.
+// Replaces the compiler in libraries that are built without one.
 #include "integration/abi/shaders/compiler.hpp"
 
 namespace dermis::abi {

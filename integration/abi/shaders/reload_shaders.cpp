@@ -15,7 +15,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_reload_shaders(dermis_graph gr
     if (open != nullptr && shader_compiler().empty()) {
       dermis::Diagnostics diagnostics;
       std::vector<std::vector<uint32_t>> none;
-      compile_shaders({}, {}, none, diagnostics); // says so
+      compile_shaders({}, {}, none, diagnostics); // adds the error
       return conclude(log, DERMIS_ERROR_UNSUPPORTED, std::move(diagnostics), report);
     }
     const std::lock_guard changing(graph->changing);

@@ -13,10 +13,10 @@
 namespace dermis::abi {
 namespace {
 
-// Of all graphs: those of a context share their kernels.
+// Shared by all graphs, because graphs of a context share kernels.
 std::atomic<uint64_t> versions = 0;
 
-// Words that have not changed keep their version, so that pipelines are used again.
+// Keeps the version of unchanged SPIR-V, so that pipelines are reused.
 RuntimeShaders::Kernel versioned(RuntimeShaders& shaders, const std::string& shader,
                                  std::vector<uint32_t>&& spirv) {
   if (spirv.empty() || std::ranges::equal(spirv, find_kernel(shader))) return {};

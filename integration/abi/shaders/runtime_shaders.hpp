@@ -1,5 +1,5 @@
 #pragma once
-// The kernels of one graph that come from text of the host instead of from the build.
+// Holds the kernels of one graph that come from the host's GLSL instead of from the build.
 
 #include "framegraph/model/graph.hpp"
 #include "framegraph/model/pass_type.hpp"
@@ -13,27 +13,30 @@
 
 namespace dermis::abi {
 
-struct RuntimeShaders { // copied with what a graph is built from: a candidate that fails leaves no trace
+// Copied with the input of a graph, so a failed candidate leaves no trace.
+struct RuntimeShaders {
   struct Kernel {
-    std::shared_ptr<const std::vector<uint32_t>> spirv; // null: the build's
-    uint64_t version = 0;                               // vulkan::KernelCode::version; 0: the build's
+    std::shared_ptr<const std::vector<uint32_t>> spirv; // null: the build's kernel
+    // vulkan::KernelCode::version; 0: the build's kernel
+    uint64_t version = 0;
   };
   using Kernels = std::map<std::string, Kernel, std::less<>>; // by PassType::shader
-  dermis_include_fn open = nullptr;                           // null: all kernels are the build's
+  // null: all kernels come from the build
+  dermis_include_fn open = nullptr;
   void* user = nullptr;
-  Kernels kernels; // that were looked at
-  Kernels before;  // that these replace
+  Kernels kernels; // kernels compiled or looked up so far
+  Kernels before;  // kernels that `kernels` replaces
 };
 
-// From now on kernels come from what `open` delivers, anew; null: from the build.
+// Makes kernels come from `open`, compiled again; null: from the build.
 void use_shaders(RuntimeShaders& shaders, dermis_include_fn open, void* user);
 
-// Compiles the kernels of all pass types that the graph names, but for those that are known. False with
-// errors.
+// Compiles the kernels of all pass types that the graph names, except known kernels. Returns false
+// with errors in `diagnostics`.
 bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const PassTypeRegistry& pass_types,
                      Diagnostics& diagnostics);
 
-// For an executor; valid as long as `shaders` stays as it is.
+// Returns the kernels for an executor; valid while `shaders` is unchanged.
 std::vector<vulkan::KernelCode> kernel_codes(const RuntimeShaders& shaders);
 
 } // namespace dermis::abi
