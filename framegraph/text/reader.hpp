@@ -20,10 +20,10 @@ namespace dermis {
 enum class Need : uint8_t { required, optional };
 
 // Each getter returns the value. It returns nullopt with an error if the value has the wrong type
-// or range, or is absent and required, and nullopt without an error if it is absent and optional.
-// Ranges are inclusive. `what` names the object in messages ("pass 'scatter'"). A key "note" (a
-// string) is allowed in every object, "$schema" in the root. The reader must not outlive document
-// and diagnostics; string views point into the document.
+// or range, or is absent and required. It returns nullopt without an error if the value is absent
+// and optional. Ranges are inclusive. `what` names the object in messages ("pass 'scatter'"). A key
+// "note" (a string) is allowed in every object, "$schema" in the root. The reader must not outlive
+// document and diagnostics; string views point into the document.
 class ObjectReader {
 public:
   ObjectReader(const Document& document, NodeId node, std::string what, Diagnostics& diagnostics);

@@ -341,7 +341,7 @@ struct Machine {
         subresource.of_frame != int64_t{frame} - access.frames_back)
       wrong("is read, but holds the contents of another frame");
     for_each_meeting(index, [&](const ThingEvents& there, bool own) {
-      bool followed = false; // by an access of every frame
+      bool followed = false; // a later access happens in every frame
       for (size_t e = there.events.size(); e-- > 0;) {
         const Event& event = there.events[e];
         const bool ordered = (access.stages & ~event.ordered[index_of(queue)]) == 0;

@@ -6,8 +6,8 @@
 namespace dermis::abi {
 
 // Returns the number of frames after which at most 1 % of history `index` of the plan
-// (Plan::histories) is from before a change of a profile or of light, according to its writers'
-// blend weights. 1: the history only holds the last frame. `settings`: by Graph::settings.
+// (Plan::histories) is from before a change of a profile or of light. Uses the blend weights of the
+// history's writers. 1: the history only holds the last frame. `settings`: by Graph::settings.
 uint32_t settling_frames(const PassTypeRegistry& pass_types, const Plan& plan, uint32_t index,
                          const std::vector<SettingValue>& settings);
 

@@ -155,11 +155,11 @@ struct Batch {
 };
 
 // Collects a global barrier for aliased memory. Earlier contents of the memory were written through
-// other resources, but an image or buffer barrier only covers accesses through its own resource
-// (VkImageMemoryBarrier2, VkBufferMemoryBarrier2); a global memory barrier covers those writes.
-// Both barriers name writes even if they only wait for reads. Nothing is left to make available
-// then, but the validation layer (1.3.239), which ignores image padding, may have missed the
-// earlier barrier.
+// other resources. An image or buffer barrier only covers accesses through its own resource
+// (VkImageMemoryBarrier2, VkBufferMemoryBarrier2), so a global memory barrier makes those writes
+// available. Both barriers name writes even if they only wait for reads. Nothing is left to make
+// available then, but the validation layer (1.3.239), which ignores image padding, may have missed
+// the earlier barrier.
 struct Takeover {
   Scopes scopes{};
 
