@@ -35,7 +35,7 @@ std::string everything_in(std::FILE* file) {
 } // namespace
 
 std::optional<ChildAnswer> run_child(const std::vector<std::string>& words, std::string& problem) {
-  std::FILE* out = std::tmpfile(); // a pipe would have to be emptied while it runs
+  std::FILE* out = std::tmpfile(); // a pipe would need to be drained while the child runs
   if (out == nullptr) {
     problem = fmt::format("cannot make a temporary file: {}", std::strerror(errno));
     return std::nullopt;

@@ -1,5 +1,5 @@
 #pragma once
-// Another program, run to its end.
+// Runs another program to its end.
 
 #include <optional>
 #include <string>
@@ -8,12 +8,13 @@
 namespace dermis::tools {
 
 struct ChildAnswer {
-  int exit_code = -1; // 128 + signal if one ended it
-  std::string out;    // what it wrote to standard output
+  int exit_code = -1; // 128 + signal number if a signal ended the program
+  std::string out;    // standard output of the program
 };
 
-// Runs `words[0]` with the rest as its arguments; standard error is ours. Where this program is asked to
-// stop, it is asked, too. nullopt with the reason in `problem`: it could not be started.
+// Runs `words[0]` with the remaining words as arguments; standard error is inherited. An interrupt
+// of this program also interrupts the child. Returns nullopt and sets `problem` if the program
+// could not be started.
 std::optional<ChildAnswer> run_child(const std::vector<std::string>& words, std::string& problem);
 
 } // namespace dermis::tools

@@ -1,15 +1,15 @@
 #pragma once
-// What the shell sees. The one list of exit codes; README.md and `dermis --help` repeat it.
+// Exit codes of the command. README.md and `dermis --help` repeat the list.
 
 namespace dermis::tools {
 
 enum class ExitCode : int {
   ok = 0,
-  problems = 1,      // the input has problems: a file, the graph, the data
-  usage = 2,         // a bad option or value
-  environment = 3,   // no driver, output that cannot be written, a missing package
+  problems = 1,      // a file, the graph or the data has problems
+  usage = 2,         // invalid option or value
+  environment = 3,   // no driver, output that cannot be written, or a missing package
   internal = 4,      // a defect of the program
-  interrupted = 130, // Ctrl-C, as shells count it: 128 + SIGINT
+  interrupted = 130, // Ctrl-C, in the shell's convention: 128 + SIGINT
 };
 
 } // namespace dermis::tools

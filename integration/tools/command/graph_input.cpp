@@ -14,7 +14,8 @@
 namespace dermis::tools {
 namespace {
 
-// Everything up to one byte more than a file may hold: reading it then says that it is too large.
+// Reads at most one byte more than a file may hold, so that the parser reports a file that is too
+// large.
 std::string read_standard_input() {
   std::string text;
   char block[65536];
@@ -35,7 +36,7 @@ template <class Number> bool parse_number(std::string_view text, Number& value) 
   return result.ec == std::errc() && result.ptr == text.data() + text.size();
 }
 
-// What is wrong with `text` as a value of `setting`; "" when `value` holds it.
+// Parses `text` as a value of `setting`. Returns the problem, or "" after setting `value`.
 std::string parse_setting(const SettingDeclaration& setting, std::string_view text, SettingValue& value) {
   const auto out_of_range = [&] {
     return fmt::format("setting '{}': {} is outside {} .. {}", setting.name, text, setting.minimum,

@@ -6,7 +6,7 @@
 namespace dermis::tools {
 namespace {
 
-// A signal handler can reach nothing but a global.
+// Global because a signal handler has no other state.
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 

@@ -1,4 +1,4 @@
-// The dermis command: reads the command line, runs one verb, and answers with its exit code.
+// The dermis command: reads the command line, runs one verb and returns its exit code.
 
 #include "integration/tools/command/arguments/arguments.hpp"
 #include "integration/tools/command/interrupt.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using namespace dermis::tools;
 
-// Log lines go to stderr, so that stdout holds results alone.
+// Sends log lines to stderr, so that stdout holds only results.
 void set_up_log(const Session& session) {
   auto log = spdlog::stderr_color_st("dermis", color_wanted(session.color, STDERR_FILENO)
                                                    ? spdlog::color_mode::always

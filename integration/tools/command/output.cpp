@@ -15,14 +15,13 @@ namespace {
 
 namespace files = std::filesystem;
 
-// Folders below `root` that hold nothing but empty folders, and `root` itself, are removed; anything else
-// stays.
+// Removes `root` and its subfolders where they hold nothing except empty folders.
 void remove_if_empty(const files::path& root) {
   std::error_code ignored;
   for (files::directory_iterator entry(root, ignored), end; !ignored && entry != end;
        entry.increment(ignored))
     if (entry->is_directory(ignored) && !entry->is_symlink(ignored)) remove_if_empty(entry->path());
-  files::remove(root, ignored); // fails where something is inside
+  files::remove(root, ignored); // fails if the folder is not empty
 }
 
 } // namespace

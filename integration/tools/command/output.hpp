@@ -1,19 +1,19 @@
 #pragma once
-// Writing what a verb made: whole or not at all.
+// Writes a verb's output atomically.
 
 #include <string>
 #include <string_view>
 
 namespace dermis::tools {
 
-// Writes `text` to the file `path`, whole or not at all, or for "-" to standard output. Returns what went
-// wrong, "" for nothing.
+// Writes `text` atomically to the file `path`, or to standard output for "-". Returns the problem,
+// or "".
 std::string deliver_text(const std::string& path, std::string_view text);
-// The same for a page, whose folder is made where there is none.
+// As deliver_text; creates the page's folder if necessary.
 std::string deliver_page(const std::string& path, std::string_view text);
 
-// A folder that pictures are written to. Made if it is not there; removed again at the end if it was made
-// here and is still empty, so that a verb that failed leaves nothing behind.
+// A folder for output images, created if necessary. The destructor removes a folder that was
+// created here and is still empty, so that a failed verb leaves no folder.
 class OutputFolder {
 public:
   OutputFolder() = default;
@@ -21,15 +21,15 @@ public:
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  // Makes the folder and tries to write there. Returns what went wrong, "" for nothing.
+  // Creates the folder and checks that it is writable. Returns the problem, or "".
   std::string open(const std::string& path);
-  // Makes a folder below. The same answer.
+  // Creates a subfolder. Returns the problem, or "".
   std::string open_below(const std::string& name);
   std::string path_of(std::string_view name) const;
 
 private:
   std::string path_;
-  std::string first_made_; // outermost folder that was made here; "" for none
+  std::string first_made_; // outermost folder created here; "" if none
 };
 
 } // namespace dermis::tools

@@ -15,7 +15,7 @@ constexpr double bar_interval_seconds = 0.1;
 constexpr double line_interval_seconds = 5.0;
 constexpr uint64_t bar_cells = 24;
 
-// Characters of UTF-8 text: bytes that do not continue one.
+// Counts characters of UTF-8 text: bytes other than continuation bytes.
 size_t characters(std::string_view text) {
   return static_cast<size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));

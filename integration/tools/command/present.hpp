@@ -1,5 +1,5 @@
 #pragma once
-// Text for people: tables, units, colour and progress. The one place where the command formats anything.
+// Formats text for people: tables, units, colour and progress.
 
 #include <chrono>
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace dermis::tools {
 
 enum class ColorMode : uint8_t { automatic, always, never };
 
-// Is colour wanted on this file descriptor? Automatic: on a terminal, unless NO_COLOR is set or TERM is
-// "dumb".
+// Returns whether to use colour on this file descriptor. Automatic means on a terminal, unless
+// NO_COLOR is set or TERM is "dumb".
 bool color_wanted(ColorMode mode, int file_descriptor);
 
-// Puts colour on the severity and the caret lines of a formatted diagnostic.
+// Colours the severity and the caret lines of a formatted diagnostic.
 std::string color_diagnostic(std::string_view formatted);
 
 struct Table {
@@ -28,7 +28,8 @@ struct Table {
   std::vector<std::vector<std::string>> rows; // each as long as `columns`; an empty row is a rule
 };
 
-// Titles, a rule, rows; two spaces between columns, no trailing spaces; ends in a newline.
+// Formats titles, a rule and rows, with two spaces between columns and no trailing spaces. Ends in
+// a newline.
 std::string format_table(const Table& table);
 
 std::string format_milliseconds(double milliseconds);           // "0.012 ms", "12.3 ms"
@@ -36,23 +37,23 @@ std::string format_duration(double seconds);                    // "4.2 s", "3 m
 std::string format_bytes(uint64_t bytes);                       // "512 B", "3.2 MiB"
 std::string format_decibels(double decibels);                   // "41.23 dB"
 std::string format_list(const std::vector<std::string>& words); // "sap, hybrid, off"
-// "1 frame", "8 frames"; as the start of a sentence "1 frame is", "8 frames are".
+// "1 frame", "8 frames"; with `being` "1 frame is", "8 frames are".
 std::string format_count(uint64_t count, std::string_view unit, bool being = false);
 
 enum class ProgressStyle : uint8_t {
   none,
-  bar,   // one line that is redrawn: for terminals
-  lines, // one line every few seconds: for logs
+  bar,   // one line that is redrawn, for terminals
+  lines, // one line every few seconds, for logs
 };
 
-// Bar on a terminal, lines elsewhere, none when quiet or when the output is for programs. Looks at stderr.
+// Returns bar if stderr is a terminal, none with --quiet or --json, and lines otherwise.
 ProgressStyle progress_style(bool quiet, bool json);
 
-// How far a piece of work is, on stderr. Says nothing about work that takes less than two seconds.
-// Thread: update() any; the rest one.
+// Shows the progress of work on stderr. Work shorter than two seconds shows nothing. Thread: any
+// for update(), one for other functions.
 class Progress {
 public:
-  // `total` steps of `unit` ("frame", "pixel"), named `what`.
+  // `total` steps of `unit` ("frame", "pixel"), titled `what`.
   Progress(ProgressStyle style, std::string what, std::string unit, uint64_t total);
   ~Progress(); // removes the bar
   Progress(const Progress&) = delete;

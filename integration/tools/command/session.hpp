@@ -1,5 +1,5 @@
 #pragma once
-// What every verb shares: the common options, and how a verb says that it failed.
+// Options common to all verbs, and reporting of failures.
 
 #include "framegraph/text/diagnostic.hpp"
 #include "integration/tools/command/exit_code.hpp"
@@ -14,21 +14,21 @@ struct Session {
   bool json = false;  // one JSON document on stdout instead of text
   bool quiet = false; // errors only
   ColorMode color = ColorMode::automatic;
-  std::string command; // line that the program was called with, for reports
+  std::string command; // command line of the program, for reports
 };
 
-// Says what went wrong and what to do, for people on stderr or for programs on stdout; returns `code`.
-// `diagnostics` (may be null) are printed before.
+// Reports the problem and the remedy, on stderr as text or on stdout as JSON, and returns `code`.
+// `diagnostics` (may be null) are printed first.
 ExitCode fail(const Session& session, ExitCode code, std::string_view message,
               const Diagnostics* diagnostics = nullptr);
 
-// All diagnostics for people on stderr; nothing with --json. With --quiet only errors.
+// Prints all diagnostics on stderr; prints nothing with --json, and only errors with --quiet.
 void print_diagnostics(const Session& session, const Diagnostics& diagnostics);
 
-// Text for people on stdout; nothing with --json or --quiet.
+// Prints text on stdout; prints nothing with --json or --quiet.
 void say(const Session& session, std::string_view text);
 
-// Text for programs on stdout.
+// Prints machine-readable text on stdout.
 void print(std::string_view text);
 
 } // namespace dermis::tools

@@ -10,7 +10,8 @@ std::string shipped(const std::string& path) {
   const auto prefix = std::string_view(path).substr(0, path.find('/') + 1);
   std::error_code error;
   if (fs::exists(path, error) || (prefix != "configs/" && prefix != "tests/")) return path;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error); // Linux; elsewhere sources alone
+  // only on Linux; other systems find only the sources
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error) return path;
   const fs::path installed =
       program.parent_path().parent_path() / "share" / "dermis" / path.substr(prefix.size());

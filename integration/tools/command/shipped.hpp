@@ -1,18 +1,18 @@
 #pragma once
-// Where the files are that ship with the command: beside the sources, or where it was installed.
+// Finds files that ship with the command, in the source tree or in the installation.
 
 #include <string>
 #include <string_view>
 
 namespace dermis::tools {
 
-// `path` begins with "configs/", or with "tests/" for what benches measure. The path itself where it exists
-// from here, so that sources come first; else the file below share/dermis beside the folder of the running
-// program, where that exists; else the path itself.
+// `path` begins with "configs/", or with "tests/" for benchmark inputs. Returns the first that
+// exists: `path` relative to the working directory, or the file below share/dermis next to the
+// running program's folder. Returns `path` if neither exists.
 std::string shipped(const std::string& path);
 
-// The file of a plain name in a folder of configs: "sap" of "graphs", for example. Where it is not there,
-// it is looked for in the folder papers below.
+// Returns the file of a plain name in a folder of configs, for example "sap" in "graphs". Falls
+// back to the subfolder `papers`.
 std::string shipped(std::string_view folder, std::string_view name);
 
 } // namespace dermis::tools

@@ -51,7 +51,7 @@ std::optional<std::vector<uint8_t>> read_bytes(const fs::path& path, uint64_t li
 }
 
 fs::path temporary_beside(const fs::path& path) {
-  static std::atomic<uint64_t> counter{0}; // tells calls within the process apart; nothing else depends on it
+  static std::atomic<uint64_t> counter{0}; // makes names unique within the process
   fs::path result = path;
   result += fmt::format(".{}-{}.part", ::getpid(), counter.fetch_add(1));
   return result;
@@ -64,7 +64,7 @@ bool write_bytes(const fs::path& path, std::span<const uint8_t> bytes, std::stri
   {
     File file(std::fopen(part.c_str(), "wb"));
     complete = file && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-    // A full disk may show only when the buffer is flushed.
+    // A full disk may only be reported when the buffer is flushed.
     complete = complete && std::fclose(file.release()) == 0;
   }
   if (!complete) {

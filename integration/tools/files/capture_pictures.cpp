@@ -38,7 +38,8 @@ std::optional<Image> read_sized(const fs::path& path, const std::vector<ChannelN
   return image;
 }
 
-// Ids as bytes. What is no whole number from 0 to 255 is an error, since no guess would be right; NaN is 0.
+// Converts ids to bytes. A value that is not a whole number from 0 to 255 is an error, since no
+// rounding is safe; NaN becomes 0.
 void take_profile_ids(const Image& image, const fs::path& path, const Document& document,
                       CapturedFrame& frame, Diagnostics& diagnostics) {
   frame.profile.resize(image.values.size());
@@ -86,7 +87,7 @@ void refine_tiles(Image& image, bool signed_values, const std::vector<uint8_t>& 
   }
 }
 
-// Counts pixels with a profile whose light graphs cannot hold.
+// Counts pixels with a profile whose light exceeds max_light.
 void count_too_bright(const CapturedFrame& frame, SanitisedCounts& counts) {
   for (size_t i = 0; i < frame.profile.size(); ++i) {
     float brightest = 0;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double largest_number = 1e30;
 constexpr double far_plane_m =
-    1000; // of the matrix made from a pixel pitch; no picture's depth depends on it
+    1000; // Far plane of the matrix made from a pixel pitch, metres. No depth value depends on it.
 constexpr subsurface::Matrix4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 SourceLocation place_of(Diagnostics& diagnostics, const fs::path& path) {
@@ -45,7 +45,7 @@ void read_rectangle(const Document& document, ObjectReader& reader, FrameDescrip
   frame.render = {uint32_t(r[0]), uint32_t(r[1]), uint32_t(r[2]), uint32_t(r[3])};
 }
 
-// Refers to the view space of the file, right- or left-handed.
+// Returns the matrices in the file's view space, which may be right- or left-handed.
 subsurface::CameraMatrices read_matrices(ObjectReader& reader, bool has_pitch) {
   subsurface::CameraMatrices camera;
   reader.numbers("clip_from_view", camera.clip_from_view, -largest_number, largest_number,
@@ -115,7 +115,7 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
                      subsurface::text_of(fault)));
 }
 
-// Normals of a left-handed view space point the other way along z.
+// Converts normals of a left-handed view space, which point the other way along z.
 void mirror_normals(Image& normal) {
   for (size_t i = 2; i < normal.values.size(); i += normal.channels)
     normal.values[i] = -normal.values[i];
@@ -181,7 +181,7 @@ void read_profiles(const Document& document, ObjectReader& reader, const fs::pat
   }
 }
 
-// As read_description; `handedness` of the view space that the files have.
+// Implements read_description, and also returns the `handedness` of the file's view space.
 std::optional<CapturedFrame> read_view(const Document& document, const fs::path& folder,
                                        const fs::path& profile_folder, Diagnostics& diagnostics,
                                        FileRoots roots, subsurface::Handedness& handedness) {

@@ -7,9 +7,10 @@ namespace dermis::tools {
 namespace {
 
 constexpr double metres_per_mm = 1e-3;
-constexpr double thinnest_m = 1e-9; // a slab; without scattering not even this lets light through
+// Minimum thickness of a slab, metres. Without scattering even this transmits no light.
+constexpr double thinnest_m = 1e-9;
 
-// The rectangle's values out of a picture's.
+// Returns the values inside the rectangle.
 template <class T>
 std::vector<T> crop(const std::vector<T>& values, uint32_t width, const Rectangle& part, uint32_t channels) {
   std::vector<T> result;

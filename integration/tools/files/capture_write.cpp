@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Four rows on four lines, as the format's description shows them.
+// Formats a matrix in four lines, as docs/capture.md shows.
 std::string matrix_text(const subsurface::Matrix4& m) {
   std::string text = "[";
   for (size_t row = 0; row < 4; ++row)
@@ -22,7 +22,7 @@ std::string matrix_text(const subsurface::Matrix4& m) {
   return text + "]";
 }
 
-// A capture, or nothing that anybody would miss.
+// Returns whether the folder is absent, empty or a capture.
 bool may_replace(const fs::path& folder) {
   std::error_code code;
   if (!fs::exists(folder, code)) return true;
@@ -62,7 +62,7 @@ std::string describe_frame(const FrameDescription& f) {
 bool CaptureWriter::begin(const fs::path& folder, std::string& error) {
   std::error_code code;
   target_ = fs::absolute(folder, code).lexically_normal();
-  if (!target_.has_filename()) target_ = target_.parent_path(); // written with a slash at its end
+  if (!target_.has_filename()) target_ = target_.parent_path(); // path ended with a slash
   if (!may_replace(target_)) {
     error = fmt::format("'{}' is there and is no capture; choose another folder", folder.string());
     return false;
@@ -105,8 +105,8 @@ bool CaptureWriter::add(const CapturedFrame& frame, std::string& error) {
 bool CaptureWriter::finish(std::string& error) {
   std::error_code code;
   if (fs::exists(target_, code)) {
-    // Folders cannot be exchanged in one step: the old one steps aside, so that one of the two is always
-    // whole.
+    // Folders cannot be exchanged in one step. The old folder is renamed first, so that a complete
+    // capture always exists.
     const fs::path old = temporary_beside(target_);
     fs::rename(target_, old, code);
     if (!code) fs::rename(part_, target_, code);

@@ -10,9 +10,9 @@
 namespace dermis::tools {
 namespace {
 
-constexpr int radius = 5; // of the window of SSIM
+constexpr int radius = 5; // radius of the SSIM window, pixels
 constexpr double sigma = 1.5;
-constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03; // K1, K2 of Wang and others 2004, peak 1
+constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03; // K1 and K2 of Wang et al. 2004, peak 1
 
 std::array<double, 2 * radius + 1> window() {
   std::array<double, 2 * radius + 1> weights{};
@@ -26,7 +26,7 @@ std::array<double, 2 * radius + 1> window() {
 
 using Plane = std::vector<double>;
 
-// Separable Gaussian; at borders the window is cut and weighted anew.
+// Separable Gaussian. The window is cut at borders and its weights are renormalised.
 Plane blurred(const Plane& plane, uint32_t width, uint32_t height) {
   static const auto weights = window();
   const auto pass = [&](const Plane& from, uint32_t along, uint32_t across, size_t step, size_t stride) {

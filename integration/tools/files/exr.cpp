@@ -27,17 +27,19 @@ namespace dermis::tools {
 
 namespace {
 
-// A picture of at most `always_read` decoded bytes is read whatever its file measures. A larger one must have
-// a file of at least 1/1032 of that size: deflate packs at most 258 bytes into 2 bits.
+// An image of at most `always_read` decoded bytes is read whatever the file's size. For a larger
+// image the file must have at least 1/1032 of the decoded size: deflate packs at most 258 bytes
+// into 2 bits.
 constexpr uint64_t always_read = uint64_t{1} << 30;
 constexpr uint64_t max_packing = 258 * 8 / 2;
-constexpr uint64_t max_chunk_bytes = uint64_t{512} << 20; // decoded; OpenEXR allocates a few of them
+// decoded; OpenEXR allocates a few chunks at a time
+constexpr uint64_t max_chunk_bytes = uint64_t{512} << 20;
 
 struct Method {
   const char* name;
-  uint32_t lines; // scanlines in one chunk
+  uint32_t lines; // scanlines per chunk
 };
-// In the order of Imf::Compression; the last two exist since OpenEXR 3.4.
+// In the order of Imf::Compression. The last two exist since OpenEXR 3.4.
 constexpr std::array<Method, 12> methods = {{{"none", 1},
                                              {"RLE", 1},
                                              {"ZIPS", 1},
@@ -73,8 +75,8 @@ private:
   size_t at_ = 0;
 };
 
-// The header's attributes before OpenEXR allocates memory for them. Reads until the first step beyond the
-// end; from then on everything is 0 and `good` is false.
+// Reads header attributes before OpenEXR allocates memory for them. After the first read beyond the
+// end, `good` is false and all values are 0.
 struct ByteReader {
   std::span<const uint8_t> bytes;
   size_t at = 0;
@@ -105,9 +107,9 @@ struct ByteReader {
   }
 };
 
-// Returns why the file is not read, or "". Afterwards every attribute lies inside of the file, the
-// compression is one that OpenEXR reads, and nothing is left to OpenEXR's default values that says where
-// pixels are.
+// Returns the reason to reject the file, or "". On success every attribute lies inside the file,
+// the compression is one that OpenEXR reads, and no attribute that locates pixels is left to
+// OpenEXR's defaults.
 std::string check_attributes(std::span<const uint8_t> file, bool& tiled) {
   ByteReader in{file};
   if (in.u32() != static_cast<uint32_t>(Imf::MAGIC)) return "it is not an OpenEXR file";
@@ -122,7 +124,7 @@ std::string check_attributes(std::span<const uint8_t> file, bool& tiled) {
   while (in.good) {
     const std::string_view name = in.text();
     if (!in.good || name.empty()) break;
-    in.text(); // the type, which OpenEXR checks
+    in.text(); // skips the type, which OpenEXR checks
     const auto value = in.take(in.u32());
     std::erase(missing, name);
     if (name != "compression" || value.empty() || value[0] < Imf::NUM_COMPRESSION_METHODS) continue;
@@ -143,7 +145,7 @@ struct Window {
   uint64_t pixels() const { return static_cast<uint64_t>(width) * static_cast<uint64_t>(height); }
 };
 
-// Returns why a picture of these sizes is not read, or "". Nothing of its pixels is allocated before.
+// Returns the reason to reject an image of these sizes, or "". Runs before pixels are allocated.
 std::string check_sizes(const Imf::Header& header, bool tiled, size_t wanted, size_t file_bytes) {
   const Window data(header.dataWindow()), display(header.displayWindow());
   for (const auto& [name, window] : {std::pair("data", data), std::pair("display", display)})
@@ -175,7 +177,7 @@ std::string check_sizes(const Imf::Header& header, bool tiled, size_t wanted, si
   return {};
 }
 
-// The names of the first accepted set that is there; empty: none.
+// Returns the first accepted set of names whose channels are all present, or an empty list.
 ChannelNames select_channels(const Imf::ChannelList& channels, std::span<const ChannelNames> accepted) {
   for (const ChannelNames& names : accepted) {
     if (names == ChannelNames{"*"}) {
@@ -200,11 +202,11 @@ std::string describe_mismatch(const Imf::ChannelList& channels, std::span<const 
                      fmt::join(wanted, " or "));
 }
 
-// Rows of the data window, decoded some at a time.
+// Rows of the data window, decoded in blocks.
 struct Rows {
   Window data;
   const ChannelNames& names;
-  int64_t step; // rows in one call of `decode`
+  int64_t step; // rows per call of `decode`
   std::function<void(const Imf::FrameBuffer&, int first, int last)> decode;
   std::vector<float> values = {};
   int64_t first = data.top, last = data.top - 1; // rows that `values` holds, both included
@@ -226,8 +228,9 @@ struct Rows {
   }
 };
 
-// The display window is the picture: pixels outside of the data window are 0, and what the data window has
-// outside of it is dropped. The picture grows row by row, so that a damaged file costs little.
+// Copies the data window into the display window. Pixels outside the data window are 0; pixels
+// outside the display window are dropped. The image grows row by row, so that a damaged file
+// allocates little.
 Image place(Rows& rows, const Window& display) {
   const Window& data = rows.data;
   const size_t channels = rows.names.size(), row = static_cast<size_t>(display.width) * channels;
@@ -283,7 +286,7 @@ std::string decode(const std::string& name, std::span<const uint8_t> file,
     image = place(rows, display);
   } else {
     Imf::InputFile input(stream, threads);
-    constexpr int64_t lines = 256; // a multiple of every compression's
+    constexpr int64_t lines = 256; // a multiple of every compression's scanlines per chunk
     Rows rows{data, names, lines, [&](const Imf::FrameBuffer& target, int first, int last) {
                 input.setFrameBuffer(target);
                 input.readPixels(first, last);
@@ -306,7 +309,7 @@ std::optional<Image> read_exr(const std::filesystem::path& path, std::span<const
       why = decode(path.filename().string(), *bytes, accepted, image);
     } catch (const std::bad_alloc&) {
       throw;
-    } catch (const std::exception& problem) { // OpenEXR's
+    } catch (const std::exception& problem) { // thrown by OpenEXR
       why = fmt::format("it is damaged or cut off: {}", problem.what());
     }
     if (why.empty()) return image;

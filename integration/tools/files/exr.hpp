@@ -1,7 +1,8 @@
 #pragma once
-// OpenEXR pictures through OpenEXR's own library. Read: one part of scanlines or tiles (of several levels the
-// largest), every compression of OpenEXR 3.1. Written: scanlines, ZIP compression, 32-bit floats.
-// Files are hostile until checked: sizes are checked before memory is allocated for them.
+// Reads and writes OpenEXR images through the OpenEXR library.
+// Reading accepts one part of scanlines or tiles (the largest of several levels) and every
+// compression of OpenEXR 3.1. Writing uses scanlines, ZIP compression and 32-bit floats. Files are
+// untrusted: sizes are checked before memory is allocated.
 
 #include "integration/tools/files/image.hpp"
 
@@ -13,21 +14,23 @@
 
 namespace dermis::tools {
 
-// Names of channels in the order wanted. The name "*" alone stands for the only channel of a file that has
-// one.
+// Channel names in the requested order. The name "*" as the only entry means the only channel of a
+// one-channel file.
 using ChannelNames = std::vector<std::string>;
 inline const ChannelNames rgb_names = {"R", "G", "B"};
 
-// Reads the channels of the first entry of `accepted` whose names are all present; other channels are
-// ignored. Half, float and uint channels become float. The picture is the file's display window: pixels
-// outside of the data window are 0, and what the data window has outside of it is dropped. Empty on failure
-// (missing, too large, malformed, incomplete, deep, multi-part, subsampled, another compression, no accepted
-// set of channels present) with one sentence in `error` that names the file and the reason. Values are as
-// stored: NaN and infinities pass.
+// Reads the channels of the first entry of `accepted` whose names are all present; other channels
+// are ignored. Half, float and uint channels become float. The image covers the file's display
+// window: pixels outside the data window are 0, and pixels outside the display window are dropped.
+// NaN and infinities are returned as stored.
+// Returns nullopt and sets `error` to one sentence with the file and the reason on failure:
+// missing, too large, malformed, incomplete, deep, multi-part, subsampled, unsupported compression,
+// or no accepted set of channels.
 std::optional<Image> read_exr(const std::filesystem::path& path, std::span<const ChannelNames> accepted,
                               std::string& error);
 
-// Writes all channels under the given names (one each, all different). Atomic; see bytes.hpp for failures.
+// Writes all channels under the given names, which must be distinct, one per channel. Atomic;
+// bytes.hpp describes failures.
 bool write_exr(const std::filesystem::path& path, const Image& image, const ChannelNames& names,
                std::string& error);
 

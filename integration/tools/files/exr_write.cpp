@@ -45,7 +45,7 @@ void encode(const Image& image, const ChannelNames& names, MemoryOutput& out) {
                                              names.size() * sizeof(float)));
   }
   constexpr int threads = 0;
-  Imf::OutputFile file(out, header, threads); // its end completes the table of chunks
+  Imf::OutputFile file(out, header, threads); // the destructor completes the chunk table
   file.setFrameBuffer(source);
   file.writePixels(static_cast<int>(image.height));
 }

@@ -25,7 +25,8 @@ constexpr double xyz_from_rgb[3][3] = {
 constexpr double rgb_from_xyz[3][3] = {{3.2404542, -1.5371385, -0.4985314},
                                        {-0.9692660, 1.8760108, 0.0415560},
                                        {0.0556434, -0.2040259, 1.0572252}};
-constexpr Color white = {0.9504700, 1.0000001, 1.0888300}; // of (1, 1, 1): rows of xyz_from_rgb added up
+// of (1, 1, 1): sums of the rows of xyz_from_rgb
+constexpr Color white = {0.9504700, 1.0000001, 1.0888300};
 
 Color times(const double (&matrix)[3][3], const Color& v) {
   Color out{};
@@ -34,7 +35,8 @@ Color times(const double (&matrix)[3][3], const Color& v) {
   return out;
 }
 
-// The linear opponent space in which contrast sensitivity is measured (2020, section 4.1).
+// Converts to the linear opponent space in which contrast sensitivity is measured (2020, section
+// 4.1).
 Color ycxcz_from_rgb(const Color& rgb) {
   const Color xyz = times(xyz_from_rgb, rgb);
   const double x = xyz[0] / white[0], y = xyz[1] / white[1], z = xyz[2] / white[2];
@@ -45,7 +47,8 @@ Color rgb_from_ycxcz(const Color& c) {
   return times(rgb_from_xyz, {x * white[0], y * white[1], z * white[2]});
 }
 
-// CIE 1976 L*a*b*, with the Hunt effect: colours of dark things look paler (2020, section 4.1.2).
+// Converts to CIE 1976 L*a*b* with the Hunt effect, by which colours of dark objects look paler
+// (2020, section 4.1.2).
 Color hunt_lab_from_rgb(const Color& rgb) {
   constexpr double delta = 6.0 / 29;
   const auto f = [](double t) {
@@ -57,12 +60,12 @@ Color hunt_lab_from_rgb(const Color& rgb) {
   return {lightness, 0.01 * lightness * 500 * (x - y), 0.01 * lightness * 200 * (y - z)};
 }
 
-// Abasi, Amani Tehran and Fairchild 2020: for differences that are large.
+// Distance for large colour differences (Abasi, Amani Tehran and Fairchild 2020).
 double hyab(const Color& a, const Color& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-// Weights of offsets -radius .. radius.
+// Weights of offsets -radius..radius.
 struct Kernel {
   int radius = 0;
   std::vector<double> weights;
@@ -82,7 +85,8 @@ double sum_of(const Kernel& kernel) {
   return sum;
 }
 
-// Positive weights sum to 1, negative ones to -1: an even grey answers 0, a step of 1 answers 1.
+// Scales positive weights to sum 1 and negative ones to sum -1. Constant input then gives 0, and a
+// unit step gives 1.
 void balance(Kernel& kernel) {
   double above = 0, below = 0;
   for (const double weight : kernel.weights)
@@ -91,7 +95,7 @@ void balance(Kernel& kernel) {
     weight /= weight > 0 ? above : below;
 }
 
-// Along rows, or along columns; pixels of the border go on outside.
+// Filters along rows, or along columns if `columns`. Border pixels are repeated outside.
 Plane filtered(const Plane& plane, Shape shape, const Kernel& kernel, bool columns) {
   Plane out(plane.size());
   const int length = static_cast<int>(columns ? shape.height : shape.width);
@@ -112,14 +116,14 @@ Plane filtered(const Plane& plane, Shape shape, const Kernel& across, const Kern
   return filtered(filtered(plane, shape, across, false), shape, down, true);
 }
 
-// Contrast sensitivity of a channel as a sum of two Gaussians of frequency (2020, table 1), in space:
-// a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees.
+// Contrast sensitivity of a channel as a sum of two Gaussians of frequency (2020, table 1). In
+// space each is a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
 constexpr std::array<Sensitivity, 3> sensitivities{
     {{1, 0.0047, 0, 1e-5}, {1, 0.0053, 0, 1e-5}, {34.1, 0.04, 13.5, 0.025}}};
-constexpr double widest = 0.04; // of the b
+constexpr double widest = 0.04; // the largest b of the table
 
 Plane contrast_filtered(const Plane& plane, Shape shape, const Sensitivity& channel,
                         double pixels_per_degree) {
@@ -144,9 +148,9 @@ Plane contrast_filtered(const Plane& plane, Shape shape, const Sensitivity& chan
   return out;
 }
 
-// How far colours are apart after what the eye does not resolve is gone: 0..1.
+// Returns colour differences in 0..1 after removing detail that the eye does not resolve.
 Plane color_difference(const Planes& a, const Planes& b, Shape shape, double pixels_per_degree) {
-  constexpr double exponent = 0.7, knee = 0.4, knee_value = 0.95; // q_c, p_c, p_t
+  constexpr double exponent = 0.7, knee = 0.4, knee_value = 0.95; // q_c, p_c, p_t of the 2020 paper
   const double largest = std::pow(hyab(hunt_lab_from_rgb({0, 1, 0}), hunt_lab_from_rgb({0, 0, 1})), exponent);
   Planes seen_a, seen_b;
   for (size_t c = 0; c < 3; ++c) {
@@ -169,9 +173,10 @@ Plane color_difference(const Planes& a, const Planes& b, Shape shape, double pix
   return out;
 }
 
-// Edges and points that are in one of the lightnesses only: 0..1 (2020, section 4.2).
+// Returns differences of edges and points between the two lightness planes, 0..1 (2020, section
+// 4.2).
 Plane feature_difference(const Plane& a, const Plane& b, Shape shape, double pixels_per_degree) {
-  constexpr double width_degrees = 0.082, exponent = 0.5; // w, q_f
+  constexpr double width_degrees = 0.082, exponent = 0.5; // w, q_f of the 2020 paper
   const double sigma = 0.5 * width_degrees * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   const auto gauss = [&](double i) { return std::exp(-i * i / (2 * sigma * sigma)); };
@@ -225,15 +230,16 @@ std::vector<float> low_range(const std::vector<Color>& a, const std::vector<Colo
   return out;
 }
 
-// Curve after Narkowicz 2016 with the exposure .6 of the papers folded in: (k0 x^2 + k1 x) / (k3 x^2 + k4 x +
-// k5).
+// Tone curve of Narkowicz 2016 with the papers' exposure of 0.6 folded in: (k0 x^2 + k1 x) / (k3
+// x^2 + k4 x + k5).
 constexpr double k0 = 0.6 * 0.6 * 2.51, k1 = 0.6 * 0.03, k3 = 0.6 * 0.6 * 2.43, k4 = 0.6 * 0.59, k5 = 0.14;
 
 double tone(double x) {
   return std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0);
 }
 
-// Stops at which the brightest of the reference, and its median, come out at .85 (2021, section 4.1).
+// Returns the exposures in stops that map the maximum and the median luminance of the reference to
+// 0.85 (2021, section 4.1).
 std::pair<double, double> exposure_range(const std::vector<Color>& reference) {
   constexpr double target = 0.85;
   const double a = k0 - target * k3, b = k1 - target * k4, c = -target * k5;
@@ -241,7 +247,7 @@ std::pair<double, double> exposure_range(const std::vector<Color>& reference) {
   std::vector<double> luminance;
   for (const Color& color : reference)
     if (const double y = rec709[0] * color[0] + rec709[1] * color[1] + rec709[2] * color[2]; y > 0)
-      luminance.push_back(y); // what is black stays so at any exposure
+      luminance.push_back(y); // black stays black at any exposure
   if (luminance.empty()) return {0, 0};
   const double maximum = *std::max_element(luminance.begin(), luminance.end());
   const auto middle = luminance.begin() + static_cast<std::ptrdiff_t>(luminance.size() / 2);

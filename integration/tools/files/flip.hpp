@@ -1,8 +1,8 @@
 #pragma once
-// FLIP: how different two pictures look to somebody who flips between them. After Andersson, Nilsson,
-// Akenine-Moller, Oskarsson, Astrom and Fairchild 2020, "FLIP: A Difference Evaluator for Alternating Images"
-// (LDR), and Andersson, Nilsson, Shirley and Akenine-Moller 2021, "Visualizing Errors in Rendered High
-// Dynamic Range Images" (HDR). Written from the papers' equations.
+// FLIP: perceived difference of two images that alternate. Implements the equations of Andersson,
+// Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild 2020, "FLIP: A Difference Evaluator for
+// Alternating Images" (LDR), and Andersson, Nilsson, Shirley and Akenine-Moller 2021, "Visualizing
+// Errors in Rendered High Dynamic Range Images" (HDR).
 
 #include "integration/tools/files/image.hpp"
 
@@ -10,12 +10,13 @@
 
 namespace dermis::tools {
 
-// Of a reader .7 m away from a screen .7 m and 3840 pixels wide: the papers' own setting.
+// The papers' viewing setup: 0.7 m from a screen that is 0.7 m and 3840 pixels wide.
 inline constexpr double usual_pixels_per_degree = 67;
 
-// A value from 0 (nobody sees a difference) to 1 for each pixel. Both pictures have one size and 1 or 3
-// channels of linear light; `high_range`: of any brightness, with `reference` deciding how it is exposed;
-// else 0..1, clamped. Values that are not finite or below 0 count as 0.
+// Returns a value per pixel from 0 (no visible difference) to 1. Both images have equal size and 1
+// or 3 channels of linear light. With `high_range` values may have any brightness and `reference`
+// determines the exposures; otherwise values are clamped to 0..1. Non-finite and negative values
+// count as 0.
 std::vector<float> flip(const Image& reference, const Image& test, bool high_range,
                         double pixels_per_degree = usual_pixels_per_degree);
 

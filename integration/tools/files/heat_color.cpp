@@ -12,7 +12,7 @@ constexpr double minimum = -4, maximum = -1; // log10 of the error at both ends 
 
 } // namespace
 
-// Dark to bright with growing lightness, so that it reads in grey as well.
+// Lightness grows monotonically, so that the map is also readable in grey.
 std::array<uint8_t, 3> heat_color(double error) {
   constexpr double stops[][3] = {{12, 12, 40},  {60, 20, 110},  {160, 40, 110},
                                  {235, 95, 60}, {252, 180, 60}, {252, 250, 190}};

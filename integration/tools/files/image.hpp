@@ -1,5 +1,5 @@
 #pragma once
-// A picture in memory, as files and metrics see it.
+// An image in memory, used by files and metrics.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +7,8 @@
 
 namespace dermis::tools {
 
-// Interleaved, row-major, first row on top: values[(y * width + x) * channels + channel].
+// Values are interleaved and row-major, with the top row first: values[(y * width + x) * channels +
+// channel].
 struct Image {
   uint32_t width = 0, height = 0, channels = 0;
   std::vector<float> values;
@@ -23,7 +24,7 @@ struct Image {
   }
 };
 
-// What any picture file may measure at most: Vulkan's guaranteed image side is 4096, today's devices stop at
+// Maximum side of an image file. Vulkan guarantees image sides of 4096; current devices stop at
 // 32768.
 inline constexpr uint32_t max_image_side = 32768;
 inline constexpr uint64_t max_image_bytes = uint64_t{4} << 30; // decoded

@@ -8,7 +8,8 @@ namespace dermis::tools {
 
 namespace {
 
-// Nearest rank: the smallest value that at least `share` of all do not exceed. Reorders `values`.
+// Nearest-rank percentile: the smallest value that at least `fraction` of all values do not exceed.
+// Reorders `values`.
 template <class T> T percentile(std::vector<T>& values, double fraction) {
   const auto rank = static_cast<size_t>(std::ceil(fraction * double(values.size())));
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank > 0 ? rank - 1 : 0);
@@ -70,7 +71,8 @@ ErrorFigures measure_error(std::span<const float> image, std::span<const double>
   figures.max_error = *std::max_element(errors.begin(), errors.end());
   figures.p99_error = percentile(errors, 0.99);
 
-  // Standard error of the mean of squares, with the correction for a finite population; 1.96 of it each way.
+  // Standard error of the mean of squares with finite-population correction; 1.96 of it each way is
+  // the 95 % interval.
   const double left_out = std::max(0.0, 1 - count / double(std::max<uint64_t>(population, pixels.size())));
   const double variance = pixels.size() > 1 ? std::max(0.0, fourths / count - mse * mse) / (count - 1) : 0;
   const double margin = left_out > 0 ? 1.96 * std::sqrt(variance * left_out) : 0;

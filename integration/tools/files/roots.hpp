@@ -1,5 +1,5 @@
 #pragma once
-// Files that other files name: read below declared folders, and nowhere else.
+// Opens files that other files name. Only files below declared folders are readable.
 
 #include "framegraph/compose/compose.hpp"
 
@@ -8,8 +8,8 @@
 
 namespace dermis::tools {
 
-// Opens a name in the first of `roots` that holds a regular file of it. What leads out of that folder is
-// refused (place_file). Any thread.
+// Opens a name in the first of `roots` that holds a regular file of that name. Paths and links that
+// lead out of that folder are refused (place_file). Thread: any.
 OpenFile open_below(std::vector<std::filesystem::path> roots);
 
 } // namespace dermis::tools

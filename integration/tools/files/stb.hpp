@@ -1,7 +1,7 @@
 #pragma once
-// stb with its code, for the sources that use it.
+// stb with its implementation, for the sources that use it.
 
-// Private copies: a program may carry another stb beside this one.
+// Private copies avoid clashes with a program's own stb.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG

@@ -8,12 +8,12 @@
 namespace dermis::tools {
 
 namespace {
-constexpr int effort = 5; // length of the search for matches; the least that the encoder takes
+constexpr int effort = 5; // search length for matches; the minimum that stb accepts
 }
 
 std::vector<uint8_t> zlib_deflate(std::span<const uint8_t> bytes) {
   if (bytes.size() > INT_MAX) return {};
-  // The encoder only reads, though its signature does not say so.
+  // The encoder only reads, but its parameter is not const.
   std::vector<uint8_t> copy(bytes.begin(), bytes.end());
   int size = 0;
   unsigned char* packed = stbi_zlib_compress(copy.data(), static_cast<int>(copy.size()), &size, effort);

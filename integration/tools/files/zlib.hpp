@@ -1,5 +1,5 @@
 #pragma once
-// Deflate compression, for data inside of the viewer's page.
+// Deflate compression for data inside the viewer's page.
 
 #include <cstdint>
 #include <span>
@@ -7,7 +7,8 @@
 
 namespace dermis::tools {
 
-// Packs into a zlib stream; empty if memory runs out. At most 2 GiB in.
+// Packs at most 2 GiB into a zlib stream. Returns an empty vector for larger input or if memory
+// runs out.
 std::vector<uint8_t> zlib_deflate(std::span<const uint8_t> bytes);
 
 } // namespace dermis::tools

@@ -1,4 +1,4 @@
-// Commands: counted, nothing else.
+// Implements commands of the null device: commands are counted and otherwise ignored.
 #include "integration/tools/null_device/state.hpp"
 
 #include <iterator>
@@ -17,7 +17,7 @@ VKAPI_ATTR void VKAPI_CALL count_barrier(VkCommandBuffer commands, const VkDepen
 }
 
 template <class Function> NullEntry command(const char* name) {
-  const Function function = &count; // the arguments follow from the type
+  const Function function = &count; // deduces the arguments from Function
   return entry(name, function);
 }
 

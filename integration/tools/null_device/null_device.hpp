@@ -1,7 +1,7 @@
 #pragma once
-// A Vulkan device that runs nothing: every function that the library asks for exists, makes handles,
-// remembers what lives and counts commands. With it a graph is created and recorded where there is no driver,
-// the time of recording is the library's own, and failures of a driver can be asked for.
+// A Vulkan device that executes nothing. Every function that the library loads exists, creates
+// handles, tracks live objects and counts commands. Graphs can be created and recorded without a
+// driver, recording time measures only the library, and driver failures can be injected.
 
 #include <cstdint>
 #include <memory>
@@ -11,7 +11,7 @@ namespace dermis {
 
 struct NullDeviceState;
 
-// Free-threaded, as Vulkan's are. The handles belong to the device and die with it.
+// Thread safe, as Vulkan requires. Handles belong to the device and are destroyed with it.
 class NullDevice {
 public:
   NullDevice();
@@ -19,29 +19,30 @@ public:
   NullDevice(const NullDevice&) = delete;
   NullDevice& operator=(const NullDevice&) = delete;
 
-  // Answers every name of the library's function table; null for other names.
+  // Resolves every name of the library's function table; returns null for other names.
   static PFN_vkGetInstanceProcAddr loader();
 
   VkInstance instance() const;
   VkPhysicalDevice physical() const;
   VkDevice device() const;
-  VkCommandBuffer command_buffer() const; // always recording; takes any number of commands
+  VkCommandBuffer command_buffer() const; // always recording; accepts any number of commands
 
-  // An image and a view of it as a host would bind them; they live as long as the device.
+  // Create an image and an image view for a host to bind. Both live as long as the device.
   VkImage make_image();
   VkImageView make_view();
 
-  uint64_t commands() const;     // vkCmd... calls so far
-  uint64_t barriers() const;     // vkCmdPipelineBarrier2 among them
-  uint64_t alive() const;        // objects created through the functions and not destroyed
-  uint64_t memory_bytes() const; // device memory allocated and not freed
-  uint64_t creations() const;    // calls so far that make an object or allocate, failed ones included
+  uint64_t commands() const;     // number of vkCmd... calls
+  uint64_t barriers() const;     // number of vkCmdPipelineBarrier2 calls
+  uint64_t alive() const;        // objects created through the functions and not yet destroyed
+  uint64_t memory_bytes() const; // device memory allocated and not yet freed, bytes
+  uint64_t creations() const;    // calls that create an object or allocate, including failed calls
 
-  // Capabilities of its queue family; graphics, compute and transfer until it is called.
+  // Sets the capabilities of the queue family. Default: graphics, compute and transfer.
   void set_queue_flags(VkQueueFlags flags);
-  // The call that is number `creation` from now, 1 being the next, fails with `result`; 0: none does.
+  // Makes the creation call number `creation` from now (1 is the next) fail with `result`. 0
+  // disables the failure.
   void fail_creation(uint64_t creation, VkResult result);
-  // What asking for timestamps gives from now on.
+  // Sets the result of all further timestamp queries.
   void fail_queries(VkResult result);
 
 private:

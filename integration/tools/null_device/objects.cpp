@@ -1,4 +1,4 @@
-// What makes and unmakes objects, binds and maps memory.
+// Creates and destroys objects, binds and maps memory.
 #include "framegraph/model/align_up.hpp"
 #include "integration/tools/null_device/state.hpp"
 
@@ -7,11 +7,11 @@
 namespace dermis {
 namespace {
 
-constexpr uint64_t image_alignment = 65536, buffer_alignment = 256; // bytes, as desktop devices ask
+constexpr uint64_t image_alignment = 65536, buffer_alignment = 256; // bytes, as on desktop devices
 constexpr uint32_t all_memory_types = 1;
 constexpr uint64_t largest_texel = 16; // bytes: four 32-bit channels
 
-// An upper bound: the texel is taken as the largest one, a chain of mips as a third more.
+// Upper bound: the largest texel, and a mip chain as a third more.
 VkMemoryRequirements needs_of(const VkImageCreateInfo& info) {
   const uint64_t texels = uint64_t{info.extent.width} * info.extent.height * info.arrayLayers;
   const uint64_t bytes = texels * largest_texel * (info.mipLevels > 1 ? 4 : 3) / 3;
@@ -50,7 +50,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
   return result;
 }
 
-// Sets live in their pool: their handles are the pool's.
+// Set handles equal the handle of the pool, which owns the sets.
 VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device, const VkDescriptorSetAllocateInfo* info,
                                              VkDescriptorSet* sets) {
   if (const VkResult result = count_creation(state_of(device)); result != VK_SUCCESS) return result;

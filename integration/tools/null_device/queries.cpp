@@ -1,4 +1,4 @@
-// What the device says of itself: a desktop device of today that supports what it is asked for.
+// Device properties: a current desktop device that supports every feature the library needs.
 #include "integration/tools/null_device/state.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice, VkPhysicalDeviceProperti
   limits.maxImageArrayLayers = 2048;
   limits.maxUniformBufferRange = 65536;
   limits.maxStorageBufferRange = 1u << 30;
-  limits.maxPushConstantsSize = 128; // the least that Vulkan allows
+  limits.maxPushConstantsSize = 128; // the minimum that Vulkan guarantees
   limits.bufferImageGranularity = 1;
   limits.maxComputeSharedMemorySize = 32768;
   limits.maxComputeWorkGroupInvocations = 1024;
@@ -97,7 +97,8 @@ PFN_vkVoidFunction query_function(const char* name) {
       entry("vkGetPhysicalDeviceImageFormatProperties2", &image_format_properties),
       entry("vkGetPhysicalDeviceFeatures2", &features),
       entry("vkGetQueryPoolResults", &query_results),
-      entry("vkResetQueryPool", &reset_queries), // its presence shows an instance of Vulkan 1.2 or later
+      // its presence indicates an instance of Vulkan 1.2 or later
+      entry("vkResetQueryPool", &reset_queries),
       entry("vkSetDebugUtilsObjectNameEXT", &name_object),
   };
   return find_entry(entries, std::size(entries), name);

@@ -1,6 +1,6 @@
 #pragma once
-// What the functions of the null device share. Dispatchable handles are pointers to the state, the others are
-// pointers to an Object.
+// State shared by the functions of the null device. Dispatchable handles point to the state; other
+// handles point to a NullObject.
 
 #include "integration/tools/null_device/null_device.hpp"
 
@@ -13,19 +13,19 @@
 namespace dermis {
 
 struct NullObject {
-  VkMemoryRequirements needs{};          // of images and buffers
-  uint64_t bytes = 0;                    // of memory
-  std::unique_ptr<std::byte[]> contents; // of mapped memory
+  VkMemoryRequirements needs{};          // images and buffers
+  uint64_t bytes = 0;                    // memory objects
+  std::unique_ptr<std::byte[]> contents; // mapped memory
 };
 
 struct NullDeviceState {
-  // Loaders put a pointer there, layers look for it.
+  // First member: loaders store a pointer here and layers read that pointer.
   void* dispatch = nullptr;
   std::atomic<uint64_t> commands = 0, barriers = 0;
   std::atomic<VkResult> query_failure = VK_SUCCESS;
   std::atomic<VkQueueFlags> queue_flags =
       VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;
-  std::mutex mutex; // guards all that follows
+  std::mutex mutex; // guards all following members
   uint64_t memory_bytes = 0, creations = 0;
   uint64_t failing_creation = 0;
   VkResult failure = VK_SUCCESS;
@@ -41,17 +41,16 @@ template <class Handle> NullObject& object_of(Handle handle) {
   return *reinterpret_cast<NullObject*>(handle);
 }
 
-// VK_SUCCESS, or the failure that was asked for.
+// Counts a creation. Returns VK_SUCCESS or the injected failure.
 VkResult count_creation(NullDeviceState& state);
 NullObject* add_object(NullDeviceState& state, uint64_t memory_bytes = 0);
 void remove_object(NullDeviceState& state, NullObject* object);
 
-// The entry points; null for a name that is unknown.
+// Return the entry point, or null for an unknown name.
 PFN_vkVoidFunction object_function(const char* name);
 PFN_vkVoidFunction command_function(const char* name);
 PFN_vkVoidFunction query_function(const char* name);
 
-// One name and its function.
 struct NullEntry {
   const char* name;
   PFN_vkVoidFunction function;

@@ -12,22 +12,23 @@ namespace {
 
 using std::numbers::pi;
 
-// e^(z^2) erfc(z), z >= 0; from 10 on by its asymptotic series (Abramowitz & Stegun 7.1.23), error below
-// 3e-9.
+// Returns e^(z^2) erfc(z) for z >= 0. Uses the asymptotic series from 10 on (Abramowitz & Stegun
+// 7.1.23), error below 3e-9.
 double scaled_erfc(double z) {
   if (z < 10) return std::exp(z * z) * std::erfc(z);
   const double v = 1 / (2 * z * z);
   return (1 - v * (1 - 3 * v * (1 - 5 * v * (1 - 7 * v)))) / (z * std::sqrt(pi));
 }
 
-constexpr int angles = 8192; // trapezoid rule; the kinks at a disc's rim leave an error of about 1 / angles^2
+// trapezoid rule; kinks at a disc's rim leave an error of about 1 / angles^2
+constexpr int angles = 8192;
 
 } // namespace
 
 double bessel_k0_integral(double z) {
   if (!(z > 0)) return 0;
-  // K0(x) = integral over t >= 0 of e^(-x cosh t) dt, integrated over x. The trapezoid rule converges
-  // exponentially.
+  // K0(x) = integral over t >= 0 of e^(-x cosh t) dt, integrated over x. The trapezoid rule
+  // converges exponentially.
   constexpr double step = 0.1, last = 26;
   double sum = 0.5 * (1 - std::exp(-z));
   for (double t = step; t < last; t += step)
@@ -53,7 +54,7 @@ double burley_disc_centre(double rho, double d) {
 double burley_disc(double x, double rho, double d) {
   double sum = 0;
   if (std::abs(x) <= rho) {
-    // In every direction the disc reaches from the point to its rim.
+    // Inside: integrate over directions, from the point to the rim of the disc.
     for (int i = 0; i < angles; ++i) {
       const double theta = 2 * pi * (i + 0.5) / angles;
       const double across = x * std::sin(theta);
@@ -61,7 +62,7 @@ double burley_disc(double x, double rho, double d) {
     }
     return sum / angles;
   }
-  // From outside: between the near and the far rim, where sin(theta) = rho / x * sin(phi).
+  // Outside: integrate between the near and the far rim, where sin(theta) = rho / x * sin(phi).
   const double ratio = rho / std::abs(x);
   for (int i = 0; i < angles; ++i) {
     const double phi = pi * ((i + 0.5) / angles - 0.5);

@@ -16,7 +16,7 @@ int64_t setting(const PassType& type, const ReadsQuestion& question, std::string
   return index < 0 ? 0 : question.settings[static_cast<size_t>(index)].integer;
 }
 
-// 1 where an optional port is bound.
+// Returns 1 if the optional port is bound, else 0.
 double one_if(const PassType& type, const ReadsQuestion& question, std::string_view port, PortSide side) {
   const int index = find_port(type, port, side);
   return index >= 0 && question.bound[static_cast<size_t>(index)] ? 1 : 0;
@@ -26,15 +26,15 @@ double scale_read(const PassType& type, const ReadsQuestion& question) {
   return one_if(type, question, "scatter_scale", PortSide::read);
 }
 
-// Reads of an invocation where its group of 8x8 reads `texels` once and shares them.
+// Reads per invocation if an 8x8 group reads `texels` once and shares them.
 constexpr double shared_reads(double texels) {
   return texels / (8 * 8);
 }
 
-// patch.glsl, share_patches: material and depth of the group's pixels and a ring around them.
+// share_patches in patch.glsl: material and depth of the group's pixels and a ring around them.
 constexpr double patch_reads = shared_reads(10 * 10) * 2;
 
-// The largest of a row of the pyramid's table over the channels.
+// Returns the largest value of a row of the pyramid's table over the channels.
 double largest_fraction(const ReadsQuestion& question, int64_t variant, uint32_t row) {
   constexpr size_t table = size_t{sap_table_rows} * sap_node_count;
   if (question.sap_tables.size() < sap_variant_count * table) return 1;
@@ -45,7 +45,8 @@ double largest_fraction(const ReadsQuestion& question, int64_t variant, uint32_t
   return largest;
 }
 
-// Material; where there is some, depth; where it scatters and light is looked at, that and what scales it.
+// Material; depth of subsurface pixels; light and its factors of scattering pixels if the light
+// range is written.
 ImageReads classify(const PassType& type, const ReadsQuestion& question) {
   const double ranged = one_if(type, question, "lighting", PortSide::read) *
                         one_if(type, question, "light_range", PortSide::write);
@@ -59,41 +60,42 @@ ImageReads none(const PassType&, const ReadsQuestion&) {
   return {};
 }
 
-// Lighting, and what scales it.
+// Lighting and its factors.
 double light_reads(const PassType& type, const ReadsQuestion& question) {
   const bool textured = setting(type, question, "texturing") != 0;
   return 1 + scale_read(type, question) + (textured ? one_if(type, question, "albedo", PortSide::read) : 0);
 }
 
-// common/subsurface_setup.comp: light, the patch.
+// common/subsurface_setup.comp: light, patch.
 ImageReads setup(const PassType& type, const ReadsQuestion& question) {
   return {light_reads(type, question) + patch_reads};
 }
 
-// An invocation of the pyramid's kernels computes a block of texels and reads what they need once.
+// Reads per invocation if an invocation computes a block of texels and reads each input once.
 constexpr double block_reads(double texels, double width, double height) {
   return texels / (width * height);
 }
 
-// sap/subsurface_sap_setup.comp: light; material and depth of a block of 4x2 and a ring without corners.
+// sap/subsurface_sap_setup.comp: light; material and depth of a 4x2 block and a ring without
+// corners.
 ImageReads sap_setup(const PassType& type, const ReadsQuestion& question) {
   return {light_reads(type, question) + 2 * block_reads(6 * 4 - 4, 4, 2)};
 }
 
-// Material, light, depth; a sample reads material, depth, light and slope.
+// Material, light, depth; per sample material, depth, light and slope.
 ImageReads burley(const PassType& type, const ReadsQuestion& question) {
   const auto samples = static_cast<double>(setting(type, question, "samples"));
   return {3 + scale_read(type, question) + 4 * samples, samples};
 }
 
-// As burley, and nothing more for the direct radius: it needs no image.
+// As burley; the direct radius needs no image.
 ImageReads fixed(const PassType& type, const ReadsQuestion& question) {
   return burley(type, question);
 }
 
-// Material, light, depth and, on the second axis, the first one's result; at each offset two sides, each
-// interpolated between two texels, of which one has no share at a whole offset; a texel's material, depth and
-// light. Offsets are those of the node below d and, but for the share that lies on it, of the node above.
+// Material, light, depth and, on the second axis, the first axis's result. Each offset has two
+// sides, each interpolated between two texels (the second has weight 0 at whole offsets), with
+// material, depth and light per texel. Offsets are those of the table node below d.
 ImageReads separable(const PassType& type, const ReadsQuestion& question) {
   const uint32_t taps = separable_taps[static_cast<size_t>(setting(type, question, "taps"))];
   const double sides = double(taps - 1) / 2;
@@ -101,26 +103,27 @@ ImageReads separable(const PassType& type, const ReadsQuestion& question) {
           sides * 2 * 2 * 3};
 }
 
-// sap/subsurface_sap_setup_half_res.comp: material, depth and light of the 4x4 pixels of 2x2 texels.
+// sap/subsurface_sap_setup_half_res.comp: material, depth and light of the 4x4 pixels of 2x2
+// texels.
 ImageReads sap_halve(const PassType& type, const ReadsQuestion& question) {
   return {4 * (light_reads(type, question) + 2)};
 }
 
-// Those of a block of 4x2 pixels; surface and scattered light of the texels of level 1 on which they lie.
+// Inputs of a 4x2 pixel block; surface and scattered light of the level 1 texels below it.
 ImageReads sap_gather_half(const PassType& type, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
   const double own = light_reads(type, question) + 2;
   return {widest < copy_below_d_px ? own : own + 2 * block_reads(4 * 3, 4, 2)};
 }
 
-// sap/subsurface_sap_down.comp: surface and light of the 6x6 children of 2x2 parents. Second layers, here and
-// below, are read where there are some: nowhere on a surface that covers the view.
+// sap/subsurface_sap_down.comp: surface and light of the 6x6 children of 2x2 parents. Second layers
+// are only read where they exist (here and below), so not on a surface that covers the view.
 ImageReads sap_down(const PassType&, const ReadsQuestion&) {
   return {2 * block_reads(6 * 6, 2, 2)};
 }
 
-// sap_up.glsl: surface and light of a block's texels, with a ring around them where a tent is wanted; surface
-// and scattered light of the texels of the coarser level on which they lie.
+// sap_up.glsl: surface and light of a block's texels, with a ring if the tent filter is on; surface
+// and scattered light of the coarser level's texels below them.
 ImageReads sap_up(const PassType& type, const ReadsQuestion& question) {
   const auto variant = static_cast<SapVariant>(setting(type, question, "variant"));
   const bool tent = setting(type, question, "level") <= int64_t{sap_last_tent(variant)};
@@ -128,22 +131,22 @@ ImageReads sap_up(const PassType& type, const ReadsQuestion& question) {
   return {2 * block_reads(tent ? 4 * 4 : 2 * 2, 2, 2) + (last ? 0 : 2 * block_reads(2 * 2, 2, 2))};
 }
 
-// Surface and light alone where no pixel scatters further than itself.
+// Only surface and light if no pixel scatters beyond itself.
 ImageReads sap_gather(const PassType&, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
   return {widest < copy_below_d_px ? 2 : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2)};
 }
 
-// As fixed; a sample reads its levels beside that, two of them or one.
+// As fixed; each sample also reads its levels: two, one or none.
 ImageReads afis(const PassType& type, const ReadsQuestion& question) {
   ImageReads reads = burley(type, question);
-  constexpr double levels[] = {2, 1, 0}; // trilinear, whole, none
+  constexpr double levels[] = {2, 1, 0}; // trilinear, nearest level, none
   reads.per_invocation += levels[setting(type, question, "mips")] * reads.samples;
   return reads;
 }
 
-// In tiles that were given samples, twice as many as the first step gives: material, depth, light of both
-// techniques; a sample as in afis.
+// In tiles with samples, twice the number of the first step: material, depth, light of both
+// techniques; samples as in afis.
 ImageReads afis_tiles(const PassType& type, const ReadsQuestion& question) {
   ImageReads reads = afis(type, question);
   constexpr double steps = 2;
@@ -153,59 +156,61 @@ ImageReads afis_tiles(const PassType& type, const ReadsQuestion& question) {
   return reads;
 }
 
-// Material, light, depth, slope; what history keeps at four places; a sample reads six texels as in afis.
+// Material, light, depth, slope; history at four positions; six texels per sample as in afis.
 ImageReads guided(const PassType& type, const ReadsQuestion& question) {
   const double samples =
       question.sampled_fraction * static_cast<double>(setting(type, question, "max_samples"));
   const double kept =
       1 + one_if(type, question, "place", PortSide::read) + one_if(type, question, "control", PortSide::read);
-  constexpr double levels[] = {2, 1, 0}; // trilinear, whole, none
+  constexpr double levels[] = {2, 1, 0}; // trilinear, nearest level, none
   return {4 + scale_read(type, question) + one_if(type, question, "velocity", PortSide::read) + 4 * kept +
               (4 + levels[setting(type, question, "mips")]) * samples,
           samples};
 }
 
-// Light; where it is unsure the pixel's own surface and light, and a sample reads its surface and the surface
-// and light of its level.
+// Light; in pixels with low confidence surface and light, and per sample its surface and its
+// level's surface and light.
 ImageReads blend(const PassType& type, const ReadsQuestion& question) {
   const double samples = question.sampled_fraction * static_cast<double>(setting(type, question, "samples"));
   return {1 + 2 * question.sampled_fraction + 3 * samples, samples};
 }
 
-// One pixel of 64: surface, light, the velocity, four kept places twice.
+// One pixel of 64: surface, light, velocity, and twice four history texels.
 ImageReads brightness(const PassType& type, const ReadsQuestion& question) {
   return {(2 + one_if(type, question, "velocity", PortSide::read) + 4 * 2) / 64.0};
 }
 
-// As blend; and the velocity, four kept places, ratios and patterns, how bright all is.
+// As blend, plus velocity, four texels each of place, ratio and pattern history, and the global
+// light change.
 ImageReads residual(const PassType& type, const ReadsQuestion& question) {
   ImageReads reads = blend(type, question);
   reads.per_invocation += 1 + one_if(type, question, "velocity", PortSide::read) + 4 * 3 + 1;
   return reads;
 }
 
-// near_light.glsl: material, light, scattered light and depth of the group's pixels and a ring of four;
-// scattered light of the group and a ring of one and of 3x3 pixels once more, and what a pixel has of its
-// own; of the frame before one texel where the camera rests, its surface twice.
+// near_light.glsl: material, light, scattered light and depth of the group's pixels and a ring of
+// four. Also scattered light of the group with a ring of one, of 3x3 pixels again, and the pixel's
+// own inputs. Of the previous frame: one texel if the camera rests, and its surface twice.
 ImageReads accumulate(const PassType& type, const ReadsQuestion& question) {
   return {shared_reads(16 * 16) * (3 + light_reads(type, question) - scale_read(type, question)) +
           shared_reads(10 * 10) * (1 + scale_read(type, question)) + 9 + 3 +
           one_if(type, question, "velocity", PortSide::read) + 3};
 }
 
-// afis/subsurface_pyramid_setup.comp: material, light, and the materials around if profiles are kept apart.
+// afis/subsurface_pyramid_setup.comp: material, light, and neighbouring materials if profiles are
+// kept apart.
 ImageReads pyramid_setup(const PassType& type, const ReadsQuestion& question) {
   const bool textured = setting(type, question, "texturing") != 0;
   return {2 + (textured ? one_if(type, question, "albedo", PortSide::read) : 0) +
           (setting(type, question, "profiles") != 0 ? 9 : 0)};
 }
 
-// Filtered reads: four, or one of a box.
+// Filtered reads: four, or one for a box filter.
 ImageReads pyramid_down(const PassType& type, const ReadsQuestion& question) {
   return {setting(type, question, "halving") != 0 ? 1.0 : 4.0};
 }
 
-// Material, depth, the pixel's own light, and four filtered reads of each level that counts.
+// Material, depth, own light, and four filtered reads per level with a relevant weight.
 ImageReads pyramid_gather(const PassType& type, const ReadsQuestion& question) {
   constexpr double min_fraction = 0.001; // papers/subsurface_pyramid_gather.comp
   const auto variant = static_cast<int64_t>(SapVariant::plain);
@@ -218,12 +223,12 @@ ImageReads pyramid_gather(const PassType& type, const ReadsQuestion& question) {
   return {reads};
 }
 
-// Lighting, material, light behind, thickness.
+// Lighting, material, back light, thickness.
 ImageReads transmission(const PassType& type, const ReadsQuestion& question) {
   return {4 + scale_read(type, question)};
 }
 
-// Material, light behind, thickness.
+// Material, back light, thickness.
 ImageReads transmission_stats(const PassType& type, const ReadsQuestion& question) {
   return {3 + scale_read(type, question)};
 }
@@ -255,7 +260,7 @@ ImageReads contrast(const PassType& type, const ReadsQuestion& question) {
   return {2 + one_if(type, question, "importance", PortSide::read)};
 }
 
-// In tiles that were given 16 samples: light twice, surface, and for each sample its surface, and the level's
+// In tiles with 16 samples: light twice, surface, and per sample its surface and its level's
 // surface and light.
 ImageReads refine_tiles(const PassType&, const ReadsQuestion& question) {
   constexpr double samples = 16;
@@ -267,32 +272,33 @@ ImageReads skips(const PassType&, const ReadsQuestion&) {
   return {1};
 }
 
-// In four pixels of the tiles that are drawn: what is scattered, and of each pixel within 20 d its light and
-// patch. A group of 64 tiles draws one at most, whose share `sampled_fraction` is.
+// In four pixels of each selected tile: scattered light, and the light and patch of each pixel
+// within 20 d. A group of 64 tiles selects at most one tile; `sampled_fraction` is the fraction of
+// selected tiles.
 ImageReads probe(const PassType& type, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
   const double side = 2 * std::ceil(20 * widest) + 1, pixels = 4.0 / 64;
   return {question.sampled_fraction * pixels * (light_reads(type, question) + 3 + side * side * 11)};
 }
 
-// Material, depth, normal of the pixel. Rays and what they meet are in buffers: paths count as samples, not
+// Material, depth, normal of the pixel. Rays and hits are in buffers; paths count as samples, not
 // as texels.
 ImageReads restir_initial(const PassType& type, const ReadsQuestion& question) {
   return {3 + scale_read(type, question), static_cast<double>(setting(type, question, "samples"))};
 }
 
-// Those of the pixel, its depth and normal once more, and the velocity; what was before is in buffers.
+// Inputs of the pixel, its depth and normal again, and velocity; the history is in buffers.
 ImageReads restir_temporal(const PassType& type, const ReadsQuestion& question) {
   return {5 + scale_read(type, question) + one_if(type, question, "velocity", PortSide::read)};
 }
 
-// Those of the pixel and its depth once more; of a neighbour its material, then all of it.
+// Inputs of the pixel and its depth again; per neighbour its material, then all its inputs.
 ImageReads restir_spatial(const PassType& type, const ReadsQuestion& question) {
   const auto neighbours = static_cast<double>(setting(type, question, "neighbours"));
   return {4 + scale_read(type, question) + neighbours * (4 + scale_read(type, question))};
 }
 
-// Material, what the pixel's surface is, and its light.
+// Material, surface and light of the pixel.
 ImageReads restir_resolve(const PassType& type, const ReadsQuestion& question) {
   const bool textured = setting(type, question, "texturing") != 0;
   return {5 + scale_read(type, question) +

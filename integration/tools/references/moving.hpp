@@ -1,11 +1,11 @@
 #pragma once
-// Moving means, variances and covariances with exponential weights, in fp64: the twins of what guidance
-// kernels keep in half floats. All begin with the first observation and spread 0.
+// Exponentially weighted moving means, variances and covariances in fp64: CPU references of the
+// half-float values in guidance kernels. All start with the first observation and spread 0.
 
 namespace dermis::subsurface {
 
-// Equations 5 and 6 of the 2021 paper (A1, A2 of docs/papers.md). Of independent values the variance comes
-// out 2 (1 - eta) / (2 - eta) of theirs.
+// Equations 5 and 6 of the 2021 paper (A1, A2 of docs/papers.md). For independent values the result
+// is 2 (1 - eta) / (2 - eta) times their variance.
 struct MovingVariance {
   double mean = 0, variance = 0;
   bool begun = false;
@@ -19,9 +19,9 @@ struct MovingVariance {
   }
 };
 
-// Equation 32 of the paper, 21 of its supplement (EMC; C5): equal to the explicitly weighted covariance about
-// the updated means, weights (1 - eta)^n for the first of n + 1 values and eta (1 - eta)^(n - i) for the
-// others.
+// Equation 32 of the paper, 21 of its supplement (EMC; C5). Equals the explicitly weighted
+// covariance about the updated means, with weights (1 - eta)^n for the first of n + 1 values and
+// eta (1 - eta)^(n - i) for the others.
 struct MovingCovariance {
   double mean_f = 0, mean_g = 0, covariance = 0, variance_g = 0;
   bool begun = false;
@@ -40,8 +40,8 @@ struct MovingCovariance {
   }
 };
 
-// Equations 34 to 36 (EWMA; C6): the same with a factor eta for eta (1 - eta), so always 1 / (1 - eta) of
-// EMC.
+// Equations 34 to 36 (EWMA; C6). Uses a factor eta instead of eta (1 - eta), so the result is
+// always 1 / (1 - eta) times that of EMC.
 struct WeightedCovariance {
   double mean_f = 0, mean_g = 0, covariance = 0;
   bool begun = false;

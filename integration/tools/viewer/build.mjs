@@ -1,5 +1,5 @@
-// Makes the page of one file out of src/ and the packages, and a C++ source that holds it.
-// node build.mjs NODE_MODULES OUT.cpp
+// Bundles src/ and the packages into one page, and writes a C++ source that holds the page.
+// Usage: node build.mjs NODE_MODULES OUT.cpp
 import { readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { dirname, join, resolve } from 'node:path';
@@ -8,7 +8,8 @@ import { fileURLToPath } from 'node:url';
 const [modules, out] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
 const esbuild = createRequire(join(resolve(modules), '..', 'package.json'))('esbuild');
-const bundled = ['@dagrejs/dagre', '@dagrejs/graphlib', 'cytoscape', 'uplot']; // docs/third_party.md lists them
+// listed in docs/third_party.md
+const bundled = ['@dagrejs/dagre', '@dagrejs/graphlib', 'cytoscape', 'uplot'];
 
 const { outputFiles, metafile } = await esbuild.build({
   entryPoints: [join(here, 'src/main.js')], bundle: true, minify: true, format: 'iife', target: 'es2020', charset: 'utf8',
@@ -19,7 +20,7 @@ for (const input of Object.keys(metafile.inputs)) {
   if (found && !bundled.includes(found[1])) throw new Error(`'${found[1]}' is bundled and not listed`);
 }
 
-// Their licences ask that the notice goes where the code goes.
+// The packages' licences require their notices to accompany the code.
 const notices = bundled.map((name) => `${name}\n${readFileSync(join(modules, name, 'LICENSE'), 'utf8').trim()}`).join('\n\n');
 const notice = `/* This page contains:\n\n${notices.replaceAll('*/', '* /')}\n*/\n`;
 const style = readFileSync(join(modules, 'uplot/dist/uPlot.min.css'), 'utf8') + readFileSync(join(here, 'src/style.css'), 'utf8');
@@ -30,12 +31,13 @@ const page = readFileSync(join(here, 'src/page.html'), 'utf8').replace('@STYLE@'
 const [before, after, ...more] = page.split('@DATA@');
 if (after === undefined || more.length > 0) throw new Error('the page needs one place for its data');
 
-const most = 12000; // characters of a literal: every compiler takes as many bytes
+const most = 12000; // characters per literal; every compiler accepts as many bytes
 function pieces(text) {
   const all = [];
   for (let at = 0; at < text.length;) {
     let end = Math.min(at + most, text.length);
-    if (end < text.length && /[\uD800-\uDBFF]/.test(text[end - 1])) --end; // a character of two units stays whole
+    // keeps surrogate pairs together
+    if (end < text.length && /[\uD800-\uDBFF]/.test(text[end - 1])) --end;
     all.push(`    R"dermis_page(${text.slice(at, end)})dermis_page"sv,\n`);
     at = end;
   }

@@ -1,5 +1,5 @@
-// dermis apply: a graph on captured frames, through the C interface; scattered light and combined colour as
-// EXR.
+// dermis apply: runs a graph on captured frames through the C interface, and writes scattered light
+// and combined colour as EXR.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/graph_input.hpp"
@@ -28,15 +28,16 @@ struct ApplyRun {
   const LoadedGraph& loaded;
   std::string graph_text;
   demo::VulkanHost& host;
-  std::unique_ptr<DeviceGraph> device; // made for one size and one choice of slots
+  std::unique_ptr<DeviceGraph> device; // for one size and one choice of slots
   DeviceGraphRequest request;
   PassTimes times;
-  uint64_t runs = 0, all_runs = 0; // done, and to be done
+  uint64_t runs = 0, all_runs = 0; // runs so far, and runs in total
   demo::ContextHooks hooks = {};
 };
 
-// A frame that has other images or profiles than the one before needs a graph of its own; history starts
-// anew. One of another size goes on with what the graph keeps over that.
+// A frame with other images or profiles than the previous frame needs a new graph, and history
+// restarts. A frame of another size resizes the graph, which keeps the history that survives a
+// resize.
 demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoice& slots) {
   DeviceGraphRequest request;
   request.graph_name = run.options.graph;
@@ -72,7 +73,7 @@ bool was_rendered(const CapturedFrame& frame, size_t pixel) {
          y < size_t{render.y} + render.height;
 }
 
-// Where the graph wrote nothing, outside of what was rendered, the light as it came.
+// Returns the input light outside the render rectangle, where the graph writes nothing.
 Image scattered_light(const CapturedFrame& frame, std::vector<float> written) {
   Image light{frame.lighting.width, frame.lighting.height, 3, std::move(written)};
   for (size_t i = 0; i < light.values.size(); ++i)
@@ -80,8 +81,8 @@ Image scattered_light(const CapturedFrame& frame, std::vector<float> written) {
   return light;
 }
 
-// What the host does with what comes back: scattered light is there already times albedo where there is a
-// profile. Where there is none, light is as bright as the capture says.
+// Combines as a host would. The graph already multiplies scattered light by albedo in pixels with a
+// profile; elsewhere the captured albedo applies.
 Image combine(const CapturedFrame& frame, const std::vector<float>& lighting) {
   Image combined = Image::sized(frame.lighting.width, frame.lighting.height, 3);
   for (size_t i = 0; i < combined.values.size(); ++i) {
@@ -119,10 +120,12 @@ demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std:
   if (auto ready = prepare(run, frame, slots); !ready) return ready;
   for (uint32_t i = 0; i < run.options.repeat; ++i) {
     if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
-    for (const SlotData& data : slots.data) // also on repeats: the graph may write into what it was given
+    // also on repeats, since the graph may write into its inputs
+    for (const SlotData& data : slots.data)
       if (auto given = run.device->upload(data.slot, data.texels, data.channels); !given) return given;
     if (auto ran = run.device->run(c_frame(frame.description)); !ran) return ran;
-    if (run.runs++ == 0 && run.all_runs > 1) continue; // the first of several warms the caches up
+    // the first of several runs only warms caches
+    if (run.runs++ == 0 && run.all_runs > 1) continue;
     for (const DeviceGraph::PassTime& time : run.device->times())
       run.times.add(time.pass, time.milliseconds);
   }
@@ -171,7 +174,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
   run.hooks = host_passes.hooks();
   run.all_runs = sequence->folders.size() * uint64_t{options.repeat};
   Progress progress(progress_style(session.quiet, session.json), "apply", "frame", sequence->folders.size());
-  Diagnostics surfaces; // of the sequence, each warning once
+  Diagnostics surfaces; // warnings of the sequence, each once
   for (size_t i = 0; i < sequence->folders.size(); ++i) {
     const std::optional<CapturedFrame> frame = load_frame(*sequence, i);
     if (!frame) return fail(session, ExitCode::problems, "the capture changed while it was read");

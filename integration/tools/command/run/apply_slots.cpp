@@ -10,14 +10,14 @@
 namespace dermis::tools {
 namespace {
 
-// Slots that a captured frame can fill, most exact format first. Depth goes in as view distance, which is why
-// only a colour format will do.
+// Slots that a captured frame can fill, most exact format first. Depth is passed as view distance,
+// which requires a colour format.
 struct Fillable {
   std::string_view slot;
   std::vector<Format> formats;
 };
 
-// A velocity of three channels has the change of depth.
+// A velocity image of three channels includes the change of depth.
 std::vector<Fillable> fillable_slots(const CapturedFrame& frame) {
   const std::vector<Format> velocity = frame.velocity.channels == 3
                                            ? std::vector{Format::rgba32f, Format::rgba16f}
@@ -41,7 +41,7 @@ std::vector<float> to_floats(std::span<const uint8_t> ids) {
   return {ids.begin(), ids.end()};
 }
 
-// The capture has metres, the graph is told what a unit is.
+// Converts depth from metres to the frame's units.
 std::vector<float> in_units(const CapturedFrame& frame) {
   std::vector<float> depth = frame.depth.values;
   for (float& value : depth)
@@ -49,7 +49,7 @@ std::vector<float> in_units(const CapturedFrame& frame) {
   return depth;
 }
 
-// Empty where the frame has no such image.
+// Returns empty texels if the frame has no such image.
 SlotData data_of(const CapturedFrame& frame, std::string_view slot) {
   const auto from = [&](const Image& image) {
     return SlotData{std::string(slot), image.values, image.channels};

@@ -1,5 +1,5 @@
 #pragma once
-// Which image of a captured frame goes into which slot of a graph, and in which format.
+// Assigns images of a captured frame to slots of a graph, and chooses formats.
 
 #include "framegraph/model/graph.hpp"
 #include "integration/tools/files/capture.hpp"
@@ -13,7 +13,7 @@ namespace dermis::tools {
 
 struct SlotData {
   std::string slot;
-  std::vector<float> texels; // empty: written by the graph only
+  std::vector<float> texels; // empty: only written by the graph
   uint32_t channels = 0;
 };
 
@@ -21,11 +21,13 @@ struct SlotChoice {
   std::vector<SlotData> data;
   std::vector<std::pair<std::string, Format>> formats;
   std::vector<std::string> unbound;
-  std::string problem; // not empty: the graph asks for what the frame has not; nothing else counts
+  // The frame lacks an image that the graph requires. Other members are then not set. Empty on
+  // success.
+  std::string problem;
 };
 
-// Chooses the most exact format that a slot accepts, so that light which is not scattered comes back as it
-// went in.
+// Chooses the most exact format that a slot accepts, so that unscattered light is returned
+// unchanged.
 SlotChoice choose_slots(const Graph& graph, const CapturedFrame& frame);
 
 } // namespace dermis::tools

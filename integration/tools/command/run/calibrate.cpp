@@ -1,4 +1,5 @@
-// dermis calibrate: what a graph's passes cost on this device, as a file for budgets.
+// dermis calibrate: measures the cost of a graph's passes on this device and writes a file for
+// budgets.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/examples/demo_engine/files.hpp"

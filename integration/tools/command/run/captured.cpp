@@ -10,8 +10,8 @@
 namespace dermis::tools {
 namespace {
 
-// Moves the picture by `sign` times the frame's jitter: clip x and y, in units of half the rectangle, times
-// w.
+// Shifts the image by `sign` times the frame's jitter: clip x and y, in units of half the
+// rectangle, times w.
 subsurface::Matrix4 shifted(const subsurface::Matrix4& matrix, const FrameDescription& frame, double sign) {
   subsurface::Matrix4 out = matrix;
   for (size_t column = 0; column < 4; ++column) {
@@ -42,7 +42,7 @@ std::optional<CapturedSequence> check_sequence(const Session& session, const std
   for (const std::filesystem::path& one : sequence.folders) {
     const auto frame = read_frame(one, sequence.profiles, diagnostics, roots);
     if (frame) sequence.sanitised_values += frame->sanitised.not_finite + frame->sanitised.negative;
-    // A folder that is itself a frame has no name of its own.
+    // A folder that is itself a frame has no frame name.
     sequence.names.push_back(one == std::filesystem::path(folder) ? "frame_0000" : one.filename().string());
   }
   if (diagnostics.has_errors()) {

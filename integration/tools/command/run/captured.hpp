@@ -1,6 +1,6 @@
 #pragma once
-// Captured frames as apply and reference want them: checked before anything is written, read one at a time,
-// in the words of the C interface.
+// Captured frames for apply and reference: all checked before output is written, read one at a
+// time, and converted to types of the C interface.
 
 #include "integration/tools/command/session.hpp"
 #include "integration/tools/files/capture.hpp"
@@ -18,29 +18,30 @@ struct CapturedSequence {
   std::vector<std::filesystem::path> folders; // of the frames, in order
   std::vector<std::string> names;             // of the frames, for output folders
   std::filesystem::path profiles;             // folder of the profiles that frames name
-  std::vector<std::string> roots;             // that else may be read from
-  uint64_t sanitised_values = 0;              // not finite or negative; taken as 0
+  std::vector<std::string> roots;             // additional folders that may be read from
+  uint64_t sanitised_values = 0;              // non-finite or negative values; replaced by 0
 };
 
-// Folder of the profiles that frames name: what --profiles says, else configs/profiles.
+// Returns the folder of --profiles, or else configs/profiles.
 std::filesystem::path profiles_folder(const std::string& option);
 
-// Reads every frame once, so that all problems are said before work begins. `profiles` "": configs/profiles.
-// nullopt when it has been said what is wrong.
+// Reads every frame once, so that all problems are reported before work begins. `profiles` "" means
+// configs/profiles. Returns nullopt after reporting the problems.
 std::optional<CapturedSequence> check_sequence(const Session& session, const std::string& folder,
                                                const std::string& profiles,
                                                const std::vector<std::string>& roots);
-// Frame number `index` again; nullopt if it is no longer what it was.
+// Reads frame number `index` again. Returns nullopt if the frame changed and is no longer valid.
 std::optional<CapturedFrame> load_frame(const CapturedSequence& sequence, size_t index);
 
-// The text of a profile file with exactly these numbers.
+// Returns the text of a profile file with exactly these numbers.
 std::string profile_as_json(const subsurface::Profile& profile);
 
-// Camera, rectangle and units, for depth in world units; bindings, command buffer and frame numbers stay
-// empty.
+// Returns camera, rectangle and units, for depth in world units. Bindings, command buffer and frame
+// numbers stay empty.
 dermis_frame c_frame(const FrameDescription& frame);
 
-// A capture's matrices are without jitter, those of the C interface with it.
+// Add or remove the jitter. Captures store matrices without jitter; the C interface takes matrices
+// with jitter.
 subsurface::Matrix4 with_jitter(const subsurface::Matrix4& clip_from_view, const FrameDescription& frame);
 subsurface::Matrix4 without_jitter(const subsurface::Matrix4& clip_from_view, const FrameDescription& frame);
 

@@ -1,5 +1,6 @@
 #pragma once
-// What the library chose over a run of frames, and what its histories held, for people and for programs.
+// Reports the library's choices over a run of frames and the state of the graph's histories, as
+// text and as JSON.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/examples/demo_engine/engine.hpp"
@@ -12,13 +13,14 @@ namespace dermis::tools {
 
 class ChoiceReport {
 public:
-  // `histories`: after the frame.
+  // `histories` is the state after the frame.
   void add(uint32_t frame, const demo::FrameChoice& choice, std::vector<demo::FrameHistory> histories,
            TileCosts costs = {});
   bool empty() const { return frames_.empty(); }
 
-  // "technique=sap: 412 tiles, copied 3, skipped 3,185: 2.10 ms predicted, 2.20 measured, budget 2.50; ...":
-  // the newest frame, before it how many frames each outcome had, after it its histories.
+  // Returns how many frames used each configuration, the choice of the newest frame, and its
+  // histories: "technique=sap: 412 tiles, copied 3, skipped 3,185: 2.10 ms predicted, 2.20
+  // measured, budget 2.50; ...".
   std::string text() const;
   // [{"frame": .., "outcome": .., ..}, ..]
   void write(JsonWriter& writer) const;
@@ -33,7 +35,7 @@ private:
   std::vector<Frame> frames_;
 };
 
-// One sentence about one frame.
+// Describes one frame in one sentence.
 std::string describe_choice(const demo::FrameChoice& choice);
 
 } // namespace dermis::tools

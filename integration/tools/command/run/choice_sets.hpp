@@ -1,5 +1,5 @@
 #pragma once
-// What a graph's choices by budget can come to, as values for --set and the C interface.
+// Enumerates the configurations of a graph as values for --set and the C interface.
 
 #include "integration/tools/command/graph_input.hpp"
 
@@ -7,8 +7,8 @@
 
 namespace dermis::tools {
 
-// One set of values for each outcome (docs/choice.md), the defaults first; values are JSON text. Empty with
-// errors in `diagnostics`.
+// Returns one set of values per configuration (docs/choice.md), the defaults first; values are JSON
+// text. Returns an empty list with errors in `diagnostics`.
 std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, const Size& size,
                                                  Diagnostics& diagnostics);
 

@@ -1,4 +1,4 @@
-// dermis compare: how far two pictures, or two folders of them, are apart.
+// dermis compare: measures the difference of two images or of two folders of images.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/interrupt.hpp"
@@ -23,30 +23,30 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Pair {
-  std::string name; // below both folders, or of the first file
+  std::string name; // relative to both folders, or of the first file
   fs::path a, b;
 };
 
-// Of `apply` and `reference`: one and the same light.
+// Output of `apply` and `reference` for one light.
 constexpr const char *scattered = "scattered.exr", *reference = "reference.exr", *mask_name = "mask.exr";
 
 struct Loaded {
   Image a, b;                // values with peak 1
-  std::optional<Image> mask; // 0 where the truth was not computed
-  std::vector<float> seen;   // what FLIP says of each pixel, with B as the reference; empty: not asked for
+  std::optional<Image> mask; // 0 in pixels without a reference value
+  std::vector<float> seen;   // FLIP per pixel, with B as the reference; empty if not requested
 };
 
 struct Compared {
-  std::string name, region; // region "": the whole picture
+  std::string name, region; // region "": the whole image
   Difference difference;
-  double flip = -1, worst_flip = 0; // mean and largest; -1: not asked for
+  double flip = -1, worst_flip = 0; // mean and maximum; -1 if not requested
 };
 
 bool is_picture(const fs::path& path) {
   return path.extension() == ".png" || path.extension() == ".exr";
 }
 
-// A mask says which pixels of the reference beside it count, and is no picture itself.
+// Returns whether the image is the mask of the reference next to it, which is not compared.
 bool is_mask(const fs::path& path) {
   std::error_code ignored;
   return path.filename() == mask_name && fs::exists(path.parent_path() / reference, ignored);
@@ -62,7 +62,7 @@ std::vector<std::string> pictures_below(const fs::path& folder) {
   return names;
 }
 
-// The frames of a folder that hold a file of that name, "frame_0000/".
+// Returns the frames of a folder that hold a file of that name, as "frame_0000/".
 std::vector<std::string> frames_with(const std::vector<std::string>& pictures, const std::string& file) {
   std::vector<std::string> frames;
   for (const std::string& name : pictures)
@@ -70,7 +70,8 @@ std::vector<std::string> frames_with(const std::vector<std::string>& pictures, c
   return frames;
 }
 
-// Every picture of both folders has its like in the other one; else `problem` says which has not.
+// Pairs every image with the image of equal name in the other folder. Sets `problem` if one has no
+// partner.
 std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::string& problem) {
   std::error_code ignored;
   for (const std::string& path : {a, b})
@@ -86,7 +87,7 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
   }
   if (!folder) return {{fs::path(a).filename().string(), a, b}};
   std::vector<std::string> in_a = pictures_below(a), in_b = pictures_below(b);
-  // What apply made beside what reference made: of each frame the scattered light.
+  // Output of apply and of reference: compare the scattered light of each frame.
   const auto are = [](const std::vector<std::string>& ours, const std::vector<std::string>& theirs) {
     return !frames_with(ours, scattered).empty() && !frames_with(theirs, reference).empty() &&
            frames_with(ours, reference).empty();
@@ -120,7 +121,8 @@ std::optional<Image> read_picture(const fs::path& path, std::string& problem) {
   return std::nullopt;
 }
 
-// The mask beside either picture, where one of them is what `reference` wrote. False with a problem.
+// Reads the mask next to either image if the image is output of `reference`. Returns false and sets
+// `problem` on failure.
 bool read_mask(const Pair& pair, const Image& like, std::optional<Image>& mask, std::string& problem) {
   for (const fs::path& picture : {pair.b, pair.a}) {
     const fs::path path = picture.parent_path() / mask_name;
@@ -136,7 +138,8 @@ bool read_mask(const Pair& pair, const Image& like, std::optional<Image>& mask, 
   return true;
 }
 
-// Both as values with peak 1: what a PNG shows, and the exposed luminance of an EXR, by the exposure of B.
+// Reads both images as values with peak 1: the values of a PNG, or the luminance of an EXR with the
+// exposure of B.
 bool read_both(const Pair& pair, const CompareOptions& options, Loaded& loaded, std::string& problem) {
   const auto first = read_picture(pair.a, problem);
   const auto second = first ? read_picture(pair.b, problem) : std::nullopt;
@@ -189,7 +192,7 @@ std::string write_heat(const std::string& path, const Loaded& loaded) {
 
 std::string write_flip(const std::string& path, const Image& like, const std::vector<float>& seen) {
   constexpr double decades = 3,
-                   minimum = -4; // of heat_color, which is logarithmic: here its colours stand for 0..1
+                   minimum = -4; // the logarithmic scale of heat_color, here mapped to 0..1
   std::vector<uint8_t> rgb;
   for (const float value : seen)
     for (const uint8_t channel : heat_color(std::pow(10.0, minimum + decades * double(value))))
@@ -215,7 +218,7 @@ Compared compare_region(const std::string& name, const std::string& region, cons
   return row;
 }
 
-// All whole pictures together, as if they were one: PSNR and RMSE of the mean of their squared errors.
+// Combines all whole images: PSNR and RMSE of the mean of their squared errors.
 Compared all_of(const std::vector<Compared>& rows) {
   Compared all{"all", "", {}};
   double squares = 0, ssim = 0, seen = 0, pictures = 0;

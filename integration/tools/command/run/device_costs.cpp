@@ -5,7 +5,7 @@
 namespace dermis::tools {
 namespace {
 
-// Near and far, so that times can be split into what a dispatch and what a tile costs.
+// One near and one far position separate the cost per dispatch from the cost per tile.
 constexpr demo::CameraPlace places[] = {
     {{0.03, 0.0, 0.6}, {0.008, -0.027, 0.0}, 25.0},
     {{0.03, 0.0, 2.4}, {0.008, -0.027, 0.0}, 25.0},
@@ -51,7 +51,7 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request, const std::
       if (interrupted()) return stopped;
       if (!summary) return summary.error();
       costs.calibration = summary->calibration;
-      engine.calibration.name = "calibration"; // what the run before found
+      engine.calibration.name = "calibration"; // the result of the previous run
       on_run();
     }
   return costs;

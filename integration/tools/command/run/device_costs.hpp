@@ -1,6 +1,6 @@
 #pragma once
-// What a graph's passes cost on this device: each combination of its choices runs over some frames, near and
-// far.
+// Measures the cost of a graph's passes on this device: runs each combination of its choices over
+// some frames, near and far.
 
 #include "integration/examples/demo_engine/engine.hpp"
 #include "integration/tools/command/session.hpp"
@@ -18,13 +18,13 @@ struct CostsRequest {
   std::vector<demo::NamedText> overlays = {};
   std::function<std::optional<demo::NamedText>(const std::string& name)> include = {};
   Size size;
-  uint32_t frames = 0;                       // of each run
-  std::vector<std::vector<NamedValue>> sets; // one for each combination
-  demo::NamedText calibration = {};          // to begin from; "": the library's own
+  uint32_t frames = 0;                       // per run
+  std::vector<std::vector<NamedValue>> sets; // one per combination
+  demo::NamedText calibration = {};          // initial calibration; "": the library's calibration
   demo::ContextHooks hooks = {};
 };
 
-// Runs of a request.
+// Returns the number of runs of a request.
 uint32_t count_cost_runs(const CostsRequest& request);
 
 struct DeviceCosts {
@@ -32,7 +32,8 @@ struct DeviceCosts {
   std::string calibration; // JSON
 };
 
-// Calls `on_run` after each run. Errors: those of demo::render; environment "stopped" when interrupted.
+// Calls `on_run` after each run. Errors: those of demo::render; environment "stopped" if
+// interrupted.
 demo::Result<DeviceCosts> measure_costs(const CostsRequest& request, const std::function<void()>& on_run);
 
 } // namespace dermis::tools

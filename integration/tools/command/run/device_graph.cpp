@@ -9,13 +9,13 @@
 namespace dermis::tools {
 namespace {
 
-// Between frames an image waits here for whoever comes: the graph, an upload or a read.
+// Returns the state of an image between frames, valid for the graph, an upload and a readback.
 demo::ImageState resting_state(VkImageLayout layout) {
   return {layout == VK_IMAGE_LAYOUT_UNDEFINED ? VK_IMAGE_LAYOUT_GENERAL : layout,
           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 }
 
-// Keeps the texts that it delivers until the call that asks for them is over.
+// Keeps delivered texts alive until the call that requests them returns.
 struct Includes {
   const OpenFile& open;
   std::deque<FileText> delivered = {};
@@ -65,7 +65,7 @@ demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGrap
   desc.overlay_count = static_cast<uint32_t>(overlays.size());
   Includes includes{request.open};
   if (request.open) desc.include = deliver_include;
-  desc.include_user = &includes; // never asked again: graphs of the command are not reloaded
+  desc.include_user = &includes; // not used after creation: the command does not reload graphs
   dermis_graph graph = nullptr;
   demo::Report report;
   const dermis_result result = dermis_graph_create(context, &desc, &graph, &report.handle);
@@ -125,7 +125,7 @@ demo::Result<> DeviceGraph::create_images() {
     desc.format = slot.format;
     desc.width = slot.width;
     desc.height = slot.height;
-    // Sampled as well: an image that the plan leaves unused needs a view like any other.
+    // Also sampled: an image that the plan leaves unused still needs a view.
     desc.usage = slot.usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                  VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     auto image = demo::create_image(host_, desc);
@@ -139,7 +139,7 @@ demo::Result<> DeviceGraph::resize(uint32_t width, uint32_t height) {
   demo::Report report;
   const dermis_result result = dermis_graph_resize(graph_, width, height, &report.handle);
   if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_resize", result, report.handle);
-  slots_.clear(); // each frame is waited for
+  slots_.clear(); // safe because each frame is waited for
   return create_images();
 }
 

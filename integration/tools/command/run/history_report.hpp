@@ -1,5 +1,5 @@
 #pragma once
-// What a graph's histories hold after a frame: age, and why one holds nothing.
+// Reports a graph's histories after a frame: age, and the reason why a history is invalid.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/examples/demo_engine/engine.hpp"
@@ -9,7 +9,7 @@
 
 namespace dermis::tools {
 
-// A table, a history each; "" where there are none.
+// Returns a table with one row per history, or "" if there are none.
 std::string describe_histories(std::span<const demo::FrameHistory> histories);
 // [{"name": .., "valid": .., "age": .., "why": ..}, ..]
 void write_histories(JsonWriter& writer, std::span<const demo::FrameHistory> histories);

@@ -1,6 +1,6 @@
 #pragma once
-// Pass kinds of a host in a program that has no kernels for them. Graphs with such passes run as long as each
-// of those passes is off or not needed; a pass that would run is refused by its name.
+// Pass types of a host in a program that has no kernels for them. Graphs with such passes run as
+// long as those passes are off or not needed; a pass that would run is rejected by name.
 
 #include "framegraph/model/host_pass_type.hpp"
 #include "integration/examples/demo_engine/context_hooks.hpp"
@@ -11,7 +11,7 @@
 
 namespace dermis::tools {
 
-// Must outlive the contexts that its hooks were given to. One thread.
+// Must outlive the contexts that use its hooks. One thread.
 class HostPasses {
 public:
   explicit HostPasses(std::shared_ptr<const HostPassTypes> pass_types);
@@ -20,7 +20,7 @@ public:
 
   demo::ContextHooks hooks();
   demo::Result<> prepare(dermis_context_t* context); // registers the pass types
-  demo::Result<> recorded() const; // an error names the first pass that the last frames would have run
+  demo::Result<> recorded() const; // the error names the first host pass that would have run
 
 private:
   struct Kind {
@@ -29,7 +29,7 @@ private:
   };
 
   std::shared_ptr<const HostPassTypes> declared_;
-  std::deque<Kind> pass_types_; // their addresses stay
+  std::deque<Kind> pass_types_; // a deque, for stable addresses
   std::string rejected_;
 };
 

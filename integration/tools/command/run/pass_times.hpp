@@ -1,5 +1,5 @@
 #pragma once
-// Device times of passes over frames: medians, and the table that shows them.
+// Collects device times of passes over frames and formats their medians as a table.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/present.hpp"
@@ -16,10 +16,10 @@ public:
 
   struct Row {
     std::string pass;
-    double median = 0.0; // milliseconds of device time
-    size_t frames = 0;   // that it was measured in
+    double median = 0.0; // device time, milliseconds
+    size_t frames = 0;   // number of measured frames
   };
-  std::vector<Row> rows() const; // in the order in which passes first came
+  std::vector<Row> rows() const; // in order of first appearance
   double total() const;          // sum of the medians
   bool empty() const { return samples_.empty(); }
 
@@ -31,11 +31,11 @@ private:
   std::vector<Samples> samples_;
 };
 
-// For titles of tables: nothing has warmed caches and clocks up.
+// Suffix for titles of tables: caches and clocks are cold.
 inline constexpr const char* first_frame = " (first frame, cold)";
 
-// Pass, device time and share, with a sum. `title` heads the first column, with how many frames were
-// measured.
+// Formats pass, device time and fraction, with a sum. `title` heads the first column, followed by
+// the number of measured frames.
 std::string format_times(const PassTimes& times, const std::string& title);
 // [{"pass": .., "milliseconds": .., "frames": ..}, ..]
 void write_times(JsonWriter& writer, const PassTimes& times);

@@ -1,4 +1,5 @@
-// dermis reference: the exact scattered light of captured frames, in double precision, as EXR.
+// dermis reference: computes the exact scattered light of captured frames in double precision and
+// writes EXR images.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/interrupt.hpp"
@@ -17,10 +18,9 @@
 namespace dermis::tools {
 namespace {
 
-// Results in the picture's place: outside of the render rectangle, and where nothing was computed, the light
-// itself.
+// Results at their image positions. Other pixels hold the input light.
 struct Answer {
-  Image light, mask; // mask: 1 where the truth was computed
+  Image light, mask; // mask: 1 where the reference was computed
   uint64_t pixels = 0;
 };
 
@@ -36,7 +36,8 @@ std::optional<std::vector<double>> solve(const Session& session, const Reference
                                          const std::string& name, const std::vector<uint32_t>& pixels) {
   const subsurface::ReferenceInput input = frame.input();
   if (!subsurface::is_planar(input)) return run_reference(session, name, input, pixels);
-  const std::vector<double> everywhere = subsurface::reference_everywhere(input); // seconds, by FFT
+  // by FFT, takes seconds
+  const std::vector<double> everywhere = subsurface::reference_everywhere(input);
   std::vector<double> chosen;
   for (const uint32_t pixel : pixels)
     chosen.insert(chosen.end(), everywhere.begin() + 3 * std::ptrdiff_t{pixel},

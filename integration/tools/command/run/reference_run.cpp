@@ -11,7 +11,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t chunk_pixels = 512; // between two looks at progress and Ctrl-C; under a second at d = 10 px
+// per check of progress and Ctrl-C; under a second at d = 10 px
+constexpr size_t chunk_pixels = 512;
 
 } // namespace
 
@@ -32,7 +33,8 @@ std::optional<std::vector<double>> run_reference(const Session& session, const s
 }
 
 double median_d_px(const subsurface::ReferenceInput& input) {
-  const double pixel = std::sqrt(std::abs(input.rays.scale_x * input.rays.scale_y)); // metres (at depth 1)
+  // metres at depth 1
+  const double pixel = std::sqrt(std::abs(input.rays.scale_x * input.rays.scale_y));
   std::vector<double> all;
   for (size_t i = 0; i < input.profile.size(); ++i) {
     const uint8_t id = input.profile[i];

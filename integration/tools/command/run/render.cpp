@@ -1,5 +1,5 @@
-// dermis render: a scene through the demo engine and a graph; pictures, device times, and the error against
-// the truth.
+// dermis render: renders a scene with the demo engine and a graph; writes images, device times and
+// the error against the reference.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/examples/demo_engine/files.hpp"
@@ -32,13 +32,14 @@
 namespace dermis::tools {
 namespace {
 
-constexpr std::string_view no_graph = "none"; // for --graph: as the engine looks without Dermis
+// value of --graph that renders the engine without Dermis
+constexpr std::string_view no_graph = "none";
 
 demo::Error cannot_write(std::string problem) {
   return {demo::ErrorKind::environment, std::move(problem)};
 }
 
-// Everything that the frames leave behind while they pass.
+// State collected over the frames.
 struct RenderRun {
   const Session& session;
   const RenderOptions& options;
@@ -49,13 +50,13 @@ struct RenderRun {
   PassTimes graph_times{}, host_times{};
   ExposureMeter exposure{};
   uint32_t frames = 0;
-  ReferenceFrame last{}; // with what came out for it:
+  ReferenceFrame last{}; // last frame, with its result:
   std::vector<float> last_scattered{};
   CaptureWriter capture{};
   bool textured_before = false;
   ChoiceReport choices{};
   Trace trace{};
-  bool transmission = false; // the graph adds light from behind before it scatters
+  bool transmission = false; // the graph adds back light before it scatters
   bool by_rays = false;      // the last frame scattered by rays, which see more than the screen
   Diagnostics surfaces{};    // warnings of frames, each once
 };
@@ -77,8 +78,8 @@ demo::Result<> start(RenderRun& run, const demo::RenderInfo& info) {
   return demo::success();
 }
 
-// Green by samples, up to the most that a graph takes by default; red where a surface was not to be seen in
-// the frame before; dim where there is subsurface and no sample; black where there is none.
+// Encodes samples in colour: green up to a graph's default maximum, red where the surface was not
+// visible in the previous frame, dim in subsurface without samples, black elsewhere.
 std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
   constexpr float max_samples = 64, dim = 0.25f;
   std::vector<uint8_t> rgb(frame.display.size());
@@ -87,7 +88,7 @@ std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
     const float* sampled = &frame.sampling.texels[4 * i];
     for (size_t c = 0; c < 3; ++c)
       rgb[3 * i + c] = static_cast<uint8_t>(dim * static_cast<float>(frame.display[3 * i + c]));
-    // The square root keeps one sample apart from none.
+    // The square root makes a single sample visible.
     if (sampled[0] > 0)
       rgb[3 * i + 1] = static_cast<uint8_t>(255 * std::sqrt(std::min(sampled[0] / max_samples, 1.0f)));
     if (sampled[3] > 0.5f) rgb[3 * i] = 255;
@@ -95,12 +96,12 @@ std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
   return rgb;
 }
 
-// By the class of a pixel's tile, in the picture's own light: grey has no subsurface in it, green scatters,
-// blue is below a pixel, yellow flat in light.
+// Tints pixels by the class of their tile: grey has no subsurface, green scatters, blue scatters
+// below a pixel, yellow has uniform light.
 std::vector<uint8_t> skips_picture(const demo::FrameOutputs& frame) {
   constexpr std::array<std::array<float, 3>, 4> tints{
       {{0.25f, 0.25f, 0.25f}, {0.3f, 1, 0.3f}, {0.3f, 0.3f, 1}, {1, 1, 0.3f}}};
-  constexpr float minimum = 64; // of 255, so that dark tiles can be told apart, too
+  constexpr float minimum = 64; // of 255, keeps dark tiles distinguishable
   std::vector<uint8_t> rgb(frame.display.size());
   for (size_t i = 0; i < rgb.size() / 3; ++i) {
     const auto tile = std::min(static_cast<size_t>(frame.skips.texels[2 * i]), tints.size() - 1);
@@ -149,7 +150,7 @@ demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
   std::string problem;
   if (!run.options.capture.empty() && !run.capture.add(*captured, problem)) return cannot_write(problem);
 
-  // The first frame of several warms the caches up.
+  // The first of several frames only warms caches.
   if (frame.frame > 0 || run.options.frames == 1) {
     for (const demo::PassTime& time : frame.dermis_times)
       run.graph_times.add(time.pass, time.milliseconds);
@@ -189,7 +190,7 @@ bool transmits(const Graph& graph, const CompileChoices& choices) {
   return false;
 }
 
-// Nothing to compare with: no scattered light handed out, no subsurface pixel, or not asked for.
+// Returns the reason why no error is computed, or "".
 std::string why_no_error(const RenderRun& run) {
   if (run.textured_before) return "the reference needs 'texturing' = 'post'";
   if (run.options.graph == no_graph) return "rendered without a graph";
@@ -265,7 +266,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.sampling = options.debug == RenderOptions::Debug::samples;
   engine.skips = options.debug == RenderOptions::Debug::skips;
   GraphParts parts = options.parts;
-  constexpr const char* skips = "skips.json"; // given as well: it is in already
+  constexpr const char* skips = "skips.json"; // not added again if already given
   if (engine.skips && std::none_of(parts.overlays.begin(), parts.overlays.end(), [&](const std::string& one) {
         return std::filesystem::path(one).filename() == skips;
       }))
@@ -276,7 +277,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     engine.calibration = {options.calibration, text.take()};
   }
 
-  // The graph is read here first: its messages then come with excerpts and as JSON, and --set is checked.
+  // Read the graph here first, so that its messages have excerpts and JSON form and --set is
+  // checked.
   bool textured = false, transmission = false;
   std::optional<HostPasses> host_passes;
   if (options.graph != no_graph) {

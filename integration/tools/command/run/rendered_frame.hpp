@@ -1,5 +1,5 @@
 #pragma once
-// What the demo engine hands out, in the words of the capture folder, which the truth and `apply` understand.
+// Converts output of the demo engine to capture types, which the reference and `apply` accept.
 
 #include "integration/examples/demo_engine/engine.hpp"
 #include "integration/tools/files/capture.hpp"
@@ -11,10 +11,11 @@ namespace dermis::tools {
 
 Image to_image(const demo::FloatImage& image);
 
-// The profiles of a scene, read from their files. Errors: input, with all located messages.
+// Reads the profiles of a scene from their files. Errors: input, with all located messages.
 demo::Result<std::vector<CaptureProfile>> read_profiles(std::span<const demo::ScatteringProfile> profiles);
 
-// What the graph saw in this frame. Errors: internal (a camera that captures cannot describe).
+// Returns the graph's inputs of this frame. Errors: internal (a camera that captures cannot
+// describe).
 demo::Result<CapturedFrame> captured_frame(const demo::FrameOutputs& frame,
                                            std::span<const CaptureProfile> profiles);
 

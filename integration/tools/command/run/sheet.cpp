@@ -1,5 +1,5 @@
-// dermis sheet: one picture of a scene with every technique (rows) and every material (columns), to be looked
-// at.
+// dermis sheet: renders one image of a scene with every technique (rows) and every material
+// (columns), for visual inspection.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/examples/demo_engine/engine.hpp"
@@ -19,7 +19,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr uint32_t gap = 4;              // pixels between pictures
+constexpr uint32_t gap = 4;              // pixels between images
 constexpr uint32_t longest_side = 16384; // of the sheet, pixels
 
 std::vector<std::string> all_shipped(std::string_view folder, std::initializer_list<std::string_view> names) {
@@ -29,7 +29,7 @@ std::vector<std::string> all_shipped(std::string_view folder, std::initializer_l
   return files;
 }
 
-// Plain words are names of those that ship.
+// Plain words are names of shipped files.
 std::vector<std::string> named(std::string_view folder, std::vector<std::string> files) {
   for (std::string& file : files)
     if (file.find_first_of("./") == std::string::npos) file = shipped(folder, file);
@@ -46,7 +46,7 @@ std::vector<std::string> stems(const std::vector<std::string>& files) {
 struct Sheet {
   Size one;
   uint32_t width = 0, height = 0;
-  std::vector<uint8_t> rgb; // black between pictures
+  std::vector<uint8_t> rgb; // black between images
 
   Sheet(Size size, size_t rows, size_t columns) : one(size) {
     width = static_cast<uint32_t>(columns) * (size.width + gap) - gap;
@@ -84,7 +84,7 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
   Sheet sheet(options.size, rows, columns);
   Progress progress(progress_style(session.quiet, session.json), "sheet", "picture",
                     static_cast<uint32_t>(rows * columns));
-  std::vector<uint8_t> without; // a technique: the same for every material
+  std::vector<uint8_t> without; // without a technique, the image is equal for all materials
   for (size_t row = 0; row < rows; ++row)
     for (size_t column = 0; column < columns; ++column) {
       if (row == 0 && column > 0) {

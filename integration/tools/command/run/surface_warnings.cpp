@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t tile_side = 8;
 
-// Depths of one frame, with the sides of a pixel.
+// Depths of one frame, and sides of a pixel.
 struct DepthPicture {
   const CapturedFrame& frame;
 
@@ -21,7 +21,8 @@ struct DepthPicture {
   double at(uint32_t x, uint32_t y) const {
     return double(frame.depth.values[size_t{y} * frame.description.width + x]);
   }
-  // Do both neighbours along the axis lie on the same side of the pixel, each beyond the steepest slope?
+  // Returns whether both neighbours along the axis are nearer or both farther than the pixel, each
+  // beyond the steepest slope.
   bool stands_alone(uint32_t x, uint32_t y, uint32_t dx, uint32_t dy) const {
     const Rectangle& render = frame.description.render;
     if (x < render.x + dx || y < render.y + dy || x + dx >= render.x + render.width ||

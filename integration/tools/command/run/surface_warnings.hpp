@@ -1,5 +1,5 @@
 #pragma once
-// Warns of frames whose surfaces the techniques do not filter correctly yet: pixels that are not square, and
+// Warns of frames whose surfaces the techniques do not filter correctly: non-square pixels and
 // dithered surfaces (docs/limits.md).
 
 #include "framegraph/text/diagnostic.hpp"
@@ -7,24 +7,25 @@
 
 namespace dermis::tools {
 
-// Longer side of a pixel over the shorter one; 1: square.
+// Returns the longer side of a pixel over the shorter side; 1 is square.
 double pixel_aspect(const subsurface::PixelRays& rays);
-// The loss of `sap` on a plane stays below 1 dB up to this aspect: -0.8 dB at 1.05, 0.7 at 1.07, 3.1 at 1.1
-// (docs/limits.md has the commands).
+// The loss of `sap` on a plane stays below 1 dB up to this aspect: -0.8 dB at 1.05, 0.7 dB at 1.07,
+// 3.1 dB at 1.1 (docs/limits.md has the commands).
 inline constexpr double largest_square_aspect = 1.07;
 
-// Fraction (0..1) of the 8x8 tiles with subsurface that show a dithered surface: an eighth of the tile's
-// pixels and more lie between two neighbours, along a row or a column, that are both nearer or both farther
-// by more than steepest_slope pixel sides. A screen door of a quarter of the pixels has twice an eighth.
+// Returns the fraction (0..1) of the 8x8 tiles with subsurface that show a dithered surface. In
+// such a tile at least an eighth of the pixels have two neighbours, along a row or a column, that
+// are both nearer or both farther by more than steepest_slope pixel sides. A screen door of a
+// quarter of the pixels reaches twice an eighth.
 double dithered_tiles(const CapturedFrame& frame);
 inline constexpr double steepest_slope = 6.6; // of one surface: the cap of its patches, cos 0.15
-// `sap` has an RMSE of 0.149 where a quarter of the pixels is 5 cm in front (docs/limits.md): this fraction
-// of such tiles alone limits a frame to 0.149 * sqrt(0.02) = 0.021, 33.5 dB. Shipped scenes have no such
-// tile; thin parts and folds of heads flag fewer than this.
+// `sap` has an RMSE of 0.149 where a quarter of the pixels is 5 cm in front (docs/limits.md). This
+// fraction of such tiles on its own limits a frame to 0.149 * sqrt(0.02) = 0.021, 33.5 dB. Shipped
+// scenes have no such tile; thin parts and folds of heads flag a smaller fraction.
 inline constexpr double largest_folded_tiles = 0.02;
 
-// Adds D0508 and D0509 where they apply and `diagnostics` does not hold them yet, so that one list for a
-// sequence gets each of them once. True if it added one.
+// Adds D0508 and D0509 where they apply and `diagnostics` does not contain them yet, so that a
+// sequence reports each once. Returns whether a warning was added.
 bool warn_of_surfaces(const CapturedFrame& frame, Diagnostics& diagnostics);
 
 } // namespace dermis::tools

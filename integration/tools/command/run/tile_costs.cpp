@@ -15,7 +15,7 @@ namespace {
 
 constexpr double tile_pixels = 64;
 
-// "technique=hybrid, variant=smooth" as settings.
+// Splits "technique=hybrid, variant=smooth" into settings.
 void add_outcome(const Graph& graph, std::string_view outcome, std::vector<NamedValue>& settings) {
   while (!outcome.empty()) {
     const size_t end = std::min(outcome.find(", "), outcome.size()), equals = outcome.find('=');
@@ -33,7 +33,7 @@ double texels_of(const PlanResource& resource) {
   return double(resource.width) * double(resource.height);
 }
 
-// Texels that the pass writes, where it runs over an image of its own.
+// Returns the number of texels that the pass writes, for passes over an image of their own.
 double written_texels(const Plan& plan, const PlanPass& pass) {
   for (uint32_t a = 0; a < pass.access_count; ++a) {
     const PlanAccess& access = plan.accesses[pass.first_access + a];
@@ -56,19 +56,20 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<cons
                      const demo::FrameChoice& choice) {
   std::vector<NamedValue> values(settings.begin(), settings.end());
   add_outcome(loaded.graph, choice.outcome, values);
-  Diagnostics scratch; // the frame ran: the graph compiles
+  Diagnostics scratch; // not reported: the frame ran, so the graph compiles
   const auto compiled = compile_generic(loaded, size, read_choices(loaded.graph, values), scratch);
   TileCosts out;
   if (!compiled) return out;
   const Plan& plan = compiled->plan;
   const std::vector<float> tables = subsurface::make_sap_tables({true, true}, {});
   const double d = choice.mean_d_px;
-  double everywhere = 0, per_step = 0; // a pixel of every scattering tile; of one with a step of samples
-  double first_step = 0;               // samples
+  // reads per pixel of every scattering tile, and of a tile with one step of samples
+  double everywhere = 0, per_step = 0;
+  double first_step = 0; // samples per pixel
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = loaded.pass_types[pass.type];
     std::vector<SettingValue> own;
-    double finer = 1; // texels of level 0 for one of the pass's
+    double finer = 1; // level 0 texels per texel of the pass
     for (size_t i = 0; i < type.settings.size(); ++i) {
       own.push_back(plan.settings[pass.first_setting + i].value);
       if (type.settings[i].name == "level") finer = std::exp2(2.0 * double(own.back().integer));

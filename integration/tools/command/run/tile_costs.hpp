@@ -1,6 +1,7 @@
 #pragma once
-// What tiles of each class cost in texel reads: T'(n) = sum of w S(m) + O(n) of the papers, for graphs that
-// give tiles samples. w: tiles of a class, S(m): reads a pixel at m samples, M(d): reads a sample.
+// Cost of tiles of each class in texel reads, for graphs that allocate samples to tiles: T'(n) =
+// sum of w S(m) + O(n) of the papers. w: tiles of a class; S(m): reads per pixel at m samples;
+// M(d): reads per sample.
 
 #include "integration/examples/demo_engine/engine.hpp"
 #include "integration/tools/command/graph_input.hpp"
@@ -13,23 +14,24 @@
 namespace dermis::tools {
 
 struct TileClass {
-  uint32_t samples = 0; // m, a pixel
+  uint32_t samples = 0; // m, per pixel
   uint64_t tiles = 0;   // w
-  double reads = 0;     // S(m), texels a pixel
+  double reads = 0;     // S(m), texels per pixel
 };
 
 struct TileCosts {
-  std::vector<TileClass> classes; // those without samples first; empty: the graph gives tiles no samples
-  double reads_per_sample = 0;    // M(d)
-  double reads_beside = 0;        // O(n): of passes over the whole view, texels
-  double total() const;           // T'(n), texels
+  // the class without samples first; empty if the graph allocates no samples
+  std::vector<TileClass> classes;
+  double reads_per_sample = 0; // M(d)
+  double reads_beside = 0;     // O(n): texels read by passes over the whole view
+  double total() const;        // T'(n), texels
 };
 
-// Of a frame that ran `choice.outcome` of the graph. `settings`: given by the caller with --set. Reads are
-// counted from the kernels' source (image_reads.hpp), not measured.
+// Returns the costs of a frame that ran `choice.outcome` of the graph. `settings` are those of
+// --set. Reads are counted from the kernels' source (image_reads.hpp), not measured.
 TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<const NamedValue> settings,
                      const demo::FrameChoice& choice);
-// Lines for people; "" where there are no classes.
+// Formats the costs as text, or "" if there are no classes.
 std::string describe_tile_costs(const TileCosts& costs);
 
 } // namespace dermis::tools

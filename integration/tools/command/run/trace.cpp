@@ -47,7 +47,7 @@ void Trace::add(const demo::FrameOutputs& frame) {
       device_free_ms_ += pass.milliseconds;
     }
   };
-  // The engine composes its picture after the graph; the rest comes before.
+  // The engine's composite pass runs after the graph; its other passes run before.
   const std::span<const demo::PassTime> host = frame.host_times;
   const bool composes = !host.empty() && host.back().pass == "composite";
   run(composes ? host.first(host.size() - 1) : host, begin_of(frame, "run scene"));

@@ -1,5 +1,5 @@
 #pragma once
-// Frames as a Chrome trace: what the device and the host's thread did, and what was chosen, over time.
+// Writes frames as a Chrome trace: device passes, host phases and choices over time.
 
 #include "integration/examples/demo_engine/engine.hpp"
 
@@ -8,13 +8,13 @@
 
 namespace dermis::tools {
 
-// Tracks: the device's queue (passes, one behind the other) and the host's thread (frames, and the phases in
-// them). Durations are measured on either side; the device's passes are put behind the moment at which they
-// were submitted, since their clock has no beginning in common with the host's.
+// Tracks are the device's queue (passes in sequence) and the host's thread (frames and their
+// phases). Durations are measured on each side. Device passes are placed after their submission
+// time, since the device's clock has no common origin with the host's.
 class Trace {
 public:
   void add(const demo::FrameOutputs& frame);
-  // The whole document, times in microseconds.
+  // Returns the whole document, times in microseconds.
   std::string json(const std::string& command, const std::string& device) const;
 
 private:
@@ -31,7 +31,7 @@ private:
   };
   std::vector<Span> spans_;
   std::vector<Chosen> chosen_;
-  double device_free_ms_ = 0; // from when on the device's track is free
+  double device_free_ms_ = 0; // time from which the device's track is free
 };
 
 } // namespace dermis::tools

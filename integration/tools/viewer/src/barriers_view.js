@@ -1,7 +1,7 @@
-// Every barrier with its reason.
+// Shows every barrier with its reason.
 import { h, table } from './dom.js';
 
-// [{ barrier, where, pass }] in the order in which they are recorded.
+// Returns [{ barrier, where, pass }] in recording order.
 export function all_barriers(plan) {
   const all = [];
   for (const pass of plan.passes) {

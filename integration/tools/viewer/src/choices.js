@@ -1,7 +1,8 @@
-// What-if: settings that the reader may switch, and what that changes.
+// Shows the settings that the reader may switch, and how each switch changes the plan.
 import { bytes_text, h } from './dom.js';
 
-// `chosen`: position of each switched setting's value; `choose(chosen)` is told of another.
+// `chosen` holds the value index of each switchable setting; `choose(chosen)` is called on a
+// change.
 export function show_choices(panel, settings, chosen, choose) {
   const switched = settings.filter((setting) => setting.switched !== null);
   const fixed = settings.filter((setting) => setting.switched === null);
@@ -38,7 +39,7 @@ function memory_change(now, then) {
   return ` (${now > then ? '+' : '−'}${bytes_text(Math.abs(now - then))})`;
 }
 
-// Against the plan that the page opened with.
+// Compares `plan` with the plan that the page opened with.
 export function show_change(panel, plan, first) {
   const now = names_of(plan), then = names_of(first);
   panel.replaceChildren(

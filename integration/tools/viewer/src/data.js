@@ -1,4 +1,5 @@
-// What the command put into the page: one document, packed. Plans are lists of runs of lines that all plans share.
+// Unpacks the page's data: one compressed document. Plans are lists of runs of lines that all plans
+// share.
 
 export async function unpack(base64) {
   const packed = Uint8Array.from(atob(base64.trim()), (c) => c.charCodeAt(0));
@@ -12,7 +13,7 @@ function unfold(runs, lines) {
   return JSON.parse(parts.join('\n'));
 }
 
-// Plans by outcome, read when they are first looked at.
+// Returns plans by configuration; each plan is parsed on first access.
 export function make_outcomes(document) {
   const plans = document.plans.map(() => null);
   const key = (values) => values.join(',');
@@ -20,7 +21,7 @@ export function make_outcomes(document) {
   return {
     count: document.outcomes.length,
     first: document.outcomes[0].values,
-    // { plan } or { problem }
+    // Returns { plan } or { problem }.
     at(values) {
       const outcome = by_values.get(key(values));
       if (outcome.plan === null) return { problem: outcome.problem };

@@ -1,4 +1,4 @@
-// Everything about the pass or resource that is selected.
+// Shows all properties of the selected pass or resource.
 import { reasons_by_barrier } from './barriers_view.js';
 import { bytes_text, h, milliseconds_text } from './dom.js';
 import { accesses_of, users_of } from './flow.js';

@@ -1,5 +1,5 @@
-// Elements from names, attributes and children. Text only ever becomes text nodes: what a graph file says can never
-// become markup.
+// Builds elements from names, attributes and children. Text only becomes text nodes, so that the
+// contents of a graph file never become markup.
 
 const svg_space = 'http://www.w3.org/2000/svg';
 
@@ -28,7 +28,7 @@ export function by_id(id) {
   return document.getElementById(id);
 }
 
-// A table with a head; each row is an array of cells, each a text or an element.
+// Builds a table with a head; each row is an array of cells, each a text or an element.
 export function table(titles, rows, attributes) {
   return h('table', attributes, h('thead', null, h('tr', null, titles.map((title) => h('th', { scope: 'col' }, title)))),
     h('tbody', null, rows.map((row) => h('tr', row.attributes, row.cells.map((cell) => h('td', null, cell))))));
@@ -45,7 +45,7 @@ export function milliseconds_text(milliseconds) {
   return `${milliseconds.toFixed(milliseconds < 1 ? 3 : milliseconds < 10 ? 2 : 1)} ms`;
 }
 
-// Explains what the pointer is over. `text` is called when it comes.
+// Shows a tooltip over `element`. `text` is called when the pointer enters.
 export function explain_on_hover(element, text) {
   const tip = by_id('tip');
   const move = (event) => {

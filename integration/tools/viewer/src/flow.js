@@ -1,5 +1,6 @@
-// Who reads what from whom: nodes and edges of one plan. Each write of a resource makes a new version of it, so that
-// the graph has no cycle; what earlier frames left stands at its start.
+// Builds nodes and edges of one plan: which pass reads which pass's output. Each write of a
+// resource makes a new version, so that the graph has no cycle. Contents of earlier frames are
+// sources without a writer.
 
 const reads = (access) => access.access.names.some((name) => name.endsWith('read'));
 const writes = (access) => access.access.names.some((name) => name.endsWith('write'));
@@ -11,7 +12,7 @@ export function accesses_of(pass) {
   };
 }
 
-// Passes by the resource that they read or write, in the order in which they run.
+// Returns the passes that read and write the resource, in execution order.
 export function users_of(plan, resource) {
   const found = { readers: [], writers: [] };
   plan.passes.forEach((pass) => {
@@ -22,8 +23,9 @@ export function users_of(plan, resource) {
   return found;
 }
 
-// Nodes { id, kind: pass | resource | past, name, pass | resource }, edges { from, to, kind: flow | keep | past }.
-// Without `with_resources` edges go from pass to pass, and those of kind past lead back.
+// Returns nodes { id, kind: pass | resource | past, name, pass | resource } and edges { from, to,
+// kind: flow | keep | past }. Without `with_resources` edges connect passes, and edges of kind past
+// lead back.
 export function make_flow(plan, with_resources) {
   const nodes = [], edges = [], seen = new Set();
   const version = plan.resources.map(() => 0), writer = plan.resources.map(() => null);
@@ -58,7 +60,8 @@ export function make_flow(plan, with_resources) {
     }
     for (const earlier of pass.after) add_edge(`p${earlier}`, id, 'keep');
     for (const resource of new Set(uses.writes.map((access) => access.resource))) {
-      if (writer[resource] !== null) add_edge(source_of(resource), id, 'keep'); // what it leaves alone stays
+      // texels not written keep their value
+      if (writer[resource] !== null) add_edge(source_of(resource), id, 'keep');
       version[resource] += 1;
       writer[resource] = id;
       if (with_resources) add_edge(id, resource_node(resource, 0), 'flow');

@@ -1,4 +1,5 @@
-// What a run measured: times of passes, and over frames times against budget and what the tiles were.
+// Shows a run's measurements: pass times, and per frame the time against the budget and the tile
+// classes.
 import uPlot from 'uplot';
 
 import { h, milliseconds_text, table } from './dom.js';

@@ -1,4 +1,4 @@
-// The graph as nodes and edges.
+// Shows the graph as nodes and edges.
 import cytoscape from 'cytoscape';
 
 import { explain_on_hover, by_id } from './dom.js';
@@ -6,10 +6,11 @@ import { make_flow } from './flow.js';
 import { place } from './layout.js';
 import { color } from './theme.js';
 
-const most_passes_with_resources = 150; // beyond them edges go from pass to pass
-const labels_legible = 7; // pixels on the screen
-const most_curves = 900; // edges that are drawn as curves; more are straight
-const least_first_zoom = 0.55; // what is smaller than that cannot be read: its start is shown instead of all
+const most_passes_with_resources = 150; // with more passes, edges connect passes directly
+const labels_legible = 7; // pixels on screen
+const most_curves = 900; // edges drawn as curves; with more, edges are straight
+// smaller labels are illegible: the view then shows the start of the graph
+const least_first_zoom = 0.55;
 
 function measure(label, font) {
   measure.context ??= document.createElement('canvas').getContext('2d');
@@ -39,8 +40,8 @@ function style() {
   ];
 }
 
-// `times`: milliseconds by pass; may be empty. `choose(kind, name)` is told what was tapped, `describe(kind, name)`
-// gives the words for what the pointer is over.
+// `times` holds milliseconds by pass and may be empty. `choose(kind, name)` is called on a tap;
+// `describe(kind, name)` returns the tooltip's text.
 export function make_graph_view(container, choose, describe) {
   const view = cytoscape({ container, style: style(), layout: { name: 'preset' }, minZoom: 0.02, maxZoom: 3,
     boxSelectionEnabled: false, autoungrabify: true, hideEdgesOnViewport: true, textureOnViewport: true });
@@ -65,7 +66,7 @@ export function make_graph_view(container, choose, describe) {
     event.preventDefault();
   });
 
-  // The left end, in the middle of the height.
+  // Shows the left end at half height.
   function show_start() {
     view.zoom(least_first_zoom);
     const box = view.elements().boundingBox(), first = view.nodes('[kind = "pass"]')[0].position();
@@ -119,7 +120,7 @@ export function make_graph_view(container, choose, describe) {
     resize() { view.resize(); },
     fit() { view.fit(undefined, 20); },
     counts() { return { nodes: view.nodes().length, edges: view.edges().length }; },
-    // For tests: where a node is on the screen.
+    // For tests: returns the position of a node on screen.
     place_of(name) {
       const node = view.nodes().filter((one) => one.data('name') === name);
       return node.length > 0 ? node[0].renderedPosition() : null;

@@ -1,4 +1,4 @@
-// Histories across frames: which instance of a resource each frame writes and which it reads.
+// Shows histories across frames: which instance of a resource each frame writes and reads.
 import { h, table } from './dom.js';
 import { accesses_of } from './flow.js';
 

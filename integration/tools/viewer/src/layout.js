@@ -1,8 +1,9 @@
-// Places of nodes in layers from left to right. Small graphs by dagre; large ones by the same idea with less care:
-// layers by the longest way, the order inside of a layer by where its sources are.
+// Places nodes in layers from left to right. Small graphs use dagre. Large graphs use a faster
+// approximation: layers by the longest path, and the order inside a layer by the positions of the
+// sources.
 import dagre from '@dagrejs/dagre';
 
-const dagre_edges = 900; // beyond it dagre takes longer than a reader waits
+const dagre_edges = 900; // dagre takes too long for more edges
 const gap = { layer: 60, node: 14 };
 
 function place_with_dagre(nodes, edges) {
@@ -14,7 +15,7 @@ function place_with_dagre(nodes, edges) {
   return new Map(nodes.map((node) => [node.id, { x: graph.node(node.id).x, y: graph.node(node.id).y }]));
 }
 
-// Nodes come with each before those that it leads to, edges that lead back left out.
+// Requires nodes in topological order of the edges, ignoring edges that lead back.
 function place_by_layers(nodes, edges) {
   const sources = new Map(nodes.map((node) => [node.id, []]));
   for (const edge of edges) sources.get(edge.to).push(edge.from);
@@ -44,7 +45,7 @@ function place_by_layers(nodes, edges) {
   return places;
 }
 
-// Map of id to { x, y }, centres in pixels. `nodes` carry width and height.
+// Returns a map of id to { x, y }, centres in pixels. `nodes` have width and height.
 export function place(nodes, edges) {
   const forward = edges.filter((edge) => edge.kind !== 'past' || edge.from.startsWith('h'));
   return edges.length <= dagre_edges ? place_with_dagre(nodes, forward) : place_by_layers(nodes, forward);

@@ -1,7 +1,8 @@
-// Passes and resources as a list: search, and the keyboard's way through the graph.
+// Lists passes and resources, with search and keyboard navigation.
 import { h } from './dom.js';
 
-// `items`: [{ kind, name, words, off }]. `choose(kind, name)`; `found(names or null)` is told what the search shows.
+// `items` is [{ kind, name, words, off }]. `choose(kind, name)` is called on selection;
+// `found(names or null)` is called with the names that the search shows.
 export function make_list(list, search, choose, found) {
   let items = [], selection = { kind: null, name: null };
   const matches = () => {

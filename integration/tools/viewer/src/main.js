@@ -1,4 +1,4 @@
-// The page: one state (which outcome, what is selected), drawn anew where it changes.
+// The page: one state (configuration and selection), redrawn on change.
 import { make_outcomes, unpack } from './data.js';
 import { show_barriers } from './barriers_view.js';
 import { show_change, show_choices } from './choices.js';

@@ -1,11 +1,11 @@
-// Lifetimes of resources over the passes, and beside it the heaps: what overlaps in height there and not in width
-// shares memory.
+// Shows lifetimes of resources over the passes, next to the heaps. Resources that overlap
+// vertically in a heap and not horizontally share memory.
 import { bytes_text, explain_on_hover, h, s } from './dom.js';
 
 const row = 18, label_width = 150, heap_height = 320, between = 80;
 const hues = 12;
 
-// Pixels of a pass: both pictures fit side by side where they can be read then.
+// Width of a pass in pixels: both pictures fit side by side if they are legible at that width.
 const cell_width = (panel_width, passes) => Math.max(0.6, Math.min(26, Math.max(260, (panel_width - label_width - between) / 2) / passes));
 const hue = (index) => Math.round((index * 360 * 0.618034) % 360 / (360 / hues)) * (360 / hues);
 

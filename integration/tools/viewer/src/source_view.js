@@ -1,7 +1,8 @@
-// The files that the graph was put together from; lines that declare something lead to it, and back.
+// Shows the files of the graph. Lines that declare a pass or resource select it, and a selection
+// scrolls to its line.
 import { by_id, h } from './dom.js';
 
-// `declared`: [{ kind, name, file, line }].
+// `declared` is [{ kind, name, file, line }].
 export function make_source_view(panel, files, declared, choose) {
   let shown = -1;
   const select = h('select', { 'aria-label': 'File', change: () => show(select.selectedIndex) }, files.map((file) => h('option', null, file.name)));

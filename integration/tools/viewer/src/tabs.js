@@ -1,4 +1,4 @@
-// Tabs after the WAI-ARIA pattern: arrow keys go from one to the next. Panels are drawn when they are shown.
+// Tabs in the WAI-ARIA pattern: arrow keys switch tabs. A panel is drawn when its tab is shown.
 
 // `draw(name)` fills the panel `panel-name`.
 export function make_tabs(bar, draw) {

@@ -1,4 +1,4 @@
-// Light and dark: as the system says, or as the reader chose.
+// Light and dark themes: the system's preference, or the reader's choice.
 
 const order = ['auto', 'light', 'dark'];
 
@@ -6,7 +6,7 @@ export function color(variable) {
   return getComputedStyle(document.documentElement).getPropertyValue(variable).trim();
 }
 
-// Calls `changed` whenever colours are others.
+// Calls `changed` whenever the colours change.
 export function make_theme_button(button, changed) {
   let at = 0;
   const show = () => {
