@@ -1,5 +1,5 @@
 #pragma once
-// What the verbs' options have in common, and how a verb is added. Internal to arguments/.
+// Options common to several verbs, and the registration of a verb. Internal to arguments/.
 
 #include "integration/tools/command/arguments/arguments.hpp"
 #include "integration/tools/command/verbs.hpp"
@@ -14,21 +14,21 @@
 
 namespace dermis::tools {
 
-inline constexpr uint32_t max_side = 16384; // pixels; dermis.h, dermis_graph_desc
+inline constexpr uint32_t max_side = 16384; // pixels; limit of dermis_graph_desc in dermis.h
 inline constexpr uint32_t max_frames = 100000;
 
-// The option may be repeated and takes one value each time, so that a positional may follow.
+// Allows repetition with one value each time, so that a positional may follow.
 CLI::Option* repeat(CLI::Option* option);
 
 CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
 void add_parts(CLI::App& verb, GraphParts& parts);
-// --pass-types alone, for verbs that take no other parts; add_parts() has it.
+// Adds only --pass-types, for verbs without other parts; add_parts() includes it.
 void add_pass_types(CLI::App& verb, std::vector<std::string>& pass_types);
 void add_common(CLI::App& verb, Session& session, bool json_is_file);
 
-// One of some names, each of which stands for a value.
+// Adds an option whose value is one of `names`.
 template <class Value>
 CLI::Option* add_choice(CLI::App& verb, const char* option, Value& value,
                         const std::map<std::string, Value>& names, const char* what) {
@@ -38,10 +38,10 @@ CLI::Option* add_choice(CLI::App& verb, const char* option, Value& value,
       ->check(CLI::IsMember(names));
 }
 
-// A verb that has verbs below it.
+// Adds a verb that has subcommands.
 CLI::App& add_group(CLI::App& app, const char* name, const char* what, const char* example);
 
-// The verb's options live as long as the function that runs it.
+// The callback owns the verb's options.
 template <class Options, class Declare>
 void add_verb(CLI::App& app, Invocation& invocation, const char* name, const char* what, const char* example,
               ExitCode (*work)(const Session&, const Options&), Declare declare, bool json_is_file = false) {
@@ -55,7 +55,7 @@ void add_verb(CLI::App& app, Invocation& invocation, const char* name, const cha
   });
 }
 
-// Verbs by what they do; each function adds its own.
+// Each function adds one group of verbs.
 void add_text_verbs(CLI::App& app, Invocation& invocation);
 void add_plan_verbs(CLI::App& app, Invocation& invocation);
 void add_schema_verb(CLI::App& app, Invocation& invocation);

@@ -16,7 +16,7 @@ std::string_view name_part(std::string_view argument) {
   return argument.substr(0, argument.find('='));
 }
 
-// Returns the subcommand of that name; null and a message in `problem` if there is none.
+// Returns the subcommand of that name. Returns null and sets `problem` if there is none.
 CLI::App* find_subcommand(CLI::App& app, const std::string& name, std::string_view what,
                           std::string& problem) {
   const std::vector<CLI::App*> all = app.get_subcommands([](CLI::App*) { return true; });
@@ -32,7 +32,8 @@ CLI::App* find_subcommand(CLI::App& app, const std::string& name, std::string_vi
   return nullptr;
 }
 
-// A misspelt verb or option, said before CLI11 complains of what else is missing; "" when all are known.
+// Reports a misspelt verb or option before CLI11 reports missing options. Returns "" if all are
+// known.
 std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2 || std::string_view(argv[1]).starts_with("-")) return "";
   std::string problem;
@@ -86,14 +87,14 @@ Invocation read_arguments(int argc, const char* const* argv) {
   for (int i = 0; i < argc; ++i)
     invocation.session.command += (i == 0 ? "" : " ") + std::string(argv[i]);
 
-  // Also a line that cannot be read is answered in the way it asks for.
+  // Usage errors are also reported as JSON if --json is given.
   invocation.session.json = std::count(argv, argv + argc, std::string_view("--json")) > 0;
   invocation.message = find_misspelling(app, argc, argv);
   if (!invocation.message.empty()) return invocation;
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    invocation.help = app.help(); // of the verb that was chosen, with the whole of its name
+    invocation.help = app.help(); // of the selected verb, with its full name
   } catch (const CLI::CallForVersion& version) {
     invocation.help = std::string(version.what()) + "\n";
   } catch (const CLI::ParseError& error) {

@@ -6,7 +6,7 @@ namespace {
 
 constexpr uint32_t max_sequence_frames = 3600, max_supplement_runs = 1u << 20;
 
-// Files that a bench writes its rows to; `csv` may be null.
+// Adds options for a bench's output files; `csv` may be null.
 void add_report_files(CLI::App& verb, std::string& json, std::string* csv, std::string& html,
                       const char* page) {
   verb.add_option("--json", json, "File for the rows, - for standard output")->type_name("FILE");
@@ -32,7 +32,7 @@ void add_head(CLI::App& verb, std::string& head) {
       ->type_name("DIR");
 }
 
-// Those of a type ("scenes") to which what is measured is narrowed.
+// Adds an option that restricts the bench to some names of a type ("scenes").
 void add_only(CLI::App& verb, const std::string& kind, std::vector<std::string>& names) {
   repeat(verb.add_option("--" + kind, names, "Only these " + kind + ", separated by commas")
              ->type_name("NAME")

@@ -19,7 +19,7 @@ Takes takes_of(const DeclaredOption& option) {
   return option.offered.empty() ? Takes::value : Takes::word;
 }
 
-// What may stand where no option does.
+// Accepted positional words.
 struct Operands {
   std::vector<std::string> words;
   bool files = false;
@@ -49,7 +49,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text;
 }
 
-// Text inside of single quotes.
+// Escapes text for single quotes.
 std::string in_quotes(const std::string& text) {
   return replaced(text, "'", "'\\''");
 }
@@ -105,7 +105,7 @@ complete -o filenames -F _dermis dermis
                      known, values, offers);
 }
 
-// Inside of [...] of _arguments.
+// Escapes text for [...] of _arguments.
 std::string zsh_text(const std::string& text) {
   return in_quotes(replaced(replaced(replaced(text, "[", "("), "]", ")"), ":", "\\:"));
 }
@@ -125,7 +125,7 @@ std::string zsh_action(const DeclaredOption& option) {
   return " ";
 }
 
-// Of what may stand where no option does.
+// Returns the zsh action for positional words.
 std::string zsh_operand(const Operands& operands) {
   const std::string words = fmt::format("({})", joined(operands.words, " "));
   if (operands.words.empty()) return operands.files ? "_files" : " ";
@@ -173,7 +173,7 @@ std::string zsh(const std::vector<DeclaredVerb>& verbs) {
   return text + "\n_dermis \"$@\"\n";
 }
 
-// True where the words before name this verb, and none below it.
+// Returns a condition that is true if the preceding words name this verb and no subcommand.
 std::string fish_condition(const DeclaredVerb& verb) {
   std::string condition;
   if (verb.name.empty()) return "__fish_use_subcommand";

@@ -6,7 +6,7 @@
 namespace dermis::tools {
 namespace {
 
-// "MODE:{always,auto,never}" -> its values: how CLI11 describes IsMember.
+// Parses "MODE:{always,auto,never}", which is how CLI11 describes IsMember.
 std::vector<std::string> values_in(const std::string& type) {
   std::vector<std::string> values;
   const size_t open = type.find('{'), close = type.find('}');
@@ -40,7 +40,7 @@ DeclaredOption declare(const CLI::Option& option, const OfferedWords& offered) {
   return declared;
 }
 
-// "Example:\n  one\n  two" -> its lines.
+// Splits "Example:\n  one\n  two" into its example lines.
 std::vector<std::string> examples_in(const std::string& footer) {
   std::vector<std::string> lines;
   std::stringstream text(footer);

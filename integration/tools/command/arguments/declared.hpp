@@ -1,6 +1,6 @@
 #pragma once
-// What the command line declares, as plain data: for completion scripts and the manual page. Internal to
-// arguments/.
+// The command line's declarations as plain data, for completion scripts and the manual page.
+// Internal to arguments/.
 
 #include "integration/tools/command/arguments/arguments.hpp"
 
@@ -12,29 +12,30 @@
 namespace dermis::tools {
 
 struct DeclaredOption {
-  std::vector<std::string> names;   // "--out", "-o"; of a positional its one name
-  std::string text;                 // what it does
-  std::string type;                 // "FILE"; "": takes no value
-  std::vector<std::string> values;  // of which it takes one; empty: any
-  std::vector<std::string> offered; // some that it takes
+  std::vector<std::string> names;   // "--out", "-o"; a positional has one name
+  std::string text;                 // description
+  std::string type;                 // "FILE"; "" for a flag
+  std::vector<std::string> values;  // permitted values; empty: any
+  std::vector<std::string> offered; // suggested values
   bool positional = false, required = false;
 };
 
 struct DeclaredVerb {
-  std::string name; // "bench all"; "": the program itself
+  std::string name; // "bench all"; "" for the program itself
   std::string text;
   std::vector<std::string> examples; // lines
   std::vector<DeclaredOption> options;
-  std::vector<std::string> verbs; // last words of those below; none can be run by itself where there are some
+  // Last words of the subcommands. A verb with subcommands cannot be run by itself.
+  std::vector<std::string> verbs;
 };
 
-// The program, then each verb followed by those below it, in the order of their declaration.
+// Returns the program, then each verb followed by its subcommands, in the order of declaration.
 std::vector<DeclaredVerb> declared_verbs(CLI::App& app, const OfferedWords& offered);
 
-// For the shells "bash", "zsh" and "fish"; "" for another one.
+// Returns the script for "bash", "zsh" or "fish", or "" for another shell.
 std::string completion_script(const std::vector<DeclaredVerb>& verbs, std::string_view shell);
 
-// dermis(1) for man.
+// Returns the source of dermis(1) for man.
 std::string manual_page(const std::vector<DeclaredVerb>& verbs, std::string_view version);
 
 } // namespace dermis::tools

@@ -1,4 +1,4 @@
-// The manual page, in the macros of man(7).
+// Formats the manual page with the macros of man(7).
 #include "integration/tools/command/arguments/declared.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 namespace dermis::tools {
 namespace {
 
-// Text that says nothing to the formatter: no macro at the start of a line, no escape, hyphens that stay.
+// Escapes text for roff: no macro at the start of a line, no escapes, hyphens that are not typeset.
 std::string roff(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -10,7 +10,7 @@ namespace {
 constexpr uint32_t max_repeat = 10000;
 constexpr uint32_t max_subset = 1u << 24u; // pixels
 
-// How the graph's choices are made.
+// Adds the options of the choice by budget.
 void add_budget(CLI::App& verb, RenderOptions& options) {
   const char* group = "The choice";
   constexpr double max_ms = 1e6;
@@ -38,7 +38,7 @@ void add_model(CLI::App& verb, ModelOptions& model) {
       ->group(group);
 }
 
-// X,Y,WxH: the corner, then the size.
+// Parses X,Y,WxH: the corner, then the size.
 bool parse_region(const std::string& text, PictureRegion& region) {
   int read = 0;
   const int fields = std::sscanf(text.c_str(), "%5u,%5u,%5ux%5u%n", &region.x, &region.y, &region.size.width,

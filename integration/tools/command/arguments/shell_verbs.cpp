@@ -1,4 +1,4 @@
-// Verbs that tell shells and readers about the command line itself.
+// Verbs that describe the command line to shells and readers.
 #include "integration/tools/command/arguments/add_verb.hpp"
 #include "integration/tools/command/arguments/declared.hpp"
 #include "integration/tools/command/output.hpp"
@@ -12,7 +12,7 @@ struct ShellOptions {
   std::string shell, out = "-";
 };
 
-// Whole once the command line was read: `text` is made of all that was declared.
+// `text` runs after parsing, when all verbs are declared.
 void add_text_verb(CLI::App& app, Invocation& invocation, const char* name, const char* what,
                    const char* example, bool of_shell,
                    std::function<std::string(const std::string& shell)> text) {

@@ -14,7 +14,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr size_t max_cases = 1024;
-constexpr size_t max_names = 4096; // passes of a graph, limits.hpp
+constexpr size_t max_names = 4096; // limit on passes of a graph in limits.hpp
 constexpr int64_t max_side = 16384;
 
 struct CaseReader {
@@ -57,7 +57,7 @@ struct CaseReader {
       refuse(node, fmt::format("'lacks': there is no feature '{}'", *name));
   }
 
-  // Values as --set takes them; the graph decides what they mean.
+  // Returns values as --set accepts them; the graph determines their types later.
   std::vector<NamedValue> settings(NodeId object) {
     std::vector<NamedValue> out;
     if (!object.valid()) return out;
@@ -171,7 +171,7 @@ struct CaseReader {
   }
 };
 
-// One past the last byte of the value that begins at `begin`; the text is known to parse.
+// Returns one past the last byte of the value that begins at `begin`. The text must be valid JSON.
 size_t end_of_value(const std::string& text, size_t begin) {
   if (text[begin] != '{' && text[begin] != '[' && text[begin] != '"')
     return std::min(text.find_first_of(",]} \t\r\n/", begin), text.size());
@@ -196,7 +196,7 @@ size_t end_of_value(const std::string& text, size_t begin) {
   return text.size();
 }
 
-// The white space that begins the line of byte `at`.
+// Returns the white space at the start of the line that contains byte `at`.
 std::string indentation_at(const std::string& text, size_t at) {
   const size_t newline = text.rfind('\n', at);
   const size_t line = newline == std::string::npos ? 0 : newline + 1;
@@ -282,15 +282,15 @@ std::string rewrite_info(const Document& document, const std::string& text,
                          const std::vector<ExpectedCase>& cases,
                          const std::vector<std::optional<MachineInfo>>& info) {
   std::string out = text;
-  for (size_t i = cases.size(); i-- > 0;) { // from the back, so that offsets stay true
+  for (size_t i = cases.size(); i-- > 0;) { // from the end, so that offsets stay valid
     if (!info[i]) continue;
     std::string fresh = info_json(*info[i]);
-    fresh.pop_back(); // its line break
+    fresh.pop_back(); // removes the final line break
     if (cases[i].info_node.valid()) {
       const size_t begin = document[cases[i].info_node].offset;
       const size_t end = end_of_value(out, begin);
       out.replace(begin, end - begin, indented(fresh, indentation_at(out, begin)));
-    } else { // behind the last value of the case; it has one, its name
+    } else { // after the last value of the case, which has at least its name
       const size_t begin = document[children(document, cases[i].node).back()].offset;
       const std::string indentation = indentation_at(out, begin);
       out.insert(end_of_value(out, begin),

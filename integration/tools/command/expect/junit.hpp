@@ -1,5 +1,5 @@
 #pragma once
-// Results as JUnit XML, the form that build servers read.
+// Writes results as JUnit XML, the format that CI servers read.
 
 #include <cstdint>
 #include <string>
@@ -11,8 +11,8 @@ namespace dermis::tools {
 struct TestResult {
   std::string name;
   bool ok = false;
-  std::string message; // why not, one line
-  std::string details; // the rest of it
+  std::string message; // reason of the failure, one line
+  std::string details; // further lines
 };
 
 struct TestSuite {
@@ -20,10 +20,11 @@ struct TestSuite {
   std::vector<TestResult> results;
 };
 
-// Text as XML content or attribute value: markup escaped, characters that XML 1.0 cannot hold as '?'.
+// Escapes text for XML content or attribute values. Characters that XML 1.0 cannot represent become
+// '?'.
 std::string xml_text(std::string_view text);
 
-// A whole document. It holds no times, so that equal results give equal bytes.
+// Returns a whole document. It contains no times, so that equal results give equal bytes.
 std::string junit_xml(const std::vector<TestSuite>& suites);
 
 } // namespace dermis::tools

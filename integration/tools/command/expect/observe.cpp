@@ -21,7 +21,7 @@ DeviceProfile device_of(const ExpectedCase& inputs) {
   return device;
 }
 
-// One per resource of the graph; `problem` names a resource that is not there.
+// Returns one format per resource of the graph. Sets `problem` to an unknown resource.
 std::vector<Format> host_formats(const Graph& graph, const ExpectedCase& inputs, std::string& problem) {
   std::vector<Format> out(graph.resources.size(), Format::undefined);
   for (const auto& binding : inputs.host_formats) {

@@ -1,5 +1,5 @@
 #pragma once
-// Compiles a graph under the inputs of a case and says what came of it.
+// Compiles a graph with the inputs of a case and returns the result.
 
 #include "integration/tools/command/expect/expectation.hpp"
 #include "integration/tools/command/graph_input.hpp"
@@ -11,15 +11,15 @@ namespace dermis::tools {
 
 struct Observation {
   MachineInfo info;
-  std::vector<std::string> messages;   // of the diagnostics, for people
-  std::string problem;                 // the inputs do not fit the graph: nothing was compiled
-  std::vector<std::string> violations; // of the verifier, to a plan that it should have accepted
-  std::string not_verified;            // why the verifier gave up; "": it did not
+  std::vector<std::string> messages;   // text of the diagnostics
+  std::string problem;                 // inputs that do not fit the graph; nothing was compiled
+  std::vector<std::string> violations; // found by the verifier: a defect of the compiler
+  std::string not_verified;            // reason why the verifier gave up; "" if it finished
 };
 
 Observation observe(const LoadedGraph& loaded, const ExpectedCase& inputs);
 
-// What is observed of a graph that cannot even be read: its messages.
+// Returns the observation of a graph that cannot be read: its messages.
 Observation observe_messages(const Diagnostics& diagnostics);
 
 } // namespace dermis::tools

@@ -8,7 +8,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t max_lines = 4096; // the table below grows with the product of both sides
+// bounds the table below, whose size is the product of both sides
+constexpr size_t max_lines = 4096;
 
 using Lines = std::vector<std::string_view>;
 
@@ -26,8 +27,8 @@ void append(std::string& out, const char* mark, std::string_view line) {
   out.append(mark).append(line).append("\n");
 }
 
-// Longest common subsequence by its table of lengths (Wagner and Fischer 1974, insertions and deletions
-// only), over lines [first, end) of both.
+// Computes a longest common subsequence with a table of lengths (Wagner and Fischer 1974,
+// insertions and deletions only), over lines [first, end) of both.
 void diff_middle(const Lines& before, const Lines& after, size_t first, size_t before_end, size_t after_end,
                  std::string& out) {
   const size_t rows = before_end - first, columns = after_end - first;

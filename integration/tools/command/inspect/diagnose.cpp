@@ -11,10 +11,10 @@
 namespace dermis::tools {
 namespace {
 
-// Fewer pixels, or pairs of pixels, say nothing.
+// Minimum number of pixels or pairs of pixels for a finding.
 constexpr size_t min_samples = 64;
 
-// `fraction` 0.5: the median. Empty values are the caller's to exclude.
+// `fraction` 0.5 is the median. `values` must not be empty.
 double quantile(std::vector<double>& values, double fraction) {
   const auto at = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());
@@ -27,10 +27,11 @@ double luminance(const Image& image, size_t pixel) { // Rec. 709
 }
 
 struct FrameFigures {
-  uint64_t profile_pixels = 0;                // inside the render rectangle, with or without depth
-  double median_d_px = 0;                     // of the widest channel
-  double pixel_m = 0;                         // side of a pixel at the median depth, metres
-  double extent_m = 0;                        // side of a square of the area that these pixels cover, metres
+  uint64_t profile_pixels = 0; // inside the render rectangle, with or without depth
+  double median_d_px = 0;      // of the widest channel
+  double pixel_m = 0;          // side of a pixel at the median depth, metres
+  // side of a square of equal area as these pixels, metres
+  double extent_m = 0;
   double near_m = 0, median_m = 0, far_m = 0; // 5th, 50th and 95th percentile of depth, metres
   size_t depth_pixels = 0;                    // pixels with profile and depth
 };
@@ -117,7 +118,8 @@ private:
     figures_.extent_m = figures_.pixel_m * std::sqrt(static_cast<double>(depths.size()));
   }
 
-  // An affine matrix has 0 0 0 1 in its last row; stored by columns, its translation is there.
+  // The last row of an affine matrix is 0 0 0 1. A matrix stored by columns has its translation
+  // there.
   void check_matrix(std::string_view name, const subsurface::Matrix4& m) {
     const bool translation_in_row = m[12] != 0 || m[13] != 0 || m[14] != 0;
     if (!translation_in_row) return;
@@ -131,8 +133,9 @@ private:
     check_matrix("previous_view_from_world", frame_.description.previous_view_from_world);
   }
 
-  // Where albedo changes from pixel to pixel and the surface does not, irradiance stays; lighting that
-  // contains albedo changes by the same factor. The slope of log lighting over log albedo tells which.
+  // Albedo may change between neighbouring pixels of one surface, but irradiance does not. Lighting
+  // that contains albedo changes by the same factor, so that log lighting over log albedo has slope
+  // 1.
   void check_albedo_in_lighting() {
     if (frame_.albedo.values.empty()) return;
     constexpr double min_log_step = 0.1, min_value = 1e-3, depth_sides = 4, contained_from = 0.7;
@@ -166,7 +169,8 @@ private:
   }
 
   void check_units() {
-    constexpr double large_m = 10, small_m = 2e-3; // beyond: whole buildings, or less than a fingernail
+    // outside: whole buildings, or less than a fingernail
+    constexpr double large_m = 10, small_m = 2e-3;
     constexpr double narrow_px = 0.2, wide_px = 60;
     const FrameFigures& f = figures_;
     const std::string measured = fmt::format("pixels with a profile cover {:.3g} m at {:.3g} m, and d is "
@@ -185,7 +189,8 @@ private:
                       f.median_d_px, subsurface::copy_below_d_px));
   }
 
-  // Distances have no upper end at exactly 1 and no value nearer than the near plane; buffer values do.
+  // Distances do not end at exactly 1 and are not nearer than the near plane; depth buffer values
+  // may be.
   void check_depth_range() {
     constexpr double min_fraction = 0.01, one_distance = 1e-4;
     uint64_t ones = 0, above = 0, nearer = 0, valid = 0;
@@ -217,8 +222,8 @@ private:
                       figures_.median_m));
   }
 
-  // Depth of the end of the depth range that lies nearer to the camera. 0 for orthographic cameras: theirs
-  // may lie anywhere.
+  // Returns the depth of the nearer end of the depth range, metres. Returns 0 for orthographic
+  // cameras, whose range may lie anywhere.
   double near_plane_m() const {
     if (!frame_.rays.perspective) return 0;
     const subsurface::DepthDecode decode =
@@ -231,8 +236,9 @@ private:
     return nearest;
   }
 
-  // Seen from outside, surfaces turn away from the camera at their outline, so depth is larger there
-  // than in their middle. Outline: next to a pixel without profile that shows nothing or something far.
+  // Surfaces turn away from the camera at their outline, so that depth is larger there than in the
+  // middle. A pixel is on the outline if a neighbour has no profile and is background or much
+  // further or nearer.
   void check_depth_direction() {
     constexpr double far_step = 0.05, clear_fraction = 0.25, min_relief = 1e-3;
     std::vector<double> outline, all;

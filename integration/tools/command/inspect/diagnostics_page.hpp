@@ -1,5 +1,5 @@
 #pragma once
-// docs/diagnostics.md, which travels inside the command.
+// Returns docs/diagnostics.md, which is embedded in the command.
 
 #include <string_view>
 
@@ -7,7 +7,7 @@ namespace dermis::tools {
 
 std::string_view diagnostics_page();
 
-// What it says of a code ("D0103"), without the heading; "" where it has no such entry.
+// Returns the entry of a code ("D0103") without its heading, or "" if there is none.
 std::string_view diagnostic_paragraph(std::string_view code);
 
 } // namespace dermis::tools

@@ -1,4 +1,5 @@
-// dermis doctor: what this machine has of what Dermis needs, what is used, and what is done without and why.
+// dermis doctor: checks the machine against Dermis's requirements, and lists the device used and
+// missing optional features with reasons.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/abi/shaders/compiler.hpp"
@@ -20,7 +21,7 @@ std::string version_text(uint32_t version) {
 }
 
 std::string library_version() {
-  const uint32_t version = dermis_version(); // packed as Vulkan's versions are
+  const uint32_t version = dermis_version(); // packed like Vulkan versions
   return version_text(version);
 }
 
@@ -69,7 +70,7 @@ std::string survey_as_json(const demo::DeviceSurvey& survey) {
   json.open_object().member("ok", any_fits(survey)).member("dermis", library_version());
   json.member("loader", version_text(survey.loader_version))
       .member("validation_layer", survey.validation_layer)
-      .member("shader_compiler", abi::shader_compiler()); // "": none
+      .member("shader_compiler", abi::shader_compiler()); // "" if there is none
   json.key("devices").open_array();
   for (const demo::SurveyedDevice& device : survey.devices) {
     json.open_object()
@@ -90,7 +91,7 @@ std::string survey_as_json(const demo::DeviceSurvey& survey) {
   return std::move(json).finish();
 }
 
-// What is known where there is no loader or no driver.
+// Returns the report for a machine without a loader or driver.
 std::string screen_without_devices() {
   const char* why = "validate, explain, plan, test, graph and compare work without";
   return format_table(

@@ -1,4 +1,5 @@
-// dermis explain: the plan with a reason for each decision, or what the code of a message means.
+// dermis explain: prints the plan with a reason for each decision, or the meaning of a message's
+// code.
 
 #include "framegraph/explain/plan_json.hpp"
 #include "framegraph/explain/plan_text.hpp"
@@ -18,9 +19,9 @@
 namespace dermis::tools {
 namespace {
 
-// "d0103" and "103" -> "D0103"; "" for what can be no code.
+// Normalises "d0103" and "103" to "D0103"; returns "" if the text is not a code.
 std::string code_in(std::string_view text) {
-  constexpr size_t digits = 4; // also of the format below
+  constexpr size_t digits = 4; // also in the format below
   if (text.starts_with('D') || text.starts_with('d')) text.remove_prefix(1);
   if (text.empty() || text.size() > digits || text.find_first_not_of("0123456789") != std::string_view::npos)
     return "";
@@ -55,7 +56,7 @@ ExitCode deliver(const Session& session, const std::string& path, std::string_vi
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }
 
-// Some frames of a scene, so that times and counts are known; the newest is told of.
+// Renders some frames of a scene, so that times and counts are known, and explains the newest.
 ExitCode explain_frame(const Session& session, const ExplainOptions& options, const LoadedGraph& loaded) {
   constexpr uint32_t frames = 6;
   demo::RenderOptions engine;

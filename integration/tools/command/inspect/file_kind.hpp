@@ -1,5 +1,5 @@
 #pragma once
-// The file formats that the command knows, told apart by the version key that each has at its root.
+// The command's file formats, distinguished by the version key at the root of each file.
 
 #include "framegraph/text/document.hpp"
 
@@ -11,7 +11,7 @@ namespace dermis::tools {
 
 struct FileKind {
   std::string_view version_key, name;
-  int64_t version; // the newest one, which is what is read
+  int64_t version; // newest version, the only one that is read
 };
 
 enum class FileKindId : uint8_t {
@@ -29,7 +29,7 @@ enum class FileKindId : uint8_t {
 
 std::span<const FileKind> file_kinds(); // by FileKindId
 
-// A file without any of the keys, or with a misspelt one, counts as a graph: its reader says what is missing.
+// A file with a missing or misspelt key counts as a graph, whose reader reports the problem.
 FileKindId file_kind_of(const Document& document);
 
 } // namespace dermis::tools

@@ -1,4 +1,4 @@
-// dermis graph: the graph with its plan as a picture for Graphviz, as JSON, or as a page to look at.
+// dermis graph: writes the graph with its plan for Graphviz, as JSON, or as an HTML page.
 
 #include "framegraph/explain/plan_dot.hpp"
 #include "framegraph/explain/plan_json.hpp"

@@ -1,4 +1,4 @@
-// dermis schema: the JSON Schemas of all file formats.
+// dermis schema: writes the JSON Schemas of all file formats.
 
 #include "framegraph/schema/graph_schema.hpp"
 #include "framegraph/text/json_writer.hpp"
@@ -46,14 +46,14 @@ ExitCode write_all(const Session& session, const std::string& path) {
   return ExitCode::ok;
 }
 
-// The whole file; nullopt with a `problem`.
+// Returns the whole file, or nullopt and sets `problem`.
 std::optional<std::string> text_of(const std::string& file, std::string& problem) {
   const auto bytes = read_bytes(file, limits::file_bytes, problem);
   if (!bytes) return std::nullopt;
   return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
-// All graphs below a folder, by name; nullopt with errors in `diagnostics`.
+// Returns all graphs below a folder, sorted by file name, or nullopt with errors in `diagnostics`.
 std::optional<std::vector<NamedGraph>> graphs_in(const std::string& folder, Diagnostics& diagnostics) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;
@@ -113,7 +113,8 @@ ExitCode docs(const Session& session, const DocsOptions& options) {
   std::vector<std::pair<std::string, std::string>> pages = {
       {"format_reference.md", format_page(all_schemas())},
       {"pass_types.md", pass_types_page(subsurface::make_pass_types())}};
-  // Only a block of this page is generated. A folder without the page is not one of user documents.
+  // Only a block of this page is generated. A folder without the page is not the user
+  // documentation.
   const std::string hosts = folder.path_of("integration.md");
   if (std::error_code ignored; std::filesystem::exists(hosts, ignored)) {
     std::string problem;

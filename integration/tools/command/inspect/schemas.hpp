@@ -1,5 +1,5 @@
 #pragma once
-// The JSON Schemas that the command carries.
+// The JSON Schemas embedded in the command.
 
 #include "integration/tools/command/session.hpp"
 
@@ -14,17 +14,17 @@ struct NamedSchema {
   std::string_view name, text;
 };
 
-// Those that are written by hand in configs/schema/; those of graphs and fragments follow from the pass
-// kinds.
+// Returns the hand-written schemas of configs/schema/. Schemas of graphs and fragments are
+// generated from the pass types.
 std::span<const NamedSchema> written_schemas();
 
 struct DocsOptions {
   std::string out = "docs";              // folder
   std::string graphs = "configs/graphs"; // folder of the graphs whose slots are listed
-  bool check = false;                    // write nothing, fail where a page is not as it would be written
+  bool check = false;                    // write nothing; fail if a page is out of date
 };
-// Writes the pages of documentation that follow from schemas and signatures, and the table of slots into
-// integration.md where the folder has that page.
+// Writes the documentation pages generated from schemas and signatures, and the table of slots into
+// integration.md if the folder has that page.
 ExitCode docs(const Session& session, const DocsOptions& options);
 
 // "graph", "fragment", ...

@@ -1,5 +1,5 @@
 #pragma once
-// What a machine has of what Dermis needs, for programs: the answer of `dermis doctor --json`.
+// Formats a machine's properties relevant to Dermis: the output of `dermis doctor --json`.
 
 #include "integration/examples/demo_engine/device_survey.hpp"
 

@@ -1,4 +1,4 @@
-// dermis test: compiles graphs under the inputs of their expectation files and compares what comes of it.
+// dermis test: compiles graphs with the inputs of their expectation files and compares the results.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/expect/junit.hpp"
@@ -24,7 +24,8 @@ bool is_expectation(const files::path& path) {
   return path.filename().string().ends_with(suffix) && path.filename().string().size() > suffix.size();
 }
 
-// The expectation files that `paths` name, each once, those of a folder sorted; empty with `problem`.
+// Returns the expectation files that `paths` name, without duplicates; files of a folder are
+// sorted. Returns an empty list and sets `problem` on failure.
 std::vector<std::string> find_files(const std::vector<std::string>& paths, std::string& problem) {
   std::vector<std::string> out;
   for (const std::string& path : paths) {
@@ -52,10 +53,10 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths, std::
 
 struct TestRun {
   TestSuite suite;
-  Diagnostics diagnostics; // of the expectation file itself
+  Diagnostics diagnostics; // of the expectation file
   std::string text;        // of the file, rewritten
-  bool rewritten = false;  // and different from before
-  size_t updated = 0;      // cases
+  bool rewritten = false;  // and different from the original
+  size_t updated = 0;      // number of cases
 };
 
 std::string joined(const std::vector<std::string>& lines) {
@@ -65,7 +66,8 @@ std::string joined(const std::vector<std::string>& lines) {
   return out;
 }
 
-// Compares, or with `update` takes over what was observed. What nobody can take over stays a failure.
+// Compares, or with `update` adopts the observation. Problems that no update can resolve stay
+// failures.
 TestResult judge(const ExpectedCase& expected, const Observation& observed, bool update,
                  std::optional<MachineInfo>& fresh) {
   if (!observed.problem.empty()) return {expected.name, false, observed.problem, ""};
@@ -82,7 +84,7 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
   const MachineInfo found = narrow(observed.info, *expected.info);
   if (found == *expected.info) return {expected.name, true, note, ""};
   if (update) {
-    // A case that had no plan and has one now, or the other way round, is stated anew as a whole.
+    // A case that gained or lost a plan is rewritten as a whole.
     MachineInfo of_plan = *expected.info;
     of_plan.diagnostics.clear();
     const bool was_planned = of_plan != MachineInfo{};
@@ -93,7 +95,7 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
           diff_lines(info_json(*expected.info), info_json(found)) + joined(observed.messages)};
 }
 
-// The graph with the overlays of a case; nullopt with `observation` filled where that cannot be had.
+// Loads the graph with the overlays of a case. Returns nullopt and fills `observation` on failure.
 std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase& one, const OpenFile& open,
                                      const std::vector<std::string>& pass_types, Observation& observation) {
   Diagnostics diagnostics;
@@ -122,7 +124,8 @@ TestRun run_file(const std::string& path, const TestOptions& options, const std:
   if (!cases) return run;
   const std::string graph_path = path.substr(0, path.size() - suffix.size()) + ".json";
   std::error_code ignored;
-  // Overlays are usually located in a folder next to that of the graphs, which may have folders of its own.
+  // Overlays are usually located in a folder next to the folder of the graphs, which may have
+  // subfolders.
   std::vector<std::string> folders = roots;
   const files::path of_graph = files::absolute(graph_path, ignored).parent_path();
   for (const char* above : {"..", "../.."})
@@ -181,7 +184,7 @@ void tell(const Session& session, const TestRun& run) {
     say(session, fmt::format("{}: {} case{} as expected\n", run.suite.name, count, count == 1 ? "" : "s"));
 }
 
-// Also a file that could not be read is a result, so that a build server shows it.
+// An unreadable file is also a result, so that a CI server shows it.
 std::vector<TestSuite> suites_of(const std::vector<TestRun>& runs) {
   std::vector<TestSuite> suites;
   for (const TestRun& run : runs) {

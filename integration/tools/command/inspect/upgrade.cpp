@@ -14,11 +14,11 @@ namespace {
 struct Upgraded {
   std::string path;
   std::string_view kind = "unreadable";
-  int64_t version = 0;                  // of the file after the call; 0: unknown
-  std::optional<std::string> text = {}; // in the newest version; nullopt: nothing to change
+  int64_t version = 0;                  // version after the call; 0: unknown
+  std::optional<std::string> text = {}; // in the newest version; nullopt: no change
 };
 
-constexpr std::string_view old_pass_type_key = "dermis_kinds"; // version 1 of the pass type files
+constexpr std::string_view old_pass_type_key = "dermis_kinds"; // pass type files of version 1
 
 int64_t version_of(const Document& document, std::string_view key) {
   const NodeId node = document.find(document.root(), key);

@@ -92,7 +92,8 @@ public:
     }
   }
 
-  // "subsurface.mend lod_bias=-1.5 share=0.5": a pass type and the values of its settings.
+  // Upgrades rows such as "subsurface.mend lod_bias=-1.5 share=0.5": a pass type and values of
+  // settings.
   void calibration() {
     for (const NodeId row : objects_of("costs")) {
       const NodeId work = string_at(row, "work");
@@ -132,13 +133,13 @@ public:
 
 private:
   struct Edit {
-    size_t begin, end; // bytes of the old text
+    size_t begin, end; // byte range of the old text
     std::string text;
   };
 
   bool is_array(NodeId node) const { return node.valid() && document_[node].kind == NodeKind::array; }
 
-  // The objects of the array `key` of the root.
+  // Returns the objects of the array `key` of the root.
   std::vector<NodeId> objects_of(std::string_view key) const {
     const NodeId list = document_.find(document_.root(), key);
     std::vector<NodeId> out = is_array(list) ? children(document_, list) : std::vector<NodeId>();
@@ -193,7 +194,8 @@ private:
       rename(name, new_name({"shipped_passes", document_.text(name), "pass"}));
   }
 
-  // Upgrades "/passes/NAME/kind", "/passes/NAME/read/PORT", "/passes/NAME/set/SETTING" and what they set.
+  // Upgrades "/passes/NAME/kind", "/passes/NAME/read/PORT", "/passes/NAME/set/SETTING" and the
+  // values set there.
   void upgrade_path(NodeId node, NodeId to) {
     std::vector<std::string> steps;
     for (std::string_view rest = document_.text(node); !rest.empty();) {

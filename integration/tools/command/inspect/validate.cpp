@@ -1,5 +1,5 @@
-// dermis validate: reads files as strictly as everything else does, compiles graphs with the generic device
-// and lets the verifier check their plans; reads the pictures of captures.
+// dermis validate: reads files strictly, compiles graphs with the generic device profile and
+// verifies their plans, and reads the images of captures.
 
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/json_writer.hpp"
@@ -64,8 +64,8 @@ struct CheckedFile {
   std::string path;
   std::string_view kind = "unreadable";
   bool good = false;
-  std::string about = {}; // a line on what the file holds
-  bool verified = true;   // the plan of a graph; false: the verifier gave up
+  std::string about = {}; // one line on the contents of the file
+  bool verified = true;   // of a graph's plan; false: the verifier gave up
 };
 
 void check_capture(const Document& document, const ValidateOptions& options, Diagnostics& diagnostics,
@@ -124,7 +124,7 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
   return checked;
 }
 
-// A folder stands for the frames of the capture in it.
+// A folder means the frames of the capture in it.
 std::vector<CheckedFile> check_path(const std::string& path, const ValidateOptions& options,
                                     Diagnostics& diagnostics) {
   std::error_code ignored;

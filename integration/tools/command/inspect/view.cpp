@@ -13,7 +13,7 @@
 namespace dermis::tools {
 namespace {
 
-// The values that a page may switch a setting to; empty: none.
+// Returns the values that the page offers for a setting, or an empty list.
 std::vector<std::string> values_of(const SettingDeclaration& setting) {
   if (setting.type == SettingType::boolean) return {"false", "true"};
   return setting.options;
@@ -39,7 +39,7 @@ std::vector<uint32_t> switched_settings(const Graph& graph) {
   return switched;
 }
 
-// Plans as runs of lines of one table: plans of one graph have most of their lines in common.
+// Stores plans as runs of lines of one table, since plans of one graph share most lines.
 class LineTable {
 public:
   void add(JsonWriter& out, std::string_view text) {
@@ -73,7 +73,7 @@ private:
   std::vector<const std::string*> lines_;
 };
 
-// `id` and all below as the writer writes it: comments are gone then.
+// Writes `id` and its children in the writer's layout, without comments.
 void copy_json(JsonWriter& out, const Document& document, NodeId id) {
   const Node& node = document[id];
   switch (node.kind) {
@@ -105,7 +105,7 @@ void copy_json(JsonWriter& out, const Document& document, NodeId id) {
   out.close();
 }
 
-// Has it the passes with their times that the page shows?
+// Returns whether the report has the passes and times that the page shows.
 bool check_report(const Document& report, Diagnostics& diagnostics) {
   const NodeId passes = report.find(report.root(), "passes");
   bool whole = passes.valid() && report[passes].kind == NodeKind::array;
@@ -129,7 +129,7 @@ struct View {
   std::vector<uint32_t> switched;
   JsonWriter out = {};
 
-  // Where it is declared, for the page's list of files.
+  // Writes the location of a declaration, for the page's list of files.
   void place(const SourceLocation& where) {
     out.key("file");
     where.file.valid() ? out.value(where.file.value) : out.null();
@@ -169,7 +169,8 @@ struct View {
     out.close();
   }
 
-  // The next combination, the last setting fastest; false behind the last one.
+  // Advances to the next combination, with the last setting fastest. Returns false after the last
+  // combination.
   bool next(CompileChoices& choices) const {
     for (size_t i = switched.size(); i-- > 0;) {
       SettingValue& value = choices.settings[switched[i]];
@@ -180,7 +181,8 @@ struct View {
     return false;
   }
 
-  // All outcomes; the first is what was chosen. False with errors where that one has no plan.
+  // Writes all configurations, the chosen one first. Returns false with errors if the chosen one
+  // has no plan.
   bool plans() {
     LineTable lines;
     JsonWriter runs, list;
@@ -189,7 +191,7 @@ struct View {
     CompileChoices choices = options.chosen;
     uint32_t count = 0;
     do {
-      Diagnostics found; // of this outcome; what is wrong with the first is wrong with the page
+      Diagnostics found; // of this configuration; errors of the first are errors of the page
       const auto compiled = compile_generic(loaded, options.size, choices, count == 0 ? diagnostics : found);
       if (!compiled && list_is_empty_) return false;
       list_is_empty_ = false;
@@ -226,7 +228,7 @@ ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diag
                             page.missing)};
 
   std::optional<Document> report;
-  const size_t files = diagnostics.files.size(); // the report is none of the graph's
+  const size_t files = diagnostics.files.size(); // the report is not a file of the graph
   if (!options.frame.empty()) {
     report = read_document(options.frame, diagnostics);
     if (!report || !check_report(*report, diagnostics)) return {};

@@ -7,23 +7,24 @@
 
 namespace dermis::tools {
 
-inline constexpr size_t max_view_outcomes = 64; // plans in one page
+inline constexpr size_t max_view_outcomes = 64; // plans per page
 
-// What a page holds beside the graph.
+// Inputs of a page in addition to the graph.
 struct ViewOptions {
   Size size;
-  std::string command;   // line that made it
+  std::string command;   // command line that makes the page
   std::string frame;     // report of `dermis render --json`; "": none
-  CompileChoices chosen; // what the page opens with
+  CompileChoices chosen; // initial selection
 };
 
 struct ViewAnswer {
-  std::string page;    // "" with errors in the diagnostics, or with a `problem`
-  std::string problem; // what is wrong with the environment
+  std::string page;    // "" with errors in the diagnostics or a `problem`
+  std::string problem; // a problem of the environment
 };
 
-// Switched in the page are the choices by budget, then switches and enumerations, in the order of the file,
-// as long as their combinations are at most `max_view_outcomes`; other settings keep their values.
+// Builds the page. Switchable settings are the choices by budget, then booleans and enumerations,
+// in file order, as long as they have at most `max_view_outcomes` combinations. Other settings keep
+// their values.
 ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diagnostics& diagnostics);
 
 } // namespace dermis::tools

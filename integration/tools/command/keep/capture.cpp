@@ -1,4 +1,4 @@
-// dermis capture: what a graph would see of a scene, as captured frames.
+// dermis capture: writes the graph inputs of a scene as captured frames.
 #include "integration/tools/files/capture.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/interrupt.hpp"

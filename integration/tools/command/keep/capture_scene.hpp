@@ -1,5 +1,5 @@
 #pragma once
-// Frames of a scene as a capture, without a graph: what any graph would see.
+// Captures frames of a scene without a graph, as inputs for any graph.
 
 #include "integration/examples/demo_engine/result.hpp"
 #include "integration/tools/command/verbs.hpp"
@@ -8,8 +8,9 @@
 
 namespace dermis::tools {
 
-// Frames `first` .. `first` + `frames` - 1 into the folder `out`, whole or not at all. Progress is told where
-// the session wants it. Errors: as rendering, and environment (a folder that cannot be written; stopped).
+// Writes frames `first` .. `first` + `frames` - 1 into the folder `out`, atomically. Shows progress
+// according to the session. Errors: those of rendering, and environment (an unwritable folder, or
+// an interrupt).
 demo::Result<> capture_scene(const Session& session, const CaptureOptions& options);
 
 } // namespace dermis::tools

@@ -1,5 +1,5 @@
-// dermis report-bug: a folder, or an archive of one, with what somebody else needs to see the same, and the
-// line that shows it.
+// dermis report-bug: writes a folder or archive with all files needed to reproduce a problem, and
+// the command line that does.
 #include "framegraph/explain/plan_json.hpp"
 #include "framegraph/serial/plan_file.hpp"
 #include "framegraph/text/json_writer.hpp"
@@ -25,11 +25,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder while it is made; it gets its name at the end or goes into an archive of that name, or goes
-// away.
+// A folder under construction. `finish` renames it or packs it into an archive; the destructor
+// removes the rest.
 struct Parcel {
   fs::path target, part;
-  std::string archived{}; // the folder's name in the archive; "": there is none
+  std::string archived{}; // the folder's name in the archive; "" for no archive
   std::string problem{};
 
   ~Parcel() {
@@ -59,7 +59,7 @@ struct Parcel {
   }
 };
 
-// What the folder in an archive is called, "": the name is a folder's.
+// Returns the name of the folder in the archive, or "" if `target` is a folder.
 std::string folder_in(const fs::path& target) {
   const std::string name = target.filename().string();
   for (const std::string_view ending : {".tar.gz", ".tgz"})
@@ -68,7 +68,7 @@ std::string folder_in(const fs::path& target) {
   return "";
 }
 
-// A word of a line for a shell.
+// Quotes a word for a shell.
 std::string word(const std::string& text) {
   if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,") ==
       std::string::npos)
@@ -80,12 +80,13 @@ std::string word(const std::string& text) {
 }
 
 struct GraphFiles {
-  std::string graph;                             // its name in the parcel
-  std::vector<std::string> overlays, pass_types; // likewise, in order
+  std::string graph;                             // file name in the parcel
+  std::vector<std::string> overlays, pass_types; // file names in the parcel, in order
   std::map<std::string, std::string> included;   // text by name
 };
 
-// Graph, overlays, pass types and what they include, under names that find each other again.
+// Adds graph, overlays, pass types and included files. File names are chosen so that references
+// resolve.
 bool add_graph(Parcel& parcel, const ReportBugOptions& options, const Diagnostics& diagnostics,
                GraphFiles& files) {
   files.graph = options.graph == "-" ? "graph.json" : fs::path(options.graph).filename().string();
@@ -122,12 +123,12 @@ std::string device_json() {
   return std::move(out).finish();
 }
 
-// The last frame of the capture that was given, or one of the scene.
+// Adds the last frame of the given capture, or a frame of the scene.
 demo::Result<> add_frame(const Session& session, const ReportBugOptions& options, Parcel& parcel) {
   const std::string folder = (parcel.folder() / "capture").string();
   if (options.frames.empty()) {
     Session quiet = session;
-    quiet.quiet = true; // one frame
+    quiet.quiet = true; // no progress for one frame
     CaptureOptions one;
     one.scene = options.scene;
     one.out = folder;
@@ -227,7 +228,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   const auto captured = add_frame(session, options, parcel);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!captured) return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
-  if (archived.empty()) fs::remove(named, error); // an empty folder may be there
+  if (archived.empty()) fs::remove(named, error); // the target may be an empty folder
   if (!parcel.finish()) return fail(session, ExitCode::environment, parcel.problem);
   say(session, fmt::format("{}: send it as it is; README.txt in it has the line that shows the same:\n  {}\n",
                            options.out, replay_line(options, files)));

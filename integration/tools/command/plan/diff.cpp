@@ -1,4 +1,4 @@
-// dermis plan diff: two plans beside each other.
+// dermis plan diff: compares two plans.
 
 #include "framegraph/explain/plan_diff.hpp"
 #include "integration/tools/command/plan/input.hpp"

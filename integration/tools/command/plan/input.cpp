@@ -10,7 +10,7 @@
 namespace dermis::tools {
 namespace {
 
-// Standard input is a graph; of a file its beginning tells.
+// Standard input is always a graph. A file is recognised by its first bytes.
 bool holds_plan(const std::string& path) {
   if (path == "-") return false;
   char first[16] = {};

@@ -1,5 +1,6 @@
 #pragma once
-// Plans for the verbs of `dermis plan`: saved ones read, graphs compiled with the generic device profile.
+// Loads plans for the verbs of `dermis plan`: reads saved plans, and compiles graphs with the
+// generic device profile.
 
 #include "framegraph/serial/plan_file.hpp"
 #include "integration/tools/command/graph_input.hpp"
@@ -21,15 +22,17 @@ struct PlanSource {
 };
 
 struct NamedPlan {
-  std::string name; // file, and what was asked of it
+  std::string name; // file and options
   bool from_graph = false;
   SavedPlan saved;
 };
 
-// The bytes of a file of at most limits::file_bytes; nullopt with an error in `diagnostics`.
+// Returns the bytes of a file of at most limits::file_bytes, or nullopt with an error in
+// `diagnostics`.
 std::optional<std::string> read_plan_bytes(const std::string& path, Diagnostics& diagnostics);
 
-// nullopt with errors in `diagnostics`, or a usage error in `problem`: a name that the graph does not have.
+// Returns nullopt with errors in `diagnostics`, or with a usage error in `problem` for a name that
+// the graph does not declare.
 std::optional<NamedPlan> load_plan(const PlanSource& source, Diagnostics& diagnostics, std::string& problem);
 
 } // namespace dermis::tools

@@ -1,4 +1,4 @@
-// dermis plan save: the plan of a graph as a file.
+// dermis plan save: writes the plan of a graph to a file.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/output.hpp"

@@ -1,4 +1,4 @@
-// dermis plan verify: the verifier on saved plans, without the graphs they were compiled from.
+// dermis plan verify: runs the verifier on saved plans, without their graphs.
 
 #include "framegraph/verify/verify.hpp"
 #include "framegraph/text/json_writer.hpp"
@@ -9,7 +9,7 @@
 namespace dermis::tools {
 namespace {
 
-// "pass 3" and "resource 7" of an objection mean places in the plan; say which these are.
+// Appends the names of "pass 3" and "resource 7", which are indices into the plan.
 std::string with_names(const SavedPlan& saved, const std::string& violation) {
   std::string text = violation;
   const auto append_name = [&](std::string_view word, const std::vector<std::string>& names) {

@@ -1,5 +1,5 @@
-// dermis watch: renders again whenever a file changes that the picture depends on, and says what changed in
-// the plan and in the error.
+// dermis watch: renders again whenever an input file changes, and reports changes of the plan and
+// of the error.
 #include "framegraph/explain/plan_diff.hpp"
 #include "integration/abi/shaders/compiler.hpp"
 #include "integration/examples/demo_engine/scene/read_scene.hpp"
@@ -28,8 +28,8 @@ struct Figures { // of one rendering; negative: not measured
 struct Watch {
   const Session& session;
   const WatchOptions& options;
-  std::string program;              // path of this one; a build puts a newer one there
-  std::vector<std::string> files{}; // that a rendering depends on
+  std::string program;              // path of this program; a build replaces the file
+  std::vector<std::string> files{}; // inputs of a rendering
   Changes changes{};
   std::optional<SavedPlan> plan{};
   std::optional<Figures> figures{};
@@ -44,8 +44,8 @@ std::string list_files(const std::vector<std::string>& files) {
   return files.size() > maximum ? fmt::format("{} and {} more", text, files.size() - maximum) : text;
 }
 
-// Graph, overlays and what they include, scene and profiles, as far as they can be read. The plan, with
-// errors said.
+// Lists graph, overlays, included files, scene and profiles as far as they can be read. Returns the
+// plan, or reports errors.
 std::optional<SavedPlan> look_at_files(Watch& watch) {
   const WatchOptions& options = watch.options;
   std::vector<std::string> files = {options.scene, options.graph};
@@ -73,7 +73,8 @@ std::vector<std::string> shader_files(const Watch& watch) {
   return files_below(watch.options.shaders, {".glsl", ".comp"});
 }
 
-// Renderings compile the shaders themselves: nothing is built, and there is something to compile with.
+// Returns whether renderings compile the shaders themselves: no build command, and a shader
+// compiler exists.
 bool compiles_shaders(const Watch& watch) {
   return watch.options.build.empty() && !abi::shader_compiler().empty() && !shader_files(watch).empty();
 }
@@ -114,7 +115,7 @@ double number_at(const Document& document, NodeId object, const char* key) {
   return kind == NodeKind::integer || kind == NodeKind::real ? document[at].real : -1;
 }
 
-// nullopt where the answer says what is wrong instead; that has been said then.
+// Returns nullopt after reporting the problem if the answer holds an error.
 std::optional<Figures> figures_of(const std::string& answer) {
   Diagnostics ignored;
   const auto document = parse_document("answer", answer, ignored);
@@ -146,11 +147,11 @@ std::string figures_text(const Figures& now, const Figures& before) {
                             change(now.device_ms, before.device_ms, 2));
 }
 
-// One rendering; false if there is none. A file with errors is no reason to stop: the next change may mend
-// it.
+// Renders once. Returns false on failure; watching then continues, since the next change may
+// correct the file.
 bool render_once(Watch& watch) {
   const std::optional<SavedPlan> plan = look_at_files(watch);
-  watch.changes.add(watch.files); // what changes from now on is for the next rendering
+  watch.changes.add(watch.files); // later changes trigger the next rendering
   if (!plan) return false;
   if (watch.plan) {
     const PlanDiff diff = diff_plans(*watch.plan, *plan);
@@ -224,7 +225,7 @@ ExitCode watch(const Session& session, const WatchOptions& options) {
     rendered = render_once(state);
   }
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  return rendered ? ExitCode::ok : ExitCode::problems; // of the last round
+  return rendered ? ExitCode::ok : ExitCode::problems; // result of the last round
 }
 
 } // namespace dermis::tools

@@ -1,4 +1,4 @@
-// Tables of keys out of JSON Schemas.
+// Tables of keys of the JSON Schemas.
 #include "framegraph/text/document.hpp"
 #include "integration/tools/command/inspect/reference_pages/pages.hpp"
 
@@ -15,7 +15,7 @@ struct Row {
   bool required = false;
 };
 
-// Inside of a table cell.
+// Format of one schema.
 struct SchemaPage {
   const Document& schema;
   std::string_view name; // of the format
@@ -63,7 +63,7 @@ struct SchemaPage {
 
   std::string range(NodeId of, std::string_view minimum, std::string_view maximum) const {
     const NodeId low = at(of, minimum), high = at(of, maximum);
-    const auto is_single = [&](NodeId id) { // the whole range of a float says nothing
+    const auto is_single = [&](NodeId id) { // the whole range of a float is not printed
       return !id.valid() || std::abs(schema[id].real) > 3e38;
     };
     if (is_single(low) && is_single(high)) return "";
@@ -107,7 +107,7 @@ struct SchemaPage {
     if (!known) rows.push_back(std::move(row));
   }
 
-  // The keys of an object, of all its forms, and of the objects that stand inside of it without a name.
+  // Adds the keys of an object, of all its variants, and of nested unnamed objects.
   void add_keys(NodeId object, const std::string& before) {
     const NodeId required = at(object, "required");
     each(at(object, "properties"), [&](NodeId property) {
@@ -145,11 +145,11 @@ struct SchemaPage {
     std::string out = fmt::format("## {}\n\n{}\n\n", name, text_at(root, "description")) + table_of(root);
     each(at(root, "definitions"), [&](NodeId one) {
       const std::string_view key = schema.key(one);
-      if (key == "pass_of_a_kind") return; // pass_types.md
+      if (key == "pass_of_a_kind") return; // documented in pass_types.md
       const std::string table = table_of(one);
       const std::string text = text_at(one, "description");
-      out +=
-          fmt::format("### {} ({})\n\n", key, name); // names of definitions come again from format to format
+      // the heading includes the format, since formats share names of definitions
+      out += fmt::format("### {} ({})\n\n", key, name);
       if (table.empty()) out += fmt::format("{}{}{}\n\n", cell(type_of(one)), text.empty() ? "" : ": ", text);
       if (!table.empty() && !text.empty()) out += text + "\n\n";
       out += table;

@@ -1,5 +1,5 @@
 #pragma once
-// Pages of documentation that follow from declarations, as Markdown.
+// Documentation pages generated from declarations, as Markdown.
 
 #include "framegraph/model/graph.hpp"
 #include "framegraph/model/pass_type.hpp"
@@ -11,7 +11,7 @@
 
 namespace dermis::tools {
 
-// A text inside a table.
+// Escapes text for a table cell.
 inline std::string cell(std::string_view text) {
   std::string out;
   for (const char c : text)
@@ -19,21 +19,23 @@ inline std::string cell(std::string_view text) {
   return out;
 }
 
-// Tables of the keys of each schema (name, text), in this order.
+// Returns tables of the keys of each schema (name, text), in this order.
 std::string format_page(std::span<const std::pair<std::string_view, std::string>> schemas);
 
-// Ports and settings of each pass type.
+// Returns tables of the ports and settings of each pass type.
 std::string pass_types_page(const PassTypeRegistry& pass_types);
 
 struct NamedGraph {
-  std::string name; // of the file, without its ending
+  std::string name; // file name without its extension
   Graph graph;
 };
-// A table of all slots of `graphs`: direction, formats, in which graphs a slot is required or optional, and
-// the note of its declaration. Where graphs differ, a cell names the graphs of each text.
+// Returns a table of all slots of `graphs`: direction, formats, the graphs in which a slot is
+// required or optional, and the note of its declaration. If graphs differ, a cell names the graphs
+// of each text.
 std::string slot_table(std::span<const NamedGraph> graphs);
 
-// `page` with the text between the two comments of block `name` replaced; "" where they are missing.
+// Returns `page` with the text between the two comments of block `name` replaced, or "" if the
+// comments are missing.
 std::string replace_block(std::string_view page, std::string_view name, std::string_view block);
 
 } // namespace dermis::tools

@@ -1,4 +1,4 @@
-// Ports and settings of the pass types, out of their signatures.
+// Tables of ports and settings of the pass types, from their signatures.
 #include "framegraph/model/vocabulary.hpp"
 #include "integration/tools/command/inspect/reference_pages/pages.hpp"
 
@@ -52,7 +52,7 @@ std::string range_text(const PassTypeSetting& setting) {
   return setting.options.empty() ? fmt::format("{} .. {}", setting.minimum, setting.maximum) : text;
 }
 
-// "; at least ..." of a port, "" where any size will do.
+// Returns "; at least ..." for a port, or "" if any size is valid.
 std::string need_text(const PassType& type, const Port& port) {
   for (const PortNeed& need : type.needs) {
     if (need.port != port.name) continue;

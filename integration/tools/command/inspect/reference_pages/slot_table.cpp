@@ -1,4 +1,4 @@
-// The slots of graphs, out of their declarations.
+// Table of the slots of graphs, from their declarations.
 #include "integration/tools/command/inspect/reference_pages/pages.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ std::string direction_text(const ResourceDeclaration& slot) {
   return slot.exported ? "in, out" : "in";
 }
 
-// A text per graph; graphs with the same text share an entry.
+// Texts of graphs; graphs with equal text share an entry.
 class TextOfGraphs {
 public:
   void add(std::string_view graph, std::string_view text) {
@@ -33,7 +33,7 @@ public:
     same->graphs += fmt::format("{}`{}`", same->graphs.empty() ? "" : ", ", graph);
     ++same->count;
   }
-  // "text", or "text (`graph`); other text (`graph`, `graph`)" where graphs differ.
+  // Returns "text", or "text (`graph`); other text (`graph`, `graph`)" if graphs differ.
   std::string say() const {
     if (entries_.size() == 1) return entries_.front().text;
     std::string all;
@@ -41,7 +41,7 @@ public:
       all += fmt::format("{}{} ({})", all.empty() ? "" : "; ", entry.text, entry.graphs);
     return all;
   }
-  // "text in all", or "text in `graph`, `graph`; other text in `graph`".
+  // Returns "text in all", or "text in `graph`, `graph`; other text in `graph`".
   std::string say_in(size_t graph_count) const {
     std::string all;
     for (const Entry& entry : entries_)
