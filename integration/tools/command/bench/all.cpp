@@ -1,5 +1,5 @@
-// dermis bench all: every suite, one after the other, with an index page. What an earlier run into the same
-// folder has measured with the same line is not measured again.
+// dermis bench all: runs every suite and writes an index page. A suite that an earlier run measured
+// with the same command line into the same folder is not repeated.
 
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/json_writer.hpp"
@@ -26,12 +26,13 @@ struct Files {
 
 struct Suite {
   std::string_view name, what;
-  bool rows_as_table;    // writes CSV, too
-  bool shows_head;       // takes --head
-  bool has_quick;        // takes --quick
-  std::string_view line; // options beyond the files, as a person would give them
+  bool rows_as_table;    // also writes CSV
+  bool shows_head;       // accepts --head
+  bool has_quick;        // accepts --quick
+  std::string_view line; // default options other than file names
   ExitCode (*run)(const Session&, const BenchAllOptions&, const Files&);
-  std::string (*why_not)() = nullptr; // what this machine lacks for it; "": nothing. null: needs nothing
+  // Returns what this machine lacks for the suite, or "". Null means no requirements.
+  std::string (*why_not)() = nullptr;
 };
 
 template <class Options> Options with_files(const Files& files) {
@@ -41,7 +42,7 @@ template <class Options> Options with_files(const Files& files) {
   return options;
 }
 
-// From what takes seconds to what takes long.
+// From the shortest suite to the longest.
 constexpr Suite suites[] = {
     {"record", "What recording a frame costs the host's thread", false, false, false, "",
      [](const Session& session, const BenchAllOptions&, const Files& files) {
@@ -115,11 +116,11 @@ constexpr Suite suites[] = {
 };
 
 struct Outcome {
-  std::string suite, line; // that makes its files alone
+  std::string suite, line; // command line of the suite alone
   int64_t exit_code = 0;
   double seconds = 0;
-  bool written = false;      // its files are those of this run
-  std::string left_out = {}; // why it was not run; "": it was
+  bool written = false;      // the files are those of this run
+  std::string left_out = {}; // reason for leaving the suite out; "" if it ran
 };
 
 std::string line_of(const Suite& suite, const BenchAllOptions& options) {
@@ -130,7 +131,8 @@ std::string line_of(const Suite& suite, const BenchAllOptions& options) {
                             suite.rows_as_table ? fmt::format(" --csv {}.csv", suite.name) : "");
 }
 
-// What an earlier run left in index.json; nothing where there is none, or another program wrote it.
+// Reads index.json of an earlier run. Returns an empty list if it is missing or written by another
+// program.
 std::vector<Outcome> read_index(const std::string& file) {
   Diagnostics ignored;
   std::vector<Outcome> found;
@@ -206,15 +208,17 @@ bool are_there(const Files& files) {
   return exists(files.json) && exists(files.csv) && exists(files.html);
 }
 
-// What a suite leaves out for the machine's sake is no failure.
+// Returns ok for a suite that this machine cannot run.
 ExitCode run_suite(const Session& session, const Suite& suite, const BenchAllOptions& options,
                    const Files& files, Outcome& outcome) {
   Session of_suite = session;
-  of_suite.quiet = session.quiet || session.json; // its table is none of our answer
+  // with --json, the suite's table does not belong to the output
+  of_suite.quiet = session.quiet || session.json;
   of_suite.json = false;
   of_suite.command = outcome.line;
   const auto start = std::chrono::steady_clock::now();
-  std::error_code ignored; // what a run that fails leaves there would be taken for its own
+  // removes old files, which would be mistaken for results of a failing run
+  std::error_code ignored;
   for (const std::string& file : {files.json, files.csv, files.html})
     if (!file.empty()) std::filesystem::remove(file, ignored);
   if (suite.why_not != nullptr) outcome.left_out = suite.why_not();

@@ -1,4 +1,5 @@
-// dermis bench error-time: run time against error of every technique at every still scene, in one run.
+// dermis bench error-time: measures run time and error of every technique on every still scene in
+// one run.
 
 #include "integration/tools/command/bench/error_time_report.hpp"
 #include "integration/tools/command/bench/quick.hpp"
@@ -21,7 +22,8 @@
 namespace dermis::tools {
 namespace {
 
-// All scenes share one list of profiles, so that a technique's tables and pipelines are made once.
+// Merges the frame's profiles into one list for all scenes, so that a technique's tables and
+// pipelines are created once.
 void adopt_profiles(ErrorTimeBench& bench, CapturedFrame& frame) {
   std::array<uint8_t, 256> renumbered{};
   std::vector<CaptureProfile> own;
@@ -41,7 +43,7 @@ void adopt_profiles(ErrorTimeBench& bench, CapturedFrame& frame) {
   frame.description.profiles = own;
 }
 
-// Why a scene is left out; "" when it is not.
+// Returns the reason to leave the scene out, or "".
 std::string why_not(const ErrorTimeBench& bench, const SceneRequest& scene) {
   const BenchErrorTimeOptions& options = bench.options;
   if (scene.study && !options.study) return "only with --study";
@@ -105,7 +107,8 @@ demo::Result<> add_techniques(ErrorTimeBench& bench) {
                      fmt::format("no technique is left to measure; there are {}", fmt::join(known, ", "))};
 }
 
-// Median projected d of the frame, per channel; and the share of its subsurface pixels that scatter at all.
+// Median projected d of the frame per channel, and the fraction of its subsurface pixels that
+// scatter.
 struct Scattering {
   subsurface::PerChannel d_px{};
   double fraction = 1;
@@ -138,7 +141,8 @@ Scattering scattering_of(const Subject& subject) {
   return result;
 }
 
-// The same technique with so many samples that it is its own limit. Deterministic ones have none.
+// Runs the technique with a large number of samples, which approximates its own limit. Returns
+// nullopt for deterministic techniques.
 demo::Result<std::optional<std::vector<float>>> self_reference(ErrorTimeBench& bench,
                                                                const TechniqueRun& technique,
                                                                const Subject& subject,
@@ -165,8 +169,9 @@ void add_times(ErrorTimeRow& row, const TechniqueTimes& times, std::chrono::stea
   row.sampling_ms.push_back(times.sampling);
 }
 
-// First runs are for the error, and where the technique has run at this size before also for the time; then
-// all techniques in turn, again and again, so that whatever else the machine does meets all of them alike.
+// The first runs measure the error, and also the time if the technique already ran at this size.
+// Then all techniques run in turn repeatedly, so that other load on the machine affects all of them
+// equally.
 demo::Result<> measure(ErrorTimeBench& bench, size_t index, Progress& progress, uint64_t& done) {
   const Subject& subject = bench.subjects[index];
   const auto name = fmt::format("{} {} d {:.2f} px", subject.scene, subject.framing, subject.d_px);
@@ -178,7 +183,7 @@ demo::Result<> measure(ErrorTimeBench& bench, size_t index, Progress& progress, 
   const CapturedFrame window = window_of(subject.frame, bench.file.self_window);
   const Reference in_window = inside(window, *reference);
   std::optional<std::vector<float>> self;
-  std::string self_of; // graph of that reference: settings of one technique share it
+  std::string self_of; // graph of `self`, which settings of one technique share
   for (size_t t = 0; t < bench.techniques.size(); ++t) {
     if (interrupted()) return stopped();
     TechniqueRun& technique = *bench.techniques[t];
@@ -189,7 +194,7 @@ demo::Result<> measure(ErrorTimeBench& bench, size_t index, Progress& progress, 
       self = found.take();
       self_of = technique.request().graph;
     }
-    if (self && !in_window.pixels.empty()) { // of another size, so the graph is made twice more
+    if (self && !in_window.pixels.empty()) { // the other size creates the graph twice more
       const auto part = technique.scatter(window);
       if (!part) return part.error();
       one.psnr_db_self = psnr_between(*part, *self, in_window);

@@ -1,5 +1,5 @@
 #pragma once
-// What dermis bench error-time measured, and the report of it.
+// Results of dermis bench error-time and their report.
 
 #include "integration/tools/command/bench/plan_file.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
@@ -8,11 +8,11 @@
 
 namespace dermis::tools {
 
-// One technique at one subject.
+// One technique on one subject.
 struct ErrorTimeRow {
   size_t technique = 0, subject = 0;
-  double spent_ms = 0;  // in timed runs, with all that the host does
-  uint32_t to_warm = 0; // runs left that are not timed
+  double spent_ms = 0;  // duration of the timed runs, including host work
+  uint32_t to_warm = 0; // remaining runs that are not timed
   StillError error;
   TechniqueCounts counts;
   std::vector<double> device_ms, sampling_ms;
@@ -25,7 +25,7 @@ struct ErrorTimeBench {
   const ErrorTimeFile& file;
   demo::VulkanHost& host;
   std::vector<Subject> subjects = {};
-  std::vector<CaptureProfile> profiles = {}; // of all subjects, under ids of their own
+  std::vector<CaptureProfile> profiles = {}; // of all subjects, renumbered
   std::vector<std::unique_ptr<TechniqueRun>> techniques = {};
   std::vector<float> sap_tables = {};
   std::vector<ErrorTimeRow> measured = {};
@@ -33,9 +33,10 @@ struct ErrorTimeBench {
   ReportPictures maps = {};
 };
 
-// Rows, plots of each subject with its Pareto front, and pictures; `seconds` is what all of it took.
+// Builds the report: rows, a plot per subject with its Pareto front, and images. `seconds` is the
+// total duration.
 Report make_error_time_report(const ErrorTimeBench& bench, double seconds);
-// The table for a terminal.
+// Formats the table for a terminal.
 std::string text_of_error_time(const Report& report);
 
 } // namespace dermis::tools

@@ -1,4 +1,4 @@
-// Scenes that are functions of place: light, depth, profile.
+// Scenes generated from functions of position: light, depth, profile.
 
 #include "integration/tools/command/bench/subject.hpp"
 
@@ -12,9 +12,9 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double view_distance = 1.0; // metres, as plane_frame has it
+constexpr double view_distance = 1.0; // metres, as in plane_frame
 using std::numbers::pi;
-constexpr uint32_t sub_samples = 4; // a side, where light has edges inside of pixels
+constexpr uint32_t sub_samples = 4; // per side of a pixel, for light with edges
 
 float hashed(uint32_t x, uint32_t y) { // deterministic, in [0, 1)
   uint32_t h = x * 0x9e3779b9u ^ (y + 0x7f4a7c15u) * 0x85ebca6bu;
@@ -25,7 +25,7 @@ float hashed(uint32_t x, uint32_t y) { // deterministic, in [0, 1)
 }
 
 struct Place {
-  double x = 0, y = 0; // pixels, integers at centres
+  double x = 0, y = 0; // pixels, integers at pixel centres
 };
 
 struct Painter {
@@ -36,7 +36,7 @@ struct Painter {
   uint32_t columns() const { return frame.description.width; }
   uint32_t rows() const { return frame.description.height; }
 
-  // The mean of `value` over sub-points of each pixel, in all channels.
+  // Sets all channels to the mean of `value` over sub-points of each pixel.
   void light(const std::function<double(Place)>& value) {
     for (uint32_t y = 0; y < rows(); ++y)
       for (uint32_t x = 0; x < columns(); ++x) {
@@ -49,7 +49,8 @@ struct Painter {
       }
   }
 
-  // Towards the viewer, in pixels above the plane at view_distance; NaN: nothing there.
+  // Sets the height towards the viewer, pixels above the plane at view_distance. NaN means
+  // background.
   void rise(const std::function<double(Place)>& value) {
     for (uint32_t y = 0; y < rows(); ++y)
       for (uint32_t x = 0; x < columns(); ++x) {
@@ -61,9 +62,10 @@ struct Painter {
   }
 };
 
-// A white surface under a key light from the upper left and a little ambient light; slopes d rise / d pixel.
+// Shades a white surface under a key light from the upper left and ambient light. Slopes are d rise
+// / d pixel.
 double shade(double slope_x, double slope_y) {
-  constexpr double to_light[3] = {-0.66, -0.42, 0.62}; // y down, as pixels
+  constexpr double to_light[3] = {-0.66, -0.42, 0.62}; // y points down, as in pixels
   const double facing = (-slope_x * to_light[0] - slope_y * to_light[1] + to_light[2]) /
                         std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
   return 0.05 + 0.95 * std::max(0.0, facing);
@@ -76,7 +78,7 @@ void paint_edge(Painter& painter) {
 
 void paint_disc(Painter& painter) {
   struct Disc {
-    double x, y, radius; // heights
+    double x, y, radius; // picture heights
   };
   constexpr Disc discs[] = {{.35, .5, .25},   {.80, .30, .11},   {.82, .74, .055}, {1.05, .5, .028},
                             {1.2, .25, .014}, {1.22, .72, .007}, {1.42, .4, .16},  {1.45, .82, .0035}};
@@ -87,7 +89,7 @@ void paint_disc(Painter& painter) {
   });
 }
 
-// Two waves; their product's slope is at most 50 degrees.
+// Two waves with slopes of up to 50 degrees.
 void paint_bumps(Painter& painter) {
   const double wide = 2 * pi / (0.33 * painter.height), fine = 2 * pi / (0.08 * painter.height);
   const double a = 0.85 / wide, b = 0.35 / fine;
@@ -118,19 +120,19 @@ void paint_sphere(Painter& painter) {
   });
 }
 
-// Contrasts at every scale in units of pixels, whatever the size of the picture.
+// Contrasts at every scale in pixels, independent of the image size.
 double texture(Place p) {
   const auto x = static_cast<uint32_t>(std::max(0.0, p.x + 0.5)),
              y = static_cast<uint32_t>(std::max(0.0, p.y + 0.5));
   double value = 0.2 + 0.3 * double(hashed(x / 32, y / 32)) + 0.2 * double(hashed(x / 8 + 77, y / 8)) +
                  0.1 * double(hashed(x, y + 99));
-  // One disc in each cell of 80 pixels, of any brightness and up to half the cell.
+  // One disc per cell of 80 pixels, of random brightness and a radius of up to half the cell.
   const uint32_t cx = x / 80, cy = y / 80;
   const double radius = 4 + 34 * double(hashed(cx, cy + 3)) * double(hashed(cx + 5, cy));
   const double ox = cx * 80 + 40.0 + 20 * (double(hashed(cx + 11, cy)) - 0.5);
   const double oy = cy * 80 + 40.0 + 20 * (double(hashed(cx, cy + 17)) - 0.5);
   if (std::hypot(p.x - ox, p.y - oy) < radius) value = double(hashed(cx + 23, cy + 29));
-  // A checkerboard in one corner: straight edges along the axes.
+  // A checkerboard in one corner provides axis-aligned edges.
   return x < 160 && y >= 240 && y < 360 ? double(((x / 20) + (y / 20)) % 2) : value;
 }
 
@@ -153,8 +155,8 @@ void paint_depth_step(Painter& painter) {
   painter.light([&](Place p) { return (band_of(p.x) % 2 == 0 ? 1.0 : 0.25) * (0.6 + 0.4 * texture(p)); });
 }
 
-// "mixed": the same material under several ids, in cells as wide as a kernel, to see what telling them apart
-// costs.
+// Framing "mixed": one material under several ids, in cells as wide as a kernel, to measure the
+// cost of distinguishing profiles.
 constexpr uint32_t mixed_profiles = 4;
 constexpr uint32_t mixed_cell = 64; // pixels
 

@@ -1,4 +1,4 @@
-// The head scan by the names of its files.
+// File names and height of the head scan.
 
 #include "integration/tools/command/bench/subject.hpp"
 
@@ -9,7 +9,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double head_height = 0.426; // metres; .24 from chin to crown
+constexpr double head_height = 0.426; // metres; 0.24 m from chin to crown
 constexpr const char* mesh_name = "LeePerrySmith.glb";
 
 } // namespace

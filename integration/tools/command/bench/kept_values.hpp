@@ -1,5 +1,5 @@
 #pragma once
-// What is dear to compute, kept in files by a hash of all that it depends on.
+// Caches expensive results in files named by a hash of their inputs.
 
 #include <cstdint>
 #include <optional>
@@ -17,17 +17,16 @@ struct Hash {
     const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
     for (size_t i = 0; i < values.size_bytes(); ++i)
       value = (value ^ bytes[i]) * 0x100000001b3u;
-    const uint64_t size = values.size(); // so that neighbours do not run into each other
+    const uint64_t size = values.size(); // separates adjacent lists
     for (size_t i = 0; i < sizeof size; ++i)
       value = (value ^ ((size >> (8 * i)) & 0xff)) * 0x100000001b3u;
   }
   template <class T> void add(const std::vector<T>& values) { add(std::span<const T>(values)); }
 };
 
-// In the folder `cache`; "" has nothing and keeps nothing. nullopt also where a file is not what it should
-// be.
+// Reads from the folder `cache`; "" disables the cache. Also returns nullopt for an invalid file.
 std::optional<std::vector<double>> read_kept(const std::string& cache, const Hash& hash, size_t count);
-// A folder that cannot be written is no problem of the measurement.
+// Writes to the cache. Failures are ignored, since they do not affect the measurement.
 void keep(const std::string& cache, const Hash& hash, std::span<const double> values);
 
 } // namespace dermis::tools

@@ -1,6 +1,6 @@
 #pragma once
-// What `dermis bench error-time` measures, as data: tests/benchmark/error_time.json. Adding a technique, a
-// setting or a framing is a line there.
+// Contents of tests/benchmark/error_time.json, which describes `dermis bench error-time`. A
+// technique, setting or framing is one entry.
 
 #include "framegraph/text/reader.hpp"
 #include "integration/tools/command/bench/subject.hpp"
@@ -15,36 +15,39 @@ namespace dermis::tools {
 struct TechniqueRequest {
   std::string technique, setting;         // names in the report
   std::string graph;                      // file
-  std::vector<NamedValue> set;            // of the graph's settings
-  bool heat_map = false;                  // show where it errs
+  std::vector<NamedValue> set;            // values of the graph's settings
+  bool heat_map = false;                  // include an error map in the report
   std::vector<std::string> overlays = {}; // files, in order
 };
 
 struct ErrorTimeFile {
-  uint32_t repetitions = 15, warm_up = 2; // of each technique at each scene
-  // Timed runs of a technique at a scene end early once they took so long, but not before the least number.
-  uint32_t row_milliseconds = 0; // 0: never
+  uint32_t repetitions = 15, warm_up = 2; // per technique and scene
+  // Timed runs of a technique on a scene end early after this duration, but not before
+  // min_repetitions.
+  uint32_t row_milliseconds = 0; // 0: no limit
   uint32_t min_repetitions = 3;
-  uint32_t subset = 4096; // pixels of a scene that have a truth, where it is not known everywhere
+  uint32_t subset = 4096; // pixels per scene with a reference, if it is not computed everywhere
   std::string skin;       // profile of the generated scenes
-  std::string baseline_technique, baseline_setting; // what ratios are to
+  std::string baseline_technique, baseline_setting; // denominator of ratios
   std::vector<SceneRequest> scenes;
   std::vector<TechniqueRequest> techniques;
-  std::string self_setting;             // that sets the number of samples, where a graph has it
-  uint32_t self_samples = 4096;         // of the reference of psnr_db_self
-  std::vector<std::string> self_scenes; // "scene/framing" where that is measured; it takes long
-  uint32_t self_window = 0; // side of the square in the picture's middle that it is measured on; 0: all
+  std::string self_setting;     // setting of the number of samples, in graphs that declare it
+  uint32_t self_samples = 4096; // samples of the reference of psnr_db_self
+  // "scene/framing" for which psnr_db_self is measured, which takes long
+  std::vector<std::string> self_scenes;
+  // side of the square in the image's middle used for psnr_db_self; 0: whole image
+  uint32_t self_window = 0;
 };
 
-// The keys technique, setting, graph, overlays, set and heat_map of an entry; whoever calls finishes the
-// object.
+// Reads the keys technique, setting, graph, overlays, set and heat_map of an entry. The caller
+// finishes the object.
 TechniqueRequest read_technique(const Document& document, ObjectReader& object, Diagnostics& diagnostics);
 
-// The optional key camera of an entry.
+// Reads the optional key camera of an entry.
 std::optional<demo::CameraPlace> read_camera(const Document& document, ObjectReader& object,
                                              Diagnostics& diagnostics);
 
-// nullopt with located errors.
+// Returns nullopt with located errors.
 std::optional<ErrorTimeFile> read_error_time(const std::string& path, Diagnostics& diagnostics);
 
 } // namespace dermis::tools

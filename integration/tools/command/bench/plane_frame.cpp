@@ -1,4 +1,4 @@
-// The plane that generated scenes and laws begin with.
+// The plane on which generated scenes and property tests are based.
 
 #include "integration/tools/command/bench/subject.hpp"
 
@@ -9,7 +9,7 @@ namespace dermis::tools {
 subsurface::Profile grey_profile() {
   subsurface::Profile grey;
   grey.name = "grey";
-  grey.dmfp_mm = {3.5, 3.5, 3.5}; // at albedo .33, d = dmfp / 3.5 (Christensen & Burley 2015)
+  grey.dmfp_mm = {3.5, 3.5, 3.5}; // at albedo 0.33, d = dmfp / 3.5 (Christensen & Burley 2015)
   grey.albedo = {0.33, 0.33, 0.33};
   grey.source = "one d of 1 mm in every channel";
   subsurface::derive(grey);

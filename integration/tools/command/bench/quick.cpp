@@ -8,13 +8,13 @@ namespace dermis::tools {
 namespace {
 
 constexpr Size small{96, 54};
-constexpr uint32_t few_pixels = 64; // that have a truth, of a frame
-constexpr uint32_t more_frames = 2; // of a sequence, beyond those for histories to begin
+constexpr uint32_t few_pixels = 64; // per frame, with a reference
+constexpr uint32_t more_frames = 2; // of a sequence, after those in which histories start
 constexpr uint32_t few_judged = 4;  // frames of a budget
 constexpr Size few_rays{32, 32};
 constexpr RayReferenceSize rough_reference{16, 4};
-constexpr uint64_t few_updates = 1000; // of values in half floats
-// One of each way to scatter.
+constexpr uint64_t few_updates = 1000; // of moving values in half floats
+// One technique of each kind.
 constexpr std::string_view few_techniques[] = {"sap", "sap_residual", "burley", "afis_guided", "separable"};
 
 bool is_of_few(std::string_view technique) {
@@ -22,7 +22,7 @@ bool is_of_few(std::string_view technique) {
          std::end(few_techniques);
 }
 
-// The first of each of the few; `name` gives the technique of one.
+// Keeps the first setting of each of these techniques; `name` returns an entry's technique.
 template <class Technique, class Name> void keep_few(std::vector<Technique>& all, Name name) {
   std::vector<Technique> few;
   for (Technique& one : all)
@@ -55,7 +55,7 @@ BenchBudgetOptions quickened(BenchBudgetOptions options) {
   options.size = small;
   options.frames = few_judged;
   options.repetitions = 1;
-  options.scenes = {"flashing", "dolly"}; // light that changes, and size
+  options.scenes = {"flashing", "dolly"}; // changing light, and changing size
   return options;
 }
 

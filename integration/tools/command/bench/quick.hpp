@@ -1,6 +1,7 @@
 #pragma once
-// --quick of the suites: small pictures, few repetitions and, of what takes long, few scenes or techniques.
-// It shows that everything runs and how its pages look; its figures say nothing.
+// Reduces suites for --quick: small images, few repetitions and, in long suites, few scenes or
+// techniques. A quick run is a smoke test of the suites and their pages; its figures are
+// meaningless.
 
 #include "integration/tools/command/bench/dynamic/dynamic_file.hpp"
 #include "integration/tools/command/bench/plan_file.hpp"
@@ -14,7 +15,7 @@
 
 namespace dermis::tools {
 
-// As asked for, or smaller where it is to be quick.
+// Returns the options unchanged, or reduced if `quick` is set.
 BenchErrorTimeOptions quickened(BenchErrorTimeOptions options);
 BenchDynamicOptions quickened(BenchDynamicOptions options);
 BenchStabilityOptions quickened(BenchStabilityOptions options);
@@ -25,9 +26,10 @@ void quicken(ErrorTimeFile& file);
 void quicken(DynamicFile& file);
 void quicken(PropertyFile& file);
 void quicken(RestirFile& file);
-void quicken(std::vector<TechniqueRequest>& techniques); // the first setting of some
+// keeps the first setting of some techniques
+void quicken(std::vector<TechniqueRequest>& techniques);
 
-// What pages and rows of such a run say of themselves.
+// Returns a fact for reports that marks a quick run.
 std::pair<std::string, std::string> quick_fact();
 
 } // namespace dermis::tools

@@ -7,7 +7,7 @@
 namespace dermis::tools {
 namespace {
 
-// Changes whenever the truth's definition does.
+// Increment when the definition of the reference changes.
 constexpr uint64_t definition_version = 1;
 
 Hash hash_of(const ReferenceFrame& frame, std::span<const uint32_t> pixels) {

@@ -1,4 +1,4 @@
-// Scenes that the demo engine renders, seen as a graph would see them.
+// Subjects rendered by the demo engine, converted to inputs of a graph.
 
 #include "integration/tools/command/bench/subject.hpp"
 #include "integration/tools/command/run/reference_run.hpp"
@@ -12,7 +12,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr double half_a_degree = 0.5 * 3.14159265358979323846 / 180; // in radians
-constexpr double close_enough = 0.02;                                // of d_px
+constexpr double close_enough = 0.02;                                // relative to d_px
 constexpr int max_tries = 5;
 
 demo::Result<Subject> render_once(const SceneRequest& request, const SubjectOptions& options,

@@ -1,4 +1,4 @@
-// What the scenes look like.
+// Images of the scenes for reports.
 
 #include "integration/tools/command/bench/subject.hpp"
 #include "integration/tools/files/metrics.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t max_width = 480; // pixels
 
-// Means over whole cells of pixels, so that the picture becomes small enough.
+// Averages square cells of pixels to reduce the image's size.
 ReportPicture picture_of(const Subject& subject) {
   const Image& light = subject.frame.lighting;
   ExposureMeter meter;

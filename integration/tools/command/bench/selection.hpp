@@ -1,5 +1,5 @@
 #pragma once
-// Shared by the suites: which rows the user selected, and the error of a run that was interrupted.
+// Helpers of the suites: row selection by the user, and the error of an interrupted run.
 
 #include "integration/examples/demo_engine/result.hpp"
 

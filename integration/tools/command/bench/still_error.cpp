@@ -7,7 +7,7 @@
 namespace dermis::tools {
 namespace {
 
-// The measured pixels side by side, exposed and tonemapped.
+// Returns the measured pixels exposed and tonemapped.
 template <class Value> std::vector<uint8_t> shown(size_t count, double exposure, Value&& value) {
   demo::FloatImage image{static_cast<uint32_t>(count), 1, 3, {}};
   for (size_t i = 0; i < 3 * count; ++i)

@@ -12,9 +12,9 @@
 namespace dermis::tools {
 namespace {
 
-// Hands light to tools and to hosts that texture later: no part of a technique.
+// Exports light for tools and for hosts that apply albedo later; not part of a technique.
 constexpr std::string_view export_scattered_type = "subsurface.export_scattered";
-// What every technique does before and after it scatters.
+// Passes before and after scattering, common to all techniques.
 constexpr std::array<std::string_view, 6> common_pass_types = {
     "subsurface.classify",  "subsurface.tile_list",     "subsurface.setup",
     "subsurface.sap_setup", "subsurface.pyramid_setup", "subsurface.combine"};
@@ -30,8 +30,8 @@ demo::Error input_error(const std::string& graph, const std::string& text) {
   return {demo::ErrorKind::input, fmt::format("{}\nthe graph '{}' cannot be used", text, graph)};
 }
 
-// Texels that a pass computes for one pixel of the view: those of the first image that it writes, if it
-// writes one.
+// Returns the number of texels that a pass computes per pixel of the view: those of the first image
+// it writes, or 1 if it writes none.
 double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassType& type) {
   for (uint32_t i = 0; i < pass.access_count; ++i) {
     const PlanAccess& access = plan.accesses[pass.first_access + i];
@@ -45,11 +45,11 @@ double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassT
   return 1;
 }
 
-// Vulkan's depth, 0 to 1, of view distances in host units; distance 0: nothing there.
+// Converts view distances in host units to Vulkan's depth, 0..1. Distance 0 is background.
 std::vector<float> depth_buffer_of(std::span<const float> distances,
                                    const subsurface::Matrix4& clip_from_view) {
   const subsurface::Matrix4& m = clip_from_view;
-  const bool reversed = m[14] == 0 ? m[10] > 0 : m[11] > 0; // what is nearer has the larger value
+  const bool reversed = m[14] == 0 ? m[10] > 0 : m[11] > 0; // nearer surfaces have larger values
   std::vector<float> depth;
   depth.reserve(distances.size());
   for (const float distance : distances)
@@ -189,7 +189,8 @@ TechniqueCounts TechniqueRun::counts(double sampled_fraction, const subsurface::
     if (reads && taken && reads->samples > 0) {
       question.sampled_fraction = *taken / reads->samples;
       reads = subsurface::image_reads(type, question);
-      counts.mean_spp += reads->samples * (1 - sampled_fraction); // they were counted over all pixels
+      // image_reads assumed samples in all pixels
+      counts.mean_spp += reads->samples * (1 - sampled_fraction);
     }
     if (!reads) {
       counts.reads_per_pixel.reset();

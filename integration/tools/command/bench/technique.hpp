@@ -1,5 +1,5 @@
 #pragma once
-// One technique at one setting, ready to run on still frames.
+// Runs one technique at one setting on still frames.
 
 #include "integration/tools/command/bench/plan_file.hpp"
 #include "integration/tools/command/graph_input.hpp"
@@ -15,56 +15,57 @@
 
 namespace dermis::tools {
 
-struct TechniqueTimes { // milliseconds of one run
-  double device = 0;    // all passes but those that only hand light to tools
-  double sampling = 0;  // the scattering passes alone: without tiles, setup and combination
+struct TechniqueTimes { // milliseconds per run
+  double device = 0;    // all passes except those that only export light
+  double sampling = 0;  // only the scattering passes, without tiles, setup and combination
 };
 
 struct TechniqueCounts { // of one frame
   uint32_t dispatches = 0;
   uint64_t transient_bytes = 0;
-  double mean_spp = 0;                   // stochastic samples a subsurface pixel
-  std::optional<double> reads_per_pixel; // nullopt: a pass whose reads nobody has counted
-  std::string unknown_pass_type;         // then: its pass type
+  double mean_spp = 0;                   // stochastic samples per subsurface pixel
+  std::optional<double> reads_per_pixel; // nullopt: the reads of a pass are unknown
+  std::string unknown_pass_type;         // that pass's type
 };
 
-// What a frame's depth is handed over as.
+// The form in which a frame's depth is passed.
 enum class DepthGiven : uint8_t {
-  view_distance, // as captures have it
-  depth_buffer,  // what a depth test with the frame's own projection leaves; nothing there: the far plane
+  view_distance, // as in captures
+  depth_buffer,  // as a depth test with the frame's projection; background is the far plane
 };
 
-// Keeps its graph on the device from frame to frame as long as size and slots fit. One thread.
+// Keeps its graph on the device between frames as long as size and slots fit. One thread.
 class TechniqueRun {
 public:
-  // Errors: input (a graph that cannot be read or compiled, a setting that is not there).
+  // Errors: input (a graph that cannot be read or compiled, an unknown setting).
   static demo::Result<std::unique_ptr<TechniqueRun>> create(demo::VulkanHost& host,
                                                             const TechniqueRequest& request,
                                                             std::span<const CaptureProfile> profiles,
                                                             std::span<const float> sap_tables);
 
-  // Uploads the frame and runs once; the scattered light before albedo, 3 values a pixel. `follows`: it comes
-  // after the frame that was scattered last, so histories go on, where the graph says so also over another
-  // size; otherwise they begin anew.
+  // Uploads the frame, runs once and returns the scattered light before albedo, 3 values per pixel.
+  // If `follows`, the frame follows the last scattered frame and histories continue, also after a
+  // change of size if the graph declares so. Otherwise histories restart.
   demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false,
                                            DepthGiven depth = DepthGiven::view_distance);
-  // The next frame is the first of a new graph: frame numbers and histories begin again.
+  // Makes the next frame the first of a new graph: frame numbers and histories restart.
   void start_anew() { device_.reset(); }
-  // The next frame has this number, if it is higher than the one that would follow.
+  // Sets the number of the next frame if it is higher than the regular next number.
   void skip_to(uint64_t frame_index);
-  // Whether the last scatter had to make its graph: then the driver compiled, and its times say nothing.
+  // Returns whether the last scatter created its graph. The driver then compiled, and times are
+  // meaningless.
   bool was_made_anew() const { return made_anew_; }
-  // Of the last run. Errors: environment (no timestamps).
+  // Returns times of the last run. Errors: environment (no timestamps).
   demo::Result<TechniqueTimes> times();
-  // What the last run's kernels say of their sampling, 3 values a pixel: samples, those behind the history,
-  // confidence. Empty where the graph does not hand it out.
+  // Returns the sampling data of the last run, 3 values per pixel: samples, samples behind the
+  // history, confidence. Empty if the graph does not export sampling data.
   demo::Result<std::vector<float>> sampling();
   uint64_t history_bytes();
-  // Runs the last frame again, on whatever light is there.
+  // Runs the last frame again, on the light left by the previous run.
   demo::Result<TechniqueTimes> run_again();
-  // Of the last frame. `sampled_fraction`: of its subsurface pixels, those whose light is scattered at all;
-  // `d_px`: its median d per channel; `taken`: samples a subsurface pixel where they were counted on the
-  // device.
+  // Returns counts of the last frame. `sampled_fraction` is the fraction of its subsurface pixels
+  // that scatter; `d_px` is its median d per channel; `taken` is the number of samples per
+  // subsurface pixel, if counted on the device.
   TechniqueCounts counts(double sampled_fraction, const subsurface::PerChannel& d_px,
                          std::optional<double> taken = {});
 
@@ -86,7 +87,7 @@ private:
   std::unique_ptr<DeviceGraph> device_;
   bool made_anew_ = false;
   dermis_frame frame_ = DERMIS_FRAME_INIT;
-  uint64_t next_frame_index_ = 0; // 0: as it comes
+  uint64_t next_frame_index_ = 0; // 0: regular numbering
 };
 
 } // namespace dermis::tools

@@ -1,11 +1,11 @@
 #pragma once
-// The clock of the benchmarks.
+// Clock of the benchmarks.
 
 #include <cstdint>
 
 namespace dermis::tools {
 
-// CPU time of the calling thread: other programs on the machine do not count, except through the caches.
+// Returns the CPU time of the calling thread. Other programs affect it only through the caches.
 uint64_t thread_nanoseconds();
 
 } // namespace dermis::tools

@@ -1,5 +1,5 @@
-// dermis bench budget: how well frames keep to a budget, and what error that costs, beside the best single
-// technique.
+// dermis bench budget: measures how well frames keep to a budget and at what error, compared with
+// the best single technique.
 
 #include "framegraph/model/graph.hpp"
 #include "integration/examples/demo_engine/files.hpp"
@@ -22,14 +22,14 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double fractions[] = {0.25, 0.5, 1, 2}; // x: of the way from the cheapest to the best outcome
-constexpr uint32_t compared = 8;                  // judged frames of a run whose error is measured
+// x: 0 is the cost of the cheapest configuration, 1 of the best
+constexpr double fractions[] = {0.25, 0.5, 1, 2};
+constexpr uint32_t compared = 8; // judged frames per run whose error is measured
 
-// The camera of `dolly` takes five seconds for its way: more frames, each further from the one before, see
-// all of it.
+// The camera path of `dolly` takes five seconds. More frames at a lower rate cover the whole path.
 struct Stretch {
-  uint32_t times = 1;           // as many judged frames as of another scene
-  double frames_per_second = 0; // 0: the scene's
+  uint32_t times = 1;           // factor on the number of judged frames
+  double frames_per_second = 0; // 0: the scene's rate
 };
 
 Stretch stretch_of(std::string_view scene) {
@@ -40,7 +40,7 @@ struct BudgetBench {
   const Session& session;
   const BenchBudgetOptions& options;
   SceneRunRequest request;
-  std::vector<std::vector<NamedValue>> sets; // one for each outcome
+  std::vector<std::vector<NamedValue>> sets; // one per configuration
   Progress& progress;
   SharedScene shared = {};
   uint64_t done = 0;
@@ -58,7 +58,7 @@ std::string file_of(const std::string& scene) {
   return shipped(fmt::format("configs/scenes/{}.json", scene));
 }
 
-// What runs of a scene begin with; nothing is left of the scene before.
+// Resets the request for runs of a scene, without state of the previous scene.
 void begin_scene(BudgetBench& bench, const std::string& scene) {
   const Stretch stretch = stretch_of(scene);
   const uint32_t judged = stretch.times * bench.options.frames;
@@ -91,7 +91,7 @@ std::string name_of(const Single& single) {
   return name;
 }
 
-// Errors and the meter of a row for each share of the way from the cheapest outcome to the best.
+// Measures errors and modelled times of one row per fraction.
 demo::Result<> measure_by_meter(BudgetBench& bench, const std::string& scene) {
   begin_scene(bench, scene);
   const auto singles = measure_singles(bench);
@@ -111,7 +111,7 @@ demo::Result<> measure_by_meter(BudgetBench& bench, const std::string& scene) {
   return demo::success();
 }
 
-// One more timed run of each of a scene's rows.
+// Adds one timed run to each row of a scene.
 demo::Result<> measure_by_time(BudgetBench& bench, const std::string& scene) {
   begin_scene(bench, scene);
   bench.request.deterministic = false;
@@ -126,8 +126,8 @@ demo::Result<> measure_by_time(BudgetBench& bench, const std::string& scene) {
   return demo::success();
 }
 
-// What slows the machine down for a while meets one run of a budget and not its median: between two of them
-// all other scenes are timed.
+// A temporary slowdown of the machine should affect one run per budget and not its median, so all
+// other scenes are timed between two runs of one budget.
 demo::Result<> measure(BudgetBench& bench) {
   for (const std::string& scene : bench.options.scenes)
     if (auto measured = measure_by_meter(bench, scene); !measured) return measured;
@@ -137,7 +137,8 @@ demo::Result<> measure(BudgetBench& bench) {
   return demo::success();
 }
 
-// Why scenes cannot be measured; "" when they can. Said before minutes are spent on the others.
+// Returns the reason why the scenes cannot be measured, or "". Runs before minutes are spent on
+// other scenes.
 std::string why_not(const BenchBudgetOptions& options) {
   for (const std::string& name : options.scenes) {
     const std::string file = file_of(name);

@@ -7,7 +7,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double within = 0.99; // share of frames whose meter a single technique must keep
+// fraction of frames in which a single technique must keep the budget
+constexpr double within = 0.99;
 
 std::span<const RunFrame> judged_frames(const SceneRun& run) {
   return std::span(run.frames).subspan(unjudged_frames);

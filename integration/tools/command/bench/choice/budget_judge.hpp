@@ -1,6 +1,6 @@
 #pragma once
-// What dermis bench budget says of runs: how well their frames kept to a budget, and which single technique
-// would have.
+// Judges runs of dermis bench budget: how well their frames kept the budget, and which single
+// technique would have.
 
 #include "integration/tools/command/bench/choice/scene_run.hpp"
 
@@ -11,50 +11,55 @@
 
 namespace dermis::tools {
 
-constexpr uint32_t unjudged_frames = 10;                            // of each run, its first
-constexpr double measured_tolerance = 1.15, model_tolerance = 1.05; // of the budget: over it beyond that
+constexpr uint32_t unjudged_frames = 10; // first frames of each run
+// factors of the budget above which a frame is over the budget
+constexpr double measured_tolerance = 1.15, model_tolerance = 1.05;
 
-// One outcome alone over the whole scene.
+// One configuration used for the whole scene.
 struct Single {
-  std::vector<NamedValue> set; // as JSON
+  std::vector<NamedValue> set; // values as JSON
   std::vector<double> metered_ms;
   double rmse = 0;
 
-  double metered_at(double fraction) const; // nearest rank
+  double metered_at(double fraction) const; // percentile by nearest rank
 };
 
 Single single_of(const SceneRun& run, std::vector<NamedValue> set);
 
-// The least error among those whose meter keeps to the budget in 99 % of the frames; null: none does.
+// Returns the single with the least error of those whose modelled time keeps the budget in 99 % of
+// the frames, or null.
 const Single* best_within(const std::vector<Single>& singles, double budget_ms);
 
-// Budget of a share of the way from the cheapest outcome to the best, in milliseconds. Not of none.
+// Interpolates between the cheapest (0) and the best configuration (1), milliseconds. `singles`
+// must not be empty.
 double budget_at(const std::vector<Single>& singles, double fraction);
 
-// By timestamps, of the judged frames.
+// Figures from timestamps of the judged frames.
 struct TimedFigures {
-  double mean_ms = 0, p95_ms = 0, over = 0; // over: share of the frames
+  double mean_ms = 0, p95_ms = 0, over = 0; // over: fraction of the frames
   double switches = 0;
 };
 
 TimedFigures judge_times(const SceneRun& run, double budget_ms);
 
-// Each figure's median, the larger of the middle two. Not of none.
+// Returns the median of each figure, the larger of the middle two. `runs` must not be empty.
 TimedFigures median_of(const std::vector<TimedFigures>& runs);
 
-// A budget of a scene: what its runs were like.
+// Results for one budget of a scene.
 struct BudgetRow {
   std::string scene;
   double x = 0, budget_ms = 0;
-  double over_model = 0, rmse = 0;        // of the deterministic run
-  std::optional<double> single_rmse = {}; // of the best single outcome that keeps the budget; none does: none
-  std::string single = {};                // its settings
-  std::vector<TimedFigures> timed = {};   // a run each
+  double over_model = 0, rmse = 0; // of the deterministic run
+  // of the best single configuration that keeps the budget; not set if there is none
+  std::optional<double> single_rmse = {};
+  std::string single = {};              // settings of that configuration
+  std::vector<TimedFigures> timed = {}; // one per timed run
 };
 
 double fraction_over_model(const SceneRun& run, double budget_ms);
 
-// Root of the mean square over the judged frames that were compared with the truth.
+// Returns the root of the mean square error over the judged frames that were compared with the
+// reference.
 double pooled_rmse(const SceneRun& run);
 
 } // namespace dermis::tools

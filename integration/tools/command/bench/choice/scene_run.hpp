@@ -1,6 +1,5 @@
 #pragma once
-// A scene rendered over some frames with choices by budget: what was chosen, what it took and how far it was
-// off.
+// Renders frames of a scene with choices by budget and records choices, times and errors.
 
 #include "integration/examples/demo_engine/engine.hpp"
 #include "integration/tools/command/bench/reference.hpp"
@@ -16,24 +15,24 @@ namespace dermis::tools {
 
 struct SceneRunRequest {
   std::string scene, graph; // files
-  demo::ModelOptions model; // of scenes that show one
+  demo::ModelOptions model; // for scenes with a model
   Size size;
   uint32_t frames = 0;
-  double frames_per_second = 0; // 0: the scene's
-  uint32_t error_every = 0;     // frames; 0: errors are not measured
-  uint32_t subset = 1024;       // pixels of a frame that are compared with the truth
-  double budget_ms = 0;         // 0: the defaults, with `set`
+  double frames_per_second = 0; // 0: the scene's rate
+  uint32_t error_every = 0;     // interval in frames; 0: errors are not measured
+  uint32_t subset = 1024;       // pixels per frame compared with the reference
+  double budget_ms = 0;         // 0: no budget; default choices with `set` applied
   bool deterministic = false;
-  std::vector<NamedValue> set; // JSON texts
-  demo::NamedText calibration; // "": the library's own
+  std::vector<NamedValue> set; // values as JSON
+  demo::NamedText calibration; // "": the library's calibration
   std::string cache;           // folder for references
   demo::ContextHooks hooks;
 };
 
-// What runs of one scene, size and rate share.
+// State shared by runs of one scene, size and rate.
 struct SharedScene {
   demo::StageHandle stage = demo::make_stage();
-  std::map<uint32_t, Reference> references; // by number of frame
+  std::map<uint32_t, Reference> references; // by frame number
 };
 
 struct RunFrame {
@@ -46,7 +45,7 @@ struct SceneRun {
   std::vector<RunFrame> frames;
 };
 
-// Errors: those of demo::render; environment "stopped" when interrupted.
+// Errors: those of demo::render; environment "stopped" if interrupted.
 demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& request, SharedScene& shared);
 
 } // namespace dermis::tools

@@ -1,4 +1,5 @@
-// dermis bench skip: what frames cost that do not need all of a graph, beside one that does.
+// dermis bench skip: measures frames that do not need all of a graph, compared with a frame that
+// does.
 
 #include "framegraph/text/document.hpp"
 #include "integration/tools/command/bench/choice/skip_cases.hpp"
@@ -21,11 +22,11 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double d_px = 4; // of the framing "close"
+constexpr double d_px = 4; // as in the framing "close"
 constexpr uint32_t warm_up = 3;
 constexpr double pixels_per_tile = 64;
 
-// Takes what looks for flat light out of a graph that has it.
+// Removes the detection of uniform light from a graph.
 constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits": [
   { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
   { "remove": "/passes/classify/write/light_cells" } ] })";
@@ -44,7 +45,7 @@ struct Case {
 struct SkipBench {
   demo::VulkanHost& host;
   const BenchSkipOptions& options;
-  LoadedGraph loaded, plain; // as it is; without what looks for flat light
+  LoadedGraph loaded, plain; // `plain` is without the detection of uniform light
   std::string text;
   std::vector<CaptureProfile> profiles;
   demo::ContextHooks hooks;
@@ -59,7 +60,7 @@ demo::Result<> prepare(SkipBench& bench, SkipCase from) {
   const LoadedGraph& loaded = bench.graph_of(one.from);
   one.slots = choose_slots(loaded.graph, one.from.frame);
   if (!one.slots.problem.empty()) return demo::Error{demo::ErrorKind::input, one.slots.problem};
-  one.slots.unbound.emplace_back("scattered_light"); // it is for tools
+  one.slots.unbound.emplace_back("scattered_light"); // only used by tools
   DeviceGraphRequest request;
   request.graph_name = bench.options.graph;
   request.graph_text = bench.text;
@@ -90,7 +91,7 @@ demo::Result<> prepare(SkipBench& bench, SkipCase from) {
   return demo::success();
 }
 
-// Light is given anew each time: the graph scatters it in place.
+// Uploads light for each run, since the graph scatters in place.
 demo::Result<> run_once(Case& one, bool timed) {
   for (const SlotData& data : one.slots.data)
     if (auto given = one.device->upload(data.slot, data.texels, data.channels); !given) return given.error();
@@ -105,7 +106,8 @@ demo::Result<> run_once(Case& one, bool timed) {
 
 demo::Result<> measure(SkipBench& bench, Progress& progress) {
   for (uint32_t i = 0; i < warm_up + bench.options.repetitions; ++i) {
-    for (Case& one : bench.cases) // interleaved, so that a slow moment of the machine meets all
+    // interleaved, so that a slowdown of the machine affects all cases
+    for (Case& one : bench.cases)
       if (auto ran = run_once(one, i >= warm_up); !ran) return ran.error();
     if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
     progress.update(i + 1);
@@ -118,7 +120,7 @@ demo::Result<> measure(SkipBench& bench, Progress& progress) {
   return demo::success();
 }
 
-// Texels fetched by the groups that ran, each as if all around it were subsurface.
+// Counts texels read by the groups that ran, assuming subsurface everywhere around them.
 double reads_of(const SkipBench& bench, const Case& one, std::span<const float> sap_tables) {
   if (one.from.no_profiles || one.from.empty_bounds) return 0;
   const LoadedGraph& loaded = bench.graph_of(one.from);
@@ -127,12 +129,12 @@ double reads_of(const SkipBench& bench, const Case& one, std::span<const float> 
   double sum = 0;
   for (const PlanPass& pass : one.plan.plan.passes) {
     const PassType& type = loaded.pass_types[pass.type];
-    const bool copies =
-        type.name == "subsurface.copy_tiles"; // runs where nothing scatters, else the pyramid does
+    // runs if nothing scatters; otherwise the pyramid runs
+    const bool copies = type.name == "subsurface.copy_tiles";
     const bool pyramid = find_port(type, "level_tiles", PortSide::read) >= 0;
     if ((copies || pyramid) && copies != (one.choice.scattering_tiles == 0)) continue;
     std::vector<SettingValue> settings;
-    double finer = 1; // texels of level 0 for one of the pass's
+    double finer = 1; // level 0 texels per texel of the pass
     for (size_t i = 0; i < type.settings.size(); ++i) {
       settings.push_back(one.plan.plan.settings[pass.first_setting + i].value);
       if (type.settings[i].name == "level") {

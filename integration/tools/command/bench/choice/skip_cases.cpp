@@ -11,7 +11,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr double subpixel_d_px = 0.03; // below copy_below_d_px
-constexpr double covered = 0.05;       // share of the pixels
+constexpr double covered = 0.05;       // fraction of the pixels
 
 void paint_noise(CapturedFrame& frame) {
   SplitMix64 random{1};

@@ -1,4 +1,5 @@
-// dermis bench compile: what compiling costs, on drawn graphs and on anybody's, in time and in memory.
+// dermis bench compile: measures time and memory of compiling randomly generated graphs or given
+// graphs.
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/text/json_writer.hpp"
@@ -25,7 +26,7 @@ constexpr uint32_t min_samples = 5, max_samples = 200;
 constexpr uint32_t memory_passes = 100;
 
 struct Effort {
-  uint32_t rotating = 64;              // graphs that take turns, so that none stays in the caches
+  uint32_t rotating = 64;              // graphs that alternate, so that none stays in the caches
   uint64_t time_per_row = 300'000'000; // ns
   uint32_t memory_seeds = 50, fan_seeds = 20;
 };
@@ -36,7 +37,7 @@ constexpr double mebibyte = 1024.0 * 1024.0, ns_per_ms = 1e6;
 constexpr std::string_view level_names[] = {"fast", "tight", "optimize"};
 constexpr std::string_view order_names[] = {"memory", "program", "random"};
 
-// Goals on drawn random graphs and fans, ns a pass; 0: none is set.
+// Returns the goal on generated random graphs and fans, ns per pass. 0 means no goal.
 double time_goal(std::string_view shape, uint32_t passes, PackingLevel level, bool reasons) {
   if (shape == "chain" || shape == "given" || level == PackingLevel::optimize) return 0.0;
   if (level == PackingLevel::tight) return 20'000.0;
@@ -44,7 +45,7 @@ double time_goal(std::string_view shape, uint32_t passes, PackingLevel level, bo
   return reasons ? 2.0 * plain : plain;
 }
 
-struct Subject { // graphs that take turns
+struct Subject { // graphs that alternate
   std::string shape;
   uint32_t passes = 0;
   uint32_t view_width = 0, view_height = 0;
@@ -62,11 +63,12 @@ struct Row {
   std::string shape;
   uint32_t passes = 0, rotating = 0, samples = 0;
   Options options;
-  double median = 0.0, lowest = 0.0, low = 0.0, high = 0.0; // ns a pass; low and high: 10 % and 90 %
+  // ns per pass; low and high: 10 % and 90 %
+  double median = 0.0, lowest = 0.0, low = 0.0, high = 0.0;
   double goal = 0.0;
   double heap_bytes = 0.0, max_live_bytes = 0.0, ratio = 0.0, worst_ratio = 0.0, batches_per_pass = 0.0;
-  uint32_t optimal = 0;                   // graphs whose heap is as small as what lives at once
-  double mean_ms = 0.0, slowest_ms = 0.0; // CPU time of one compile of one graph, each compiled once
+  uint32_t optimal = 0;                   // graphs whose heap equals the lower bound
+  double mean_ms = 0.0, slowest_ms = 0.0; // CPU time per graph, each compiled once
 };
 
 CompileInput input_of(const Subject& subject, const Graph& graph, const DeviceProfile& device,
@@ -89,7 +91,8 @@ double batches_per_pass(const Plan& plan) {
   return static_cast<double>(batches) / static_cast<double>(std::max<size_t>(plan.passes.size(), 1));
 }
 
-// Memory and order of each graph once; this also warms the compiler's memory. False: a graph was refused.
+// Measures memory and order of each graph once, which also warms up the compiler. Returns false if
+// a graph is rejected.
 bool measure_memory(Compiler& compiler, const Subject& subject, const DeviceProfile& device,
                     CompiledPlan& plan, Row& row, Diagnostics& diagnostics) {
   for (const Graph& graph : subject.graphs) {
@@ -143,7 +146,7 @@ void measure_time(Compiler& compiler, const Subject& subject, const DeviceProfil
   row.high = samples[samples.size() * 9 / 10];
 }
 
-// time_per_row: 0, or for how long it is timed.
+// time_per_row is the duration of the timing in ns; 0 skips the timing.
 std::optional<Row> measure(const Subject& subject, const Options& options, uint64_t time_per_row,
                            Diagnostics& diagnostics) {
   const DeviceProfile device = generic_profile();

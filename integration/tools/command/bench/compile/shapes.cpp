@@ -15,7 +15,8 @@ constexpr Port ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
                           {"out", Usage::storage_image_write, false, "image2D", ""},
                           {"out2", Usage::storage_image_write, true, "image2D", ""}};
 constexpr uint32_t max_reads = 3, max_writes = 2, first_output = 3; // of `ports`
-constexpr PassTypeId plain{0}, kept{1};                             // as benchmark_pass_types() adds them
+// indices in benchmark_pass_types()
+constexpr PassTypeId plain{0}, kept{1};
 
 struct Random : SplitMix64 {
   uint32_t below(size_t limit) { return static_cast<uint32_t>(SplitMix64::below(limit)); }
@@ -80,7 +81,7 @@ struct Draft {
       level.push_back(image());
       pass({source}, {level.back()});
     }
-    while (level.size() > 1) { // one level of the reduction tree after the other
+    while (level.size() > 1) { // one level of the reduction tree per iteration
       std::vector<ResourceId> above;
       for (size_t i = 0; i < level.size(); i += shape.arity) {
         const auto end = std::min(i + shape.arity, level.size());
@@ -94,7 +95,7 @@ struct Draft {
     graph.passes.back().type = kept;
   }
 
-  // What passes on one side (needed by somebody, or dead) have written so far.
+  // Outputs so far of one group of passes (needed or dead).
   struct Side {
     std::vector<ResourceId> written, unread;
   };
@@ -110,7 +111,7 @@ struct Draft {
       const uint32_t count = 1 + random.below(shape.max_reads);
       for (uint32_t i = 0; i < count; ++i) {
         Side& side = sides[dead[p] != 0 && random.below(2) != 0 ? 1 : 0];
-        // A dead pass takes nothing from the unread of the others: those must find readers that are needed.
+        // Dead passes do not read unread outputs of needed passes, which must find needed readers.
         const bool fresh = random.below(100) < shape.unread_percent && (&side == &sides[dead[p]]);
         ResourceId id;
         if (fresh && !side.unread.empty()) {

@@ -1,5 +1,5 @@
 #pragma once
-// Graphs for the benchmarks, drawn from a seed as tests/benchmark/shapes.json describes.
+// Generates graphs for the benchmarks from a seed, as tests/benchmark/shapes.json describes.
 
 #include "framegraph/model/graph.hpp"
 #include "framegraph/text/document.hpp"
@@ -14,15 +14,16 @@ namespace dermis::tools {
 struct DrawnResource {
   uint32_t percent = 0;
   Format format = Format::undefined;
-  Rational scale; // times the view
+  Rational scale; // factor on the view
 };
 
 struct Shape {
   std::string name;
   enum class Kind : uint8_t { chain, fan, random } kind = Kind::chain;
-  Rational readers{2, 3}; // fan: this part of the passes reads the one source
-  uint32_t arity = 3;     // fan: reads of a pass of the reduction tree, 2 .. 3
-  uint32_t max_reads = 3, max_writes = 2, unread_percent = 80, window = 32, dead_percent = 0; // random
+  Rational readers{2, 3}; // fan: fraction of the passes that read the common source
+  uint32_t arity = 3;     // fan: reads per pass of the reduction tree, 2..3
+  // for random graphs
+  uint32_t max_reads = 3, max_writes = 2, unread_percent = 80, window = 32, dead_percent = 0;
 };
 
 struct ShapeFile {
@@ -31,14 +32,14 @@ struct ShapeFile {
   std::vector<Shape> shapes;
 };
 
-// nullopt with errors in `diagnostics`.
+// Returns nullopt with errors in `diagnostics`.
 std::optional<ShapeFile> read_shapes(const std::string& path, Diagnostics& diagnostics);
 
-// Kinds of the drawn graphs: images a b c are read, out and out2 written; one pass type is culled when
-// unread, the other never.
+// Returns the pass types of generated graphs. Ports a, b, c are read, out and out2 written. Unread
+// passes of one type are culled, those of the other never.
 PassTypeRegistry benchmark_pass_types();
 
-// `passes` >= 2. The same graph for the same arguments on every machine.
+// Requires `passes` >= 2. Equal arguments give equal graphs on every machine.
 Graph draw_graph(const ShapeFile& file, const Shape& shape, uint32_t passes, uint64_t seed);
 
 } // namespace dermis::tools

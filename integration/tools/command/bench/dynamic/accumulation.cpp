@@ -29,7 +29,7 @@ FrameConstants constants_of(const FrameDescription& frame) {
   return constants;
 }
 
-// The picture of the frame before.
+// Contents of the previous frame.
 struct Past {
   const std::vector<AccumulatedLight>& mean;
   const std::vector<float>& depth;
@@ -50,8 +50,8 @@ struct Past {
   }
 };
 
-// Cubic where all texels around show the surface, else bilinear over those that do, as
-// common/subsurface_accumulate.comp.
+// Interpolates cubically if all neighbouring texels show the surface, otherwise bilinearly over
+// those that do, as common/subsurface_accumulate.comp.
 AccumulatedLight find_light(const FrameConstants& frame, const Past& past, const PreviousPlace& place,
                             uint32_t id, double tolerance) {
   const HistoryTaps taps = find_history(frame, place, id, tolerance, [&](int x, int y) {
@@ -81,7 +81,7 @@ AccumulatedLight find_light(const FrameConstants& frame, const Past& past, const
   return sum;
 }
 
-// The smaller step to both sides in x and in y, mm.
+// Returns the smaller depth step to both sides in x and in y, mm.
 double rise_of(const std::vector<float>& depth, const std::vector<uint8_t>& profile, int width, int height,
                int x, int y) {
   const auto i = [&](int at_x, int at_y) { return size_t(at_y) * size_t(width) + size_t(at_x); };

@@ -8,8 +8,8 @@
 namespace dermis::tools {
 namespace {
 
-// A frame is a sum of others where no pixel is further from it than light rounds in half floats, 2^-11 of it,
-// in each of them: three, of the brightest light.
+// A frame counts as a sum of known frames if no pixel differs by more than the rounding of half
+// floats, 2^-11 of each of three frames, relative to the brightest light.
 constexpr double little_light = 3.0 / 2048;
 
 std::vector<float> light_of(const ReferenceFrame& frame) {

@@ -1,6 +1,6 @@
 #pragma once
-// The truth of frames that differ in how bright their lights are and in nothing else: it is as linear in
-// light as scattering is, so a few truths serve all frames.
+// References of frames that differ only in the brightness of their lights. References are linear in
+// light, so a few references serve all frames.
 
 #include "integration/tools/command/bench/reference.hpp"
 
@@ -10,19 +10,19 @@
 
 namespace dermis::tools {
 
-// Truths of frames of one scene whose camera and surfaces rest. Grows by a frame that is no sum of earlier
-// ones, until it holds max_known_references.
+// References of frames of one scene with resting camera and surfaces. Grows by each frame that is
+// not a sum of earlier ones, up to max_known_references.
 struct KnownReferences {
   struct Known {
-    std::vector<float> light;      // orthonormal to the others, over pixels with a profile
-    std::vector<double> reference; // of that light, 3 a pixel of `pixels`
+    std::vector<float> light;      // orthonormal to the other entries, over pixels with a profile
+    std::vector<double> reference; // of that light, 3 values per pixel of `pixels`
   };
   std::vector<Known> known;
-  Reference first; // pixels and their number are those of all frames
+  Reference first; // its pixels and population apply to all frames
 };
 inline constexpr size_t max_known_references = 8;
 
-// As make_reference; `known` may be empty at first and must be of the same scene.
+// As make_reference. `known` starts empty and must belong to the same scene.
 std::optional<Reference> make_reference_of_still(const Session& session, const CapturedFrame& frame,
                                                  const std::string& what, uint32_t subset,
                                                  const std::string& cache, KnownReferences& known);

@@ -17,7 +17,8 @@ struct Row {
   double samples = 0, maximum = 0, ms = 0, psnr = 0, shown = 0;
 };
 
-// Of a gated sequence; the row with the least samples 8 where there are several.
+// Returns the first row of a sequence with framing `close`. The row with 8 minimum samples precedes
+// rows with other minimums.
 std::optional<Row> row_of(Report& report, const std::string& scene, const std::string& technique,
                           const std::string& guidance) {
   ReportTable& table = report.table;
@@ -57,7 +58,7 @@ struct Published {
   const char* name;
   double samples, ms, psnr;
 };
-// Xie and others 2021, table 3: 1440p on a GeForce RTX 2080 Ti, PSNR of 8-bit pictures.
+// Xie et al. 2021, table 3: 1440p on a GeForce RTX 2080 Ti, PSNR of 8-bit images.
 constexpr Published published[] = {
     {"flashing", "spvg", "AS", 61.97, 1.47, 51.19},    {"flashing", "ocv", "AS+OCV", 29.58, 0.80, 49.55},
     {"flashing", "ccv", "AS+CCV", 26.88, 0.75, 49.43}, {"regular", "spvg", "AS", 26.51, 3.39, 47.85},
@@ -96,7 +97,7 @@ void add_published(Report& report) {
                          {"our_ms", "our ms", 4},
                          {"their_db", "their 8-bit dB", 4},
                          {"our_db", "our 8-bit dB", 4}};
-  double all = 0; // of their AS, which comes first
+  double all = 0; // samples of AS, the first row of each scene
   for (const Published& one : published) {
     if (std::string(one.name) == "AS") all = one.samples;
     const auto ours = row_of(report, one.scene, "afis", one.guidance),

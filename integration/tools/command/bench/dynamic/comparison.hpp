@@ -1,17 +1,18 @@
 #pragma once
-// What the rows of `dermis bench dynamic` say against each other and beside what was published.
+// Compares rows of `dermis bench dynamic` with each other and with published figures.
 
 #include "integration/tools/command/bench/report/report.hpp"
 
 namespace dermis::tools {
 
-// Adds facts: sap_residual against afis + ccv over the sequences `close` whose light changes (samples and
-// time as ratios, geometric means; PSNR as a difference, mean), sap against the same, ocv against spvg, and
-// the most against the mean of split_half. What was not measured is left out.
+// Adds facts over the `close` sequences with changing light: sap_residual against afis + ccv
+// (samples and time as geometric means of ratios, PSNR as a mean difference), sap against the same,
+// ocv against spvg, and peak against mean samples of split_half. Unmeasured comparisons are
+// omitted.
 void add_comparisons(Report& report);
 
-// Fills the second table: samples, time and 8-bit PSNR of flashing, regular and dynamic light as Xie and
-// others (2021, table 3) have them, and ours.
+// Fills the second table: samples, time and 8-bit PSNR of flashing, regular and dynamic light as
+// published (Xie et al. 2021, table 3) and as measured.
 void add_published(Report& report);
 
 } // namespace dermis::tools

@@ -1,4 +1,5 @@
-// dermis bench dynamic: techniques over sequences of frames in which light, camera or things change.
+// dermis bench dynamic: measures techniques over sequences of frames with changing light, camera or
+// objects.
 
 #include "integration/tools/command/bench/dynamic/accumulation.hpp"
 #include "integration/tools/command/bench/dynamic/combined_reference.hpp"
@@ -24,9 +25,9 @@ namespace dermis::tools {
 namespace {
 
 struct Measured {
-  std::vector<FrameLight> light;                   // a frame each
-  std::vector<double> device_ms, sampling_ms, spp; // likewise
-  Accumulation accumulation;                       // where camera or surfaces move
+  std::vector<FrameLight> light;                   // one per frame
+  std::vector<double> device_ms, sampling_ms, spp; // one per frame
+  Accumulation accumulation;                       // used if camera or surfaces move
   SequenceFigures figures;
   TechniqueCounts counts;
   uint64_t history_bytes = 0;
@@ -54,7 +55,7 @@ double largest_of(const std::vector<double>& values, uint32_t first) {
   return values.size() <= first ? 0 : *std::max_element(values.begin() + first, values.end());
 }
 
-// Mean of the red channel over pixels with a profile.
+// Returns the mean of the red channel over pixels with a profile.
 double mean_samples(const std::vector<float>& sampling, const std::vector<uint8_t>& profile) {
   double sum = 0;
   uint64_t count = 0;
@@ -66,7 +67,8 @@ double mean_samples(const std::vector<float>& sampling, const std::vector<uint8_
   return count > 0 ? sum / double(count) : 0;
 }
 
-// d per channel of the profile that most pixels have, where its widest projects to `d_px`.
+// Returns d per channel of the most frequent profile, scaled so that its widest channel projects to
+// `d_px`.
 subsurface::PerChannel d_of(const CapturedFrame& frame, double d_px) {
   std::array<uint64_t, 256> count{};
   for (const uint8_t id : frame.profile)
@@ -151,7 +153,7 @@ void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicT
     }
     plot.series.push_back(std::move(series));
     if (one.spp.empty()) continue;
-    constexpr double min_shown = 0.1; // the axis is logarithmic
+    constexpr double min_shown = 0.1; // lower bound for the logarithmic axis
     PlotSeries taken{series_name, {}, is_baseline(technique.request.technique)};
     for (size_t t = 0; t < one.spp.size(); ++t)
       taken.points.push_back({double(t), std::max(one.spp[t], min_shown),

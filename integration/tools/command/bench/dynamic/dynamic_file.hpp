@@ -1,5 +1,5 @@
 #pragma once
-// What `dermis bench dynamic` measures, as data: tests/benchmark/dynamic.json.
+// Contents of tests/benchmark/dynamic.json, which describes `dermis bench dynamic`.
 
 #include "integration/tools/command/bench/dynamic/sequence.hpp"
 #include "integration/tools/command/bench/plan_file.hpp"
@@ -12,18 +12,18 @@ namespace dermis::tools {
 
 struct DynamicTechnique {
   TechniqueRequest request;
-  std::string guidance;     // "none": as many samples everywhere, or none
-  uint32_t min_samples = 0; // a pixel, where it is sampled
+  std::string guidance;     // "none": a constant number of samples, possibly 0
+  uint32_t min_samples = 0; // per sampled pixel
 };
 
 struct DynamicFile {
-  uint32_t counted = 25;  // the first frame of a sequence that counts
-  uint32_t subset = 1024; // pixels of a frame that have a truth
+  uint32_t counted = 25;  // first counted frame of a sequence
+  uint32_t subset = 1024; // pixels per frame with a reference
   std::vector<SequenceRequest> scenes;
   std::vector<DynamicTechnique> techniques;
 };
 
-// nullopt with located errors.
+// Returns nullopt with located errors.
 std::optional<DynamicFile> read_dynamic(const std::string& path, Diagnostics& diagnostics);
 
 } // namespace dermis::tools

@@ -24,7 +24,7 @@ std::vector<uint8_t> shown(const std::vector<double>& light, double exposure) {
   return demo::tonemap(image);
 }
 
-// Mean of a square over pixels.
+// Mean of squares over pixels.
 struct Mean {
   double sum = 0;
   uint64_t count = 0;

@@ -9,7 +9,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double little_change = 0.02; // of d_px
+constexpr double little_change = 0.02; // relative to d_px
 constexpr int max_tries = 4;
 
 demo::Result<Sequence> render_frames(const SequenceRequest& request, demo::RenderOptions options,

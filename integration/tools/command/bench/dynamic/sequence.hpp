@@ -1,5 +1,5 @@
 #pragma once
-// Frames of a scene one after the other, as a graph would be given them, and their truth at some pixels.
+// Sequences of frames of a scene, as inputs of a graph, with references at some pixels.
 
 #include "integration/examples/demo_engine/engine.hpp"
 #include "integration/tools/command/bench/reference.hpp"
@@ -14,22 +14,25 @@ namespace dermis::tools {
 struct SequenceRequest {
   std::string scene, framing;
   std::string file; // scene file
-  double d_px = 0;  // the camera zooms until the first frame's median is within 2 % of it; 0: as it is
-  uint32_t first = 0, frames = 60; // of the scene
-  bool still = false;              // camera and surfaces rest, so that frames can be compared pixel by pixel
-  std::optional<demo::CameraPlace> camera = {}; // instead of the scene's own
+  // The camera zooms until the first frame's median is within 2 % of this value; 0: no zoom.
+  double d_px = 0;
+  uint32_t first = 0, frames = 60; // frame numbers of the scene
+  // camera and surfaces rest, so that frames are comparable per pixel
+  bool still = false;
+  std::optional<demo::CameraPlace> camera = {}; // replaces the scene's camera
 };
 
 struct SequenceFrame {
-  CapturedFrame captured; // without what no technique of the bench reads
-  bool cut = false;       // the camera has jumped since the frame before
+  CapturedFrame captured; // without images that no technique of the bench reads
+  bool cut = false;       // the camera jumped since the previous frame
 };
 
 struct Sequence {
   SequenceRequest request;
   std::vector<SequenceFrame> frames;
-  double d_px = 0;     // median over subsurface pixels of the widest channel's projected d, first frame
-  double exposure = 1; // 99.9th percentile of the light over all frames at 1
+  // first frame's median over subsurface pixels of the widest channel's projected d
+  double d_px = 0;
+  double exposure = 1; // maps the 99.9th percentile of the light over all frames to 1
 };
 
 // Errors: those of demo::render.

@@ -1,4 +1,4 @@
-// In a file of its own: inlined next to its uses, the replacement looks mismatched to the compiler.
+// Separate file: if inlined next to its uses, the replacement looks mismatched to the compiler.
 #include "integration/tools/command/bench/record/allocation_count.hpp"
 
 #include <cstdlib>
@@ -8,7 +8,7 @@ namespace {
 thread_local uint64_t allocations = 0;
 }
 
-// The nothrow forms are replaced too: what they gave is freed by the plain delete.
+// The nothrow forms are also replaced, because plain delete frees their memory.
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
   ++allocations;
   return std::malloc(bytes == 0 ? 1 : bytes);

@@ -1,11 +1,13 @@
 #pragma once
-// Counts what a thread allocates: programs that link this replace operator new by one that counts.
+// Counts allocations per thread. Programs that link this file replace operator new by a counting
+// version.
 
 #include <cstdint>
 
 namespace dermis::tools {
 
-// Calls of operator new on the calling thread since it began, those of shared libraries included.
+// Returns the number of calls of operator new on the calling thread, including calls from shared
+// libraries.
 uint64_t allocations_of_this_thread();
 
 } // namespace dermis::tools

@@ -7,7 +7,8 @@
 namespace dermis::tools {
 namespace {
 
-// A perspective camera looking down -z: focal length 2, half the height being 1; near plane at .1 units.
+// Sets a perspective camera that looks down -z: focal length 2 at half height 1, near plane at 0.1
+// units.
 void set_camera(dermis_frame& frame) {
   for (float* matrix : {frame.clip_from_view, frame.previous_clip_from_view}) {
     matrix[0] = 2.0F;
@@ -48,7 +49,7 @@ std::string CountedHost::open(const CountedInput& input) {
   desc.profiles = &profile;
   desc.profile_count = 1;
   if (std::string problem = create(desc); !problem.empty()) return problem;
-  std::vector<std::string> others; // slots for what is no image
+  std::vector<std::string> others; // slots other than images
   for (const dermis_slot& slot : slots())
     if (slot.type != DERMIS_SLOT_IMAGE) others.emplace_back(slot.name);
   if (!others.empty()) {

@@ -1,5 +1,6 @@
 #pragma once
-// A host for measuring the library itself: a graph on a device that runs nothing, through the C interface.
+// A host that measures the library itself: runs a graph through the C interface on a device that
+// executes nothing.
 
 #include "integration/examples/demo_engine/context_hooks.hpp"
 #include "integration/tools/null_device/null_device.hpp"
@@ -26,21 +27,21 @@ public:
   CountedHost(const CountedHost&) = delete;
   CountedHost& operator=(const CountedHost&) = delete;
 
-  // Every image that the graph can use is bound, neither buffers nor scenes. Returns what went wrong, as text
-  // for people; "" for nothing.
+  // Binds every image that the graph can use, but no buffers or scenes. Returns the problem, or "".
   std::string open(const CountedInput& input);
-  // The next frame; images alternate between two sets, as those of hosts with two frames in flight do.
+  // Records the next frame. Images alternate between two sets, as in hosts with two frames in
+  // flight.
   dermis_result record_frame();
 
   NullDevice& device() { return device_; }
   dermis_graph graph() const { return graph_; }
-  // Passes of the plan.
+  // Returns the number of passes of the plan.
   uint32_t passes() const;
 
 private:
   static constexpr uint32_t image_sets = 2;
   std::string create(const dermis_graph_desc& desc);
-  std::vector<dermis_slot> slots() const; // empty: dermis_last_error() says why
+  std::vector<dermis_slot> slots() const; // empty on failure; dermis_last_error() has the reason
   std::string bind();
 
   NullDevice device_;

@@ -1,5 +1,5 @@
-// dermis bench record: what recording a frame costs the host's thread, on a device whose functions only
-// count.
+// dermis bench record: measures the host thread's cost of recording a frame, on a device whose
+// functions only count.
 
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/limits.hpp"
@@ -21,8 +21,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr uint32_t warm_frames = 16;       // pipelines, descriptors and caches settle
-constexpr uint32_t frames_per_sample = 64; // the clock is read once for that many
+constexpr uint32_t warm_frames = 16;       // until pipelines, descriptors and caches settle
+constexpr uint32_t frames_per_sample = 64; // frames per clock reading
 constexpr uint32_t samples = 201;
 constexpr uint32_t chain_passes = 100;
 constexpr double goal_per_pass = 0.5; // microseconds
@@ -30,12 +30,14 @@ constexpr double goal_per_pass = 0.5; // microseconds
 struct Row {
   std::string graph;
   uint32_t passes = 0;
-  double commands = 0.0, barriers = 0.0, allocations = 0.0; // a frame
-  double median = 0.0, lowest = 0.0, low = 0.0, high = 0.0; // microseconds a frame; low, high: 10 %, 90 %
+  double commands = 0.0, barriers = 0.0, allocations = 0.0; // per frame
+  // microseconds per frame; low, high: 10 %, 90 %
+  double median = 0.0, lowest = 0.0, low = 0.0, high = 0.0;
   double per_pass() const { return median / passes; }
 };
 
-// Classification and light as the shipped graphs do them, then a chain of blurs, each reading the one before.
+// Returns a graph with classification and light as in the shipped graphs, followed by a chain of
+// blurs.
 std::string chain_graph() {
   constexpr uint32_t others = 4; // classify, list, setup, combine
   constexpr uint32_t blurs = chain_passes - others;
@@ -178,7 +180,7 @@ std::string table_line(const Row& row) {
                      row.high, row.per_pass(), goal_per_pass);
 }
 
-// Graph files below a folder, sorted by name.
+// Returns graph files below a folder, sorted by name.
 std::vector<std::filesystem::path> graphs_of(const std::string& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
@@ -195,7 +197,7 @@ struct Source {
   std::string name, text;
 };
 
-// "" or what went wrong.
+// Returns the problem, or "".
 std::string read_sources(const BenchRecordOptions& options, std::vector<Source>& graphs,
                          std::string& profile) {
   std::string error;

@@ -17,7 +17,7 @@ struct Cells {
   size_t index(uint32_t x, uint32_t y) const { return size_t{y} * width + x; }
   double error(size_t i) const { return std::sqrt(squares[i] / count[i]); }
 
-  // Of measured neighbours; negative without any.
+  // Returns the mean error of measured neighbours, or a negative value without any.
   double neighbours(uint32_t x, uint32_t y) const {
     double sum = 0, found = 0;
     for (uint32_t j = y > 0 ? y - 1 : 0; j <= std::min(y + 1, height - 1); ++j)

@@ -11,8 +11,8 @@
 namespace dermis::tools {
 namespace {
 
-// Eight hues that stay apart for colour-blind readers (Okabe & Ito 2008), darker or lighter by scheme; names
-// beyond take them again with a dashed rim.
+// Eight hues that colour-blind readers can distinguish (Okabe & Ito 2008), adapted to the colour
+// scheme. Further series reuse them with a dashed rim.
 constexpr std::string_view style = R"(<style>
 :root{color-scheme:light dark;--bg:#fff;--fg:#1c1e21;--dim:#63686e;--line:#d9dce0;--head:#f3f4f6;--mark:#e7f3ec;--bad:#fbe3e1;--g:#7b8188;
 --c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#b0568f;--c4:#a37b00;--c5:#3d9bd1;--c6:#555;--c7:#c22}
@@ -41,7 +41,7 @@ circle{fill:var(--c);stroke:var(--c);stroke-width:1.8}circle.open{fill:var(--bg)
 </style>
 )";
 
-// What was not measured (data-v without a number) stays behind the rest either way.
+// Unmeasured values (data-v without a number) sort last in both directions.
 constexpr std::string_view script = R"(<script>
 for(const th of document.querySelectorAll('th')){th.tabIndex=0;th.onclick=()=>{const body=th.closest('table').tBodies[0],
 i=th.cellIndex,up=th.ariaSort!=='ascending';
@@ -53,8 +53,8 @@ th.onkeydown=e=>{if(e.key==='Enter'||e.key===' '){e.preventDefault();th.onclick(
 </script>
 )";
 
-// Rows on the front are marked. Any other flag says whether a row is as it should be: where it is not set the
-// row is marked as bad.
+// Rows on the front are highlighted. For any other flag, rows with the value false are highlighted
+// as bad.
 constexpr std::string_view front_flag = "on_pareto_front";
 
 std::string cell(const ReportValue& value, const ReportColumn& column) {
@@ -87,7 +87,7 @@ std::string_view mark_of(const ReportTable& table, const std::vector<ReportValue
   return on_front ? " class=best" : "";
 }
 
-// What marks mean, "" where there can be none.
+// Returns the legend of highlighted rows, or "" if there are none.
 std::string marks_text(const ReportTable& table) {
   for (size_t i = 0; i < table.columns.size(); ++i) {
     const bool flag = std::any_of(table.rows.begin(), table.rows.end(),

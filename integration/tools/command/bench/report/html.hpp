@@ -1,5 +1,5 @@
 #pragma once
-// Pieces of HTML that reports are made of.
+// Building blocks of HTML reports.
 
 #include <cstdint>
 #include <span>
@@ -8,11 +8,11 @@
 
 namespace dermis::tools {
 
-// Text with & < > " ' escaped: for contents and attributes.
+// Escapes & < > " ' for contents and attributes.
 std::string html_text(std::string_view text);
-// A whole page: the style that all reports share, `body` between its tags, and the script that sorts tables.
+// Returns a whole page: the common style, `body`, and the script that sorts tables.
 std::string html_page(std::string_view title, std::string_view body);
-// Base 64 after RFC 4648.
+// Base64 (RFC 4648).
 std::string base64(std::span<const uint8_t> bytes);
 
 } // namespace dermis::tools

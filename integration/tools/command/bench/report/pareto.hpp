@@ -1,5 +1,5 @@
 #pragma once
-// Which of several things nothing else beats in both cost and error.
+// Pareto front of cost and error.
 
 #include <vector>
 
@@ -9,7 +9,8 @@ struct Cost {
   double time = 0, error = 0;
 };
 
-// True for each that no other equals in one and betters in the other, or betters in both.
+// Returns true for each entry that no other entry dominates, that is, is better in one value and at
+// least equal in the other.
 std::vector<bool> pareto_front(const std::vector<Cost>& all);
 
 } // namespace dermis::tools

@@ -1,5 +1,6 @@
-// Plots with logarithmic axes, or over frames, as SVG. Colours come from the page: classes s0, s1, ... by the
-// series' place in its list, and b0, b1, ... of baselines, whose lines differ.
+// Draws plots with logarithmic axes, or over frames, as SVG. Colours come from the page's style:
+// classes s0, s1, ... by the index of the series, and b0, b1, ... for baselines, which differ by
+// line style.
 
 #include "integration/tools/command/bench/report/html.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
@@ -12,12 +13,12 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double width = 460, height = 300; // of the picture
+constexpr double width = 460, height = 300; // of the image
 constexpr double left = 70, right = 14, top = 12, bottom = 44;
 
 struct Axis {
-  double low = 0, high = 1; // log10, or the values where the axis is even
-  double from = 0, to = 1;  // picture
+  double low = 0, high = 1; // log10 of the values, or the values of a linear axis
+  double from = 0, to = 1;  // position in the image
   bool even = false;
 
   double place(double value) const {
@@ -50,10 +51,12 @@ std::string number(double value) {
                                                         : fmt::format("{:.0e}", value);
 }
 
-// 1, 2, 5 of each decade; 1 alone where the axis spans many, more where it spans little.
+// Returns ticks at 1, 2, 5 of each decade; at 1 only if the axis spans many decades, more if it
+// spans few.
 std::vector<double> ticks(const Axis& axis) {
   if (axis.even) {
-    const double step = axis.high > 100 ? 50 : axis.high > 40 ? 10 : axis.high > 8 ? 5 : 1; // frames
+    // frames
+    const double step = axis.high > 100 ? 50 : axis.high > 40 ? 10 : axis.high > 8 ? 5 : 1;
     std::vector<double> frames;
     for (double at = 0; at <= axis.high; at += step)
       frames.push_back(at);
@@ -108,7 +111,7 @@ size_t place_of(const std::vector<SeriesName>& names, std::string_view name) {
 }
 
 std::string series_class(const std::vector<SeriesName>& names, size_t place) {
-  constexpr std::ptrdiff_t lines = 6; // that the style has for baselines
+  constexpr std::ptrdiff_t lines = 6; // line styles for baselines
   if (!names[place].baseline) return fmt::format("s{}", place);
   const auto before = std::count_if(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(place),
                                     [](const SeriesName& one) { return one.baseline; });

@@ -35,7 +35,7 @@ void write_value(JsonWriter& out, const ReportValue& value) {
       value);
 }
 
-// RFC 4180.
+// Quotes text for CSV (RFC 4180).
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted(1, '"');
@@ -57,7 +57,8 @@ std::string csv_value(const ReportValue& value) {
 } // namespace
 
 bool is_baseline(std::string_view technique) {
-  constexpr std::string_view own[] = {"sap", "hybrid", "restir"}; // and what begins like them: sap_residual
+  // prefixes, for example of sap_residual
+  constexpr std::string_view own[] = {"sap", "hybrid", "restir"};
   return std::none_of(std::begin(own), std::end(own),
                       [&](std::string_view name) { return technique.starts_with(name); });
 }

@@ -5,10 +5,12 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double much = 0.5;   // of the error is left at most
-constexpr double chance = 1.1; // that a mean square error of this many pixels and frames is off by
+constexpr double much = 0.5; // maximum fraction of the error that remains
+// statistical error of a mean square error of this many pixels and frames
+constexpr double chance = 1.1;
 
-// The row of as many paths with this reuse and shift; null where it was not measured.
+// Returns the row with equal number of paths and this reuse and shift, or null if it was not
+// measured.
 const RestirRow* find_row(std::span<const RestirRow> rows, const RestirRow& like, std::string_view reuse,
                           std::string_view shift) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const RestirRow& row) {

@@ -1,5 +1,5 @@
 #pragma once
-// What reuse is expected to do to the error, whatever the device takes for it: by the number of frames alone.
+// Expected error reduction by reuse, for equal numbers of frames and independent of device time.
 
 #include "integration/tools/command/bench/restir/restir_report.hpp"
 
@@ -8,13 +8,16 @@
 
 namespace dermis::tools {
 
-// For people.
+// Describes the expectations for people.
 std::string expectation_text();
-// Sets mse_at_most of the rows of one scene and number of paths at a time: spatial reuse no more than none;
-// temporal reuse and spatiotemporal reuse half of that, and of spatial reuse by the same shift; a sequence no
-// more than the worse of its two parts.
+// Sets mse_at_most of the rows of one scene per number of paths:
+// - spatial reuse: the error without reuse
+// - temporal reuse: half of the error without reuse
+// - spatiotemporal reuse: half of the smaller error of no reuse and of spatial reuse with its shift
+// - a sequential shift: the larger error of its two parts
+// Limits without the factor of a half include a margin of 10 % for statistical error.
 void expect_of_reuse(std::span<RestirRow> rows);
-// Rows whose "holds" is false.
+// Counts rows whose "holds" is false.
 size_t rows_that_err_more(const ReportTable& table);
 
 } // namespace dermis::tools

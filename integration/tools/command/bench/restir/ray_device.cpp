@@ -1,4 +1,4 @@
-// Whether this machine can measure light by rays.
+// Checks whether this machine can trace rays.
 
 #include "integration/examples/demo_engine/vulkan_host.hpp"
 #include "integration/tools/command/bench/restir/ray_frames.hpp"

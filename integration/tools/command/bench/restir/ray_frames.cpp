@@ -7,7 +7,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr std::string_view export_scattered_type = "subsurface.export_scattered"; // no part of a technique
+// not part of a technique
+constexpr std::string_view export_scattered_type = "subsurface.export_scattered";
 
 double device_ms_of(const demo::FrameOutputs& frame, const LoadedGraph& loaded) {
   double sum = 0;

@@ -1,5 +1,6 @@
 #pragma once
-// Frames that the demo engine scatters by rays: it builds the acceleration structures, the graph asks them.
+// Renders frames that scatter by rays. The demo engine builds the acceleration structures, the
+// graph queries them.
 
 #include "integration/tools/command/bench/subject.hpp"
 #include "integration/tools/command/graph_input.hpp"
@@ -14,27 +15,27 @@ namespace dermis::tools {
 
 struct RayRequest {
   const LoadedGraph& loaded;
-  std::string graph; // its file
+  std::string graph; // file
   std::vector<NamedValue> set;
   uint32_t frames = 1;
   std::function<void()> step = {}; // called after each frame
 };
 
 struct RayFrame {
-  const std::vector<float>& light; // 3 a pixel, before albedo
-  double device_ms = 0;            // all passes but those that only hand light to tools
-  // What the graph counted of light through thin parts, as a slab lets it through: root mean square, of the
-  // luminance that `light` has. 0: none, or the graph does not count it.
+  const std::vector<float>& light; // 3 values per pixel, before albedo
+  double device_ms = 0;            // all passes except those that only export light
+  // Root mean square luminance of the light that the graph transmits through thin parts by the slab
+  // model, in units of `light`. 0: none, or not counted by the graph.
   double slab_rms = 0;
 };
 
-// Calls on_frame in order; an error of it ends the rendering, and so does Ctrl-C. Returns credits to be
-// printed. Errors: input, environment (no timestamps, no driver), usage.
+// Calls on_frame in order. An error of on_frame or Ctrl-C ends the rendering. Returns credits to
+// print. Errors: input, environment (no timestamps, no driver), usage.
 demo::Result<std::vector<std::string>>
 scatter_by_rays(const RayRequest& request, const SceneRequest& scene, const SubjectOptions& options,
                 const std::function<demo::Result<>(const RayFrame&)>& on_frame);
 
-// Why the device cannot do so, and what could; "" when it can.
+// Returns the reason why the device cannot trace rays and a remedy, or "".
 std::string why_no_rays(const demo::VulkanHost& host);
 
 } // namespace dermis::tools

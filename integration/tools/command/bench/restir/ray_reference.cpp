@@ -10,7 +10,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr uint64_t definition_version = 0x7261790000000001u; // "ray", 1: changes with what is kept
+// "ray", 1: change with the contents of the cache
+constexpr uint64_t definition_version = 0x7261790000000001u;
 
 Hash hash_of(const RayReferenceSize& size, const std::string& scene, const CapturedFrame& frame) {
   Hash hash;
@@ -30,9 +31,9 @@ Hash hash_of(const RayReferenceSize& size, const std::string& scene, const Captu
   return hash;
 }
 
-// Sums over frames, of the pixels that have a profile.
+// Sums over frames, for pixels with a profile.
 struct Sums {
-  std::vector<double> light;  // 3 a pixel
+  std::vector<double> light;  // 3 values per pixel
   std::vector<double> square; // of luminance
 };
 

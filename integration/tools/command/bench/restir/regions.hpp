@@ -1,12 +1,13 @@
 #pragma once
-// Parts of a picture that light reaches in different ways, and how far off light is in each.
+// Splits an image by the way light reaches its pixels, and measures the error of each region.
 
 #include "integration/tools/command/bench/reference.hpp"
 
 namespace dermis::tools {
 
-// One for all pixels of a reference, one for those that light comes through: the light from behind is more
-// than that in front, and its way through the thing at most `thin_mm`; one for the rest.
+// `all` holds all pixels of a reference. `through` holds pixels with transmitted light: the back
+// light exceeds the front light, and the distance through the object is at most `thin_mm`. `rest`
+// holds the others.
 struct RayRegions {
   Reference all, through, rest;
 };
@@ -14,16 +15,16 @@ RayRegions split_by_light(const Reference& reference, const CapturedFrame& frame
 
 struct RegionError {
   double mse = 0;   // exposed luminance
-  double light = 0; // mean luminance, over the reference's; 1: as much as there is
+  double light = 0; // mean luminance relative to the reference; 1: no loss
 };
 
 struct LightError {
-  RegionError all, through, rest; // those of a region without pixels are 0
+  RegionError all, through, rest; // 0 in a region without pixels
 };
 
-// `light`: 3 a pixel of the frame.
+// `light` holds 3 values per pixel of the frame.
 LightError measure_light(std::span<const float> light, const RayRegions& regions);
-// Of several frames.
+// Returns the mean over several frames.
 LightError mean_of(std::span<const LightError> frames);
 
 } // namespace dermis::tools

@@ -1,5 +1,5 @@
-// dermis bench restir: light by rays with every reuse and shift that the graph offers, and the screen-space
-// techniques beside it, against a reference by rays.
+// dermis bench restir: compares light by rays with every reuse and shift of the graph, and
+// screen-space techniques, with a reference by rays.
 
 #include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/restir/claims.hpp"
@@ -17,7 +17,7 @@
 namespace dermis::tools {
 namespace {
 
-// Frames that were rendered, and those to come.
+// Progress in frames.
 struct Steps {
   Progress progress;
   uint64_t done = 0;
@@ -32,7 +32,7 @@ struct Bench {
   const LoadedGraph& loaded;
   demo::VulkanHost& host;
   SubjectOptions subject_options = {};
-  bool reuses = false; // the graph has settings for it
+  bool reuses = false; // the graph has settings for reuse
   std::vector<RestirVariant> variants = {};
   Report report = {};
 };
@@ -50,7 +50,7 @@ RayRequest request_of(const Bench& bench, const RestirVariant& variant) {
 }
 
 uint32_t settle_of(const RestirFile& file, const RestirVariant& variant) {
-  return variant.has_history() ? file.settle : 1; // the driver compiles in the first
+  return variant.has_history() ? file.settle : 1; // the driver compiles in the first frame
 }
 
 demo::Result<RestirRow> measure_variant(Bench& bench, const SceneRequest& scene, const RayRegions& regions,
@@ -105,7 +105,7 @@ demo::Result<RestirRow> measure_in_screen_space(Bench& bench, const TechniqueReq
   return row;
 }
 
-// Without reuse, and the nearest to the truth with as many paths.
+// Selects error maps: the row without reuse, and the row with the smallest error for equal paths.
 void choose_pictures(std::vector<RestirRow>& rows) {
   RestirRow* nearest = &rows.front();
   for (RestirRow& row : rows)
@@ -119,7 +119,8 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
   RestirScene scene{subject.take(), {}, {}, {}, {}};
   RayRequest none = request_of(bench, bench.variants.front());
   none.step = [&] { steps.reach(steps.done + 1); };
-  const uint64_t after_reference = steps.done + bench.file.reference.frames; // also where it was kept
+  // also if the reference is cached
+  const uint64_t after_reference = steps.done + bench.file.reference.frames;
   auto reference = make_ray_reference(bench.file.reference, none, request, scene.subject,
                                       bench.subject_options, bench.options.cache);
   if (!reference) return reference.error();
@@ -139,7 +140,7 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
     }
   }
   scene.slab_rms *= scene.reference.reference.exposure;
-  if (!bench.options.quick) expect_of_reuse(scene.rows); // a few frames say nothing
+  if (!bench.options.quick) expect_of_reuse(scene.rows); // a few frames are not significant
   choose_pictures(scene.rows);
   const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
   for (const TechniqueRequest& technique : bench.file.screen_space) {

@@ -1,5 +1,5 @@
 #pragma once
-// What `dermis bench restir` measures, as data: tests/benchmark/restir.json.
+// Contents of tests/benchmark/restir.json, which describes `dermis bench restir`.
 
 #include "integration/tools/command/bench/plan_file.hpp"
 
@@ -9,23 +9,24 @@
 
 namespace dermis::tools {
 
-struct RayReferenceSize { // of a pixel
+struct RayReferenceSize { // per pixel
   uint32_t samples = 64, frames = 32;
 };
 
 struct RestirFile {
-  std::string graph;             // scatters by rays; its settings reuse and shift say what is measured
-  std::vector<uint32_t> samples; // paths a pixel and frame; a row each
-  uint32_t settle = 24;          // frames before the counted ones where there is history
+  // scatters by rays; its settings reuse and shift define the variants
+  std::string graph;
+  std::vector<uint32_t> samples; // paths per pixel and frame; one row each
+  uint32_t settle = 24;          // frames before the counted frames, for variants with history
   uint32_t frames = 24;          // counted
-  uint32_t repetitions = 5;      // timed runs of what does not change from frame to frame
-  double thin_mm = 6;            // light from behind comes through parts up to so thick
+  uint32_t repetitions = 5;      // timed runs of variants without history
+  double thin_mm = 6;            // thickness up to which back light is transmitted
   RayReferenceSize reference;
   std::vector<SceneRequest> scenes;
-  std::vector<TechniqueRequest> screen_space; // beside it
+  std::vector<TechniqueRequest> screen_space; // techniques for comparison
 };
 
-// nullopt with located errors.
+// Returns nullopt with located errors.
 std::optional<RestirFile> read_restir(const std::string& path, Diagnostics& diagnostics);
 
 } // namespace dermis::tools

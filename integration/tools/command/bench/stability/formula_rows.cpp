@@ -1,4 +1,4 @@
-// Closed forms at the ends of their ranges and beyond.
+// Closed forms at the limits of their ranges and beyond.
 #include "integration/tools/command/bench/stability/rows.hpp"
 
 #include "framegraph/model/splitmix.hpp"
@@ -15,10 +15,10 @@ namespace dermis::tools {
 namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double furthest_d =
-    49.1; // radius of the smallest survival, 2^-24, in d, by the approximate inverse
+// Radius of the minimum survival, 2^-24, in units of d, by the approximate inverse.
+constexpr double furthest_d = 49.1;
 
-// Error: by how much a radius leaves [0, 49 d], over all inverses.
+// Error: distance of a radius outside [0, 49 d], over all inverses.
 StabilityRow radii(std::string name, std::span<const double> survivals) {
   double error = 0;
   bool finite = true;
@@ -40,7 +40,7 @@ StabilityRow radii(std::string name, double survival) {
   return radii(std::move(name), std::span(&survival, 1));
 }
 
-// Whatever 32 bits may be as a float.
+// Returns random bit patterns as floats.
 std::vector<double> any_floats() {
   constexpr size_t many = 1 << 16;
   std::vector<double> values;
@@ -50,7 +50,7 @@ std::vector<double> any_floats() {
   return values;
 }
 
-// Far out the exact inverse finds the radius whose survival it is given: no clamp has cut it short. Error:
+// At large radii the exact inverse must return the radius of its argument, without clamping. Error:
 // relative.
 StabilityRow tail(std::string name, double r) {
   const double survival = std::exp(-r) / 4 + 3 * std::exp(-r / 3) / 4;
@@ -59,8 +59,8 @@ StabilityRow tail(std::string name, double r) {
                      1e-12, std::isfinite(density) && density > 0);
 }
 
-// Beyond the last radius that is drawn densities are finite and fall, to nothing in the end, also of a
-// channel that is a thousand times narrower. Error: by how much one rises.
+// Beyond the largest sampled radius densities must be finite and monotonically fall to 0, also for
+// a channel with a thousandth of d. Error: largest increase.
 StabilityRow beyond_tail(std::string name, double from, double to) {
   double error = 0;
   bool finite = true;

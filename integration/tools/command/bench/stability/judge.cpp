@@ -7,11 +7,11 @@
 namespace dermis::tools {
 namespace {
 
-constexpr uint32_t tile = 8;    // pixels a side
-constexpr uint32_t period = 16; // two tiles: seams of groups of 16 show as well
-constexpr uint32_t beside = 4;  // columns on either side of the middle that count as beside an edge
+constexpr uint32_t tile = 8;    // pixels per side
+constexpr uint32_t period = 16; // two tiles, so that seams of groups of 16 are also found
+constexpr uint32_t beside = 4;  // columns on either side of the middle that count as the edge
 
-// What a frame must give, 3 values a pixel.
+// Returns the required light of a frame, 3 values per pixel.
 std::vector<float> wanted_light(const StabilityCase& requested, uint32_t t, const CapturedFrame& frame) {
   std::vector<float> light(frame.lighting.values);
   if (requested.wanted)
@@ -32,7 +32,7 @@ struct Mean {
   double value() const { return count > 0 ? sum / static_cast<double>(count) : 0; }
 };
 
-// Errors of light at pixels with a profile, however they are looked at.
+// Errors of light at pixels with a profile, in several statistics.
 struct LightErrors {
   double largest = 0;
   Mean squares, all;
@@ -54,7 +54,7 @@ struct LightErrors {
   }
 };
 
-// Of pixels with a profile that `counts` takes.
+// Returns the mean samples of pixels with a profile that `counts` selects.
 template <class Counts>
 Mean samples_of(const CapturedFrame& frame, const StabilityAnswer& answer, Counts counts) {
   Mean mean;
@@ -100,12 +100,13 @@ double mean_samples(const CapturedFrame& frame, const StabilityAnswer& found, co
   const auto all = [](uint32_t, uint32_t) { return true; };
   const double difference =
       std::abs(samples_of(frame, found, all).value() / samples_of(frame, sound, all).value() - 1);
-  return std::isfinite(difference) ? difference : infinity; // NaN would hold
+  return std::isfinite(difference) ? difference : infinity; // NaN would compare as within the bound
 }
 
 double samples_error(const StabilityCase& requested, const CapturedFrame& frame, const StabilityAnswer& found,
                      const StabilityAnswer* sound) {
-  if (found.samples.size() != frame.lighting.values.size()) return infinity; // nothing was handed out
+  // the graph does not export samples
+  if (found.samples.size() != frame.lighting.values.size()) return infinity;
   if (requested.judged == Judged::samples_at_edge) return samples_at_edge(frame, found);
   if (requested.judged == Judged::samples_in_tile) return samples_in_tile(frame, found);
   return sound != nullptr ? mean_samples(frame, found, *sound) : infinity;
@@ -115,7 +116,7 @@ double samples_error(const StabilityCase& requested, const CapturedFrame& frame,
 
 Judgement judge(const StabilityCase& requested, uint32_t t, const StabilityAnswer& found,
                 const StabilityAnswer* sound) {
-  // A frame in which a pixel has no profile, or no place, says nothing of its light.
+  // The frame determines the judged pixels: those without a profile or depth are not judged.
   const CapturedFrame frame = requested.same_as ? requested.same_as(t) : requested.given(t);
   const std::vector<float> wanted = sound != nullptr ? sound->light : wanted_light(requested, t, frame);
   Judgement judgement;

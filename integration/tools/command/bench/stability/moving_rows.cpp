@@ -1,4 +1,4 @@
-// Moving values that are rounded a million times, beside their fp64 twins.
+// Compares moving values rounded to half floats a million times with fp64 references.
 #include "integration/tools/command/bench/stability/rows.hpp"
 
 #include "framegraph/model/splitmix.hpp"
@@ -17,8 +17,9 @@ float as_half(double value) {
   return demo::float_from_half(demo::half_from_float(static_cast<float>(value)));
 }
 
-// Mean and standard deviation in half floats beside the twin in fp64, of a value with ±2 % noise; error:
-// relative, of the standard deviation, which is what sample numbers go by, over the last tenth.
+// Compares mean and standard deviation in half floats with fp64, for a value with ±2 % noise.
+// Error: relative, of the standard deviation, which controls the number of samples, over the last
+// tenth.
 StabilityRow moving(std::string name, double level, uint64_t updates) {
   constexpr double eta = 0.2; // GuidanceSettings::eta
   subsurface::MovingVariance cpu_kernel;
@@ -40,16 +41,17 @@ StabilityRow moving(std::string name, double level, uint64_t updates) {
       cpu_kernel_squares += cpu_kernel.variance;
     }
   }
-  // Each rounding of the mean adds at most half a step to the next deviation, of 2 % of the mean or more.
+  // Each rounding of the mean adds at most half a step to the next deviation, which is 2 % of the
+  // mean or more.
   StabilityRow made =
       formula_row(std::move(name), std::abs(std::sqrt(squares / cpu_kernel_squares) - 1), 0.02, finite);
   made.frames = updates;
   return made;
 }
 
-// Samples of a pixel whose spread they are to bring down to the target, in a closed loop: what is kept in
-// half floats says how many are taken, and those what is kept. Beside it the twin in fp64 with draws of the
-// same. Error: relative, of the mean number of samples.
+// Simulates the closed loop of sampling: values stored in half floats determine the number of
+// samples, which determines the stored values. Compares with fp64 for the same random numbers.
+// Error: relative, of the mean number of samples.
 StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
   struct Loop {
     subsurface::MovingVariance moments;
@@ -86,8 +88,7 @@ StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
   return made;
 }
 
-// A frozen mean would stay where it is: it must follow a step to within a step of a half float over (1 - eta)
-// / eta.
+// The mean must follow a step to within one half float step over (1 - eta) / eta, and not freeze.
 StabilityRow following(std::string name, double eta, double bound) {
   float mean = as_half(0);
   for (uint32_t i = 0; i < 10000; ++i)
@@ -97,8 +98,8 @@ StabilityRow following(std::string name, double eta, double bound) {
   return made;
 }
 
-// A value that a float can only just tell from its level: its deviation is that of the floats, and never one
-// of a negative variance. Error: of mean and deviation, in units of the level.
+// For a value that alternates by one float step, the deviation must match the float step and never
+// stem from a negative variance. Error: of mean and deviation, in units of the level.
 StabilityRow steady(std::string name, double level, uint64_t updates) {
   constexpr double eta = 0.2;
   const double next = std::nextafter(static_cast<float>(level), HUGE_VALF);
@@ -126,9 +127,9 @@ double in_float(double value) {
   return static_cast<float>(value);
 }
 
-// The control's weight as shaders/afis/subsurface_guided.comp keeps it (weight, deviation and both means),
-// where half of what changes the control, by `swing` at most, is in what it controls, beside fp64. Error:
-// between both weights, over the last tenth.
+// Compares the control's weight as stored by shaders/afis/subsurface_guided.comp (weight, deviation
+// and both means) with fp64. Half of the control's change, of at most `swing`, is also in the
+// controlled value. Error: difference of the weights over the last tenth.
 StabilityRow control_over_frames(std::string name, double swing, double eta, double eps_alpha, Store store) {
   constexpr uint64_t frames = 36000; // ten minutes at 60 Hz
   subsurface::MovingCovariance cpu_kernel, kept;
@@ -147,7 +148,8 @@ StabilityRow control_over_frames(std::string name, double swing, double eta, dou
     kept.mean_f = store(kept.mean_f);
     kept.mean_g = store(kept.mean_g);
     const double found = subsurface::control_weight(kept, eps_alpha);
-    finite = finite && std::isfinite(found) && found >= 0 && found <= 2.1; // 1 + mean_f / mean_g at most
+    // at most 1 + mean_f / mean_g
+    finite = finite && std::isfinite(found) && found >= 0 && found <= 2.1;
     if (i >= frames - frames / 10)
       error = std::max(error, std::abs(found - subsurface::control_weight(cpu_kernel, eps_alpha)));
   }
@@ -156,8 +158,8 @@ StabilityRow control_over_frames(std::string name, double swing, double eta, dou
   return made;
 }
 
-// Even light leaves no spread, and the number of samples at its least; light that changes then is seen in the
-// frame after. Error: the least number over what is taken there.
+// Uniform light leaves no variance and the minimum number of samples; a change of light must be
+// detected in the next frame. Error: minimum over actual number of samples.
 StabilityRow awakening(std::string name) {
   const subsurface::GuidanceSettings settings;
   subsurface::MovingVariance moments;

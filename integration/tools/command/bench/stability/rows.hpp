@@ -1,5 +1,5 @@
 #pragma once
-// What the stability bench found of one case and technique.
+// Result of one stability case for one technique.
 
 #include "integration/tools/command/bench/stability/cases.hpp"
 #include "integration/tools/command/bench/technique.hpp"
@@ -12,29 +12,29 @@ namespace dermis::tools {
 
 struct StabilityRow {
   std::string name,
-      technique; // technique "formula": the closed forms in fp64, or moving values in half floats
+      technique; // "formula" is the closed forms in fp64, or moving values in half floats
   uint64_t frames = 1;
-  uint64_t nonfinite_pixels = 0; // most in one frame
-  uint64_t negative_pixels = 0;  // likewise
+  uint64_t nonfinite_pixels = 0; // maximum over frames
+  uint64_t negative_pixels = 0;  // maximum over frames
   double max_abs_error = 0;      // in units of the brightest light
   double bound = 0;
-  std::optional<uint32_t>
-      recovered_after_frames; // after the last damaged one; nullopt: nothing to recover from
+  // Frames after the last damaged frame; nullopt: no damage to recover from.
+  std::optional<uint32_t> recovered_after_frames;
 
   bool holds() const { return nonfinite_pixels == 0 && negative_pixels == 0 && max_abs_error <= bound; }
 };
 
-// One case of one technique; nullopt where it keeps no history and the case asks for one. Errors: those of
-// the run.
+// Runs one case on one technique. Returns nullopt if the case needs a history that the technique
+// lacks. Errors: those of the run.
 demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const StabilityCase& requested,
                                                    const std::string& name);
 
-// A row of technique "formula".
+// Returns a row of technique "formula".
 StabilityRow formula_row(std::string name, double error, double bound, bool finite = true);
 
-// The sampler, the albedo inversion and the control weight at the ends of their ranges.
+// Tests the sampler, the albedo inversion and the control weight at the limits of their ranges.
 std::vector<StabilityRow> formula_rows();
-// Moving values kept in half floats over `updates` frames beside their fp64 twins.
+// Compares moving values in half floats over `updates` frames with fp64 references.
 std::vector<StabilityRow> moving_rows(uint64_t updates);
 
 } // namespace dermis::tools

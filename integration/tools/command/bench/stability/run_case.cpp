@@ -1,4 +1,4 @@
-// One case of one technique, judged pixel by pixel.
+// Runs one case on one technique and judges each pixel.
 #include "integration/tools/command/bench/stability/judge.hpp"
 #include "integration/tools/command/bench/stability/rows.hpp"
 
@@ -17,11 +17,11 @@ bool is_guided(const TechniqueRequest& request) {
                      [](const NamedValue& one) { return one.first == "guidance"; });
 }
 
-// One answer a frame: light, or what the kernels say of their samples.
+// Returns one result per frame: light, or the kernels' sampling data.
 demo::Result<std::vector<StabilityAnswer>> run_all(TechniqueRun& run, const StabilityCase& requested,
                                                    bool reference) {
   std::vector<StabilityAnswer> all;
-  if (requested.same_as) run.start_anew(); // the same frame numbers draw the same samples
+  if (requested.same_as) run.start_anew(); // equal frame numbers give equal samples
   for (uint32_t t = 0; t < requested.frames; ++t) {
     if (t == 0 && !reference && requested.frame_index > 0) run.skip_to(requested.frame_index);
     auto light = run.scatter((reference ? requested.same_as : requested.given)(t), t > 0 && requested.follows,

@@ -1,4 +1,4 @@
-// dermis bench stability: every technique under everything that is known to break such techniques.
+// dermis bench stability: runs every technique on known difficult inputs.
 
 #include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
@@ -74,7 +74,7 @@ Report make_report(const Session& session, const std::vector<StabilityRow>& rows
   return report;
 }
 
-// A line a case: the worst technique; and every row that does not hold.
+// Formats one line per case with the worst technique, and every failing row.
 std::string text_of(const std::vector<StabilityRow>& rows, const std::vector<std::string>& notes) {
   Table table;
   table.columns = {{"case"}, {"techniques", true}, {"largest error", true}, {"bound", true}, {"of"},

@@ -15,7 +15,7 @@ constexpr int frames = 100, first_counted = 24, samples_a_frame = 16;
 constexpr double eta_residual = 0.2, eta_covariance = 0.05;
 const double ln2 = std::log(2.0);
 
-// SplitMix64 (Steele and others 2014): the same numbers with every compiler.
+// SplitMix64 (Steele et al. 2014), for equal numbers on every compiler.
 struct Random {
   uint64_t state;
   double next() {
@@ -32,7 +32,7 @@ double light(bool dynamic, int frame) {
 
 struct Frame {
   double f = 0, g = 0;                   // means of its samples
-  double covariance = 0, variance_g = 0; // among its samples
+  double covariance = 0, variance_g = 0; // of its samples
 };
 
 Frame draw(Random& random, double h, uint32_t samples) {
@@ -60,7 +60,7 @@ std::array<double, 6> run_supplement(bool dynamic, uint64_t seed) {
   std::array<MovingVariance, 6> spread{};
   std::array<double, 6> mean{};
   MovingCovariance moments;
-  std::optional<double> single, averaged; // weights of the frame before
+  std::optional<double> single, averaged; // weights of the previous frame
   double weight = 0;
   for (int t = 0; t < frames; ++t) {
     const double h = light(dynamic, t), control = 0.5 * h;

@@ -1,6 +1,7 @@
 #pragma once
-// The experiment of the 2021 paper's supplement, section 3: f = h(t) / (1 + y) and its control g = h(t) (1 -
-// y) over [0, 1], 16 independent samples a frame, 100 frames; h = 1 (static) or 1 + 3 sin(t / 10) (dynamic).
+// The experiment of the 2021 paper's supplement, section 3: f = h(t) / (1 + y) and its control g =
+// h(t) (1 - y) over [0, 1], 16 independent samples per frame, 100 frames. h = 1 (static) or 1 + 3
+// sin(t / 10) (dynamic).
 
 #include <array>
 #include <cstdint>
@@ -11,15 +12,16 @@ namespace dermis::tools {
 inline constexpr std::array<std::string_view, 6> residual_names = {"res_f", "sf",       "sf_ema",
                                                                    "emcm",  "emcm_hat", "ground_truth"};
 
-// The weight of the control for which the residual varies least, by the closed forms 12 (2 ln 2 - 1 - ln 2 /
-// 2) and 2 ln 2.
+// Returns the weight of the control with the smallest variance of the residual, in closed form: 12
+// (2 ln 2 - 1 - ln 2 / 2) (static) or 2 ln 2 (dynamic).
 double best_control_weight(bool dynamic);
 
-// Mean over frames 25 to 100 of the root of the moving variance (eta .2) of each residual, of one run.
+// Returns, for one run, the mean over frames 25 to 100 of the root of each residual's moving
+// variance (eta 0.2).
 std::array<double, 6> run_supplement(bool dynamic, uint64_t seed);
 
-// The best weight found from samples: static, the regression of f on g over `samples` of them; dynamic, of
-// the frames' means of `samples` each, over 100 frames.
+// Returns the best weight found from samples. Static: the regression of f on g over `samples`
+// samples. Dynamic: the regression of the means of 100 frames with `samples` samples each.
 double sampled_control_weight(bool dynamic, uint32_t samples, uint64_t seed);
 
 } // namespace dermis::tools

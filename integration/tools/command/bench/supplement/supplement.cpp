@@ -1,4 +1,5 @@
-// dermis bench supplement: table 1 of the 2021 paper's supplement from many runs, beside the printed one.
+// dermis bench supplement: reproduces table 1 of the 2021 paper's supplement from many runs, next
+// to the printed values.
 
 #include "integration/tools/command/bench/report/report.hpp"
 #include "integration/tools/command/bench/supplement/experiment.hpp"
@@ -14,13 +15,14 @@
 namespace dermis::tools {
 namespace {
 
-// Printed in the supplement; medians of 20,000 runs of an independent program (both: static, dynamic).
+// Values printed in the supplement, and medians of 20,000 runs of an independent program (both:
+// static, dynamic).
 constexpr double printed[2][6] = {{.0325, .0160, .0058, .0070, .0324, .0055},
                                   {.5585, .3797, .3742, .1295, .0732, .1243}};
 constexpr double medians[2][6] = {{.0321, .0161, .0069, .0078, .0329, .0057},
                                   {.5761, .3763, .3743, .1369, .0770, .1336}};
-constexpr double median_tolerance = 0.015; // of the median; it is rounded to four digits
-constexpr double printed_tolerance = 0.20; // of one run, which is what is printed
+constexpr double median_tolerance = 0.015; // of the median, which is rounded to four digits
+constexpr double printed_tolerance = 0.20; // of a single run, as printed
 
 struct Row {
   std::string scenario, configuration;
@@ -29,7 +31,7 @@ struct Row {
   bool holds = false;
 };
 
-// Empty where it was stopped.
+// Returns an empty list if interrupted.
 std::vector<Row> table_rows(const Session& session, uint32_t runs) {
   std::vector<Row> rows;
   Progress progress(progress_style(session.quiet, false), "supplement", "run", uint64_t{2} * runs);
@@ -65,7 +67,7 @@ std::vector<Row> table_rows(const Session& session, uint32_t runs) {
   return rows;
 }
 
-// The best weight of the control: in closed form, as printed, and from samples.
+// Returns the best weight of the control: in closed form, as printed, and from samples.
 std::vector<Row> weight_rows() {
   constexpr uint32_t static_samples = 100000, dynamic_samples = 1024, dynamic_runs = 200;
   Row still{"static", "alpha", sampled_control_weight(false, static_samples, 3),

@@ -1,5 +1,5 @@
-// Closed forms and the sampler against tabulated values; equation numbers are those of the functions'
-// headers.
+// Tests closed forms and the sampler against tabulated values. The functions' headers have the
+// equation numbers.
 
 #include "integration/tools/command/bench/truth/properties.hpp"
 #include "integration/tools/references/analytic.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 constexpr double six_digits = 6e-7; // tabulated values are rounded to six digits
-constexpr double cut_digits = 1e-6; // or cut after them
+constexpr double cut_digits = 1e-6; // tabulated values are truncated to six digits
 
 struct Rows {
   std::vector<PropertyRow> all;
@@ -40,7 +40,7 @@ void add_profile(Rows& rows) {
   rows.add("scaling s(A = 1), dmfp", 23.6511, subsurface::burley_scaling_dmfp(1), 6e-5);
 }
 
-// Midpoint rule over the survival u; the clamped tail is 2^-24.
+// Midpoint rule over the survival u; the tail is clamped at 2^-24.
 void add_sampler(Rows& rows) {
   constexpr int n = 2000000;
   double r1 = 0, r2 = 0, exact1 = 0, exact2 = 0, weight = 0, furthest = 0;
@@ -56,7 +56,7 @@ void add_sampler(Rows& rows) {
     furthest = std::max(furthest, std::abs(r / exact - 1));
   }
   rows.add("E[r] of the exact inverse, in d", 2.5, exact1, 2.5e-3);
-  rows.add("E[r^2] of the exact inverse, in d^2", 14, exact2, 0.014); // .1 %
+  rows.add("E[r^2] of the exact inverse, in d^2", 14, exact2, 0.014); // 0.1 %
   rows.add("mean weight of the sampler", 1, weight, 1e-5);
   rows.add("E[w r] of the sampler, in d", 2.5, r1, 2.5e-3);
   rows.add("E[w r^2] of the sampler, in d^2", 14, r2, 0.014);
@@ -77,18 +77,20 @@ void add_plane(Rows& rows) {
   rows.add("centre of a Gaussian, s = 2 d", .605886, subsurface::burley_gaussian_centre(2, 1), six_digits);
 }
 
-// What of a pixel's light stays in it at d = 3 px, and the radii of discs that stand for the pixel.
+// Tests the fraction of a pixel's light that stays in the pixel at d = 3 px, and the radii of
+// equivalent discs.
 void add_centre(Rows& rows) {
   constexpr double d = 3;
   const double exact = subsurface::planar_weight(1, 1, 0, 0, {d, d, d})[0];
-  rows.add("a pixel's own share, d = 3 px", 0.0879216, exact, six_digits / 10); // polar quadrature, 1e5 steps
+  // polar quadrature, 1e5 steps
+  rows.add("a pixel's own share, d = 3 px", 0.0879216, exact, six_digits / 10);
   rows.add("that of the disc of equal area, over it", 1, subsurface::burley_cdf(std::sqrt(1 / pi), d) / exact,
            0.006);
   rows.add("that of half the diagonal as radius, over it", 1.24,
            subsurface::burley_cdf(std::sqrt(0.5), d) / exact, 0.006);
 }
 
-// Chords of a sphere: the share of a harmonic of degree l that survives, by Simpson's rule.
+// Chords of a sphere: remaining fraction of a harmonic of degree l, by Simpson's rule.
 void add_sphere(Rows& rows) {
   constexpr double radius = 5; // in d
   constexpr double tabulated[] = {.973233, .788511, .635578, .525471, .445382};

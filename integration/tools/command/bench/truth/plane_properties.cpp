@@ -1,5 +1,5 @@
-// What must hold on planes that face the viewer, on tilted ones and across steps, for whatever scatters a
-// frame.
+// Properties of scattering on planes that face the viewer, on tilted planes and across steps, for
+// any technique.
 
 #include "integration/tools/command/bench/truth/properties.hpp"
 
@@ -19,8 +19,8 @@ namespace dermis::tools {
 namespace {
 
 constexpr double middle_x = property_width / 2, middle_y = property_height / 2; // pixels
-constexpr double d = 4;             // pixels, unless a law says another
-constexpr uint32_t sub_samples = 8; // a side of a pixel, for light with edges
+constexpr double d = 4;             // pixels, except where stated otherwise
+constexpr uint32_t sub_samples = 8; // per side of a pixel, for light with edges
 
 using Light = std::function<double(double x, double y)>; // pixels from the middle pixel's centre
 
@@ -56,7 +56,7 @@ struct Asked {
       error = result.error();
     return !error;
   }
-  // The first channel; integers from the middle pixel.
+  // Returns the first channel; coordinates are relative to the middle pixel.
   double at(int x, int y) const {
     return double(light[3 * (static_cast<size_t>(y + int(middle_y)) * property_width +
                              static_cast<size_t>(x + int(middle_x)))]);
@@ -80,7 +80,8 @@ void white_furnace(Asked& requested) {
   }
 }
 
-// Light is constant over pixels, and the middle column is half lit: two edges of half the height.
+// Light is constant per pixel and the middle column is half lit: the mean of two edges, each of
+// half the height.
 double edge_of_columns(double x, double d_px, double stretch = 1) {
   return 0.5 * (subsurface::burley_edge((x - 0.5) * stretch, d_px) +
                 subsurface::burley_edge((x + 0.5) * stretch, d_px));
@@ -110,12 +111,12 @@ void slanted_edge(Asked& requested) {
       squares += error * error;
       ++count;
     }
-  // Averaging over pixels changes an edge's response by about a third of a pixel's variance times its
-  // curvature.
+  // Averaging over pixels changes an edge's response by about a third of a pixel's variance times
+  // its curvature.
   requested.add("slanted_edge", "RMSE around an edge at 45 degrees", 0, std::sqrt(squares / count));
 }
 
-// Least squares for a + b cos over the middle: b is half the contrast that is left.
+// Least-squares fit of a + b cos over the middle. b is half the remaining contrast.
 double contrast(const Asked& requested, double kx, double ky) {
   double n = 0, sc = 0, scc = 0, sy = 0, syc = 0;
   for (int y = -16; y < 16; ++y)
@@ -134,10 +135,11 @@ double unnormalised_sinc(double x) {
   return std::abs(x) < 1e-9 ? 1 : std::sin(x) / x;
 }
 
-// What is left of a sinusoid that is sampled at pixel centres and held over pixels: at the centres all its
-// images at multiples of the sampling frequency look like itself.
+// Returns the remaining contrast of a sinusoid that is sampled at pixel centres and constant per
+// pixel. At the centres all its aliases at multiples of the sampling frequency look like the
+// sinusoid itself.
 double sampled_contrast(double kx, double ky) {
-  constexpr int images = 24; // beyond, each adds less than 1e-6
+  constexpr int images = 24; // each further image adds less than 1e-6
   constexpr double sampling = 2 * 3.14159265358979323846;
   double sum = 0;
   for (int j = -images; j <= images; ++j)
@@ -180,7 +182,7 @@ void disc(Asked& requested) {
 
 void gaussian(Asked& requested) {
   for (const double s : {0.5, 2.0}) {
-    const double d_px = s < 1 ? 2 * d : d; // means over pixels widen the light: sigma^2 + 1/12
+    const double d_px = s < 1 ? 2 * d : d; // averaging over pixels widens the light: sigma^2 + 1/12
     CapturedFrame frame = plane(d_px);
     const double sigma = s * d_px;
     paint(frame, [&](double x, double y) { return std::exp(-(x * x + y * y) / (2 * sigma * sigma)); });
@@ -207,7 +209,7 @@ void polynomial(Asked& requested) {
   requested.add("parabola", "E[x^2] at the vertex, in d^2", 7, requested.at(0, 0) / (4 * scale));
 }
 
-// The edge in distances along a surface that is seen at an angle.
+// The edge response in distances along the tilted surface.
 void tilted_edge(Asked& requested) {
   for (const double degrees : {30.0, 60.0}) {
     const double slope = std::tan(degrees * 3.14159265358979323846 / 180),
@@ -232,8 +234,8 @@ void tilted_edge(Asked& requested) {
   }
 }
 
-// A sphere's pole, which sees half of it: chords up to sqrt(2) R carry the light of their ends, Simpson's
-// rule.
+// Returns the light at a sphere's pole, which sees half of the sphere: chords up to sqrt(2) R, by
+// Simpson's rule.
 double sphere_pole(const Light& of_cosine, double radius, double d_px) {
   constexpr int steps = 4000; // even
   double light = 0, all = 0;
@@ -307,7 +309,7 @@ void borders(Asked& requested) {
   requested.add("depth_step", "largest leak over a step of 100 d", 0, leak(requested));
 }
 
-// The same light twice as large with twice the d: means of 2x2 pixels are what one pixel was.
+// The same light and d at twice the size: means of 2x2 pixels must equal the pixels at single size.
 void scale_invariance(Asked& requested) {
   const auto pattern = [](double x, double y) {
     return 0.5 + 0.5 * std::sin(0.05 * x) * std::cos(0.11 * y) * (x * y > 0 ? 1 : -0.4);

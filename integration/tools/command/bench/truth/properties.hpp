@@ -1,6 +1,6 @@
 #pragma once
-// Laws of scattering with a known answer, measured: formulas, the fp64 truth, and every technique on the
-// device.
+// Measures properties of scattering with known results: for formulas, the fp64 reference, and every
+// technique on the device.
 
 #include "integration/tools/command/bench/technique.hpp"
 
@@ -14,18 +14,18 @@ namespace dermis::tools {
 struct PropertyRow {
   std::string property, technique; // technique: "formula", "truth", or "sap smooth"
   double expected = 0, measured = 0;
-  std::optional<double> tolerance; // of the absolute difference; nullopt: reported, not gated
+  std::optional<double> tolerance; // of the absolute difference; nullopt: reported, but not gated
 
   bool holds() const;
 };
 
-// Values of the closed forms and of the sampler against the tabulated or exact ones.
+// Compares closed forms and the sampler with tabulated or exact values.
 std::vector<PropertyRow> formula_properties();
 
-// What scatters a frame: 3 values a pixel.
+// Scatters a frame; returns 3 values per pixel.
 using Scatter = std::function<demo::Result<std::vector<float>>(const CapturedFrame&)>;
 
-// A technique that laws are asked of, with the tolerance of each law by name; laws it does not name are
+// A technique under test, with tolerances by property name. Properties without a tolerance are only
 // reported.
 struct PropertySubject {
   std::string name;
@@ -33,18 +33,18 @@ struct PropertySubject {
   std::vector<std::pair<std::string, double>> tolerances;
 };
 
-// The size of every frame that plane_properties asks for, pixels.
+// Size of every frame of plane_properties, pixels.
 inline constexpr uint32_t property_width = 512, property_height = 192;
-// The band around the middle row, and all columns: what plane_properties looks at in frames that are no
-// planes.
+// Returns whether plane_properties evaluates the pixel in frames that are not planes: a band around
+// the middle row.
 bool is_looked_at(uint32_t x, uint32_t y);
-// The profiles that its frames use.
+// Returns the profiles of the frames.
 std::vector<CaptureProfile> property_profiles();
 
-// Names of the laws that plane_properties measures, for tolerances.
+// Returns the names of the properties, for tolerances.
 std::vector<std::string_view> plane_property_names();
 
-// Laws of planes and steps. Errors: those of `scatter`.
+// Measures the properties of planes and steps. Errors: those of `scatter`.
 demo::Result<std::vector<PropertyRow>> plane_properties(const PropertySubject& subject);
 
 } // namespace dermis::tools

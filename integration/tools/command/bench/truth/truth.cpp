@@ -1,5 +1,5 @@
-// dermis bench truth: laws with known answers beside what formulas, the truth and the techniques make of
-// them.
+// dermis bench truth: compares known results with those of formulas, the reference and the
+// techniques.
 
 #include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
@@ -25,7 +25,7 @@ demo::Result<std::vector<float>> scatter_exactly(const CapturedFrame& frame) {
     std::copy(everywhere.begin(), everywhere.end(), light.begin());
     return light;
   }
-  // Only what the laws look at: a band around the middle row.
+  // Only the evaluated pixels: a band around the middle row.
   std::vector<uint32_t> pixels;
   for (uint32_t i = 0; i < reference.profile.size(); ++i)
     if (is_looked_at(i % reference.width, i / reference.width)) pixels.push_back(i);

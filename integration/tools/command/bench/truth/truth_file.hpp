@@ -1,5 +1,5 @@
 #pragma once
-// Which techniques the laws are asked of, and how far each may miss: tests/benchmark/truth.json.
+// Contents of tests/benchmark/truth.json: techniques under test and their tolerances.
 
 #include "integration/tools/command/bench/truth/properties.hpp"
 
@@ -10,7 +10,7 @@
 
 namespace dermis::tools {
 
-using Tolerances = std::vector<std::pair<std::string, double>>; // law, absolute
+using Tolerances = std::vector<std::pair<std::string, double>>; // property, absolute tolerance
 
 struct PropertyTechnique {
   TechniqueRequest request;
@@ -22,7 +22,7 @@ struct PropertyFile {
   std::vector<PropertyTechnique> techniques;
 };
 
-// nullopt with located errors.
+// Returns nullopt with located errors.
 std::optional<PropertyFile> read_property_file(const std::string& path, Diagnostics& diagnostics);
 
 } // namespace dermis::tools

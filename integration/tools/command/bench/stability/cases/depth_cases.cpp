@@ -1,4 +1,4 @@
-// Depths that are none, and depth as depth tests leave it, whichever way it runs and wherever it ends.
+// Invalid depths, and depth buffers of all kinds of projections.
 #include "integration/tools/command/bench/stability/cases.hpp"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 namespace dermis::tools {
 namespace {
 
-// The right half has a depth that is none; the left one goes on as if there were nothing.
+// The right half has an invalid depth. The left half must be unaffected.
 StabilityCase odd_depth(std::string_view name, float depth) {
   const auto with = [depth](bool damaged) {
     return [depth, damaged](uint32_t) {
@@ -56,7 +56,8 @@ enum class View : uint8_t { perspective, orthographic };
 enum class Range : uint8_t { forward, reversed };
 constexpr double near_m = 0.1, far_m = 100, no_far_m = infinity;
 
-// Rows and columns of a projection that matter for depth: device = (f * z + g) / w at view z, w = -z or 1.
+// Returns a projection with only the entries that matter for depth: device = (f * z + g) / w at
+// view z, w = -z or 1.
 subsurface::Matrix4 projection(View view, Range range, double far_plane, double slope) {
   subsurface::Matrix4 m{};
   m[0] = 1 / slope;
@@ -79,7 +80,7 @@ subsurface::Matrix4 projection(View view, Range range, double far_plane, double 
   return m;
 }
 
-// A plane at 1 m that turns away, with sky on the right: as a depth buffer it means what it does as
+// A tilted plane at 1 m with sky on the right. The depth buffer must give the same result as
 // distances.
 StabilityCase depth_buffer(std::string_view name, View view, Range range, double far_plane) {
   const auto make = [=](uint32_t) {
@@ -104,7 +105,7 @@ StabilityCase depth_buffer(std::string_view name, View view, Range range, double
   made.given = made.same_as = make;
   made.depth = DepthGiven::depth_buffer;
   made.judged = Judged::light_rms;
-  made.bound = furnace; // a float's step is a micrometre there, a thousandth of d
+  made.bound = furnace; // a float step is 1 micrometre there, a thousandth of d
   return made;
 }
 

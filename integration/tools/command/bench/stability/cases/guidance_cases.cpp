@@ -1,4 +1,4 @@
-// Numbers of samples that follow what was found: how soon, and by what not.
+// Adaptive numbers of samples: how fast they adapt, and what must not change them.
 #include "integration/tools/command/bench/stability/cases.hpp"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ CapturedFrame edge_frame() {
   return frame;
 }
 
-// Even light for 600 frames leaves nothing that varies; then there is an edge. In the second frame with it a
-// pixel beside it takes twice the least number of samples.
+// 600 frames of uniform light leave no variance; then an edge appears. In its second frame, pixels
+// at the edge must take at least twice the minimum number of samples.
 StabilityCase wakes_up() {
   constexpr uint32_t comes = 600; // frame
   StabilityCase made;
@@ -31,7 +31,7 @@ StabilityCase wakes_up() {
   return made;
 }
 
-// Light in other units under another exposure is the same light.
+// Light in other units with a matching exposure must give the same numbers of samples.
 StabilityCase in_other_units() {
   const auto with = [](float change) {
     return [change](uint32_t frame) {
@@ -54,8 +54,8 @@ StabilityCase in_other_units() {
   return made;
 }
 
-// One pixel that takes many samples keeps its group waiting: the most in a tile over its mean, which the
-// range of the number of samples (8 to 64) bounds.
+// A pixel with many samples stalls its group. The maximum over the mean of a tile is bounded by the
+// range of sample counts (8 to 64).
 StabilityCase uneven() {
   StabilityCase made;
   made.name = "samples_in_a_tile";

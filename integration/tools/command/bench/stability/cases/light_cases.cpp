@@ -1,4 +1,4 @@
-// Light and masks that are not what they should be.
+// Invalid light and masks.
 #include "integration/tools/command/bench/stability/cases.hpp"
 
 #include "integration/tools/command/bench/subject.hpp"
@@ -10,9 +10,9 @@
 namespace dermis::tools {
 namespace {
 
-constexpr float largest_half = 65504; // what clean_light of shaders/common/sanitise.glsl lets through
+constexpr float largest_half = 65504; // upper bound of clean_light in shaders/common/sanitise.glsl
 
-// Three pixels of the textured frame hold `damage`; it counts as `taken`.
+// Three pixels of the textured frame hold `damage`, which must have the effect of `taken`.
 StabilityCase damaged_light(std::string_view name, float damage, float taken) {
   const auto with = [](float value) {
     return [value](uint32_t) {
@@ -43,7 +43,7 @@ StabilityCase uniform(std::string_view name, float value, double bound) {
   return made;
 }
 
-// A white plane of which `has_profile` says what scatters.
+// A white plane that scatters where `has_profile` is true.
 template <class Mask> StabilityCase masked(std::string_view name, Mask has_profile) {
   StabilityCase made;
   made.name = name;
@@ -59,7 +59,7 @@ template <class Mask> StabilityCase masked(std::string_view name, Mask has_profi
   return made;
 }
 
-// Half of the plane lies in the dark; it scatters like the other half, whose light must arrive.
+// Half of the plane is dark and scatters. Light of the other half must reach the dark half.
 StabilityCase black_half() {
   const auto with = [](float dark) {
     return [dark](uint32_t) {
@@ -78,7 +78,7 @@ StabilityCase black_half() {
   return made;
 }
 
-// Half of the picture has no profile and a thousand times the light, of which nothing must come over.
+// Half of the image has no profile and 1000 times the light. None of that light may leak.
 StabilityCase glare_beside() {
   StabilityCase made;
   made.name = "glare_without_profile";
@@ -96,8 +96,8 @@ StabilityCase glare_beside() {
   return made;
 }
 
-// The brightest light there is beside none, on pixels at many depths, so that the dark ones keep next to
-// nothing of what glares around them, blue least of all. Next to nothing is not less than nothing.
+// The brightest light next to darkness, on pixels at many depths, so that dark pixels receive
+// almost no light, least in blue. Results must not become negative.
 StabilityCase glare_in_the_dark() {
   constexpr float step = 2e-3f; // metres: two d
   StabilityCase made;
@@ -118,7 +118,8 @@ StabilityCase glare_in_the_dark() {
   return made;
 }
 
-// Light that a float can only just tell from 1000, for as long as variances take to become negative.
+// Light alternates between 1000 and the next float, long enough for variances to become negative by
+// rounding.
 StabilityCase trembling() {
   StabilityCase made;
   made.name = "light_1000_within_a_step";

@@ -1,4 +1,4 @@
-// Sequences that lead history astray: velocities that are none, and light that leaves what was learned wrong.
+// Sequences that mislead history: invalid velocities, and light that invalidates learned values.
 #include "integration/tools/command/bench/stability/cases.hpp"
 
 #include <algorithm>
@@ -10,7 +10,8 @@ namespace {
 
 using Velocity = std::array<float, 3>; // pixels to the right, down; units of view depth
 constexpr Velocity rests{0, 0, 0};
-constexpr Velocity leads_outside{1e3f, 0, 0}; // of any picture here: a surface that was not to be seen
+// of any image here: marks a surface that was not visible
+constexpr Velocity leads_outside{1e3f, 0, 0};
 
 StabilityCase velocity(std::string_view name, float value) {
   StabilityCase made;
@@ -28,8 +29,8 @@ StabilityCase velocity(std::string_view name, float value) {
   return made;
 }
 
-// Stripes of velocities that are none, with stripes at rest between them, under light that varies. A pixel
-// with such a velocity is one that was not to be seen before.
+// Stripes of invalid velocities alternate with resting stripes, under varying light. A pixel with
+// an invalid velocity must count as not visible before.
 StabilityCase striped(std::string_view name, std::array<Velocity, 3> broken) {
   const auto with = [broken](bool damaged) {
     return [broken, damaged](uint32_t) {
@@ -55,9 +56,9 @@ StabilityCase striped(std::string_view name, std::array<Velocity, 3> broken) {
   return made;
 }
 
-// Terraces, of which pyramids are unsure. First red falls on a single pixel, of which samples find many times
-// as much as the pyramid does; then it falls on all, and the pattern of the luminance stays, so that ratios
-// are trusted.
+// Terraces on which pyramids have low confidence. First red light falls on a single pixel, where
+// samples find many times the pyramid's light. Then it falls on all pixels while the pattern of the
+// luminance stays, so that the learned ratios are trusted.
 StabilityCase red_comes() {
   constexpr uint32_t comes = 8;               // frame
   constexpr uint32_t terrace = 6;             // pixels

@@ -1,5 +1,5 @@
-// All that can be wrong at once: any value in any picture, at random places. Each frame is another one, and
-// follows the one before.
+// Random combination of all damage: any value in any image at random positions. Each frame differs
+// and follows the previous frame.
 #include "integration/tools/command/bench/stability/cases.hpp"
 
 #include <array>
@@ -10,11 +10,11 @@ namespace {
 constexpr std::array any_value{not_a_number, infinity,  -infinity, 0.0f,  -0.0f,  -1.0f, 1e-45f,
                                1e-40f,       0x1p-126f, 6e-8f,     1e-5f, 0.5f,   1.0f,  1e3f,
                                65504.0f,     65520.0f,  0x1p31f,   1e30f, -1e30f, 3e38f, -3e38f};
-constexpr std::array<uint8_t, 7> ids{0, 1, 2, 3, 4, 5, 200}; // the last one has no profile
-constexpr std::array dim_light{0.0f, 1e-3f, 0.5f, 1.0f};     // of light
-constexpr std::array fractions{256u, 8u, 1u};                // one of so many pixels
+constexpr std::array<uint8_t, 7> ids{0, 1, 2, 3, 4, 5, 200}; // the last id has no profile
+constexpr std::array dim_light{0.0f, 1e-3f, 0.5f, 1.0f};     // light values
+constexpr std::array fractions{256u, 8u, 1u};                // one of that many pixels
 
-// Numbers that differ from place to place and repeat from run to run (splitmix64).
+// Pseudo-random numbers, repeatable across runs (splitmix64).
 class Dice {
 public:
   explicit Dice(uint64_t seed) : state_(seed) {}

@@ -19,7 +19,7 @@ StabilityCase furnace_of(std::string_view name, std::function<CapturedFrame()> m
   return made;
 }
 
-// A plane that turns away by `degrees` about the vertical axis.
+// A plane tilted by `degrees` about the vertical axis.
 StabilityCase grazing(std::string_view name, double degrees) {
   return furnace_of(name, [degrees] {
     CapturedFrame frame = sound_frame();
@@ -41,7 +41,7 @@ CapturedFrame with_scale(CapturedFrame frame, float scale) {
   return frame;
 }
 
-// A factor on d that leaves nothing to scatter: the light stays as it is, bit for bit.
+// A factor on d that removes scattering: light must stay unchanged bit for bit.
 StabilityCase without_scattering(std::string_view name, float scale) {
   StabilityCase made;
   made.name = name;
@@ -50,7 +50,7 @@ StabilityCase without_scattering(std::string_view name, float scale) {
   return made;
 }
 
-// Of the third profile blue comes out as it went in, beside red and green that scatter.
+// Profile 3: blue must be unchanged next to red and green, which scatter.
 StabilityCase without_blue() {
   StabilityCase made;
   made.name = "d_0_of_blue";
@@ -63,7 +63,8 @@ StabilityCase without_blue() {
   return made;
 }
 
-// Of the fourth profile blue has a thousandth of the width: no sample that red asks for says anything of it.
+// Profile 4: blue has a thousandth of the width, so that samples for red contain no information for
+// blue.
 StabilityCase narrow_blue() {
   return furnace_of("d_of_blue_1e-3", [] {
     CapturedFrame frame = sound_frame();
@@ -72,8 +73,8 @@ StabilityCase narrow_blue() {
   });
 }
 
-// Each pixel at a depth of its own, d and more from those beside it, of which blue has a hundredth: what they
-// say of it is at the end of what floats hold.
+// Neighbouring pixels differ in depth by d or more; blue has a hundredth of d. Weights of
+// neighbours are at the limit of the float range.
 StabilityCase far_apart() {
   return furnace_of("surfaces_far_apart", [] {
     constexpr float step = 3e-3f; // metres: three d
@@ -85,11 +86,12 @@ StabilityCase far_apart() {
   });
 }
 
-// Light and dark from pixel to pixel, where d has just become wide enough to scatter: what a camera that
-// comes closer sees all at once.
+// Light alternates per pixel and d is just wide enough to scatter, as when a camera approaches.
 StabilityCase begins_to_scatter() {
-  constexpr double leaves = 0.0354;     // share of the light beyond the pixel's inscribed circle, 9.16 d
-  constexpr double sample = 1.0 / 16.0; // what one says where light is drawn from all radii, as by burley
+  // fraction of the light beyond the pixel's inscribed circle, 9.16 d
+  constexpr double leaves = 0.0354;
+  // weight of one of 16 samples if all radii are sampled, as in burley
+  constexpr double sample = 1.0 / 16.0;
   StabilityCase made;
   made.name = "d_begins_to_scatter";
   made.given = [](uint32_t) {
@@ -105,7 +107,7 @@ StabilityCase begins_to_scatter() {
   return made;
 }
 
-// Another size in each frame, histories going on.
+// The size changes in each frame while histories continue.
 StabilityCase resized() {
   StabilityCase made;
   made.name = "size_changes_every_frame";
@@ -128,7 +130,8 @@ std::vector<StabilityCase> shape_cases() {
   StabilityCase widest = sized("size_16384x64", 16384, 64);
   StabilityCase odd = sized("size_1919x1079", 1919, 1079);
   odd.large = true;
-  widest.may_be_rejected = true; // where images have a border, the last columns have no room on the device
+  // at the border of images, the last columns do not fit on the device
+  widest.may_be_rejected = true;
   return {grazing("grazing_85", 85),
           grazing("grazing_89", 89),
           grazing("grazing_89_9", 89.9),

@@ -1,13 +1,13 @@
-// What tiles of 8x8 pixels and the groups that run them must not show.
+// Tiles of 8x8 pixels and their groups must not be visible.
 #include "integration/tools/command/bench/stability/cases.hpp"
 
 namespace dermis::tools {
 namespace {
 
-// Light that rises evenly scatters to itself: what differs between columns, or rows, of one place in a tile
-// and those of another is a seam.
+// A light ramp must scatter to itself. Differences between columns, or rows, by their position in a
+// tile are seams.
 StabilityCase seams() {
-  constexpr uint32_t side = 192; // pixels: eight times two tiles, beside the border
+  constexpr uint32_t side = 192; // pixels: eight times two tiles inside the margin
   constexpr double d_px = 2;
   StabilityCase made;
   made.name = "tile_edges_in_a_ramp";
@@ -19,12 +19,12 @@ StabilityCase seams() {
     return frame;
   };
   made.judged = Judged::tile_edges;
-  made.margin = 32;     // 16 d: all but 4e-3 of a pixel's light is from within
-  made.bound = 0x1p-11; // a step of a half float below 1
+  made.margin = 32;     // 16 d: all but 4e-3 of a pixel's light comes from within
+  made.bound = 0x1p-11; // one half float step below 1
   return made;
 }
 
-// More tiles than a dispatch has groups along one side on many devices (65,535).
+// More tiles than the maximum group count of many devices along one axis (65,535).
 StabilityCase many_tiles() {
   StabilityCase made;
   made.name = "size_4096x1032"; // 66,048 tiles

@@ -1,4 +1,4 @@
-// Sequences: damage that history must not keep, light and profiles that jump, frame numbers without end.
+// Sequences: damage that history must not keep, jumps of light and profiles, large frame numbers.
 #include "integration/tools/command/bench/stability/cases.hpp"
 
 #include "framegraph/model/splitmix.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 using Level = std::function<double(uint32_t frame)>;
 
-// White light of a level that changes from frame to frame.
+// White light whose level changes per frame.
 StabilityCase levels(std::string_view name, uint32_t frames, Level level, double scale,
                      double bound = furnace) {
   StabilityCase made;
@@ -45,7 +45,7 @@ StabilityCase poisoned() {
   return made;
 }
 
-// The same profile numbers, halves exchanged at frame 5.
+// Two profiles swap their halves at frame 5.
 StabilityCase swapped_profiles() {
   StabilityCase made;
   made.name = "profiles_change";
@@ -62,8 +62,8 @@ StabilityCase swapped_profiles() {
   return made;
 }
 
-// Frame numbers near which a float, a signed or an unsigned number ends: what is found there differs from
-// what the first frames find by no more than those do among themselves, which `same_as` stands for.
+// Frame numbers near the limits of float, signed and unsigned integers. Results may differ from
+// those of the first frames (`same_as`) only by noise.
 StabilityCase frame_number(std::string_view name, uint64_t index) {
   StabilityCase made;
   made.name = name;
@@ -71,8 +71,8 @@ StabilityCase frame_number(std::string_view name, uint64_t index) {
   made.given = made.same_as = [](uint32_t) { return textured_frame(); };
   made.frame_index = index;
   made.judged = Judged::light_rms;
-  made.bound =
-      0.08; // of light between .1 and .9: two frames' noise of 16 samples, .057 of the noisiest technique
+  // For light in 0.1..0.9: noise of two frames with 16 samples, 0.057 for the noisiest technique.
+  made.bound = 0.08;
   return made;
 }
 
