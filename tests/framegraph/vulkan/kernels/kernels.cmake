@@ -1,4 +1,4 @@
-# The test kernels as arrays of SPIR-V, embedded into test_framegraph_vulkan.
+# Embeds the test kernels as SPIR-V arrays into test_framegraph_vulkan.
 set(kernel_sources ${CMAKE_CURRENT_SOURCE_DIR}/framegraph/vulkan/kernels)
 set(kernel_headers ${CMAKE_BINARY_DIR}/generated/test_kernels)
 file(MAKE_DIRECTORY ${kernel_headers})
