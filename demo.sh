@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the library and the command, renders a bust with three graphs, and with one more setting, and prints what it
-# cost and how exact it is; then one sheet of all techniques. On Debian as root (or with sudo) it installs the packages
-# that are missing.
+# Builds the library and the command, renders a bust with three graphs and one additional setting,
+# and prints device times and errors. Then renders a sheet of all techniques. On Debian, as root or
+# with sudo, the script first installs missing packages.
 set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 cd "$root"
@@ -9,11 +9,12 @@ cd "$root"
 source .ci/common.sh
 
 usage="usage: ./demo.sh [--head FOLDER]
-Builds the library and the dermis command into build/release, renders a bust with three graphs into out/ and prints
-device times and errors, then a sheet of every technique and material. On Debian, as root or with sudo, it first
-installs the packages that are missing; elsewhere it takes them as there. Minutes the first time.
-  --head FOLDER   also renders the head scan of that folder: LeePerrySmith.glb, Map-COL.jpg, Map-SPEC.jpg and
-                  Infinite-Level_02_Tangent_SmoothUV.jpg"
+Builds the library and the dermis command into build/release and renders a bust with three graphs into
+out/. Prints device times and errors, then renders a sheet of every technique and material. On Debian, as
+root or with sudo, the script first installs missing packages; elsewhere they must be installed. The
+first run takes several minutes.
+  --head FOLDER   also render the head scan in FOLDER, which must contain LeePerrySmith.glb, Map-COL.jpg,
+                  Map-SPEC.jpg and Infinite-Level_02_Tangent_SmoothUV.jpg"
 
 head=
 while [[ $# -gt 0 ]]; do
@@ -29,7 +30,7 @@ while [[ $# -gt 0 ]]; do
 done
 
 install_packages
-# All that cmake --install puts in place; the tests are left out.
+# Builds everything that cmake --install needs, without tests.
 build_preset release --target dermis_command dermis_library integration/packaging/all
 
 render() { # scene, graph, folder, more options
@@ -42,7 +43,7 @@ for graph in sap burley separable; do
   render bust "$graph" "bust_$graph"
 done
 render bust sap bust_sap_through --set transmission=true
-say "With light through the ears: out/bust_sap_through"
+say "With transmitted light (ears): out/bust_sap_through"
 say
 build/release/dermis render configs/scenes/bust.json --graph none --size 640x360 --frames 1 --out out/bust_without --quiet
 say "Without scattering, to compare: out/bust_without"
@@ -53,11 +54,11 @@ say
 if [[ -z "$head" ]]; then
   say "Head scan: skipped, no folder given (./demo.sh --head FOLDER)."
 elif [[ ! -f "$head/LeePerrySmith.glb" ]]; then
-  say "Head scan: skipped, there is no LeePerrySmith.glb in '$head'."
+  say "Head scan: skipped, '$head' has no LeePerrySmith.glb."
 else
   for graph in sap burley separable; do
     render head "$graph" "head_$graph" --model "$head/LeePerrySmith.glb" --height 0.24 --albedo "$head/Map-COL.jpg" \
       --specular "$head/Map-SPEC.jpg" --normal "$head/Infinite-Level_02_Tangent_SmoothUV.jpg"
   done
 fi
-say "Pictures and EXRs are in $root/out."
+say "Images are in $root/out."

@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
-# Builds the project and runs its tests. On Debian as root (or with sudo) it installs the packages that are missing.
+# Builds the project and runs its tests. On Debian, as root or with sudo, the script first installs
+# missing packages.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 # shellcheck source=.ci/common.sh
 source .ci/common.sh
 
 usage="usage: ./test.sh [--full]
-  Runs the tests, those that need ray queries on a second driver (if it can be fetched), then each fuzz
-  target for 10 seconds (if clang is installed or can be).
-  --full   more cases per test; then code coverage (gcovr), the thread sanitizer, random graphs on a device,
-           the device tests on other drivers, every bench with --quick, and the suites that manage memory or
-           use a device with the address and undefined-behaviour sanitizers. About 100 minutes on two cores.
-           CONTRIBUTING.md lists the commands for longer runs."
+  Runs the tests. Tests that need ray queries run on a second driver, if the driver can be fetched. Then runs
+  each fuzz target for 10 seconds, if clang can be installed.
+  --full   run more cases per test. Then run code coverage (gcovr), the thread sanitizer, random graphs on
+           a device, the device tests on other drivers, every bench with --quick, and the suites that
+           manage memory or use a device with the address and undefined-behaviour sanitizers. Takes about
+           100 minutes on two cores. CONTRIBUTING.md lists the commands for longer runs."
 
 full=no
 for argument in "$@"; do
@@ -27,10 +28,10 @@ if can_fuzz; then
   fuzz=yes
   packages+=("${fuzz_packages[@]}")
 fi
-optional_packages+=("${interface_packages[@]}" chromium) # chromium opens the viewer's page in a test
+optional_packages+=("${interface_packages[@]}" chromium) # a test opens the viewer's page in chromium
 install_packages
 
-# Runs one step: the function that is called like the step, with '_' for spaces. Exit code 77 means skipped.
+# Runs one step: the function named like the step, with '_' for spaces. Exit code 77 means skipped.
 times=() # "step <tab> seconds <tab> note"
 step() {
   local name=$1 begin=$SECONDS rc=0
@@ -52,10 +53,11 @@ run_tests() { # preset, more arguments of ctest
   LP_NUM_THREADS=${LP_NUM_THREADS:-1} ctest --preset "$1" -j "$(nproc)" --progress "${@:2}" ||
     fail 1 "tests failed in '$1'; the log: build/$1/Testing/Temporary/LastTest.log"
 }
-# Suites of tests that need ray queries end in this; they have a step of their own.
+# Suffix of suites that need ray queries, which run in a separate step.
 ray_suites=WithRayQueries
 release() { run_tests release -E "$ray_suites\\."; }
-# Sanitizers and other drivers find no more in the additional cases of the full tier.
+# Runs without the additional cases of --full, which find nothing more with sanitizers or other
+# drivers.
 quick() { (unset DERMIS_TESTS_FULL && "$@"); }
 asan() { quick run_tests asan -L "memory|device"; }
 tsan() {
@@ -67,8 +69,9 @@ random_graphs() {
   built test_passes_device
   DERMIS_FUZZ_GRAPHS=60 build/release/tests/test_passes_device --gtest_filter='DeviceFuzz.*'
 }
-# The tests that need ray queries run on a driver that has them, all others on the system's. The tests find
-# the driver where fetch.sh leaves it. With the driver there, none of them may be skipped.
+# Tests that need ray queries run on a driver that supports them, all others on the system's driver.
+# The tests find the driver in the folder of fetch_driver.sh. With the driver present, no test may
+# be skipped.
 ray_queries() {
   local log=build/ray_queries.log rc=0 program
   tests/scripts/fetch_driver.sh >/dev/null || return 77
@@ -79,12 +82,12 @@ ray_queries() {
   [[ $rc -eq 0 ]] || { grep -B20 'FAILED' "$log" | tail -60; fail 1 "tests on ray queries failed; the log: $log"; }
   if grep -q '^\[  SKIPPED \] ' "$log"; then
     grep -B3 '^\[  SKIPPED \] ' "$log"
-    fail 1 "a driver with ray queries is there, but tests on it were skipped; the log: $log"
+    fail 1 "a driver with ray queries is present, but its tests were skipped; log: $log"
   fi
   local ran
   ran=$(grep -c '^\[       OK \]' "$log" || true)
   say "$ran tests ran on the driver with ray queries"
-  [[ $ran -gt 0 ]] || fail 1 "a driver with ray queries is there, but no test ran on it; the log: $log"
+  [[ $ran -gt 0 ]] || fail 1 "a driver with ray queries is present, but no test ran on it; log: $log"
 }
 other_drivers() { quick tests/scripts/run_on_drivers.sh build/release; }
 coverage() { tests/scripts/coverage.sh; }

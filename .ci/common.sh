@@ -1,4 +1,4 @@
-# Sourced by demo.sh and test.sh: the one list of packages, and how they are installed and the project is built.
+# Sourced by demo.sh and test.sh: lists the packages, installs them and builds the project.
 # shellcheck shell=bash
 
 packages=(
@@ -8,24 +8,24 @@ packages=(
   mesa-vulkan-drivers vulkan-validationlayers libxml2-utils
 )
 
-# What the command compiles shaders with while it runs, and what the viewer's page is built with, where Node comes from
-# nowhere else; what tells hosts how to be compiled; and what decodes compressed models. Without them these are left out.
+# Packages for run-time shader compilation, pkg-config files, compressed models, and for building
+# the viewer's page if no other Node is installed. Features whose package is missing are left out.
 optional_packages=(glslang-dev pkg-config libmeshoptimizer-dev libdraco-dev)
 command -v node >/dev/null || optional_packages+=(nodejs)
 command -v npm >/dev/null || optional_packages+=(npm)
 
-# What the fuzz targets need beside them.
+# Additional packages of the fuzz targets.
 fuzz_packages=(clang libclang-rt-14-dev)
 
-# A third-party renderer that an example embeds Dermis in; without it that test is skipped.
+# A third-party renderer in which an example embeds Dermis. Without the package its test is skipped.
 # shellcheck disable=SC2034
 interface_packages=(libplacebo-dev)
 
-# What the full tests build the library for Windows with.
+# Cross compiler with which the full tests build the library for Windows.
 # shellcheck disable=SC2034
 windows_packages=(g++-mingw-w64-x86-64-posix)
 
-# What the full tests count covered code with; without it that is skipped.
+# Coverage tool of the full tests. Without the package coverage is skipped.
 # shellcheck disable=SC2034
 coverage_packages=(gcovr)
 
@@ -35,7 +35,7 @@ fail() { # exit code, message
   exit "$1"
 }
 
-# Those of the given packages that are not installed, one a line.
+# Prints the given packages that are not installed, one per line.
 missing_packages() {
   local package
   for package in "$@"; do
@@ -43,10 +43,10 @@ missing_packages() {
   done
 }
 
-# Is this a user who may install packages, with or without sudo?
+# Succeeds if this user may install packages, with or without sudo.
 may_install() { [[ $EUID -eq 0 ]] || { command -v sudo >/dev/null && sudo -n true 2>/dev/null; }; }
 
-# Can the fuzz targets be built here, once install_packages was given their packages?
+# Succeeds if the fuzz targets can be built here after install_packages with their packages.
 can_fuzz() {
   if command -v dpkg-query >/dev/null; then
     [[ -z "$(missing_packages "${fuzz_packages[@]}")" ]] || may_install
@@ -55,10 +55,10 @@ can_fuzz() {
   fi
 }
 
-# Installs `packages`; then `optional_packages` where this user may and where they are to be had.
+# Installs `packages`, then those of `optional_packages` that are available, if this user may.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
-    say "This is no Debian: taking it that what these packages hold is installed: ${packages[*]}"
+    say "This is not Debian; assuming that the contents of these packages are installed: ${packages[*]}"
     return
   fi
   local missing wanted=() become=()
@@ -83,12 +83,12 @@ install_packages() {
   for package in "${wanted[@]}"; do
     say "Installing $package"
     if [[ $failed == yes ]] || ! "${apt[@]}" install -y --no-install-recommends "$package" >/dev/null; then
-      say "It cannot be installed: what needs it is left out."
+      say "$package cannot be installed; features that need it are left out."
     fi
   done
 }
 
-# Configures and builds one preset; further arguments go to the build.
+# Configures and builds one preset. Further arguments are passed to the build.
 build_preset() {
   local preset=$1
   shift

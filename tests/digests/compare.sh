@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Plans from two builds must be equal byte for byte: all shipped graphs and 200 drawn ones.
+# Checks that two builds make byte-identical plans of all shipped graphs and 200 random graphs.
 # usage: compare.sh [BUILD_FOLDER BUILD_FOLDER]; default: build/release (gcc) and build/fuzz (clang)
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."

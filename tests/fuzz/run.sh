@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs every fuzz target for some seconds from its committed corpus, the shipped files and a dictionary
-# of their words; as many at a time as there are processors.
-# usage: run.sh [SECONDS [TARGET...]]; exit code 1: a finding, kept in build/fuzz/findings
+# Runs fuzz targets, one per processor, on the committed corpus, the shipped files and a dictionary
+# of their words. The exit code is 1 after a finding, which is kept in build/fuzz/findings.
+# usage: run.sh [SECONDS [TARGET...]]; default: 10 seconds, all targets
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
@@ -12,12 +12,12 @@ targets=("$@")
 
 findings=build/fuzz/findings dictionary=build/fuzz/keys.dict
 mkdir -p "$findings"
-# Every short word that stands in quotes in a schema or a shipped file: the keys and values of all formats.
+# Every short quoted word of a schema or shipped file: the keys and values of all formats.
 grep -ohE '"[$A-Za-z0-9_./@-]{1,32}"' configs/{schema,graphs,overlays,profiles,scenes}/*.json | sort -u |
   sed 's/^"\(.*\)"$/"\\"\1\\""/' >"$dictionary"
 run_one() { # target, seconds, folder of findings
   local target=$1 seconds=$2 findings=$3 grown=build/fuzz/corpus/$1 log=build/fuzz/$1.log runs covered
-  mkdir -p "$grown" # what earlier runs found stays for the next
+  mkdir -p "$grown" # keeps the inputs of earlier runs
   local folders=("$grown" "tests/fuzz/corpus/$target")
   case $target in
     graph | overlay | profile | scene) folders+=("configs/${target}s") ;;

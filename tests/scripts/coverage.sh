@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# What the tests run of framegraph/ and of the C interface: at least 90 % of lines and 80 % of branches, those left out
-# that throwing makes and that cannot be reached. docs/verification.md says what is not covered.
-# usage: coverage.sh [--report]; --report: only count what ran before. Exit code 77: gcovr is not installed
+# Measures test coverage of framegraph/ and of the C interface, and requires at least 90 % of lines
+# and 80 % of branches. Unreachable branches and branches of exceptions are excluded.
+# docs/verification.md lists uncovered code.
+# usage: coverage.sh [--report]; --report only evaluates the previous run
+# Exit code 77: gcovr is not installed.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
@@ -10,11 +12,12 @@ if ! command -v gcovr >/dev/null; then
   echo "coverage: skipped, gcovr is not installed"
   exit 77
 fi
-# The longest first; two run at a time. The kernels' own tests and those of the command run no more of what is counted.
+# The longest suites run first, two at a time. Suites of kernels and of the command cover no
+# additional code.
 tests=(test_framegraph test_integration_abi test_integration_embedding test_schema test_framegraph_vulkan
   test_shared_shaders test_integration_shaders test_integration_null_device test_integration_arguments
   test_integration_static_library)
-# Minutes of repetition of what shorter tests run, too: files with one thing changed, and reloads by the hundred.
+# Long repetitive tests without additional coverage: mutated files, and hundreds of reloads.
 left_out='Schema.OfGraphsAgreesWithTheParserOnMutatedFiles:ReloadStorm.*'
 build=build/coverage
 
@@ -34,12 +37,12 @@ export build left_out
 if [[ ${1:-} != --report ]]; then
   cmake --preset coverage --log-level=WARNING >/dev/null
   known=$(cmake --build --preset coverage --target help)
-  for i in "${!tests[@]}"; do # without glslang's or valijson's development files some are not there
+  for i in "${!tests[@]}"; do # some suites need glslang or valijson
     grep -q "^${tests[i]}: phony" <<<"$known" || unset "tests[i]"
   done
   cmake --build --preset coverage -j "$(nproc)" --target "${tests[@]}"
   find $build -name '*.gcda' -delete
-  unset DERMIS_TESTS_FULL # more random graphs run the same lines
+  unset DERMIS_TESTS_FULL # more random graphs cover the same lines
   printf '%s\n' "${tests[@]}" | xargs -P 2 -I {} bash -c 'run_test {}'
 fi
 failed=0

@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
-# Fetches the Mesa of Debian's backports, whose lavapipe is newer than the system's, below build/drivers, and prints its
-# manifest's path. Nothing of the system changes: apt has lists and cache of its own there, the package is unpacked, not
-# installed. What was fetched is kept. Exit code 77: it cannot be had here; says why.
-# usage: fetch_driver.sh [FOLDER]; FOLDER: build/drivers
+# Fetches Mesa from Debian's backports, whose lavapipe is newer than the system's, into a folder,
+# and prints the path of its manifest. The system stays unchanged: apt uses separate lists and a
+# separate cache, and the package is unpacked, not installed. A driver that was fetched before is
+# reused.
+# usage: fetch_driver.sh [FOLDER]; default: build/drivers
+# Exit code 77: the driver is not available; the reason is printed.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
 folder=${1:-build/drivers}
 package=mesa-vulkan-drivers
-keyring=/usr/share/keyrings/debian-archive-keyring.gpg # of the package debian-archive-keyring
+keyring=/usr/share/keyrings/debian-archive-keyring.gpg # from the package debian-archive-keyring
 unavailable() {
   echo "Mesa of backports: skipped, $1" >&2
   exit 77
@@ -25,7 +27,7 @@ for tool in apt-get dpkg-deb; do
 done
 release=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
 [[ -n $release ]] || unavailable "/etc/os-release has no VERSION_CODENAME"
-# The mirror that the system takes this release from, whichever way its sources are written.
+# The system's mirror of this release, independent of the format of apt's sources.
 mirror=$(apt-get indextargets --format '$(RELEASE) $(REPO_URI)' 'Created-By: Packages' |
   awk -v release="$release" '$1 == release { print $2; exit }')
 [[ -n $mirror ]] || unavailable "the sources of apt name no mirror of '$release'"

@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# The device tests on other drivers than the system's: the Mesa of Debian's backports (fetch_driver.sh), SwiftShader where
-# chromium-common brings it, and those that DERMIS_DRIVERS names (manifests, separated by ':'). Prints a table of drivers
-# and suites. Golden frames, and light of random graphs, are held against those of the system's driver. Tests that a
-# driver does not pass are listed in known/DRIVER with the reason and left out; any other failure fails. Exit code 77:
-# there is no other driver.
-# usage: run_on_drivers.sh [BUILD [SUITE...]]; BUILD: build/release; SUITE: "integration_abi" for test_integration_abi and
-# so on, "properties:2/8" for the second eighth of the tests of test_laws. Without SUITE: the suites that use a device, except properties.
+# Runs the device tests on drivers other than the system's: Mesa from Debian's backports
+# (fetch_driver.sh), SwiftShader from chromium-common, and the manifests in DERMIS_DRIVERS
+# (separated by ':'). Prints a table of drivers and suites. Golden frames and light of random graphs
+# are compared with the system's driver. Tests that a driver is known to fail are listed in
+# known/DRIVER with the reason and left out. Any other failure is an error.
+# usage: run_on_drivers.sh [BUILD [SUITE...]]
+# BUILD: default build/release
+# SUITE: "integration_abi" for test_integration_abi, "properties:2/8" for the second eighth of the
+# tests of test_properties. Default: the suites that use a device, except properties.
+# Exit code 77: there is no other driver.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
@@ -20,12 +23,12 @@ for suite in "${suites[@]}"; do
   [[ $suite =~ ^[a-z_]+(:[1-9][0-9]*/[1-9][0-9]*)?$ ]] ||
     { echo "run_on_drivers.sh: '$suite' is no suite, nor a part of one such as 'properties:2/8'" >&2; exit 2; }
 done
-seconds=1800       # a suite, or a part of one
-memory=$((8 << 20)) # KiB that a suite may take: a driver gone astray must not take the machine with it
+seconds=1800       # per suite or part of a suite
+memory=$((8 << 20)) # KiB per suite; protects the machine from drivers that use too much memory
 swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
 
 drivers=()
-fetched=$(tests/scripts/fetch_driver.sh) && drivers+=("$(readlink -f "$fetched")") # tests change the folder
+fetched=$(tests/scripts/fetch_driver.sh) && drivers+=("$(readlink -f "$fetched")") # tests change the working directory
 [[ -e $swiftshader ]] && drivers+=("$swiftshader") || echo "SwiftShader: skipped, chromium-common is not installed" >&2
 named=${DERMIS_DRIVERS:-}
 for manifest in ${named//:/ }; do
@@ -63,7 +66,7 @@ for manifest in "${drivers[@]}"; do
       VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest DERMIS_PICTURES=$pictures timeout $seconds \
         "$program" --gtest_filter="-$left_out"
     ) >"$log" 2>&1 || rc=$?
-    of_suite=0 # tests that are left out
+    of_suite=0 # number of tests left out
     if [[ -n $left_out ]]; then
       of_suite=$("$program" --gtest_list_tests --gtest_filter="$left_out" | grep -c '^  ' || true)
     fi

@@ -1,6 +1,7 @@
 #!/bin/sh
-# The shared library exports what integration/abi/symbols.txt lists: every function of the header, nothing else. It asks
-# for the C and C++ run time alone: no Vulkan loader, no JSON or shader library.
+# Checks that the shared library exports exactly the functions of the header, as listed in
+# integration/abi/symbols.txt. The library may only depend on the C and C++ run time: no Vulkan
+# loader, no JSON or shader library.
 # usage: exported_symbols.sh LIBRARY SOURCE_DIR
 set -eu
 scratch=$(mktemp -d)

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The public header stands alone in every C and C++ that a host may use, without a word from the compiler.
+# Checks that the public header compiles on its own, without warnings, in every supported C and C++
+# standard.
 # usage: header_compiles.sh SOURCE_DIR
 set -eu
 include="$1/integration/include"
@@ -61,7 +62,7 @@ for compiler in g++ clang++; do
   command -v $compiler > /dev/null || continue
   for standard in c++11 c++14 c++17 c++20; do check $compiler $standard "$scratch/alone.cpp"; done
 done
-# Other targets, with clang only. Vulkan's headers come from this machine.
+# Other targets, only with clang and this machine's Vulkan headers.
 if command -v clang > /dev/null; then
   for target in aarch64-linux-gnu riscv64-linux-gnu armv7-linux-gnueabihf i686-linux-gnu x86_64-w64-mingw32; do
     if ! clang --target=$target -std=c11 -ffreestanding -nostdlibinc -idirafter /usr/include -Wall -Wextra -Werror \

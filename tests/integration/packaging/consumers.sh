@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Installs the build to a folder of its own, moves it, and lets tiny hosts find the library in four ways: plain compiler,
-# pkg-config, find_package (shared and static) and add_subdirectory. Each one runs a graph.
-# usage: consumers.sh BUILD_DIR SOURCE_DIR [--subdirectory]: with the option only that, since it builds the library anew
+# Installs the build, moves the installed folder, and builds small hosts in four ways: plain
+# compiler, pkg-config, find_package (shared and static) and add_subdirectory. Each host runs a
+# graph.
+# usage: consumers.sh BUILD_DIR SOURCE_DIR [--subdirectory]
+# --subdirectory runs only add_subdirectory, which rebuilds the library.
 set -euo pipefail
 build=$1
 source=$2
@@ -22,7 +24,7 @@ if [[ ${3:-} == --subdirectory ]]; then
 fi
 
 cmake --install "$build" --prefix "$scratch/first" >/dev/null
-mv "$scratch/first" "$scratch/moved" # nothing may hold on to where it was
+mv "$scratch/first" "$scratch/moved" # the installation must not depend on its original path
 prefix=$scratch/moved
 lib=$(dirname "$(find "$prefix" -name libdermis.so)")
 export LD_LIBRARY_PATH=$lib
@@ -40,7 +42,7 @@ else
   echo "== pkg-config: skipped, not installed"
 fi
 
-for languages in C "C;CXX"; do # a project of C alone has to find the run time of C++, too
+for languages in C "C;CXX"; do # a C project must also find the C++ run time
   cmake -G Ninja -S "$source/tests/integration/packaging/find_package" -B "$scratch/build_${languages/;/_}" -DCMAKE_PREFIX_PATH="$prefix" \
     -DLANGUAGES="$languages" -DEXAMPLES="$source/integration/examples" -DCMAKE_BUILD_TYPE=Release >/dev/null
   cmake --build "$scratch/build_${languages/;/_}" >/dev/null
@@ -48,7 +50,7 @@ for languages in C "C;CXX"; do # a project of C alone has to find the run time o
   run "$scratch/build_${languages/;/_}/host_dermis_static"
 done
 
-# The lines that README.md gives, as they stand but for the folders.
+# Runs the commands of README.md, unchanged except for the folders.
 if command -v pkg-config >/dev/null; then
   sed -n '/^```console$/,/^```$/s/^\$ //p' "$source/README.md" | grep -v '^cmake --build' |
     sed -e "s#\$PWD/out#out#g" -e "s#out/#$scratch/readme/#g" -e "s#build/release#$build#g" >"$scratch/lines"
@@ -57,7 +59,7 @@ if command -v pkg-config >/dev/null; then
   (cd "$source" && unset LD_LIBRARY_PATH && set -x && . "$scratch/lines") | grep -E '^scatter +[0-9.]+ ms$'
 fi
 
-# Every document and example is installed, and so is what documents link to of them.
+# Every document and example is installed, and links between installed documents resolve.
 documents=$(dirname "$(find "$prefix/share/doc" -name LICENSE)")
 for file in "$source"/docs/*.md "$source"/integration/examples/*.[ch] "$source"/integration/examples/*.comp; do
   [[ -f $documents/${file#"$source/"} ]] || { echo "${file#"$source/"} is not installed"; exit 1; }
@@ -65,15 +67,15 @@ done
 (cd "$documents/docs" && grep -oh '](\(\.\./integration/examples/\|[a-z_]*\.md\)[^)#]*' ./*.md | sed 's/^](//' | sort -u |
   while read -r link; do [[ -e $link ]] || { echo "an installed document links to $link, which is not there"; exit 1; }; done)
 
-# What is installed works alone: the command finds its library, and graphs validate.
+# The installation is self-contained: the command finds its library, and graphs validate.
 unset LD_LIBRARY_PATH
 "$prefix/bin/dermis" validate "$prefix/share/dermis/graphs/sap.json"
-# Scenes, profiles and graphs that stand for themselves are found where they were installed, from any folder.
+# Plain names of scenes, profiles and graphs resolve to installed files, from any folder.
 (cd "$scratch" && "$prefix/bin/dermis" report-bug "$prefix/share/dermis/graphs/sap.json" --size 32x18 --count 1 --out bug &&
   "$prefix/bin/dermis" sheet --graphs sap --profiles skin --size 32x18 --out sheet.png &&
   "$prefix/bin/dermis" bench stability --techniques burley --cases light_nan --quick --quiet)
 
-# A host that links the static library sees the interface and nothing else.
+# The static library exports only the interface.
 others=$(nm -g --defined-only "$lib/libdermis.a" | awk 'NF == 3 { print $3 }' | grep -v '^dermis_' || true)
 [[ -z $others ]] || { echo "libdermis.a exports more than dermis_*:"; echo "$others" | head; exit 1; }
 readelf -d "$lib/libdermis.so" | grep -q 'SONAME.*libdermis\.so\.0\]' || { echo "the SONAME is not libdermis.so.0"; exit 1; }

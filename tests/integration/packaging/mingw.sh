@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Builds the library and the smallest host for Windows with mingw-w64: they compile and link, the DLL exports the interface
-# and nothing else, and asks for the system's own libraries alone. Nothing is run.
-# usage: mingw.sh SOURCE_DIR BUILD_DIR   (BUILD_DIR: of a build for this machine; its write_bindings runs)
-# Exit codes: 0 fine, 1 not, 77 the cross compiler is not installed.
+# Builds the library and the minimal host for Windows with mingw-w64. Checks that the DLL exports
+# only the interface and depends only on system libraries. Nothing is run.
+# usage: mingw.sh SOURCE_DIR BUILD_DIR
+# BUILD_DIR is a build for this machine, which provides write_bindings.
+# Exit codes: 0 success, 1 failure, 77 the cross compiler is not installed.
 set -euo pipefail
 source=$(realpath "$1")
 build=$(realpath "$2")
@@ -11,7 +12,7 @@ command -v $triple-g++-posix >/dev/null || { echo "skipped: $triple-g++-posix is
 work=$build/mingw
 mkdir -p "$work/include" "$work/cmake/fmt" "$work/cmake/nlohmann_json"
 
-# The headers of other projects that are no headers of this system: those do not fit another one's.
+# Links headers of other projects without this system's own headers, which do not fit Windows.
 for folder in vulkan vk_video fmt nlohmann; do ln -sfn "/usr/include/$folder" "$work/include/$folder"; done
 for name in fmt nlohmann_json; do
   cat > "$work/cmake/$name/${name}Config.cmake" <<CONFIG
@@ -34,7 +35,7 @@ cmake -G Ninja -S "$source" -B "$work/build" -DCMAKE_TOOLCHAIN_FILE="$work/toolc
   -DVulkan_INCLUDE_DIR="$work/include" -DVulkan_LIBRARY="$work/libvulkan-1.dll.a" \
   -DDERMIS_WRITE_BINDINGS="$build/generated/write_bindings" >/dev/null
 
-# The loader, as far as linking against it goes: what the host calls of it.
+# An import library of the Vulkan loader with the functions that the host calls.
 { echo "LIBRARY vulkan-1.dll"; echo "EXPORTS"; grep -oh '\bvk[A-Z][A-Za-z0-9]*' "$source/integration/examples/headless.h" \
   "$source/integration/examples/minimal.c" | sort -u; } > "$work/vulkan.def"
 $triple-dlltool -d "$work/vulkan.def" -l "$work/libvulkan-1.dll.a"

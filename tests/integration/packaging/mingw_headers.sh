@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Compiles the public header and the C examples for Windows with mingw-w64, as C and as C++. Nothing is
-# linked or run; mingw.sh builds and links the library.
+# Compiles the public header and the C examples for Windows with mingw-w64, as C and as C++. Nothing
+# is linked or run; mingw.sh builds and links the library.
 # usage: mingw_headers.sh SOURCE_DIR SHADER_HEADERS_DIR
-# Exit codes: 0 fine, 1 a compiler complains, 77 the cross compiler is not installed.
+# Exit codes: 0 success, 1 compiler errors, 77 the cross compiler is not installed.
 set -euo pipefail
 source=$(realpath "$1")
 shaders=$(realpath "$2")

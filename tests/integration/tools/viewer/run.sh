@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Runs laws of pages where there are Node and a Chromium; says why not otherwise.
-# run.sh TEST.mjs NODE NODE_MODULES DERMIS OUT
+# Runs a test of HTML pages if Node and Chromium are installed; otherwise prints the reason for
+# skipping.
+# usage: run.sh TEST.mjs NODE NODE_MODULES DERMIS OUT; exit code 77: skipped
 set -euo pipefail
 skip() { printf 'skipped: %s\n' "$1"; exit 77; }
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
