@@ -1,6 +1,7 @@
-// Filtered importance sampling: each sample stands for the area that its density leaves to it and reads the level of a
-// masked chain that has texels of that size. What lies within the direct radius is the pixel's own light. Include after
-// bindings with the ports and settings of subsurface.afis.
+// Filtered importance sampling. Each sample represents an area that is inversely proportional to
+// its density, and reads the level of a masked mip chain whose texels have that size. Light within
+// the direct radius is the pixel's own light. Include after bindings with the ports and settings of
+// subsurface.afis.
 #ifndef DERMIS_AFIS_GLSL
 #define DERMIS_AFIS_GLSL
 
@@ -19,22 +20,22 @@ radial_sample draw(scatter_profile profile, float survival) {
   return draws_mixture(profile) ? mixture_sample(profile, survival) : radial_draw(profile, survival);
 }
 
-// A set of samples: `count` of the pixel's `all` in this frame, at a sequence's points from `first` on. Sets of one pixel
-// with other numbers are independent.
+// A set of `count` of the `all` samples of a pixel in this frame, at the points of a sequence from
+// index `first` on. Sets of one pixel with different values of `number` are independent.
 struct sample_set {
   uint number;
   int count, all;
   uint first;
 };
 
-// Offset of this pixel, frame and set, over 2^32.
+// Returns the offset for this pixel, frame and set in fixed point, in units of 2^-32.
 uvec2 sequence_offset(ivec2 pixel, sample_set set) {
   uint frame_index = settings.sequence == SEQUENCE_HASHED ? frame.frame_index : 0u;
   uvec2 offset = offset_from_hash(pcg3d16(uvec3(pixel, frame_index ^ (set.number << 31))).xy);
   return settings.sequence == SEQUENCE_STRATIFIED ? r2_point(offset, frame.frame_index) : offset;
 }
 
-// Sample i: x = survival over that at the direct radius, y = angle over 2 pi.
+// Returns sample i: x = survival divided by the survival at the direct radius, y = angle / (2 pi).
 vec2 sequence_point(uvec2 offset, sample_set set, int i) {
   if (settings.sequence == SEQUENCE_STRATIFIED) {
     vec2 unit = unit_from_fixed(offset);
@@ -53,10 +54,12 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own,
     float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y) : 0.5 * length(footprint);
     vec3 survival = profile_survival(profile, r0);
     beyond = draws_mixture(profile) ? dot(mixture_fractions(profile), survival) : survival[widest];
-    r0 = draw(profile, beyond).r; // what the sampler leaves out is what is taken from the pixel's own light
+    // The pixel's own light must cover exactly the radii that the sampler leaves out.
+    r0 = draw(profile, beyond).r;
     direct = 1.0 - profile_survival(profile, settings.surface == SURFACE_PATCH ? r0 * sqrt(area) : r0);
   }
-  // Pixels that a sample stands for: 1 / (samples * density on the view plane), that of the radius / (2 pi r).
+  // Number of pixels that a sample represents: 1 / (samples * density on the view plane). The
+  // density on the plane is the density of the radius / (2 pi r).
   float pixels_per_sample = two_pi * beyond / (float(set.all) * footprint.x * footprint.y);
   uvec2 offset = sequence_offset(point.pixel, set);
   float each = beyond / float(set.count);

@@ -1,17 +1,18 @@
-// How many samples a pixel takes, from the spread of what it found before (SPVG and control variates, Xie and others
-// 2021; ids of docs/papers.md). integration/tools/references/guidance.hpp mirrors these functions under the same names.
-// Include after bindings with the settings of subsurface.guided.
+// Computes the number of samples of a pixel from the variance of its earlier results: SPVG and
+// control variates (Xie and others 2021; ids of docs/papers.md).
+// integration/tools/references/guidance.hpp mirrors these functions under the same names. Include
+// after bindings with the settings of subsurface.guided.
 #ifndef DERMIS_GUIDANCE_GLSL
 #define DERMIS_GUIDANCE_GLSL
 
-// Equations 8 to 10 (A4): kappa * Delta + E, not clamped.
+// Equations 8 to 10 (A4): returns kappa * Delta + E, not clamped.
 float wanted_samples(float variance, float mean_count) {
   float ratio = variance / settings.sigma2_target;
   float change = (ratio - 1.0) * mean_count * (2.0 / settings.eta - 2.0);
   return settings.kappa * change + ratio * mean_count;
 }
 
-// A6: a whole number within the range.
+// A6: returns a whole number within the range.
 int clamped_samples(float wanted) {
   return int(round(clamp(wanted, float(settings.min_samples), float(settings.max_samples))));
 }
@@ -19,7 +20,7 @@ int clamped_samples(float wanted) {
 struct moving_variance {
   float mean, variance;
 };
-// Equations 5, 6 (A1, A2).
+// Equations 5 and 6 (A1, A2).
 moving_variance add_value(moving_variance moments, float x, float eta) {
   float delta = x - moments.mean;
   return moving_variance(moments.mean + eta * delta, (1.0 - eta) * (moments.variance + eta * delta * delta));
@@ -36,7 +37,7 @@ moving_covariance add_values(moving_covariance moments, float f, float g, float 
                            (1.0 - eta) * (moments.variance_g + eta * delta_g * delta_g));
 }
 
-// Algorithm 2 (C10). Where all is dark the bound says nothing.
+// Algorithm 2 (C10). The bound is not applied if the mean of g is 0.
 float control_weight(moving_covariance moments) {
   float weight = (moments.covariance + settings.eps_alpha) / (moments.variance_g + settings.eps_alpha);
   return moments.mean_g > 0.0 ? clamp(weight, 0.0, (moments.mean_f + moments.mean_g) / moments.mean_g) : weight;

@@ -1,4 +1,5 @@
-// Filtered reads of the masked chain under a sample. Include after bindings with level_1 .. level_8 and `settings`.
+// Filtered reads of the masked mip chain at the position of a sample. Include after bindings with
+// level_1 .. level_8 and `settings`.
 #ifndef DERMIS_MIPS_GLSL
 #define DERMIS_MIPS_GLSL
 
@@ -20,8 +21,8 @@ vec4 mip_read(int level, vec2 pixel) {
   }
 }
 
-// Mean light around `pixel` at a level of detail; at 0 the light of the pixel itself, `nearest`, which is also what
-// there is where the mean would reach another profile.
+// Returns the mean light around `pixel` at a level of detail. Returns `nearest`, the light of the
+// pixel itself, at level 0 and if the mean would include another profile.
 vec3 filtered_light(vec2 pixel, float lod, vec3 nearest) {
   lod = clamp(lod, 0.0, last_mip);
   if (settings.mips == MIPS_WHOLE)

@@ -1,5 +1,5 @@
-// Radii of the mean of all channels' densities, for channels of different d. tests/passes/common/cpu/burley_mixture.cpp mirrors
-// this in fp64.
+// Samples the radius from the mean of the densities of all channels, for channels of different d.
+// tests/passes/common/cpu/burley_mixture.cpp mirrors this in fp64.
 #ifndef DERMIS_MIXTURE_GLSL
 #define DERMIS_MIXTURE_GLSL
 
@@ -7,14 +7,15 @@
 
 const int mixture_steps = 8;
 
-// Equal shares of the channels that scatter.
+// Returns equal weights for the channels that scatter.
 vec3 mixture_fractions(scatter_profile profile) {
   vec3 fractions = vec3(greaterThan(profile.d.rgb, vec3(0.0)));
   return fractions / max(fractions.r + fractions.g + fractions.b, 1.0);
 }
 
-// Radius at survival u of the mixture, for Burley's profile. The logarithm of the survival is convex and the narrowest
-// channel's radius lies before the root: Newton's steps come from one side and do not pass it.
+// Returns the radius at survival u of the mixture, for Burley's profile. The logarithm of the
+// survival is convex and the narrowest channel's radius is below the root, so that Newton's steps
+// approach the root from one side.
 radial_sample mixture_sample(scatter_profile profile, float u) {
   u = clamp(u, burley_min_survival, 1.0);
   vec3 fractions = mixture_fractions(profile), d = profile.d.rgb;

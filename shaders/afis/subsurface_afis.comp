@@ -1,5 +1,5 @@
 #version 460
-// Filtered importance sampling with as many samples in all pixels.
+// Filtered importance sampling with the same number of samples in all pixels.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "afis/subsurface_afis.bindings.glsl"

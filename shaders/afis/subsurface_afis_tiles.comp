@@ -1,6 +1,7 @@
 #version 460
-// Filtered importance sampling in the tiles that were given samples, in place of the light of another technique. No seams:
-// towards tiles that were given none the other technique's share rises to all.
+// Filtered importance sampling in the tiles that have samples; the result replaces the light of
+// another technique. Towards tiles without samples, the weight of the other technique rises to 1,
+// so that no seams appear.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "afis/subsurface_afis_tiles.bindings.glsl"
@@ -10,7 +11,8 @@
 #include "afis/afis.glsl"
 #include "common/tile_edges.glsl"
 
-const float ramp_px = 8.0; // all of a tile: what is replaced differs by more than what is blended
+// The ramp covers the whole tile, because replaced light differs by more than blended light.
+const float ramp_px = 8.0;
 
 void main() {
   ivec2 pixel;

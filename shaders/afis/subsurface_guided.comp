@@ -1,5 +1,6 @@
 #version 460
-// Filtered importance sampling with as many samples as the spread of what a pixel found before asks for.
+// Filtered importance sampling with a number of samples that depends on the variance of the pixel's
+// earlier results.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "afis/subsurface_guided.bindings.glsl"
@@ -13,15 +14,17 @@ vec2 surface_before(ivec2 pixel);
 
 const float mm_per_metre = 1000.0;
 const vec3 rec709 = vec3(0.2126, 0.7152, 0.0722);
-const float first_count = 16.0;  // samples where there is no history
-const uint frame_stride = 61u;   // points of the sequence from frame to frame, whatever a pixel takes of them
+const float first_count = 16.0;  // samples of a pixel without history
+// offset in the sequence from frame to frame, whatever number of points a pixel uses
+const uint frame_stride = 61u;
 
 bool splits() { return settings.guidance == GUIDANCE_SPLIT_HALF; }
 bool has_moments() { return settings.guidance == GUIDANCE_OCV; }
 
 vec4 guide_before(ivec2 pixel) { return texelFetch(guide_image, previous_texel(pixel), 0); }
 
-// The half sequences keep depth (metres) in the guide itself, the others beside it.
+// The split-half estimator keeps depth (metres) in the guide image; the other estimators keep depth
+// in the place image.
 vec2 surface_before(ivec2 pixel) {
   vec2 kept = guide_before(pixel).ba;
   float depth = splits() ? kept.r : texelFetch(place_image, previous_texel(pixel), 0).r;
@@ -29,7 +32,9 @@ vec2 surface_before(ivec2 pixel) {
 }
 
 struct guide_state {
-  float sd, mean_count, mean; // of one frame's exposed luminance; of samples; of what is watched
+  // sd: standard deviation of one frame's exposed luminance. mean_count: mean number of samples.
+  // mean: mean of the observed value.
+  float sd, mean_count, mean;
   moving_covariance moments;
   bool lost;
 };
@@ -52,7 +57,8 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
       if (has_moments())
         control += taps.weight[i] * texelFetch(control_image, previous_texel(at), 0);
     }
-  // The control is kept as weight, sd of g and both means: half floats hold these, not a covariance.
+  // The control image stores the weight, the sd of g and both means, because half floats can hold
+  // these but not a covariance.
   float variance_g = control.g * control.g;
   return guide_state(guide.r, guide.g, guide.b, moving_covariance(control.b, control.a, control.r * variance_g, variance_g),
                      false);
@@ -60,11 +66,12 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
 
 float exposed(vec3 light) { return min(dot(light, rec709) * frame.exposure, 1e4); }
 
-// By pixel of the tile: half the difference of its two halves, squared, times its samples; and its profile, 0 where
-// nothing was sampled.
+// By pixel of the tile. x: squared half difference of the pixel's two halves, times the number of
+// samples. y: profile, 0 if nothing was sampled.
 shared vec2 spreads[64];
 
-// The variance of one sample, which neighbours of a profile share: one pixel's difference alone says little of it.
+// Returns the variance of one sample, pooled over the tile's pixels of a profile, because the
+// difference of a single pixel is too noisy.
 float pooled_spread(float id) {
   vec2 sum = vec2(0.0);
   for (uint i = 0u; i < 64u; ++i)
@@ -81,7 +88,8 @@ struct guided_pixel {
   float alpha;
 };
 
-// Draws two halves of the samples and keeps the square of half their difference, times their number.
+// Samples twice with half of the samples each and returns the squared half difference, times the
+// number of samples.
 float sample_halves(inout guided_pixel at, int count, uint first) {
   scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
   vec3 a = scatter(point, at.profile, at.alpha, at.light, sample_set(0u, count / 2, count, first));
@@ -91,7 +99,7 @@ float sample_halves(inout guided_pixel at, int count, uint first) {
   return half_way * half_way * float(count);
 }
 
-// Draws samples and follows the moments of what is watched (Algorithms 1 to 3).
+// Samples the pixel and updates the moments of the observed value (Algorithms 1 to 3).
 void sample_and_watch(inout guided_pixel at, inout guide_state state, int count, uint first) {
   scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
   float g = exposed(at.light);

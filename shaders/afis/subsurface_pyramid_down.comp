@@ -1,6 +1,6 @@
 #version 460
-// One level down: [1 3 3 1] x [1 3 3 1] as four reads between texels, each with weights 1/4 and 3/4 per axis;
-// or the mean of 2x2 as one.
+// Computes the next coarser level: [1 3 3 1] x [1 3 3 1] as four reads between texels, each with
+// weights 1/4 and 3/4 per axis, or the mean of 2x2 texels as one read.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "afis/subsurface_pyramid_down.bindings.glsl"

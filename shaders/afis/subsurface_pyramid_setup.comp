@@ -1,5 +1,5 @@
 #version 460
-// Level 0 of the plain pyramid: light times mask; zeros outside of the rectangle.
+// Computes level 0 of the plain pyramid: light times mask, and zeros outside the rectangle.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "afis/subsurface_pyramid_setup.bindings.glsl"

@@ -1,6 +1,7 @@
 #version 460
-// Scattering by importance sampling: n stratified radii of the widest channel at the golden angle, each tap weighted
-// by the profile at its true distance and by the area of the patch it falls on; self-normalised.
+// Scattering by importance sampling: n stratified radii of the widest channel at multiples of the
+// golden angle. Each tap is weighted by the profile at its 3D distance and by the area of the patch
+// at the tap. The result is self-normalised.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "burley/subsurface_burley.bindings.glsl"
@@ -11,7 +12,7 @@
 #include "common/hash.glsl"
 #include "common/tap.glsl"
 
-const float min_weight = 1e-30; // less is what exponentials leave at their end, and says nothing
+const float min_weight = 1e-30; // smaller sums of weights are rounding errors of the exponentials
 
 vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
   vec2 pixels_per_mm = 1.0 / pixel_footprint(point.depth);

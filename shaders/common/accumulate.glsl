@@ -5,21 +5,22 @@
 
 #include "constants.glsl"
 
-// Cubic weights of the four texels around a place (Catmull & Rom 1974), `part` beyond the second; sum 1. The outer two
-// are negative: what bilinear weights blur from frame to frame stays sharp.
+// Returns the cubic weights of the four texels around a place (Catmull & Rom 1974), `part` texels
+// beyond the second; their sum is 1. The outer two are negative, which keeps history sharp where
+// bilinear weights would blur more in each frame.
 vec4 catmull_rom(float part) {
   float t = part, t2 = t * t, t3 = t2 * t;
   return 0.5 * vec4(-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2);
 }
 
-// A value over frames, and the frames behind it.
+// A value accumulated over frames, and the number of these frames.
 struct accumulated_light {
   vec3 light;
   float count;
 };
 
-// Variance clipping (Salvi 2016): history is drawn along the line to the neighbourhood's mean until it lies within
-// `reach` of its standard deviations, and counts for as much less as it was drawn.
+// Variance clipping (Salvi 2016): moves history along the line to the mean of the neighbourhood
+// until history is within `reach` standard deviations. The frame count shrinks by the same factor.
 accumulated_light clip_to_neighbours(accumulated_light history, vec3 mean, vec3 deviation, float reach) {
   vec3 way = abs(history.light - mean), box_half = reach * deviation;
   float keep = 1.0;
@@ -29,7 +30,8 @@ accumulated_light clip_to_neighbours(accumulated_light history, vec3 mean, vec3 
   return accumulated_light(mix(mean, history.light, keep), history.count * keep);
 }
 
-// Weight of a new frame against `count` frames of history: all frames weigh the same until a frame weighs `least`.
+// Returns the weight of a new frame against `count` frames of history. All frames weigh the same
+// until the weight would fall below `minimum`.
 float frame_weight(float count, float minimum) { return max(1.0 / (count + 1.0), minimum); }
 
 accumulated_light add_frame(accumulated_light history, vec3 light, float minimum) {
@@ -37,14 +39,15 @@ accumulated_light add_frame(accumulated_light history, vec3 light, float minimum
                            min(history.count + 1.0, 1.0 / minimum));
 }
 
-// What history keeps of a pixel's scattered light: the part that the nearest pixels do not explain, over the brightness
-// around. The nearest pixels carry what is sharp, and are read anew in each frame; brightness follows lights that change.
+// Returns what history keeps of a pixel's scattered light: the part that the nearest pixels do not
+// explain, divided by the brightness around. The nearest pixels carry the sharp detail and are read
+// anew in each frame; the brightness follows lights that change.
 vec3 remainder_of(vec3 light, vec3 near, vec3 brightness) {
   return (light - near) / max(brightness, vec3(accumulate_min_brightness));
 }
 bool can_be_kept(vec3 remainder) { return all(lessThanEqual(abs(remainder), vec3(accumulate_largest_remainder))); }
 
-// The light that a remainder stands for under this frame's light.
+// Returns the light that a remainder represents under the light of this frame.
 vec3 light_of_remainder(vec3 remainder, vec3 near, vec3 brightness) {
   return max(near + brightness * remainder, vec3(0.0));
 }

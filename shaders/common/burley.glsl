@@ -1,15 +1,17 @@
-// Burley's normalised diffusion (Burley 2015; Christensen & Burley 2015). passes/common/profiles/burley_profile.cpp
-// mirrors these functions in fp64 under the same names. Lengths share one unit.
+// Burley's normalised diffusion (Burley 2015; Christensen & Burley 2015).
+// passes/common/profiles/burley_profile.cpp mirrors these functions in fp64 under the same names.
+// All lengths are in the same unit.
 #ifndef DERMIS_BURLEY_GLSL
 #define DERMIS_BURLEY_GLSL
 
 const float burley_min_survival = 5.9604644775390625e-8; // 2^-24: r <= 49 d
 
-// 2 pi r R(r): density of the radius.
+// Returns 2 pi r R(r), the density of the radius.
 float burley_pdf(float r, float d) { return (exp(-r / d) + exp(-r / (3.0 * d))) / (4.0 * d); }
 
-// s = e^(-r/3d) for survival u, from s(u) = u (1 + (1 - u^2) Q(u^2)); the true root solves s^3 + 3 s = 4 u.
-// Radius within .52 % of the exact inverse; burley_sample_weight makes it unbiased.
+// Returns s = e^(-r/3d) for survival u, from s(u) = u (1 + (1 - u^2) Q(u^2)). The true root solves
+// s^3 + 3 s = 4 u. The radius is within 0.52 % of the exact inverse; burley_sample_weight makes the
+// estimate unbiased.
 float burley_sample_root(float u) {
   float v = u * u;
   float q = 0.31853996 + v * (-0.26327845 + v * 0.11306352);
@@ -18,7 +20,7 @@ float burley_sample_root(float u) {
 float burley_sample_survival(float u, float d) {
   return max(0.0, -3.0 * d * log(burley_sample_root(clamp(u, burley_min_survival, 1.0))));
 }
-// pdf(r) over the sampler's density at r: 3/4 (1 + s^2) s'(u).
+// Returns pdf(r) divided by the sampler's density at r: 3/4 (1 + s^2) s'(u).
 float burley_sample_weight(float u) {
   u = clamp(u, burley_min_survival, 1.0);
   float v = u * u;
@@ -29,12 +31,12 @@ float burley_sample_weight(float u) {
   return 0.75 * (1.0 + s * s) * ds;
 }
 
-// Exact inverse (Golubev 2019): s^3 + 3 s = 4 u by the hyperbolic form of Cardano's formula.
+// Exact inverse (Golubev 2019): solves s^3 + 3 s = 4 u by the hyperbolic form of Cardano's formula.
 float burley_inverse_survival(float u, float d) {
   float s = 2.0 * sinh(asinh(2.0 * clamp(u, burley_min_survival, 1.0)) / 3.0);
   return max(0.0, -3.0 * d * log(s));
 }
-// r = d ((2 - c) xi - 2) ln(1 - xi) with xi = 1 - u, and pdf(r) over its density.
+// r = d ((2 - c) xi - 2) ln(1 - xi) with xi = 1 - u, and pdf(r) divided by the density of this r.
 const float burley_approximate_c = 2.5715;
 float burley_approximate_survival(float u, float d) {
   u = clamp(u, burley_min_survival, 1.0);

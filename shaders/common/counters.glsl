@@ -1,4 +1,4 @@
-// What a frame tells the host: FrameCounters of passes/common/environment.hpp.
+// Counters that a frame reports to the host: FrameCounters of passes/common/environment.hpp.
 #ifndef DERMIS_COUNTERS_GLSL
 #define DERMIS_COUNTERS_GLSL
 
@@ -21,7 +21,7 @@ uint counter_steps(float d_px) {
   return uint(clamp(steps, 0.0, 32.0 * counter_log2_steps - 1.0));
 }
 
-// `steps`: the sum of counter_steps over the scattering tiles.
+// Adds to the tile counters. `steps` is the sum of counter_steps over the scattering tiles.
 void count_tiles(uint scattering, uint copied, uint steps) {
   if (scattering != 0u) {
     atomicAdd(counters.scattering_tiles, scattering);
@@ -30,7 +30,7 @@ void count_tiles(uint scattering, uint copied, uint steps) {
   if (copied != 0u)
     atomicAdd(counters.copied_tiles, copied);
 }
-// What counted as scattering turned out to be flat in light.
+// Moves a tile that was counted as scattering to the tiles with uniform light.
 void recount_as_flat(float d_px) {
   atomicAdd(counters.scattering_tiles, 0xffffffffu);
   atomicAdd(counters.log2_d_sum, 0u - counter_steps(d_px));

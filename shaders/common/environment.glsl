@@ -1,4 +1,5 @@
-// What every kernel sees beside its ports: descriptor set 1. Mirrors passes/common/environment.hpp.
+// Bindings that every kernel sees in addition to its ports: descriptor set 1. Mirrors
+// passes/common/environment.hpp.
 #ifndef DERMIS_ENVIRONMENT_GLSL
 #define DERMIS_ENVIRONMENT_GLSL
 
@@ -6,48 +7,55 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   ivec4 rect;        // x, y, width, height of the render rectangle, pixels
   ivec2 tiles;       // 8x8 tiles of the rectangle
   uint frame_index;
-  uint flags;        // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid,
-                     // bit 3: the frame before was perspective, bit 4: normal images are left-handed
+  // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid, bit 3: the frame
+  // before was perspective, bit 4: normal images are left-handed
+  uint flags;
   vec2 ray_scale;    // view x, y = (scale * pixel + offset) * (perspective ? depth : 1), mm
   vec2 ray_offset;
   vec4 depth_decode; // depth mm = (a * value + b) / (c * value + e)
   float depth_unit;  // mm per unit of view distance
   float exposure;
   vec2 jitter;       // pixels
-  // Of the frame before, where bit 2 of flags is not set:
-  vec4 previous_from_view[3]; // rows; its view position of what stands still = M * (view position, 1), mm
-  vec2 previous_ray_scale;    // as ray_scale, ray_offset
+  // The frame before; valid if bit 2 of flags is not set.
+  // Rows of M: the view position (mm) in the frame before of a static point = M * (view position,
+  // 1).
+  vec4 previous_from_view[3];
+  vec2 previous_ray_scale;    // same convention as ray_scale, ray_offset
   vec2 previous_ray_offset;
   ivec4 previous_rect;
   vec2 previous_jitter; // pixels
-  uint sample_units;    // that subsurface.allocate_samples may spend
+  uint sample_units;    // samples that subsurface.allocate_samples may spend, in units
   float unused;
-  ivec4 bounds; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
-  vec4 view_from_world[3]; // rows; view position in mm = M * (world position in the host's units, 1)
+  // x, y, width, height of the area that may have subsurface, relative to the rectangle's corner
+  // and inside the rectangle
+  ivec4 bounds;
+  // Rows of M: view position (mm) = M * (world position in the host's units, 1).
+  vec4 view_from_world[3];
 } frame;
 
 struct profile_entry {
-  vec4 d_mm;   // rgb: shape parameter per channel, a: of the widest
-  uint widest; // channel
+  vec4 d_mm;   // rgb: shape parameter per channel, a: shape parameter of the widest channel
+  uint widest; // index of the widest channel
   uint separable_row;
   uint radial_row; // 0xffffffff: Burley's closed forms
-  uint sap_table;  // 0: the shared ones
-  vec4 direct;     // rgb: share of light that never scatters
+  uint sap_table;  // 0: the shared table
+  vec4 direct;     // rgb: fraction of light that never scatters
 };
 layout(std430, set = 1, binding = 1) readonly buffer profile_block { profile_entry profiles[]; };
 layout(std430, set = 1, binding = 4) readonly buffer sap_block { float sap_table[]; };
 layout(std430, set = 1, binding = 5) readonly buffer radial_block { vec4 radial_rows[]; };
 layout(std430, set = 1, binding = 2) readonly buffer separable_block { vec4 separable_rows[]; };
 
-// Share of the light that never scatters.
+// Returns the fraction of light that never scatters.
 vec3 profile_direct(uint id) { return profiles[min(id, 255u)].direct.rgb; }
 
-const float largest_depth_mm = 1e9; // a thousand kilometres: sky and infinite far planes are beyond
+const float largest_depth_mm = 1e9; // 1000 km; sky and infinite far planes are beyond
 
 bool is_perspective() { return (frame.flags & 1u) != 0u; }
 
-// View distance in mm from a value of the depth import; 0 where there is nothing. Both decodings are cheaper than a
-// branch over the whole dispatch, which some drivers compile a kernel anew for at each bind.
+// Returns the view distance in mm from a value of the depth import, 0 if nothing is visible. Both
+// decodings are computed, because some drivers compile a kernel again at each bind for a branch
+// that is uniform over the dispatch.
 float view_depth(float value) {
   float distance = value * frame.depth_unit;
   float decoded =
@@ -56,29 +64,29 @@ float view_depth(float value) {
   return depth > 0.0 && depth < largest_depth_mm ? depth : 0.0; // NaN and Inf compare false
 }
 
-// Size of a pixel across the view at a depth, mm in x and y.
+// Returns the size of a pixel across the view at a depth, in mm in x and y.
 vec2 pixel_footprint(float depth) { return abs(frame.ray_scale) * (is_perspective() ? depth : 1.0); }
 
-// View position in mm; x right, y up, the camera looks down -z. Integers are pixel centres, counted from the
-// rectangle's corner.
+// Returns the view position in mm: x right, y up, the camera looks along -z. Integers are pixel
+// centres, counted from the rectangle's corner.
 vec3 view_position(vec2 pixel, float depth) {
   return vec3((frame.ray_scale * pixel + frame.ray_offset) * (is_perspective() ? depth : 1.0), -depth);
 }
 
-// A normal in view space, as view_position has it, from a texel of the host's normal image.
+// Returns the normal in view space (as view_position) for a texel of the host's normal image.
 vec3 view_normal(vec3 stored) { return (frame.flags & 16u) != 0u ? vec3(stored.xy, -stored.z) : stored; }
 
 bool inside_rect(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, frame.rect.zw));
 }
 
-// May there be subsurface, as far as the host says?
+// Returns whether the pixel is in the area that may have subsurface, according to the host.
 bool inside_bounds(ivec2 pixel) {
   ivec2 from = pixel - frame.bounds.xy;
   return all(greaterThanEqual(from, ivec2(0))) && all(lessThan(from, frame.bounds.zw));
 }
 
-// Where a pixel of the rectangle stands in the images.
+// Returns the texel of a pixel of the rectangle.
 ivec2 texel_of(ivec2 pixel) { return pixel + frame.rect.xy; }
 
 #endif

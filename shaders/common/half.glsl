@@ -1,14 +1,17 @@
-// Rounding to fp16 in the shader: drivers may truncate in imageStore, which darkens every pass.
+// Rounding to fp16 in the shader: drivers may truncate in imageStore, which would darken every
+// pass.
 #ifndef DERMIS_HALF_GLSL
 #define DERMIS_HALF_GLSL
 
 const float largest_half = 65504.0;
 
-// The fp16 value nearest to x (ties to even), as fp32, so that a store is exact whatever its rounding.
+// Returns the fp16 value nearest to x (ties to even) as fp32, so that a store is exact for any
+// rounding mode.
 float round_to_half(float x) {
   float a = clamp(x, -largest_half, largest_half);
-  // 1.5 * 2^(e + 13) for x from 2^e to 2^(e + 1): its last bit is worth 2^(e - 10), that of the half, so that the sum is
-  // rounded as it has to be. Below 2^-14 halves are multiples of 2^-24.
+  // The shift is 1.5 * 2^(e + 13) for x from 2^e to 2^(e + 1). Its last bit is worth 2^(e - 10), as
+  // the last bit of the half, so that the addition rounds correctly. Below 2^-14, halves are
+  // multiples of 2^-24.
   uint exponent = max(floatBitsToUint(a) & 0x7f800000u, 0x38800000u);
   float shift = uintBitsToFloat(exponent + 0x06c00000u);
   precise float sum = a + shift;

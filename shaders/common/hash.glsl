@@ -1,4 +1,5 @@
-// Random numbers by pixel and frame (pcg3d of Jarzynski & Olano 2020, "Hash functions for GPU rendering").
+// Random numbers by pixel and frame (pcg3d of Jarzynski & Olano 2020, "Hash functions for GPU
+// rendering").
 #ifndef DERMIS_HASH_GLSL
 #define DERMIS_HASH_GLSL
 
@@ -14,7 +15,7 @@ uvec3 pcg3d(uvec3 v) {
   return v;
 }
 
-// Uniform in (0, 1), from the upper 24 bits.
+// Returns values uniform in (0, 1), from the upper 24 bits.
 vec3 unit_from_hash(uvec3 h) { return (vec3(h >> 8) + 0.5) * (1.0 / 16777216.0); }
 
 #endif

@@ -1,6 +1,6 @@
-// Between which values the light of a tile lies, or of a cell of 4x4 tiles, in a uvec4: x, y, z = the least and the greatest of red, green, blue as
-// halves, which the light was rounded to; w = the widest d in pixels, as bits. The least above the greatest: no
-// subsurface.
+// Range of the light of a tile, or of a cell of 4x4 tiles, in a uvec4. x, y, z: minimum and maximum
+// of red, green and blue as halves, to which the light was rounded. w: the widest d in pixels, as
+// bits. A minimum above the maximum means no subsurface.
 #ifndef DERMIS_LIGHT_RANGE_GLSL
 #define DERMIS_LIGHT_RANGE_GLSL
 
@@ -11,7 +11,7 @@ uvec4 pack_range(vec3 low, vec3 high, float d_px) {
                floatBitsToUint(d_px));
 }
 
-// Light that nothing is alike.
+// Returns a range that is not similar to any other light.
 uvec4 any_light() { return pack_range(vec3(0.0), vec3(65504.0), 0.0); }
 
 void unpack_range(uvec4 range, out vec3 low, out vec3 high) {
@@ -20,10 +20,12 @@ void unpack_range(uvec4 range, out vec3 low, out vec3 high) {
   high = vec3(r.y, g.y, b.y);
 }
 
-// Tiles that light reaches to each side of one with this d: what lies beyond weighs less than .1 % in Burley's profile.
+// Returns how many tiles light reaches to each side of a tile with this d. In Burley's profile,
+// less than 0.1 % of the light goes further.
 int flat_reach(float d_px) { return int(ceil(flat_reach_d * d_px / 8.0)); }
 
-// Is all of `range` within the tolerance of what lies between `low` and `high`? A range inside of one that is, is.
+// Returns whether all of `range` is within the tolerance of the light between `low` and `high`. If
+// a range is, every range inside it is, too.
 bool is_alike(uvec4 range, vec3 low, vec3 high) {
   vec3 other_low, other_high;
   unpack_range(range, other_low, other_high);

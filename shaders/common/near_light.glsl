@@ -1,6 +1,6 @@
-// Light around a group of 8x8 pixels, which shares what it reads: the scattered light that the nearest pixels explain,
-// and the mean brightness around. Include after bindings with `lighting`, `albedo`, `scattered`, `material`, `depth` and
-// the setting `texturing`.
+// Light around a group of 8x8 pixels, read once into shared memory: the scattered light that the
+// nearest pixels explain, and the mean brightness around. Include after bindings with `lighting`,
+// `albedo`, `scattered`, `material`, `depth` and the setting `texturing`.
 #ifndef DERMIS_NEAR_LIGHT_GLSL
 #define DERMIS_NEAR_LIGHT_GLSL
 
@@ -10,23 +10,29 @@
 #include "common/profile.glsl"
 
 const int near_reach = 2;                // pixels to each side that explain scattered light
-const int near_brightness_reach = 3;     // pixels to each side whose mean is the brightness
-const int near_ring = 4;                 // pixels around the group: those above, and the ring of its neighbours
-const int near_side = 8 + 2 * near_ring; // of the shared square
-const int near_columns = 8 + 2;          // of the group and the ring of its neighbours
+const int near_brightness_reach = 3;     // radius in pixels of the mean that gives the brightness
+// border in pixels around the group: near_brightness_reach and a ring of neighbours
+const int near_ring = 4;
+const int near_side = 8 + 2 * near_ring; // side of the shared square, pixels
+const int near_columns = 8 + 2;          // columns of the group and a ring of neighbours
 const int near_texels = near_side * near_side;
-const float near_scattered_part = 0.5;   // of scattered light in the brightness: shadows near light stay above 0
+// Weight of scattered light in the brightness, which keeps shadows next to light above 0.
+const float near_scattered_part = 0.5;
 const float inverse_pi = 0.31830989;
 
-shared vec4 near_light[near_texels];      // rgb: light that can scatter; a: area of the patch over that of its pixel
-shared vec4 near_brightness[near_texels]; // rgb: light and a part of the scattered light; a: 1 where there is subsurface
-shared float near_depth[near_texels];     // mm; 0 where there is nothing
-shared uint near_profile[near_texels];    // 0 where there is no subsurface
-shared vec4 near_rows[near_columns * near_side]; // sums of near_brightness over rows of 2 * near_brightness_reach + 1
+// rgb: light that can scatter; a: area of the patch over that of its pixel
+shared vec4 near_light[near_texels];
+// rgb: light and a part of the scattered light; a: 1 if the pixel has subsurface
+shared vec4 near_brightness[near_texels];
+shared float near_depth[near_texels];     // mm; 0 if nothing is visible
+shared uint near_profile[near_texels];    // 0: no subsurface
+// sums of near_brightness over rows of 2 * near_brightness_reach + 1
+shared vec4 near_rows[near_columns * near_side];
 
 int near_index(ivec2 local) { return (local.y + near_ring) * near_side + local.x + near_ring; }
 
-// The smaller change of depth to both sides along an axis, mm; 0 where no neighbour has the profile.
+// Returns the smaller change of depth to either side along an axis, mm; 0 if no neighbour has the
+// profile.
 float near_rise(int index, int step) {
   float depth = near_depth[index], minimum = 1e30;
   for (int side = -1; side <= 1; side += 2) {
@@ -38,7 +44,8 @@ float near_rise(int index, int step) {
 }
 vec2 near_rise(int index) { return vec2(near_rise(index, 1), near_rise(index, near_side)); }
 
-// Reads what the group with first pixel `first` needs, once each. Every invocation of the group calls it.
+// Reads the texels around the group with first pixel `first`, each once. Every invocation of the
+// group must call this.
 void share_near_light(ivec2 first) {
   for (int i = int(gl_LocalInvocationIndex); i < near_texels; i += 64) {
     ivec2 pixel = first + ivec2(i % near_side, i / near_side) - near_ring, texel = texel_of(pixel);
@@ -74,12 +81,13 @@ void share_near_light(ivec2 first) {
 }
 
 struct near_field {
-  vec3 light;      // scattered light, if the nearest pixels were all there is
-  vec3 brightness; // the mean around, in the same unit
+  vec3 light;      // scattered light if only the nearest pixels contributed
+  vec3 brightness; // mean around, in the unit of light
 };
 
-// Of a pixel of the group or a neighbour of one. Weights are the profile at each pixel's distance times the area of its
-// patch; the pixel's own patch counts as a disc.
+// Computes the near field of a pixel of the group or of a neighbour of the group. Weights are the
+// profile at each pixel's distance times the area of its patch; the pixel's own patch is treated as
+// a disc.
 near_field find_near_field(ivec2 local, scatter_profile profile, vec3 direct) {
   int own = near_index(local);
   float depth = near_depth[own];

@@ -1,17 +1,19 @@
-// The surface patch behind a pixel, from depth differences; mirrors passes/common/reference/surface.cpp.
+// The surface patch covered by a pixel, from depth differences. Mirrors
+// passes/common/reference/surface.cpp.
 #ifndef DERMIS_PATCH_GLSL
 #define DERMIS_PATCH_GLSL
 
 #include "constants.glsl"
 #include "common/environment.glsl"
 
-// Depths of a pixel's neighbours along both axes, mm; 0 where it is outside, of another profile or has none.
+// Depths of a pixel's neighbours along both axes, mm; 0 if the neighbour is outside, has another
+// profile or no depth.
 struct patch_neighbours {
   vec2 before, after; // x: along the row, y: along the column
 };
 
-// Tangent along an axis: towards the neighbour of the same profile that is nearer in depth; across the view where
-// there is none.
+// Returns the tangent along an axis, towards the neighbour of the same profile that is nearer in
+// depth. Without such a neighbour the tangent lies across the view.
 vec3 patch_tangent(ivec2 pixel, ivec2 axis, float before, float after, float depth, vec3 position) {
   bool backwards = before > 0.0 && (after <= 0.0 || abs(before - depth) < abs(after - depth));
   float neighbour = backwards ? before : (after > 0.0 ? after : depth);
@@ -21,7 +23,9 @@ vec3 patch_tangent(ivec2 pixel, ivec2 axis, float before, float after, float dep
 
 struct surface_patch {
   vec2 slope;  // d depth / d pixel, in footprints per pixel
-  float area;  // over the area of the pixel's cross-section: 1 / cos to the viewer, capped
+  // Area divided by the area of the pixel's cross-section: 1 / cos of the angle to the viewer,
+  // capped.
+  float area;
 };
 
 surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
@@ -35,7 +39,8 @@ surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
   if (dot(normal, viewer) < 0.0)
     normal = -normal;
   float cosine = dot(normal, viewer);
-  if (cosine < min_patch_cosine) { // tilt towards the viewer until it meets the limit
+  // Tilts the normal towards the viewer until the cosine reaches the limit.
+  if (cosine < min_patch_cosine) {
     vec3 across = normal - viewer * cosine;
     float across_size = length(across);
     normal = across_size > 0.0
@@ -44,8 +49,9 @@ surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
     cosine = max(dot(normal, viewer), min_patch_cosine);
   }
   surface_patch result;
-  // The plane dot(normal, P) = const, P = depth * (scale * pixel + offset, -1), differentiated by pixel; an
-  // orthographic ray has no depth in its x and y, which leaves the same quotient.
+  // Derivative by pixel of the plane dot(normal, P) = const with P = depth * (scale * pixel +
+  // offset, -1). For an orthographic ray, x and y do not depend on depth, which gives the same
+  // quotient.
   vec2 signs = sign(frame.ray_scale);
   result.slope = is_perspective() ? -normal.xy * signs / dot(normal, ray) : normal.xy * signs / normal.z;
   result.area = 1.0 / cosine;

@@ -1,11 +1,12 @@
-// The light of a pixel that can scatter. Include after bindings with `lighting`, `albedo` and the setting `texturing`.
+// The light of a pixel that can scatter. Include after bindings with `lighting`, `albedo` and the
+// setting `texturing`.
 #ifndef DERMIS_PIXEL_LIGHT_GLSL
 #define DERMIS_PIXEL_LIGHT_GLSL
 
 #include "common/sanitise.glsl"
 #include "common/texturing.glsl"
 
-// Applies to light the part of albedo that `texturing` applies before scattering.
+// Applies the part of albedo that `texturing` applies before scattering.
 vec3 texture_light(ivec2 texel, vec3 light) {
   if (settings.texturing == TEXTURING_POST || !has_albedo())
     return light;

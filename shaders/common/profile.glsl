@@ -1,5 +1,6 @@
-// A pixel's profile, whatever its model: Burley's closed forms, or the rows of passes/common/profiles/
-// radial_table.cpp, which mirrors radial_* under the same names. Lengths in mm.
+// A pixel's profile for any model: Burley's closed forms, or the rows of
+// passes/common/profiles/radial_table.cpp, which mirrors radial_* under the same names. Lengths are
+// in mm.
 #ifndef DERMIS_PROFILE_GLSL
 #define DERMIS_PROFILE_GLSL
 
@@ -10,9 +11,10 @@
 const uint no_radial_row = 0xffffffffu;
 
 struct scatter_profile {
-  vec4 d;      // rgb: per channel, a: of the widest; the pixel's scale is in it
-  float scale; // of the pixel's scatter_scale, > 0
-  uint row;    // of the radial table
+  // rgb: d per channel, a: d of the widest channel; both include the pixel's scale.
+  vec4 d;
+  float scale; // the pixel's scatter_scale, > 0
+  uint row;    // row of the radial table
 };
 
 scatter_profile find_profile(uint id, float scale) {
@@ -20,7 +22,7 @@ scatter_profile find_profile(uint id, float scale) {
   return scatter_profile(entry.d_mm * scale, scale, entry.radial_row);
 }
 
-// The node below and the part of the way to the next.
+// Computes the node below `position` and the fraction of the distance to the next node.
 void radial_place(float position, out int low, out float part) {
   position = clamp(position, 0.0, float(radial_nodes - 1));
   low = min(int(position), radial_nodes - 2);
@@ -30,7 +32,7 @@ float radial_position(float d, float r) {
   return (log2(max(r / d, 1e-30)) - radial_log2_r_first) * radial_nodes_per_octave;
 }
 
-// 2 pi R_c(r), per mm^2.
+// Returns 2 pi R_c(r), per mm^2.
 vec3 profile_falloff(scatter_profile profile, float r) {
   if (profile.row == no_radial_row) {
     vec3 inverse_d = 1.0 / max(profile.d.rgb, vec3(1e-30));
@@ -44,7 +46,7 @@ vec3 profile_falloff(scatter_profile profile, float r) {
   return exp2(mix(radial_rows[low].rgb, radial_rows[low + 1].rgb, part)) / (profile.scale * profile.scale);
 }
 
-// Share of the scattered energy beyond r.
+// Returns the fraction of the scattered energy beyond r.
 vec3 profile_survival(scatter_profile profile, float r) {
   if (profile.row == no_radial_row) {
     vec3 e = exp(-r / (3.0 * max(profile.d.rgb, vec3(1e-30))));
@@ -54,17 +56,18 @@ vec3 profile_survival(scatter_profile profile, float r) {
   float part, position = radial_position(profile.d.w, r);
   radial_place(position, low, part);
   low += int(profile.row) + radial_nodes;
-  if (position < 0.0) // the kernel is flat here: energy grows with the square of the radius
+  // The kernel is flat below the first node, so that energy grows with the square of the radius.
+  if (position < 0.0)
     return 1.0 - (1.0 - radial_rows[low].rgb) * exp2(2.0 * position / radial_nodes_per_octave);
   return mix(radial_rows[low].rgb, radial_rows[low + 1].rgb, part);
 }
 
 struct radial_sample {
   float r;
-  float density; // of r, exactly the sampler's own
+  float density; // exact density of the sampler at r
 };
 
-// Radius of the widest channel for survival u, by the row of inverses.
+// Returns the radius of the widest channel for survival u, by the row of inverses.
 radial_sample profile_sample_row(scatter_profile profile, float u) {
   u = clamp(u, burley_min_survival, 1.0);
   float root = sqrt(max(-log2(u), 1e-7));

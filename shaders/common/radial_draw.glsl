@@ -1,5 +1,6 @@
-// The sampler of the widest channel that `settings` ask for. Burley's profile alone has a choice of inverses; other
-// models are sampled by their table with its own density. Include after bindings with `inverse` and `weighting`.
+// The radial sampler of the widest channel that `settings` select. Only Burley's profile offers
+// several inverses; other models are sampled by their table with the table's own density. Include
+// after bindings with `inverse` and `weighting`.
 #ifndef DERMIS_RADIAL_DRAW_GLSL
 #define DERMIS_RADIAL_DRAW_GLSL
 

@@ -1,7 +1,7 @@
-// Looking back one frame: where the surface of a pixel stood, and which of the four texels around that place show the
-// same surface. passes/common/reproject.hpp mirrors these functions under the same names. Include after
-// `vec2 surface_before(ivec2 pixel)`: view depth in mm and profile id that the frame before had at a pixel of its
-// rectangle; 0, 0 where it had none.
+// Reprojection into the frame before: finds the position of a pixel's surface, and which of the
+// four texels around it show the same surface. passes/common/reproject.hpp mirrors these functions
+// under the same names. Include after `vec2 surface_before(ivec2 pixel)`, which returns view depth
+// (mm) and profile id at a pixel of the previous rectangle, or 0, 0 if there was no surface.
 #ifndef DERMIS_REPROJECT_GLSL
 #define DERMIS_REPROJECT_GLSL
 
@@ -11,11 +11,11 @@
 bool history_usable() { return (frame.flags & 4u) == 0u; }
 
 struct previous_place {
-  vec2 pixel;  // of the rectangle then, integers are centres
-  float depth; // that the surface had in that view, mm; 0: no place to look at
+  vec2 pixel;  // position in the previous rectangle; integers are centres
+  float depth; // depth of the surface in the previous view, mm; 0: no place
 };
 
-// Of a point that stands still in the world.
+// Returns the previous place of a point that is static in the world.
 previous_place place_before(vec2 pixel, float depth) {
   vec4 at = vec4(view_position(pixel, depth), 1.0);
   vec3 before = vec3(dot(frame.previous_from_view[0], at), dot(frame.previous_from_view[1], at),
@@ -24,12 +24,14 @@ previous_place place_before(vec2 pixel, float depth) {
   if (!(before.z < 0.0))
     return previous_place(vec2(0.0), 0.0);
   vec2 place = (before.xy / k - frame.previous_ray_offset) / frame.previous_ray_scale;
-  vec2 whole = round(place); // a camera that rests must not blur: steps below a thousandth of a pixel are rounding
+  // A static camera must not blur: steps below 0.001 pixel are rounding errors.
+  vec2 whole = round(place);
   return previous_place(mix(place, whole, lessThan(abs(place - whole), vec2(reproject_snap_px))), -before.z);
 }
 
-// Of a point with a velocity: xy = now - before, pixels of this frame's rectangle, jitter taken out; z = view depth now -
-// before that the camera does not explain, world units.
+// Returns the previous place of a point with a velocity. xy: position now - before in pixels of
+// this frame's rectangle, without jitter. z: change of view depth now - before that the camera does
+// not explain, world units.
 previous_place place_before(vec2 pixel, float depth, vec3 velocity) {
   previous_place still = place_before(pixel, depth);
   if (!all(lessThan(abs(velocity), vec3(reproject_largest_velocity)))) // NaN compares false
@@ -45,17 +47,19 @@ bool inside_previous(ivec2 pixel) {
 }
 ivec2 previous_texel(ivec2 pixel) { return pixel + frame.previous_rect.xy; }
 
-// Distance in depth up to which two places are one surface. `rise`: change of its depth over a pixel, mm.
+// Returns the distance in depth up to which two places are on one surface. `rise`: change of the
+// surface's depth over a pixel, mm.
 float depth_tolerance(float depth, float rise) {
   return max(reproject_depth_fraction * depth, reproject_slope_pixels * rise);
 }
 
 struct history_taps {
-  ivec2 first;  // weights are of first, first + (1, 0), first + (0, 1), first + (1, 1)
-  vec4 weight;  // sum 1; all 0 where the surface was not to be seen
+  ivec2 first;  // the weights belong to first, first + (1, 0), first + (0, 1), first + (1, 1)
+  vec4 weight;  // sum 1; all 0 if the surface was not visible
 };
 
-// Bilinear weights of those taps that show profile `id` within `tolerance` (mm) of the expected depth.
+// Returns bilinear weights of the taps that show profile `id` within `tolerance` (mm) of the
+// expected depth.
 history_taps find_history(previous_place place, uint id, float tolerance) {
   history_taps none = history_taps(ivec2(0), vec4(0.0));
   if (!(place.depth > 0.0) || !all(lessThan(abs(place.pixel), vec2(reproject_largest_velocity))))

@@ -1,4 +1,5 @@
-// Patches of a group of 8x8 pixels, which shares what it reads. Include after bindings with `material` and `depth`.
+// Patches of a group of 8x8 pixels, from texels read once into shared memory. Include after
+// bindings with `material` and `depth`.
 #ifndef DERMIS_SHARED_PATCH_GLSL
 #define DERMIS_SHARED_PATCH_GLSL
 
@@ -6,9 +7,10 @@
 
 const int patch_side = 10; // 8x8 pixels and a ring around them
 shared uint patch_profile[patch_side * patch_side];
-shared float patch_depth[patch_side * patch_side]; // mm, 0 where there is nothing
+shared float patch_depth[patch_side * patch_side]; // mm; 0 if nothing is visible
 
-// Reads what the group with first pixel `first` needs, once each. Every invocation of the group calls it.
+// Reads the texels around the group with first pixel `first`, each once. Every invocation of the
+// group must call this.
 void share_patches(ivec2 first) {
   for (int i = int(gl_LocalInvocationIndex); i < patch_side * patch_side; i += 64) {
     ivec2 pixel = first + ivec2(i % patch_side, i / patch_side) - 1, texel = texel_of(pixel);
@@ -30,7 +32,7 @@ float depth_of_profile(ivec2 offset, uint id) {
   return patch_profile[index] == id ? patch_depth[index] : 0.0;
 }
 
-// Of the invocation's own pixel, after share_patches.
+// Builds the patch of the invocation's own pixel; call share_patches first.
 surface_patch build_patch(ivec2 pixel) {
   uint id = own_profile();
   return build_patch(pixel, own_depth(),

@@ -1,6 +1,7 @@
-// Light that comes through from the far side. A slab of thickness t that is lit evenly from behind lets through what the
-// profile carries further than t: for Burley 1/4 e^(-t/d) + 3/4 e^(-t/3d). Include after the bindings of a kernel with
-// ports thickness, back_lighting and scatter_scale.
+// Light transmitted from the far side. A slab of thickness t that is lit evenly from behind
+// transmits the light that the profile carries further than t: for Burley 1/4 e^(-t/d) + 3/4
+// e^(-t/3d). Include after the bindings of a kernel with ports thickness, back_lighting and
+// scatter_scale.
 #ifndef DERMIS_SLAB_GLSL
 #define DERMIS_SLAB_GLSL
 
@@ -10,7 +11,7 @@
 
 const float mm_per_metre = 1000.0;
 
-// 0 where nothing scatters, or the way is not known.
+// Returns the transmitted light; 0 if nothing scatters or the thickness is unknown.
 vec3 light_through_slab(ivec2 texel, uint id) {
   float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   scatter_profile profile = find_profile(id, scale);

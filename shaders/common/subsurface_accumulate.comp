@@ -1,7 +1,7 @@
 #version 460
-// Scattered light over frames, for hosts without anti-aliasing of their own. History keeps only what is left of scattered
-// light after the part that the nearest pixels explain, relative to the brightness around: what is noise is averaged,
-// and each frame's own sharp light is shown as it is.
+// Accumulates scattered light over frames, for hosts without their own temporal anti-aliasing.
+// History keeps only the part of scattered light that the nearest pixels do not explain, relative
+// to the brightness around. Noise is averaged; each frame's own sharp light is shown unchanged.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_accumulate.bindings.glsl"
@@ -31,7 +31,8 @@ bool is_surface(ivec2 pixel, uint id, float depth, float tolerance) {
   return uint(surface.y) == id && abs(surface.x - depth) <= tolerance;
 }
 
-// Of the 4x4 texels around the place, if all of them show the surface; else false.
+// Reads history with cubic weights from the 4x4 texels around the place. Returns false unless all
+// of them show the surface.
 bool sharp_history(previous_place place, uint id, float tolerance, out accumulated_light found) {
   ivec2 first = ivec2(floor(place.pixel));
   vec2 part = place.pixel - vec2(first);
@@ -53,7 +54,7 @@ bool sharp_history(previous_place place, uint id, float tolerance, out accumulat
   return true;
 }
 
-// count 0 where the surface was not to be seen.
+// Returns the history of a pixel; count is 0 if the surface was not visible.
 accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   accumulated_light found = accumulated_light(vec3(0.0), 0.0);
   if (!(history_usable() && depth > 0.0))
@@ -75,7 +76,7 @@ accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   return found;
 }
 
-// By pixel of the group and the ring of its neighbours: what history keeps of this frame's light.
+// What history keeps of this frame's light, by pixel of the group and a ring of neighbours.
 shared vec3 shared_remainders[near_columns * near_columns];
 int remainder_index(ivec2 local) { return (local.y + 1) * near_columns + local.x + 1; }
 
@@ -92,15 +93,15 @@ near_field share_remainder(ivec2 first, ivec2 local) {
   return near;
 }
 
-// The i-th of the 36 pixels around the group.
+// Returns the i-th of the 36 pixels around the group.
 ivec2 ring_pixel(int i) {
   return i < 10 ? ivec2(i - 1, -1) : i < 20 ? ivec2(i - 11, 8) : i < 28 ? ivec2(-1, i - 20) : ivec2(8, i - 28);
 }
 
-// Over the 3x3 pixels that have the profile.
+// Statistics over the 3x3 pixels that have the profile.
 struct neighbourhood {
-  vec3 mean, deviation; // of remainders
-  vec3 minimum, largest;  // of scattered light
+  vec3 mean, deviation; // of the remainders
+  vec3 minimum, largest;  // of the scattered light
 };
 neighbourhood look_around(ivec2 first, ivec2 local, vec3 own_light) {
   vec3 own = shared_remainders[remainder_index(local)], sum = vec3(0.0), squares = vec3(0.0);
@@ -112,7 +113,8 @@ neighbourhood look_around(ivec2 first, ivec2 local, vec3 own_light) {
       int index = near_index(other);
       if (near_profile[index] != near_profile[near_index(local)] || !(near_depth[index] > 0.0))
         continue;
-      vec3 way = shared_remainders[remainder_index(other)] - own; // about its own, so that nothing cancels
+      // Differences to the pixel's own value avoid cancellation.
+      vec3 way = shared_remainders[remainder_index(other)] - own;
       vec3 light = texelFetch(scattered_image, texel_of(first + other), 0).rgb;
       sum += way;
       squares += way * way;
@@ -132,7 +134,7 @@ struct shown_and_kept {
 };
 shown_and_kept with_history(accumulated_light history, vec3 light, near_field near, vec3 now, neighbourhood around) {
   bvec3 lit = greaterThan(near.brightness, vec3(accumulate_min_brightness));
-  if (!any(lit)) // history waits until light comes back
+  if (!any(lit)) // keeps history until light comes back
     return shown_and_kept(light, history);
   now = mix(history.light, now, lit);
   if (!can_be_kept(now))

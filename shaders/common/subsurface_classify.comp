@@ -1,8 +1,9 @@
 #version 460
-// One group for 4x4 tiles, an invocation for two rows of a tile: has a tile subsurface, and does any pixel of it
-// scatter further than itself? Each pixel's material is read once; nothing else is where there is none. Counts tiles:
-// sums of integers, which no order changes. Tells between which values the light of scattering tiles lies, too, of each
-// tile and of the group's all together.
+// Classifies 4x4 tiles per group: whether a tile has subsurface, and whether any of its pixels
+// scatters further than itself. An invocation covers two rows of a tile.
+// Reads each pixel's material once, and nothing else where there is no subsurface. Counts tiles
+// with integer sums, which do not depend on the order. Writes the range of the light of scattering
+// tiles, by tile and for the group as a whole.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -21,11 +22,12 @@ const uint block_tiles = flat_cell_side * flat_cell_side;
 const int run = 16; // pixels of an invocation: two rows of a tile
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
-// By tile: 0 nothing, 1 subsurface below a pixel, else the bits of the largest d in pixels; then the least and the greatest
-// light as bits. Floats from 0 on are ordered as their bits are.
+// By tile. widest_of: 0 nothing, 1 subsurface that scatters below a pixel, else the bits of the
+// largest d in pixels. low_of and high_of: minimum and maximum light as bits, because floats >= 0
+// are ordered as their bits.
 const uint below_a_pixel = 1u;
 shared uint widest_of[block_tiles];
-shared uint holes_of[block_tiles]; // whether any pixel has none
+shared uint holes_of[block_tiles]; // whether any pixel has no subsurface
 shared uvec3 low_of[block_tiles], high_of[block_tiles];
 
 uint class_of(uint widest) {
@@ -34,7 +36,7 @@ uint class_of(uint widest) {
 
 ivec2 run_pixel(ivec2 first, int i) { return first + ivec2(i & 7, i >> 3); }
 
-// A bit for each pixel of the run that lies where subsurface may be.
+// Returns a bit for each pixel of the run that is inside the bounds of subsurface.
 uint run_inside(ivec2 first) {
   ivec2 from = clamp(frame.bounds.xy - first, ivec2(0), ivec2(8, 2));
   ivec2 to = clamp(min(frame.bounds.xy + frame.bounds.zw, frame.rect.zw) - first, ivec2(0), ivec2(8, 2));
@@ -42,7 +44,7 @@ uint run_inside(ivec2 first) {
   return (from.y == 0 && to.y > 0 ? row : 0u) | (from.y < 2 && to.y == 2 ? row << 8 : 0u);
 }
 
-// A bit for each pixel of the run that has subsurface.
+// Returns a bit for each pixel of the run that has subsurface.
 uint find_subsurface(ivec2 first, out uint ids[run]) {
   uint mask = run_inside(first);
   ivec2 last = texel_of(frame.rect.zw - 1);
@@ -55,14 +57,16 @@ uint find_subsurface(ivec2 first, out uint ids[run]) {
 
 uint look_at(ivec2 pixel) {
   ivec2 texel = texel_of(pixel);
-  uint id = texelFetch(material_image, texel, 0).r; // once more: an index into what was read would cost every pixel
+  // Reads the id again, because indexing the array of ids at run time would cost every pixel.
+  uint id = texelFetch(material_image, texel, 0).r;
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   float d_px = depth > 0.0 ? projected_d(profiles[min(id, 255u)].d_mm.w * scale, depth) : 0.0;
   return d_px >= copy_below_d_px ? floatBitsToUint(d_px) : below_a_pixel;
 }
 
-// d over the nearest depth is the widest of pixels of one profile. 0: no depth is there.
+// Returns the nearest depth of the run; 0 if no pixel has a depth. For pixels of one profile, the
+// nearest depth gives the widest d in pixels.
 float find_nearest(ivec2 first, uint mask) {
   float nearest = largest_depth_mm;
   ivec2 last = texel_of(frame.rect.zw - 1);
@@ -73,7 +77,7 @@ float find_nearest(ivec2 first, uint mask) {
   return nearest < largest_depth_mm ? nearest : 0.0;
 }
 
-// The widest d of the run's pixels, as widest_of.
+// Returns the widest d of the run's pixels, encoded as in widest_of.
 uint find_widest(ivec2 first, uint mask, uint ids[run]) {
   uint widest = 0u, others = 0u, id = 0u;
   [[unroll]] for (int i = 0; i < run; ++i)
@@ -113,7 +117,8 @@ void gather_light(ivec2 first, uint mask, uint tile) {
 void main() {
   uint lane = gl_LocalInvocationIndex;
   ivec2 block = ivec2(gl_WorkGroupID.xy) * int(flat_cell_side);
-  uint row_pair = lane / flat_cell_side, column = lane % flat_cell_side; // runs beside each other: invocations, too
+  // adjacent runs map to adjacent invocations
+  uint row_pair = lane / flat_cell_side, column = lane % flat_cell_side;
   ivec2 first = 8 * block + ivec2(8u * column, 2u * row_pair);
   uint tile_of_run = row_pair / flat_cell_side * flat_cell_side + column;
   bool ranged = has_light_range() && has_light_cells() && has_lighting();
@@ -144,7 +149,9 @@ void main() {
     int index = tile.y * frame.tiles.x + tile.x;
     uint own = widest_of[lane];
     classes_data[index] = class_of(own) | (holes_of[lane] == 0u ? class_full_bit : 0u);
-    if (ranged) // light below a pixel stays where it is, and is not looked at: beside it nothing counts as flat
+    // Light that scatters below a pixel is copied and not read here, so no tile next to it counts
+    // as uniform.
+    if (ranged)
       light_range_data[index] =
           own == below_a_pixel ? any_light()
                                : pack_range(uintBitsToFloat(low_of[lane]), uintBitsToFloat(high_of[lane]),

@@ -1,7 +1,9 @@
 #version 460
-// A tile whose light is the same as far as light reaches keeps its own light: what scatters out of a pixel comes back
-// from others. One invocation a tile. It looks at the cells of 4x4 tiles around it; where one of them differs it may lie
-// further away than light reaches in part, and the tiles decide. Its class alone changes, which no other invocation reads.
+// Marks tiles whose light is uniform as far as light reaches: they keep their own light, because as
+// much light scatters into a pixel as out of it.
+// One invocation handles a tile. It first checks the cells of 4x4 tiles around. A cell that differs
+// may lie partly beyond the reach of light; in this case the invocation checks the tiles. An
+// invocation writes only the class of its own tile, which no other invocation reads.
 #extension GL_GOOGLE_include_directive : require
 #include "common/subsurface_classify_uniform_light.bindings.glsl"
 #include "common/environment.glsl"

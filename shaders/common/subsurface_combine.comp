@@ -1,5 +1,5 @@
 #version 460
-// Scattered light back into the host's lighting, where there is subsurface.
+// Writes scattered light back into the host's lighting where there is subsurface.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_combine.bindings.glsl"
@@ -25,7 +25,8 @@ void main() {
     albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
   vec3 color = vec3(0.0);
   bool copies = has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
-  if (copies) { // rounded as scattered light is
+  // Rounds as scattered light is rounded.
+  if (copies) {
     color = clean_light(texelFetch(unscattered_image, texel, 0).rgb);
     color = round_to_half(clean_light(apply_albedo_before(settings.texturing, albedo, color)));
   } else {

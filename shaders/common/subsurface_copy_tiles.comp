@@ -1,5 +1,6 @@
 #version 460
-// Where nothing on the screen scatters further than a pixel, or light is flat everywhere, light passes as it is.
+// Copies light unchanged if nothing on the screen scatters further than a pixel, or if light is
+// uniform everywhere.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_copy_tiles.bindings.glsl"

@@ -1,5 +1,5 @@
 #version 460
-// For tools: what the tile of each pixel was left out as.
+// Writes, for tools, why the tile of each pixel was skipped.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_debug_tile_class.bindings.glsl"

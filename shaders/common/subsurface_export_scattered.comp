@@ -1,5 +1,5 @@
 #version 460
-// Scattered light for every pixel; light that does not scatter passes in full precision.
+// Exports scattered light for every pixel. Light that does not scatter passes in full precision.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_export_scattered.bindings.glsl"

@@ -1,8 +1,9 @@
 #version 460
-// How far off the picture is, by samples of it: a few tiles, drawn with known probabilities, in which the reference is
-// computed at four pixels each, one in each quarter. The tiles are cut into runs of 64; every n-th run gives one of its
-// tiles with subsurface, from a random start. What the host makes of it: passes/common/probe.hpp.
-// The reference is the truth of passes/common/reference/reference.hpp in fp32:
+// Estimates the error of the picture from a few tiles, selected at random with known probabilities.
+// In each tile, the reference is computed at four pixels, one per quarter. The tiles are divided
+// into runs of 64; every n-th run, from a random start, provides one of its tiles with subsurface.
+// passes/common/probe.hpp evaluates the result on the host.
+// The reference is that of passes/common/reference/reference.hpp in fp32:
 //   L_c(p) = sum_q K_c a_q B_c(q) / sum_q K_c a_q
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -23,9 +24,11 @@ const uint lanes = 64u;
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
 const uint quarters = 4u;
-const int near_px = 4, near_points = 8; // within near_px pixels the kernel is averaged over 8x8 points of a patch
-// A midpoint sum over cells of side h, one corner of four of which lies on the pole of 1/r, lacks this times h of the
-// integral: the regularised sum over (i + 1/2, j + 1/2) of 1/r, -4 (sqrt 2 - 1) zeta(1/2) beta(1/2).
+// Within near_px pixels the kernel is averaged over 8x8 points of a patch.
+const int near_px = 4, near_points = 8;
+// A midpoint sum over cells of side h with the pole of 1/r at a shared corner of four cells misses
+// this factor times h of the integral. The factor is the regularised sum over (i + 1/2, j + 1/2) of
+// 1/r: -4 (sqrt 2 - 1) zeta(1/2) beta(1/2).
 const float pole_lack = 1.6155;
 const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
 
@@ -33,7 +36,7 @@ shared uint listed[lanes];   // tiles of the run with subsurface, in order
 shared uint listed_count;
 shared vec3 sums[lanes], weights[lanes];
 
-// Depth of a pixel of the profile, mm; else 0.
+// Returns the depth of a pixel of the profile in mm, else 0.
 float depth_of(ivec2 pixel, uint id) {
   if (!inside_rect(pixel) || !inside_bounds(pixel) || texelFetch(material_image, texel_of(pixel), 0).r != id)
     return 0.0;
@@ -46,13 +49,15 @@ surface_patch patch_of(ivec2 pixel, uint id, float depth) {
                                       vec2(depth_of(pixel + ivec2(1, 0), id), depth_of(pixel + ivec2(0, 1), id))));
 }
 
-// Where the ray through a point `offset` pixels beside `pixel` meets the patch's plane.
+// Returns the intersection of the patch's plane with the ray through a point `offset` pixels from
+// the centre of `pixel`.
 vec3 patch_point(ivec2 pixel, float depth, vec2 slope, vec2 offset) {
   float there = max(depth + dot(slope, offset * pixel_footprint(depth)), 0.1 * depth);
   return view_position(vec2(pixel) + offset, there);
 }
 
-// K_c of a patch `q` at distance from `p`: 2 pi times the profile's, averaged over points of the patch.
+// Returns K_c of a patch `q` at its distance from `p`: 2 pi times the profile, averaged over points
+// of the patch.
 vec3 kernel(scatter_profile profile, vec3 p, ivec2 pixel, ivec2 q, float depth, surface_patch surface) {
   ivec2 apart = abs(q - pixel);
   if (max(apart.x, apart.y) > near_px)
@@ -64,7 +69,7 @@ vec3 kernel(scatter_profile profile, vec3 p, ivec2 pixel, ivec2 q, float depth, 
     sum += profile_falloff(profile, max(length(patch_point(q, depth, surface.slope, offset) - p), 1e-6));
   }
   sum *= step * step;
-  if (q == pixel) { // what the sum lacks at the pole
+  if (q == pixel) { // adds the part of the pole that the sum misses
     vec2 sides = pixel_footprint(depth);
     float side = sqrt(sides.x * sides.y * surface.area), small = 1e-3 * profile.d.w;
     sum += pole_lack * step / side * small * profile_falloff(profile, small);
@@ -72,8 +77,9 @@ vec3 kernel(scatter_profile profile, vec3 p, ivec2 pixel, ivec2 q, float depth, 
   return sum;
 }
 
-// The exposed luminance's squared error at a pixel, by all invocations together; x < 0: the pixel does not count.
-// `copied`: the pixel shows its own light.
+// Returns the squared error of the exposed luminance at a pixel, computed by all invocations
+// together; a negative value means that the pixel does not count. `copied`: the pixel shows its own
+// light.
 float squared_error(ivec2 pixel, uint lane, bool copied) {
   ivec2 texel = texel_of(pixel);
   bool inside = inside_rect(pixel) && inside_bounds(pixel);
@@ -122,7 +128,8 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
 
 void main() {
   uint lane = gl_LocalInvocationIndex, run = gl_WorkGroupID.x, runs = gl_NumWorkGroups.x;
-  float fraction = min(float(settings.tiles) / float(runs), 1.0); // of the runs: the probability that this one is drawn
+  // Fraction of the runs that are selected, which is the probability of selecting this run.
+  float fraction = min(float(settings.tiles) / float(runs), 1.0);
   float start = unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 0u))).x;
   if (fraction < 1.0 && floor((float(run) + 1.0) * fraction + start) <= floor(float(run) * fraction + start))
     return;
@@ -155,7 +162,7 @@ void main() {
   }
   if (lane != 0u)
     return;
-  float stands_for = float(count) / fraction; // tiles
+  float stands_for = float(count) / fraction; // number of tiles that the selected tile represents
   uint place = atomicAdd(counters.probe_count, 1u);
   if (place < counters.probes.length()) {
     counters.probes[place] = uvec2(floatBitsToUint(stands_for * errors), floatBitsToUint(stands_for * pixels));

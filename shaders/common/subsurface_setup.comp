@@ -1,5 +1,5 @@
 #version 460
-// The light that can scatter, and the surface it lies on.
+// Writes the light that can scatter and the slope of its surface.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_setup.bindings.glsl"

@@ -1,6 +1,6 @@
 #version 460
-// One group scans all tile classes and writes the list in row order: no atomics, so the same classes give the same
-// list. Each invocation owns a run of consecutive tiles.
+// One group scans all tile classes and writes the list in row order, without atomics, so that equal
+// classes give equal lists. Each invocation owns a run of consecutive tiles.
 #extension GL_GOOGLE_include_directive : require
 #include "common/subsurface_tile_list.bindings.glsl"
 #include "common/environment.glsl"

@@ -1,5 +1,5 @@
 #version 460
-// Light that came through from the far side (slab.glsl), added to the light that will scatter.
+// Adds the light transmitted from the far side (slab.glsl) to the light that will scatter.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_transmission.bindings.glsl"

@@ -1,7 +1,8 @@
 #version 460
-// How much light comes through thin parts, for the choice: over the pixels with subsurface of a tile, the mean square of
-// what a slab of their thickness lets through (slab.glsl), exposed. Sums of integers, which no order changes. What the
-// host makes of it: transmitted_rms of passes/common/environment.hpp.
+// Measures the transmitted light for the choice: the mean square, over the pixels with subsurface
+// of a tile, of the exposed light that a slab of their thickness transmits (slab.glsl). Integer
+// sums do not depend on the order. transmitted_rms of passes/common/environment.hpp evaluates the
+// result on the host.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_transmission_stats.bindings.glsl"
@@ -12,7 +13,8 @@
 #include "common/tiles.glsl"
 
 const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
-const float pixel_steps = 65536.0; // of a square of 1; 64 of them fit 32 bits
+// steps per squared exposed luminance of 1; 64 pixels fit 32 bits
+const float pixel_steps = 65536.0;
 
 shared uint squares, pixels;
 

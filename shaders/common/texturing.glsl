@@ -1,9 +1,9 @@
-// Where albedo is applied. Include after bindings with the setting `texturing`.
+// Applies albedo before or after scattering. Include after bindings with the setting `texturing`.
 #ifndef DERMIS_TEXTURING_GLSL
 #define DERMIS_TEXTURING_GLSL
 
-// Darker albedo counts as this when it is divided out: a texel of almost no albedo says almost nothing about the light on
-// it. The same bound on both sides of scattering, so that light that does not scatter comes back as it was.
+// Lower bound of albedo in divisions, because light divided by almost no albedo is unreliable. Both
+// sides of scattering use the same bound, so that light that does not scatter is restored exactly.
 const float demodulation_floor = 1.0 / 64.0;
 
 vec3 apply_albedo_before(int texturing, vec3 albedo, vec3 light) {

@@ -1,5 +1,5 @@
-// How the light of tiles that were given samples passes over into that of tiles that were not: no seams. Include after
-// bindings with `classes` and `shares`.
+// Blends the light of tiles with samples into that of tiles without samples, so that no seams
+// appear. Include after bindings with `classes` and `samples_per_tile`.
 #ifndef DERMIS_TILE_EDGES_GLSL
 #define DERMIS_TILE_EDGES_GLSL
 
@@ -8,13 +8,15 @@
 bool has_samples(ivec2 tile) {
   ivec2 at = clamp(tile, ivec2(0), frame.tiles - 1);
   uint index = uint(at.y * frame.tiles.x + at.x);
-  return samples_per_tile_data[index] > 0u || class_of_tile(classes_data[index]) != class_scatter; // nothing that blends borders there
+  // A tile that does not scatter has no blended light at the border.
+  return samples_per_tile_data[index] > 0u || class_of_tile(classes_data[index]) != class_scatter;
 }
 
-// 0 at an edge or a corner that a tile without samples shares, 1 from `ramp_px` inside.
+// Returns 0 at an edge or corner shared with a tile without samples, and 1 from `ramp_px` pixels
+// inside.
 float edge_weight(ivec2 pixel, float ramp_px) {
   ivec2 tile = pixel >> 3;
-  vec2 from = vec2(pixel & 7) + 0.5; // from the left and upper edge
+  vec2 from = vec2(pixel & 7) + 0.5; // distance from the left and upper edge, pixels
   float weight = 1.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {

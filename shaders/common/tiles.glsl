@@ -1,4 +1,4 @@
-// Running over listed 8x8 tiles. Include after the bindings of a kernel with a `tiles` port.
+// Iteration over listed 8x8 tiles. Include after the bindings of a kernel with a `tiles` port.
 #ifndef DERMIS_TILES_GLSL
 #define DERMIS_TILES_GLSL
 
@@ -6,8 +6,9 @@
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
-// The pixel (from the rectangle's corner) of this invocation; false where the dispatch or the rectangle ends.
-// `copy_only` and `full` (all pixels of the tile have subsurface) are the same for the whole group.
+// Computes the pixel of this invocation, relative to the rectangle's corner. Returns false beyond
+// the end of the list or of the rectangle. `copy_only` and `full` (all pixels of the tile have
+// subsurface) are uniform over the group.
 bool listed_pixel(out ivec2 pixel, out bool copy_only, out bool full) {
   uint index = gl_WorkGroupID.y * tile_groups_per_row + gl_WorkGroupID.x;
   pixel = ivec2(0);

@@ -1,6 +1,7 @@
 #version 460
-// Plain importance sampling of the widest channel at n points of the R2 sequence, turned anew for every pixel and
-// frame: no mips, no history. What lies within the direct radius is the pixel's own light.
+// Plain importance sampling of the widest channel at n points of the R2 sequence, with another
+// rotation for every pixel and frame: no mips, no history. Light within the direct radius is the
+// pixel's own light.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_fixed.bindings.glsl"
@@ -18,8 +19,8 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own)
   uvec3 hash = pcg3d(uvec3(point.pixel, frame.frame_index));
   uint widest = profiles[min(point.id, 255u)].widest;
 
-  // Samples are drawn beyond the direct radius only; it follows from the sampler itself, so that what it leaves out is
-  // what is taken from the pixel's own light.
+  // Samples lie beyond the direct radius only. The radius comes from the sampler itself, so that
+  // the pixel's own light covers exactly the radii that the sampler leaves out.
   vec3 direct = vec3(0.0);
   float beyond = 1.0;
   if (settings.direct != DIRECT_NONE) {

@@ -1,8 +1,10 @@
 #version 460
-// How much brighter all that is seen is than the light that ratios were learned in, as a logarithm, and how far that can be
-// said: what most surfaces did, each compared with itself, wherever the camera went; and how many more of them agree with
-// it than would by chance. Where a picture is lit from another side none do, though some surfaces became as bright as
-// before. One group; a pixel of each tile, or of some.
+// Estimates the change of brightness of the whole picture since the ratios were learned, as a
+// logarithm, and its tolerance. The change is the most common change of surfaces, each compared
+// with itself, for any motion of the camera.
+// Also estimates how many more surfaces agree with this change than would by chance. If light comes
+// from another direction, none do, although some surfaces may become as bright as before. One group
+// reads a pixel of each tile, or of some tiles.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_global_light_change.bindings.glsl"
@@ -16,23 +18,28 @@ vec2 surface_before(ivec2 pixel);
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
 const uint lanes = 64u;
-const uint each = 16u;           // pixels that a lane looks at, at most
-const float width = 0.25;        // of a logarithm: what changed more than most by as much counts half
-const int turns = 8;             // towards what most did
-const int halvings = 10;         // of the interval that holds the median
-const float per_median = 3.0;    // tolerance in median deviations: a normal distribution has 95 % within
-const float max_tolerance = 0.12; // of a logarithm: measured, light from another side passes for the same beyond it
-const float min_chance = 0.01; // of surfaces that agree, which are taken to do so by chance
+const uint each = 16u;           // maximum number of pixels per lane
+// Width in logarithms: a deviation of this size from the most common change halves the weight.
+const float width = 0.25;
+const int turns = 8;             // iterations towards the most common change
+const int halvings = 10;         // bisections of the interval that holds the median
+const float per_median = 3.0;    // tolerance in median deviations: 95 % of a normal distribution
+// Maximum tolerance of a logarithm, by measurement: beyond it, light from another direction looks
+// unchanged.
+const float max_tolerance = 0.12;
+// Minimum fraction of the agreeing surfaces that is assumed to agree by chance.
+const float min_chance = 0.01;
 
 shared float offsets[lanes * each]; // logarithms
-shared float strays[lanes * each];  // their squares, as they are in light that stays
+shared float strays[lanes * each];  // squared deviations in stable light
 shared bool known[lanes * each];
 shared vec2 sums[lanes];
 
 vec2 surface_before(ivec2 pixel) { return residual_surface_before(texelFetch(place_image, previous_texel(pixel), 0)); }
 
-// Of the surface at a pixel: its brightness beside the pattern that it learned, and how far patterns stray there. False where
-// it was not to be seen before, or is dark.
+// Computes the brightness of the surface at a pixel relative to the pattern that it learned, and
+// the squared deviation of its patterns. Returns false if the surface was not visible before, or is
+// dark.
 bool offset_of(ivec2 pixel, out float offset, out float stray) {
   offset = 0.0;
   stray = 0.0;
@@ -54,7 +61,7 @@ bool offset_of(ivec2 pixel, out float offset, out float stray) {
   return has_pattern(kept);
 }
 
-// Sum over the group.
+// Returns the sum over the group.
 vec2 summed(vec2 own) {
   barrier();
   sums[gl_LocalInvocationIndex] = own;
@@ -65,7 +72,8 @@ vec2 summed(vec2 own) {
   return sum;
 }
 
-// What most did: the mean, then again and again with weights that fall with the distance from it.
+// Returns the most common change: the mean first, then iterations with weights that fall with the
+// distance from the result.
 float most_common(uint lane) {
   float found = 0.0;
   for (int turn = 0; turn < turns; ++turn) {
@@ -83,7 +91,7 @@ float most_common(uint lane) {
   return found;
 }
 
-// Deviation from `found` that half of them stay below; max_tolerance where it is more.
+// Returns the median deviation from `found`, at most max_tolerance.
 float median_deviation(uint lane, float found) {
   float below = 0.0, above = max_tolerance;
   for (int halving = 0; halving < halvings; ++halving) {
@@ -103,8 +111,9 @@ float median_deviation(uint lane, float found) {
   return above;
 }
 
-// Of a surface that is as bright as most: how much likelier it is that its light stayed what it was than that it agrees by
-// chance. What agrees by chance is as dense as what lies beside it: in the ring from two to four tolerances.
+// Returns the odds that the light of a surface with the common change is unchanged, rather than in
+// agreement by chance. The density of agreement by chance is that in the ring from two to four
+// tolerances.
 float odds_of_agreement(uint lane, float found, float tolerance) {
   vec2 sum = vec2(0.0);
   for (uint k = 0u; k < each; ++k) {
@@ -114,7 +123,7 @@ float odds_of_agreement(uint lane, float found, float tolerance) {
       sum += vec2(off < 2.0 ? 1.0 : 0.0, off >= 2.0 && off < 4.0 ? 1.0 : 0.0);
   }
   sum = summed(sum);
-  float agree = max(sum.x - sum.y, 0.0) / sqrt_pi; // exp(-x^2) in tolerances has this height
+  float agree = max(sum.x - sum.y, 0.0) / sqrt_pi; // height of exp(-x^2) in tolerances
   float chance = sum.y / 4.0 + min_chance * agree;
   return agree > 0.0 ? agree / chance : 0.0;
 }

@@ -1,6 +1,7 @@
 #version 460
-// Sum of the plain pyramid's levels by the pixel's own weights, over the same sum of their masks. Each level is read
-// through a cubic B-spline, four filtered reads at a time (Sigg & Hadwiger 2005).
+// Sums the levels of the plain pyramid with the pixel's own weights, and divides by the same sum of
+// their masks. Each level is read through a cubic B-spline as four filtered reads (Sigg & Hadwiger
+// 2005).
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_pyramid_gather.bindings.glsl"
@@ -11,7 +12,7 @@
 #include "afis/pyramid.glsl"
 #include "sap/sap.glsl"
 
-const float min_fraction = 0.001; // below it a level is not worth its reads
+const float min_fraction = 0.001; // a level with less weight is not worth its reads
 
 vec4 spline_read(texture2D level, vec2 at) {
   vec2 low = floor(at), t = at - low, s = 1.0 - t;
@@ -23,7 +24,8 @@ vec4 spline_read(texture2D level, vec2 at) {
          after.y * (before.x * pyramid_read(level, vec2(a.x, b.y)) + after.x * pyramid_read(level, b));
 }
 
-// Adds a level's light and mask with its share of what is left; returns what is left after it, never less than nothing.
+// Adds a level's light and mask with its fraction of `left`. Returns the remaining fraction, never
+// below 0.
 vec3 add_level(texture2D level, int index, uint id, vec3 d_px, vec2 pixel, vec3 left, inout vec3 sum, inout vec3 total) {
   vec3 fraction = index == 0 ? sap_lookup(id, sap_plain, 1, d_px) : left * sap_lookup(id, sap_plain, index + 1, d_px);
   if (max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction) {
@@ -50,7 +52,8 @@ void main() {
     vec3 d_px = profiles[min(id, 255u)].d_mm.rgb * (scale / sap_footprint(depth));
     vec3 centre = sap_lookup(id, sap_plain, 0, d_px);
     vec3 direct = profile_direct(id), left = 1.0 - centre;
-    vec3 total = max(centre - direct, vec3(0.0)), sum = total * light; // what never scatters needs no surface around
+    // Light that never scatters needs no surface around.
+    vec3 total = max(centre - direct, vec3(0.0)), sum = total * light;
     vec2 at = vec2(pixel);
     left = add_level(level_0_image, 0, id, d_px, at, left, sum, total);
     left = add_level(level_1_image, 1, id, d_px, at, left, sum, total);

@@ -1,5 +1,5 @@
 #version 460
-// Where the pyramid is unsure, part of its light is replaced by samples. No history.
+// Replaces part of the pyramid's light by samples where confidence is low. Uses no history.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_refine.bindings.glsl"

@@ -1,8 +1,10 @@
 #version 460
-// Where the pyramid is unsure, its light is multiplied by the running ratio of samples to it. The ratio does not see how
-// bright the light is, so it does not lag behind light that flickers; light of another pattern it does see, and counts for
-// less there. A pixel samples in one frame of four or of sixteen, by how unsure it is and by its tile, or in each, twice as
-// many, while it has little history.
+// Multiplies the pyramid's light by the moving mean of the ratio of samples to it, where confidence
+// is low. The ratio does not depend on how bright the light is, so it does not lag behind
+// flickering light. The ratio depends on the pattern of light and counts for less if the pattern
+// changes.
+// A pixel samples in one of 4 or of 16 frames, depending on its confidence and its tile. While it
+// has little history, it samples in each frame with twice as many samples.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_residual.bindings.glsl"
@@ -16,19 +18,21 @@ vec2 surface_before(ivec2 pixel);
 #include "sap/sap_samples.glsl"
 #include "papers/residual.glsl"
 
-const float largest_kept = 8.0;  // of a sampled ratio
-const float largest_ratio = 4.0; // that light is multiplied by
-const float tile_error = 16.0;        // samples that weigh as much as the pyramid
-const float stray_rate = 0.1;    // of the moving mean of what strays
-const float largest_stray = 0.3; // of a logarithm, that counts there
-const float caution = 0.5;       // of alpha, that is left where light came that may not stay
-const float memory = 1.9;        // samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha
+const float largest_kept = 8.0;  // maximum of a sampled ratio
+const float largest_ratio = 4.0; // maximum factor on light
+const float tile_error = 16.0;        // number of samples that weigh as much as the pyramid
+const float stray_rate = 0.1;    // rate of the moving mean of the squared deviation
+const float largest_stray = 0.3; // maximum deviation of a logarithm that counts in this mean
+const float caution = 0.5;       // factor on alpha where light has just appeared that may not stay
+// Number of samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha.
+const float memory = 1.9;
 
 vec2 surface_before(ivec2 pixel) { return residual_surface_before(texelFetch(place_image, previous_texel(pixel), 0)); }
 
-// How much a ratio says about light whose pattern is `off` the one it was learned in: the odds that the light is the same
-// against those that it is another and looks alike. A pixel's pattern is its brightness less what all that is seen gained:
-// a flash leaves it alone; a shadow, or light from another side, does not.
+// Returns how much a ratio applies to light whose pattern differs by `off` from the pattern in
+// which the ratio was learned. The result is the odds of unchanged light against light that changed
+// and looks alike. A pixel's pattern is its brightness minus the change of the whole picture: a
+// flash does not change it, but a shadow or light from another direction does.
 float trust(float off, float tolerance, float odds) {
   float same = odds * exp(-off * off / (tolerance * tolerance));
   return same / (1.0 + same);
@@ -42,7 +46,7 @@ history_taps taps_of(ivec2 pixel, sap_texel own) {
   return find_history(place, own.id, depth_tolerance(place.depth, rise));
 }
 
-// rgb = ratio, a = samples behind it.
+// rgb: ratio, a: number of its samples.
 vec4 ratio_before(history_taps taps) {
   vec4 sum = vec4(0.0);
   for (int i = 0; i < 4; ++i)
@@ -51,7 +55,8 @@ vec4 ratio_before(history_taps taps) {
   return sum;
 }
 
-// Which of four or of sixteen frames it is the tile's turn: each 2x2 or 4x4 tiles take one each.
+// Returns whether the tile samples in this frame: one of each 2x2 tiles in four frames, or one of
+// each 4x4 tiles in sixteen.
 bool is_turn(ivec2 tile, float confidence) {
   if (confidence < settings.often_below)
     return (uint(tile.x & 1) + 2u * uint(tile.y & 1)) == (frame.frame_index & 3u);
@@ -69,9 +74,10 @@ void main() {
   vec4 ratio = vec4(1.0, 1.0, 1.0, 0.0);
   int count = 0;
   bool lost = false;
-  vec2 kept = vec2(never_lit, 0.0); // pattern that was learned, square of how far it strays
+  vec2 kept = vec2(never_lit, 0.0); // x: learned pattern, y: squared deviation
   if (own.id != 0u && !copy_only) {
-    vec4 all = texelFetch(brightness_image, ivec2(0), 0); // brightness, odds that patterns agree, their tolerance
+    // brightness, odds that patterns agree, their tolerance
+    vec4 all = texelFetch(brightness_image, ivec2(0), 0);
     float pattern = brightness(light.rgb) - all.r, agreement = all.g / (1.0 + all.g);
     bool lit = is_lit(light.rgb), turn = is_turn(pixel >> 3, light.a);
     if (history_usable() && own.depth > 0.0) {
@@ -80,7 +86,8 @@ void main() {
       if (!lost)
         ratio = ratio_before(taps);
       kept = pattern_before(taps);
-      // What history lies between texels blurs, and differs from what is seen anew at each edge.
+      // History interpolated between texels is blurred, and so differs at each edge from the new
+      // pattern.
       bool resampled = !any(equal(taps.weight, vec4(1.0)));
       float off = min(abs(pattern - kept.x), largest_stray);
       if (lit)
@@ -88,18 +95,20 @@ void main() {
     }
     if (!has_pattern(kept))
       kept = vec2(lit ? pattern : never_lit, 0.0);
-    // Light that came at once may go at once: what was learned before it is kept a little longer.
+    // Light that appeared suddenly may vanish suddenly: keeps the earlier state a little longer.
     float alpha = settings.alpha * mix(caution, 1.0, agreement);
     bool first = ratio.a == 0.0;
     float n = float(settings.samples);
     if (light.a >= settings.below) {
-      ratio.a *= 1.0 - 0.25 * settings.alpha; // no ratio is learned here; patterns are, so that they can be compared
+      // No ratio is learned here; patterns are, so that they can be compared.
+      ratio.a *= 1.0 - 0.25 * settings.alpha;
       if (turn && lit)
         kept.x = mix(kept.x, pattern, alpha);
-    } else if (any(greaterThan(light.rgb, vec3(min_light))) && // nor in the dark
+    } else if (any(greaterThan(light.rgb, vec3(min_light))) && // not in the dark
                (turn || ratio.a < float(settings.eager) * n)) {
       count = ratio.a < float(settings.eager) * n ? 2 * settings.samples : settings.samples;
-      // Frames in which it is a tile's turn follow each other in the sequence; the others stand far from them.
+      // Frames in which the tile samples are consecutive in the sequence; other frames are far from
+      // them.
       uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), index);
       vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count, settings.lod_bias);

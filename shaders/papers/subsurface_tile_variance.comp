@@ -1,13 +1,14 @@
 #version 460
-// How much light varies inside a tile: over its pixels, how far the light is from the tile's mean, times the host's
-// importance. Sums of integers, which no order changes.
+// Measures how much light varies inside a tile: the deviation of its pixels from the tile's mean,
+// times the host's importance. Integer sums do not depend on the order.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_tile_variance.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 
-const float contrast_steps = 1024.0; // of one pixel under exposed light of 1, as subsurface.tile_error_estimate counts
+// Steps for one pixel under exposed light of 1, as in subsurface.tile_error_estimate.
+const float contrast_steps = 1024.0;
 const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
 
 shared uint light_sum, pixel_count, contrast_sum;

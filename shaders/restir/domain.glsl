@@ -1,5 +1,6 @@
-// What a pixel fixes of a path camera - x1 - x2 - light. tests/passes/restir/cpu/domain.cpp mirrors these functions in fp64
-// under the same names and says what they mean. Lengths share one unit.
+// The scatter domain: the part of a path camera - x1 - x2 - light that the pixel determines.
+// tests/passes/restir/cpu/domain.cpp mirrors and documents these functions in fp64 under the same
+// names. All lengths are in the same unit.
 #ifndef DERMIS_RESTIR_DOMAIN_GLSL
 #define DERMIS_RESTIR_DOMAIN_GLSL
 
@@ -7,27 +8,28 @@
 
 struct scatter_domain {
   vec3 position; // x1
-  vec3 normal;   // unit length: the first axis of its probes
+  vec3 normal;   // unit length: the first axis of the domain's probes
   vec3 d;        // Burley's shape parameter per channel; 0: the channel does not scatter
   uint medium;   // profile id; 0: none
 };
 
-// 32 bytes; the normal in 16 bits for each of two coordinates.
+// 32 bytes; the normal has 16 bits for each of two coordinates.
 struct packed_domain {
   uvec4 words[2];
 };
 
 const float restir_pi = 3.14159265358979;
-const float probe_fraction = 0.999;            // of a channel's energy that probes reach
-const float reach_in_d = 19.8602213973662; // where it lies: 1 - probe_fraction = (e^-r + 3 e^(-r/3)) / 4
-const float min_radius_in_d = 1e-6;       // R is infinite at 0; nearer counts as this near
+const float probe_fraction = 0.999;            // fraction of a channel's energy that probes reach
+// Radius of this fraction: 1 - probe_fraction = (e^-r + 3 e^(-r/3)) / 4.
+const float reach_in_d = 19.8602213973662;
+const float min_radius_in_d = 1e-6;       // R is infinite at 0; smaller radii are clamped to this
 
 float scattering_reach(vec3 d) { return reach_in_d * max(d.r, max(d.g, d.b)); }
 
-// Per unit of area.
+// Returns R(r), per unit of area.
 float burley_R(float r, float d) { return burley_pdf(r, d) / (2.0 * restir_pi * r); }
 
-// Share of the energy within r, exact for small r where 1 - exp loses digits.
+// Returns the fraction of the energy within r. Exact for small r, where 1 - exp loses digits.
 float burley_cdf(float r, float d) {
   float x = r / (3.0 * d);
   if (x < 0.01) // series of 1 - e^(-3x)/4 - 3 e^(-x)/4 = 3x/2 - 3x^2/2 + 5x^3/4 - ...
@@ -36,7 +38,8 @@ float burley_cdf(float r, float d) {
   return 1.0 - 0.25 * t * t * t - 0.75 * t;
 }
 
-// R_c(r) / cdf_c(reach) up to the reach of the widest channel; 0 beyond, and where d is 0.
+// Returns R_c(r) / cdf_c(reach) up to the reach of the widest channel; 0 beyond the reach, and
+// where d is 0.
 vec3 scattering_profile(vec3 d, float r) {
   float reach = scattering_reach(d);
   vec3 profile = vec3(0.0);
@@ -48,7 +51,7 @@ vec3 scattering_profile(vec3 d, float r) {
   return profile;
 }
 
-// The normal and two tangents (Duff et al. 2017); axis % 3.
+// Returns the normal or one of two tangents (Duff et al. 2017), by axis % 3.
 vec3 probe_axis(vec3 normal, uint axis) {
   float up = normal.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (up + normal.z), b = normal.x * normal.y * a;
@@ -59,11 +62,12 @@ vec3 probe_axis(vec3 normal, uint axis) {
   return normal;
 }
 
-// Light of this irradiance at distance r that reaches x1: diffuse light before albedo.
+// Returns the light that reaches x1 from this irradiance at distance r: diffuse light before
+// albedo.
 vec3 scattered(scatter_domain domain, float r, vec3 irradiance) { return scattering_profile(domain.d, r) * irradiance; }
 
-// A unit vector on a square: the octahedron's faces (Cigolle et al. 2014, "A Survey of Efficient Representations for
-// Independent Unit Vectors").
+// Maps a unit vector to a square by the faces of an octahedron (Cigolle et al. 2014, "A Survey of
+// Efficient Representations for Independent Unit Vectors").
 vec2 fold_normal(vec3 n) {
   vec2 flat_part = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
   vec2 side = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(flat_part, vec2(0.0)));

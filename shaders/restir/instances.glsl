@@ -1,4 +1,4 @@
-// One object of the host's scene, as the port `instances` holds it.
+// One object of the host's scene, as stored in the port `instances`.
 #ifndef DERMIS_RESTIR_INSTANCES_GLSL
 #define DERMIS_RESTIR_INSTANCES_GLSL
 

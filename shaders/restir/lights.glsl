@@ -1,34 +1,34 @@
-// Lights and next-event estimation. tests/passes/restir/cpu/lights.cpp mirrors these functions in fp64 under the same names and
-// says what they mean.
+// Lights and next-event estimation. tests/passes/restir/cpu/lights.cpp mirrors and documents these
+// functions in fp64 under the same names.
 #ifndef DERMIS_RESTIR_LIGHTS_GLSL
 #define DERMIS_RESTIR_LIGHTS_GLSL
 
 // 64 bytes in std430.
 struct light_source {
-  vec3 position; // point: where; areas: a corner; directional: unit vector towards the light
+  vec3 position; // point: position; area: a corner; directional: unit vector towards the light
   uint type;
-  vec3 edge_u; // areas: edges; the light shines where cross(edge_u, edge_v) points
-  float fraction; // probability of being picked
+  vec3 edge_u; // area: edges; the light emits towards cross(edge_u, edge_v)
+  float fraction; // probability of selection
   vec3 edge_v;
-  float area;    // areas: theirs; directional: length of its shadow rays; point: 1
-  vec3 emission; // point: intensity; areas: radiance; directional: irradiance
-  float until;   // sum of the shares up to this light, itself included
+  float area;    // area: its area; directional: length of its shadow rays; point: 1
+  vec3 emission; // point: intensity; area: radiance; directional: irradiance
+  float until;   // sum of `fraction` up to and including this light
 };
 
 const uint light_point = 0u, light_parallelogram = 1u, light_triangle = 2u, light_directional = 3u;
 
 bool light_has_area(light_source light) { return light.type == light_parallelogram || light.type == light_triangle; }
 
-// Two numbers of 16 bits each.
+// Packs two coordinates on a light in 16 bits each.
 uint light_place(float u, float v) {
   uvec2 cell = min(uvec2(max(vec2(u, v), vec2(0.0)) * 65536.0), uvec2(65535u));
   return cell.x | cell.y << 16;
 }
 
-// Of picking this light and this place: per area of areas.
+// Returns the density of selecting this light and a place on it, per unit area for area lights.
 float light_density(light_source light) { return light_has_area(light) ? light.fraction / light.area : light.fraction; }
 
-// Where shadow rays from `from` end.
+// Returns the end of shadow rays from `from`.
 vec3 light_target(light_source light, uint place, vec3 from) {
   if (light.type == light_point)
     return light.position;
@@ -40,7 +40,8 @@ vec3 light_target(light_source light, uint place, vec3 from) {
   return light.position + uv.x * light.edge_u + uv.y * light.edge_v;
 }
 
-// Irradiance at a surface from this place of the light, per area of areas, as if nothing stood between.
+// Returns the unoccluded irradiance at a surface from this place of the light, per unit area for
+// area lights.
 vec3 light_irradiance(light_source light, uint place, vec3 position, vec3 normal, vec3 shading) {
   vec3 way = light_target(light, place, position) - position;
   float square = dot(way, way);

@@ -1,23 +1,25 @@
-// BSSRDF importance sampling by probe rays, its density and its inversion. tests/passes/restir/cpu/probe.cpp mirrors these
-// functions in fp64 under the same names and says what they mean.
+// BSSRDF importance sampling by probe rays, its density and its inversion.
+// tests/passes/restir/cpu/probe.cpp mirrors and documents these functions in fp64 under the same
+// names.
 #ifndef DERMIS_RESTIR_PROBE_GLSL
 #define DERMIS_RESTIR_PROBE_GLSL
 
 #include "restir/domain.glsl"
 
-const vec3 probe_axis_fraction = vec3(0.5, 0.25, 0.25); // normal, tangents
+const vec3 probe_axis_fraction = vec3(0.5, 0.25, 0.25); // probabilities of normal, tangents
 const uint max_probe_hits = 16u;
-const uint assumed_hits = 255u; // not traced: taken for that of whatever it is compared with
+// Hit count of a probe that was not traced: taken as equal to any count it is compared with.
+const uint assumed_hits = 255u;
 
 struct probe_numbers {
   uint axis, channel;
   float survival; // 1 - probe_fraction u
-  float angle;    // of a full turn
-  float pick;     // which of the hits
+  float angle;    // fraction of a full turn
+  float pick;     // selects one of the hits
 };
 struct probe_ray {
   vec3 origin, direction; // unit length
-  float reach;            // how far the ray goes
+  float reach;            // length of the ray
 };
 struct probe_hit {
   uint instance, primitive;
@@ -31,10 +33,10 @@ struct probe_hits {
 
 uint scattering_channels(vec3 d) { return uint(d.r > 0.0) + uint(d.g > 0.0) + uint(d.b > 0.0); }
 
-// Which of `count` > 0 hits.
+// Returns the index of the selected hit of `count` > 0 hits.
 uint picked_hit(float pick, uint count) { return min(uint(max(pick, 0.0) * float(count)), count - 1u); }
 
-// From four uniform numbers: axis and channel, radius, angle, pick.
+// Maps four uniform numbers to axis and channel, radius, angle, and pick.
 probe_numbers draw_numbers(vec3 d, vec4 u) {
   probe_numbers numbers;
   numbers.axis = 0u;
@@ -54,7 +56,8 @@ probe_numbers draw_numbers(vec3 d, vec4 u) {
   return numbers;
 }
 
-// s of s^3 + 3 s = 4 u by Newton steps from the sampler's approximation: asinh loses digits in fp32.
+// Solves s^3 + 3 s = 4 u by Newton steps from the sampler's approximation, because asinh loses
+// digits in fp32.
 float burley_root(float u) {
   float s = burley_sample_root(u);
   for (int i = 0; i < 2; ++i)
@@ -65,7 +68,7 @@ float burley_radius(float survival, float d) {
   return max(0.0, -3.0 * d * log(burley_root(clamp(survival, burley_min_survival, 1.0))));
 }
 
-// The chord of the ball of the channel's reach through the point on the disc.
+// Returns the chord through the point on the disc, of the ball whose radius is the channel's reach.
 probe_ray probe_of(scatter_domain domain, probe_numbers numbers) {
   float d = domain.d[numbers.channel];
   float r = burley_radius(numbers.survival, d);
@@ -82,7 +85,8 @@ vec2 on_probe_disc(scatter_domain domain, uint axis, vec3 offset) {
               dot(offset, probe_axis(domain.normal, (axis + 2u) % 3u)));
 }
 
-// Density per area by one axis and channel, their probability included, the choice among hits not.
+// Returns the density per area for one axis and channel, including their probability but not the
+// choice among hits.
 float probe_technique_pdf(scatter_domain domain, uint axis, uint channel, vec3 position, vec3 normal) {
   float d = domain.d[channel];
   vec3 offset = position - domain.position;
@@ -93,7 +97,7 @@ float probe_technique_pdf(scatter_domain domain, uint axis, uint channel, vec3 p
   return probe_axis_fraction[axis] / float(scattering_channels(domain.d)) * cosine * burley_R(r, d) / probe_fraction;
 }
 
-// Over all of them.
+// Returns the density per area over all axes and channels.
 float probe_pdf(scatter_domain domain, vec3 position, vec3 normal) {
   float sum = 0.0;
   for (uint axis = 0u; axis < 3u; ++axis)
@@ -102,7 +106,8 @@ float probe_pdf(scatter_domain domain, vec3 position, vec3 normal) {
   return sum;
 }
 
-// Probabilistic inversion; false where no axis and channel can lead there. `pick` is left at 0.
+// Probabilistic inversion: finds numbers that lead to `position`. Returns false if no axis and
+// channel can. Sets `pick` to 0.
 bool invert_point(scatter_domain domain, vec3 position, vec3 normal, float u, inout probe_numbers numbers) {
   float left = u * probe_pdf(domain, position, normal);
   bool found = false;
@@ -128,7 +133,8 @@ bool invert_point(scatter_domain domain, vec3 position, vec3 normal, float u, in
   return true;
 }
 
-// The number that picks the hit on this primitive; false where the probe does not meet it.
+// Finds the number that picks the hit on this primitive. Returns false if the probe does not hit
+// the primitive.
 bool invert_pick(probe_hits hits, uint instance, uint primitive, float u, inout float pick) {
   for (uint i = 0u; i < hits.count; ++i)
     if (hits.hit[i].instance == instance && hits.hit[i].primitive == primitive) {

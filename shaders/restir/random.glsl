@@ -1,19 +1,21 @@
-// Random numbers of a pixel: a key and a counter. tests/passes/restir/cpu/random.hpp mirrors these functions under the same
-// names, bit for bit.
+// Random numbers of a pixel: a key and a counter. tests/passes/restir/cpu/random.hpp mirrors these
+// functions bit for bit under the same names.
 #ifndef DERMIS_RESTIR_RANDOM_GLSL
 #define DERMIS_RESTIR_RANDOM_GLSL
 
 #include "common/hash.glsl"
 
 struct random_state {
-  uint pixel; // any number of its own for each pixel
+  uint pixel; // a number unique to the pixel
   uint frame;
-  uint count; // numbers drawn; passes of one frame begin at multiples of random_numbers_a_pass
+  // Count of numbers used; passes of one frame begin at multiples of random_numbers_a_pass.
+  uint count;
 };
 const uint random_numbers_a_pass = 1024u;
-const uint random_numbers_of_samples = 4u * random_numbers_a_pass; // where restir.initial begins: it may draw more
+// restir.initial begins here and may use more than random_numbers_a_pass.
+const uint random_numbers_of_samples = 4u * random_numbers_a_pass;
 
-// Uniform in (0, 1), 24 bits.
+// Returns a number uniform in (0, 1) with 24 bits.
 float random_unit(inout random_state random) {
   uint bits = pcg3d(uvec3(random.pixel, random.frame, random.count)).x;
   random.count += 1u;

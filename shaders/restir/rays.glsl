@@ -1,10 +1,10 @@
-// Rays through the host's scene, in compute. Include after the bindings.
+// Ray queries through the host's scene from compute kernels. Include after the bindings.
 #ifndef DERMIS_RESTIR_RAYS_GLSL
 #define DERMIS_RESTIR_RAYS_GLSL
 
 #include "restir/surfaces.glsl"
 
-const uint ray_any = 0xffu; // mask of instances
+const uint ray_any = 0xffu; // instance mask that accepts all instances
 
 void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
   hits.count = 0u;
@@ -13,7 +13,8 @@ void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
   rayQueryEXT query;
   rayQueryInitializeEXT(query, scene_structure, gl_RayFlagsNoOpaqueEXT, ray_any, ray.origin, 0.0, ray.direction,
                         ray.reach);
-  while (rayQueryProceedEXT(query)) { // nothing is confirmed: every triangle is a candidate
+  // No intersection is confirmed, so every triangle is a candidate.
+  while (rayQueryProceedEXT(query)) {
     probe_hit met;
     met.instance = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false));
     if (instances_data[met.instance].place.z != medium)
@@ -31,8 +32,8 @@ void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
   }
 }
 
-// Rays leave a surface this share of its distance from the world's origin above it, and of a unit: some roundings of
-// a position's coordinates.
+// Offset of a ray's origin above the surface, relative to 1 plus the distance to the world's
+// origin: a few rounding errors of a position's coordinates.
 const float ray_lift = 2e-5;
 
 bool visible(surface_point from, vec3 target) {

@@ -1,5 +1,6 @@
-// Reservoirs: one path x2 - light, its weight and how many samples it speaks for; 64 bytes packed.
-// tests/passes/restir/cpu/reservoir.cpp mirrors these functions in fp64 under the same names and says what they mean.
+// Reservoirs: one path x2 - light, its weight and its confidence; 64 bytes packed.
+// tests/passes/restir/cpu/reservoir.cpp mirrors and documents these functions in fp64 under the
+// same names.
 #ifndef DERMIS_RESTIR_RESERVOIR_GLSL
 #define DERMIS_RESTIR_RESERVOIR_GLSL
 
@@ -13,10 +14,10 @@ struct reservoir {
   uint instance, primitive; // x2
   vec2 barycentrics;
   uint light, place;
-  probe_numbers numbers; // that lead from the own pixel's x1 to x2
-  uint hits;             // of their probe; 0: numbers are not known
-  float density;         // probe_pdf of x2 there, where hits > 0
-  vec3 irradiance;       // at x2 from the light's place, visibility included
+  probe_numbers numbers; // lead from the pixel's own x1 to x2
+  uint hits;             // number of hits of this probe; 0: numbers are unknown
+  float density;         // probe_pdf of x2 in its own pixel; valid if hits > 0
+  vec3 irradiance;       // irradiance at x2 from the light's place, including visibility
   float weight;          // unbiased contribution weight
   float confidence;
 };
@@ -32,7 +33,7 @@ reservoir no_reservoir(float confidence) {
 
 bool has_sample(reservoir r) { return r.instance != no_instance && r.weight > 0.0; }
 
-const float restir_largest = 3.0e38; // what is not below is infinite, or NaN
+const float restir_largest = 3.0e38; // larger values are treated as infinite
 bool is_usable(float x) { return x >= 0.0 && x < restir_largest; }
 
 reservoir sanitised(reservoir r) {
@@ -78,13 +79,14 @@ reservoir unpack_reservoir(packed_reservoir p) {
 
 struct reservoir_stream {
   reservoir chosen;
-  float sum, target; // of resampling weights; of the chosen one
+  float sum, target; // sum of resampling weights; target of the chosen path
   float confidence;
 };
 
 reservoir_stream stream_begin() { return reservoir_stream(no_reservoir(0.0), 0.0, 0.0, 0.0); }
 
-// `weight` is MIS weight * target * contribution weight * Jacobian; u uniform in (0, 1).
+// Adds a candidate. `weight` is MIS weight * target * contribution weight * Jacobian; u is uniform
+// in (0, 1).
 void stream_add(inout reservoir_stream stream, reservoir candidate, float target, float weight, float confidence,
                 float u) {
   stream.confidence += confidence;

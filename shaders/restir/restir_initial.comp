@@ -1,6 +1,6 @@
 #version 460
-// Paths camera - x1 - x2 - light: x2 by a probe ray, one place on one light, one shadow ray; of several the kept one is
-// drawn by resampling.
+// Samples paths camera - x1 - x2 - light: x2 by a probe ray, one place on one light, one shadow
+// ray. Resampling selects one of several paths.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_ray_query : require

@@ -1,5 +1,5 @@
 #version 460
-// Light that the kept path of each pixel brings; where light does not scatter, the pixel's own.
+// Writes the light of each pixel's path; where light does not scatter, the pixel's own light.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "restir/instances.glsl"
@@ -12,7 +12,7 @@
 #include "restir/surfaces.glsl"
 #include "restir/reuse.glsl"
 
-uint light_count() { return 0u; } // no path is shifted here
+uint light_count() { return 0u; } // unused definitions: this kernel shifts no path
 light_source light_at(uint index) { return light_source(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0); }
 bool visible(surface_point from, vec3 target) { return false; }
 void trace_probe(probe_ray ray, uint medium, out probe_hits hits) { hits.count = 0u; }
@@ -30,7 +30,8 @@ void main() {
   packed_reservoir packed;
   for (uint i = 0u; i < 4u; ++i)
     packed.words[i] = reservoirs_data[4u * element_of(pixel) + i];
-  vec3 came = resolve(domain, unpack_reservoir(packed)); // traced light contains no albedo; that at x2 is not known
+  // Traced light contains no albedo, because the albedo at x2 is unknown.
+  vec3 came = resolve(domain, unpack_reservoir(packed));
   if (settings.texturing != TEXTURING_DEMODULATE)
     came = texture_light(texel, came);
   vec3 direct = mix(vec3(1.0), profile_direct(id), greaterThan(domain.d, vec3(0.0)));

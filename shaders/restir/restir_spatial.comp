@@ -1,5 +1,5 @@
 #version 460
-// Merges each pixel's path with those of pixels around it that show the same profile.
+// Merges each pixel's path with the paths of surrounding pixels that show the same profile.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_ray_query : require
@@ -20,7 +20,7 @@ reservoir reservoir_of(ivec2 pixel) {
   return unpack_reservoir(packed);
 }
 
-// Was a reservoir written there in this frame, of the same profile?
+// Returns whether the pixel wrote a reservoir of the same profile in this frame.
 bool is_neighbour(ivec2 pixel, uint medium) {
   if (!inside_rect(pixel))
     return false;

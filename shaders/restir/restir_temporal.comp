@@ -1,6 +1,6 @@
 #version 460
-// Merges each pixel's path with the one that its surface had in the frame before, and keeps what the next frame has to
-// know: what each pixel fixes of its paths, and the lights.
+// Merges each pixel's path with the path that its surface had in the frame before, and keeps the
+// domains and the lights for the next frame.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_ray_query : require
@@ -15,10 +15,11 @@
 vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
 
-// Lights beyond those that are kept count as they are now.
+// Returns the light as it was in the frame before. Lights beyond the kept ones are returned as they
+// are now.
 light_source previous_light_at(uint index) {
   light_source light = light_at(index);
-  if (index < uint(lights_before_data.length())) // no choice by ?: of both, whose layouts differ
+  if (index < uint(lights_before_data.length())) // an if instead of ?:, because the layouts differ
     light = lights_before_data[index];
   return light;
 }
@@ -27,7 +28,8 @@ void keep_lights() {
   if (gl_WorkGroupID.x + gl_WorkGroupID.y != 0u)
     return;
   for (uint i = gl_LocalInvocationIndex; i < uint(lights_kept_data.length()); i += 64u) {
-    light_source light = light_source(vec3(0.0), light_point, vec3(0.0), 0.0, vec3(0.0), 1.0, vec3(0.0), 1.0); // dark
+    // a dark light
+    light_source light = light_source(vec3(0.0), light_point, vec3(0.0), 0.0, vec3(0.0), 1.0, vec3(0.0), 1.0);
     if (i < light_count())
       light = light_at(i);
     lights_kept_data[i] = light;
@@ -51,7 +53,7 @@ vec2 surface_before(ivec2 pixel) {
   return vec2(-dot(frame.previous_from_view[2], view), float(domain.medium));
 }
 
-// Change of the surface's depth over a pixel, mm.
+// Returns the change of the surface's depth over a pixel, mm.
 float rise_over_pixel(ivec2 pixel, float depth) {
   vec3 normal = normalize(view_normal(texelFetch(normal_image, texel_of(pixel), 0).xyz));
   vec3 way = is_perspective() ? normalize(view_position(vec2(pixel), depth)) : vec3(0.0, 0.0, -1.0);
@@ -60,7 +62,8 @@ float rise_over_pixel(ivec2 pixel, float depth) {
   return max(footprint.x, footprint.y) * sqrt(1.0 - cosine * cosine) / cosine;
 }
 
-// One of the texels around the place where the surface was, by their weights; false where it was not to be seen.
+// Selects one of the texels around the surface's previous place, by their weights. Returns false if
+// the surface was not visible.
 bool find_past(ivec2 pixel, uint id, float u, out ivec2 past) {
   past = ivec2(0);
   if (!history_usable())

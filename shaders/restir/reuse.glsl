@@ -1,17 +1,19 @@
-// Passes over reservoirs: a pixel's own sample, its history, its neighbours, its light. tests/passes/restir/cpu/reuse.cpp mirrors
-// these functions in fp64 under the same names and says what they mean.
+// Passes over reservoirs: initial sample, temporal reuse, spatial reuse, and resolve.
+// tests/passes/restir/cpu/reuse.cpp mirrors and documents these functions in fp64 under the same
+// names.
 #ifndef DERMIS_RESTIR_REUSE_GLSL
 #define DERMIS_RESTIR_REUSE_GLSL
 
 #include "restir/shift.glsl"
 
 struct reuse_settings {
-  uint shift; // of this stage: shift_of_stage
-  uint index; // index_traced, index_drawn
+  uint shift; // shift of this stage: shift_of_stage
+  uint index; // index_traced or index_drawn
   float cap;  // confidence_cap
 };
 
-// One x2 by a probe, one place on one light, one shadow ray; confidence 1, without a sample too.
+// Samples one x2 by a probe, one place on one light, and one shadow ray. Confidence is 1, even
+// without a sample.
 reservoir draw_initial(scatter_domain domain, inout random_state random) {
   reservoir none = no_reservoir(1.0), drawn = none;
   float u[7];
@@ -42,19 +44,19 @@ reservoir draw_initial(scatter_domain domain, inout random_state random) {
   return sanitised(drawn);
 }
 
-// x / (x + y) for densities, 0 where both are.
+// Returns x / (x + y) for densities; 0 if both are 0.
 float restir_part(float x, float y) { return x > 0.0 ? x / (x + y) : 0.0; }
 
-// Two paths, each with the pixel that it is of and its target there, and their images in each other's. Loops over both,
-// as above: once is compiled once.
+// Two paths, each with its pixel's domain and target there, and their images in each other's
+// domain. A loop over both, because a driver then compiles the body only once.
 struct exchange {
   scatter_domain domain[2];
   reservoir path[2];
   float target[2];
-  shifted_path image[2]; // of path i in domain 1 - i
+  shifted_path image[2]; // path i in domain 1 - i
 };
 
-// `first`: the first path that has to be prepared; 0 or 1.
+// `first`: index of the first path that must be prepared, 0 or 1.
 void exchange_paths(reuse_settings settings, uint first, bool over_time, inout exchange both,
                     inout random_state random) {
   for (uint i = 0u; i < 2u; ++i) {
@@ -71,7 +73,7 @@ void exchange_paths(reuse_settings settings, uint first, bool over_time, inout e
   }
 }
 
-// Generalised balance heuristic over frame and history.
+// Merges frame and history by the generalised balance heuristic.
 reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservoir current,
                          scatter_domain previous_domain, reservoir previous, inout random_state random) {
   exchange both;
@@ -97,9 +99,9 @@ reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservo
 // Defensive pairwise MIS: spatial_begin, spatial_add for each neighbour, spatial_end.
 struct spatial_merge {
   reservoir_stream stream;
-  reservoir own; // with its random numbers, where the shift replays
+  reservoir own; // with its random numbers if the shift replays
   float own_target, own_mis;
-  float neighbours; // sum of their confidences
+  float neighbours; // sum of the neighbours' confidences
 };
 
 spatial_merge spatial_begin(reuse_settings settings, scatter_domain domain, reservoir own, float neighbours,
@@ -142,7 +144,7 @@ reservoir spatial_end(inout spatial_merge spatial, inout random_state random) {
   return stream_end(spatial.stream);
 }
 
-// The pixel's estimate: scattered diffuse light before albedo.
+// Returns the pixel's estimate: scattered diffuse light before albedo.
 vec3 resolve(scatter_domain domain, reservoir r) {
   r = sanitised(r);
   if (!has_sample(r))
@@ -150,13 +152,14 @@ vec3 resolve(scatter_domain domain, reservoir r) {
   return r.weight * contribution_of(domain, surface_of(r), r);
 }
 
-// How far neighbours are looked for, pixels; `footprint`: of a pixel across the view at x1, in d's unit.
+// Returns the search radius for neighbours in pixels. `footprint`: size of a pixel across the view
+// at x1, in the unit of d.
 float search_radius(vec3 d, float footprint) {
   float px = 2.0 * max(d.r, max(d.g, d.b)) / footprint;
   return px >= 5.0 ? min(px, 30.0) : 5.0;
 }
 
-// From the pixel to a neighbour, uniform over the disc.
+// Returns an offset from the pixel to a neighbour, uniform over the disc.
 ivec2 neighbour_offset(float radius, inout random_state random) {
   float r = radius * sqrt(random_unit(random));
   float angle = 2.0 * restir_pi * random_unit(random);

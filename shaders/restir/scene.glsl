@@ -1,5 +1,6 @@
-// What is asked of a scene. The kernel that includes this defines the five functions at the end, over its acceleration
-// structure and buffers; tests/passes/restir/cpu/scene.hpp is the same for the CPU.
+// The interface to a scene. The kernel that includes this file defines the five functions at the
+// end, over its acceleration structure and buffers. tests/passes/restir/cpu/scene.hpp is the CPU
+// version.
 #ifndef DERMIS_RESTIR_SCENE_GLSL
 #define DERMIS_RESTIR_SCENE_GLSL
 
@@ -8,21 +9,23 @@
 
 struct surface_point {
   vec3 position;
-  vec3 normal;  // geometric, unit length, outwards: densities are per area of it
-  vec3 shading; // unit length: light falls in by it
+  vec3 normal;  // geometric normal, unit length, outwards: densities are per area of this surface
+  vec3 shading; // shading normal, unit length: gives the cosine of incident light
   uint medium;
 };
 
-// All hits with surfaces of the medium, front and back, in order of distance; the nearest max_probe_hits. A ray query
-// meets candidates in any order: sort them.
+// Returns all hits with surfaces of the medium, front and back, sorted by distance; at most the
+// nearest max_probe_hits. Implementations must sort, because a ray query returns candidates in any
+// order.
 void trace_probe(probe_ray ray, uint medium, out probe_hits hits);
 surface_point surface_at(uint instance, uint primitive, vec2 barycentrics);
-// Is the way from the surface (off which the ray is lifted) to the target free?
+// Returns whether the segment from the surface (with the ray's origin lifted off it) to the target
+// is free.
 bool visible(surface_point from, vec3 target);
 uint light_count();
 light_source light_at(uint index);
 
-// The first light whose `until` lies above u; the last where none does.
+// Returns the first light whose `until` is above u; the last light if none is.
 uint pick_light(float u) {
   uint i = 0u, count = light_count();
   while (i + 1u < count && !(u < light_at(i).until))

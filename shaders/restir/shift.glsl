@@ -1,5 +1,5 @@
-// Shift mappings: a path of one pixel becomes a path of another. tests/passes/restir/cpu/shift.cpp mirrors these functions in
-// fp64 under the same names and says what they mean.
+// Shift mappings: map a path of one pixel to a path of another. tests/passes/restir/cpu/shift.cpp
+// mirrors and documents these functions in fp64 under the same names.
 #ifndef DERMIS_RESTIR_SHIFT_GLSL
 #define DERMIS_RESTIR_SHIFT_GLSL
 
@@ -20,7 +20,8 @@ struct shifted_path {
 };
 
 #ifdef DERMIS_RESTIR_RELIGHT
-// Kernels that define DERMIS_RESTIR_RELIGHT before they include this define it: the same light in the frame before.
+// Returns the same light in the frame before. Kernels that define DERMIS_RESTIR_RELIGHT before this
+// include must define this function.
 light_source previous_light_at(uint index);
 #endif
 
@@ -40,7 +41,7 @@ bool replays(uint shift, scatter_domain domain, surface_point x2) {
   return shift == shift_delayed || (shift == shift_hybrid && !connectable(domain, x2.position, x2.normal));
 }
 
-// Of replayed random numbers per area, the choice among hits included.
+// Returns the Jacobian of replayed random numbers per area, including the choice among hits.
 float replay_jacobian(float from_density, uint from_hits, float to_density, uint to_hits) {
   if (!(from_density > 0.0) || !(to_density > 0.0) || from_hits == 0u || to_hits == 0u)
     return 0.0;
@@ -60,15 +61,15 @@ float target_of(scatter_domain domain, surface_point x2, reservoir path) {
   return luminance(contribution_of(domain, x2, path));
 }
 
-// Functions below are handed x2, the surface_of the path, and shift_path lights it at one place: each reading of a
-// surface and each ray that a kernel has once only is one that a driver compiles once only.
+// The functions below take x2, the surface_of the path, as a parameter, and only shift_path lights
+// the path. A driver then compiles each surface read and each ray only once.
 
 shifted_path reconnect(scatter_domain to, surface_point x2, reservoir path) {
   path.hits = 0u;
   return shifted_path(path, 1.0, target_of(to, x2, path));
 }
 
-// Leaves the path without light; `x2` becomes where it leads.
+// Returns the path without light; sets `x2` to the end of the replayed probe.
 shifted_path replay(uint shift, scatter_domain to, reservoir path, inout surface_point x2) {
   shifted_path result = shifted_path(path, 0.0, 0.0);
   if (path.hits == 0u)
@@ -79,7 +80,8 @@ shifted_path replay(uint shift, scatter_domain to, reservoir path, inout surface
     return result;
   probe_hit hit = hits.hit[picked_hit(path.numbers.pick, hits.count)];
   x2 = surface_at(hit.instance, hit.primitive, hit.barycentrics);
-  if (shift == shift_hybrid && connectable(to, x2.position, x2.normal)) // would not come back so
+  // the inverse shift would reconnect
+  if (shift == shift_hybrid && connectable(to, x2.position, x2.normal))
     return result;
   result.path.density = probe_pdf(to, x2.position, x2.normal);
   result.jacobian = replay_jacobian(path.density, path.hits, result.path.density, hits.count);
@@ -90,7 +92,8 @@ shifted_path replay(uint shift, scatter_domain to, reservoir path, inout surface
   return result;
 }
 
-// A path as the light of its number, of this frame or of the one before, lights it in the pixel that it was shifted to.
+// Lights the path in the pixel that it was shifted to, with its light of this frame or of the frame
+// before.
 void relight(bool before, scatter_domain domain, surface_point x2, inout shifted_path shifted) {
   shifted.path.irradiance = vec3(0.0);
   shifted.target = 0.0;
@@ -109,8 +112,9 @@ void relight(bool before, scatter_domain domain, surface_point x2, inout shifted
   }
 }
 
-// Finds the random numbers that `shift` will replay by probabilistic inversion in the path's own pixel; once for each
-// path and pass. Where none lead there, hits stays 0 and no replay succeeds.
+// Finds the random numbers that `shift` will replay, by probabilistic inversion in the path's own
+// pixel. Call this once for each path and pass. If no numbers lead to x2, hits stays 0 and no
+// replay succeeds.
 void prepare(uint shift, uint index, scatter_domain domain, surface_point x2, inout reservoir path,
              inout random_state random) {
   if (!has_sample(path) || path.hits > 0u)
@@ -131,8 +135,9 @@ void prepare(uint shift, uint index, scatter_domain domain, surface_point x2, in
     path.hits = hits.count;
 }
 
-// `shift` is none of a sequence: ask shift_of_stage first. `before`: into the frame before; with
-// DERMIS_RESTIR_RELIGHT paths are lit by the lights of the frame that they come to.
+// Shifts a path. `shift` must not be shift_sequential: call shift_of_stage first. `before`: the
+// destination is in the frame before. With DERMIS_RESTIR_RELIGHT, paths are lit by the lights of
+// the destination's frame.
 shifted_path shift_path(uint shift, bool before, scatter_domain from, scatter_domain to, surface_point x2, reservoir path) {
   shifted_path none = shifted_path(path, 0.0, 0.0);
   if (!has_sample(path) || from.medium != to.medium)

@@ -1,4 +1,5 @@
-// Surfaces of the host's scene, from its buffers; lengths are the host's units. Include after the bindings.
+// Surfaces of the host's scene, from its buffers. Lengths are in the host's units. Include after
+// the bindings.
 #ifndef DERMIS_RESTIR_SURFACES_GLSL
 #define DERMIS_RESTIR_SURFACES_GLSL
 
@@ -25,8 +26,9 @@ surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
   }
   vec3 geometric = normalize(cross(p[1] - p[0], p[2] - p[0]));
   vec3 x = one.world_from_object[0].xyz, y = one.world_from_object[1].xyz, z = one.world_from_object[2].xyz;
-  vec3 shading = vec3(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal)); // cofactors
-  if (dot(x, cross(y, z)) < 0.0) { // a mirrored object is inside out
+  // multiplies by the matrix of cofactors
+  vec3 shading = vec3(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal));
+  if (dot(x, cross(y, z)) < 0.0) { // mirroring turns an object inside out
     geometric = -geometric;
     shading = -shading;
   }
@@ -43,7 +45,7 @@ vec3 world_direction(vec3 in_view) {
          mm_per_world_unit();
 }
 
-// What the pixel fixes of its paths; d 0 where nothing scatters.
+// Returns the scatter domain of a pixel; d is 0 if nothing scatters.
 scatter_domain domain_of(ivec2 pixel) {
   ivec2 texel = texel_of(pixel);
   uint id = texelFetch(material_image, texel, 0).r;
@@ -60,7 +62,8 @@ scatter_domain domain_of(ivec2 pixel) {
                         find_profile(id, scale).d.rgb / mm_per_world_unit(), id);
 }
 
-// Of a pixel of the rectangle in buffers that have an element for each: row by row, however large the host's images are.
+// Returns the index of a pixel of the rectangle in buffers with one element per pixel, row by row.
+// The size of the host's images does not matter.
 uint element_of(ivec2 pixel) { return uint(pixel.y * frame.rect.z + pixel.x); }
 
 random_state random_of(ivec2 pixel, uint first) {

@@ -1,5 +1,6 @@
-// The rule that gives tiles their samples, shared with passes/choice/sample_allocation.cpp function by function. A tile takes
-// steps 0 -> 1 -> 2 -> 3; each costs units and takes off error; what takes off most for its cost comes first.
+// The rule that allocates samples to tiles. passes/choice/sample_allocation.cpp mirrors it function
+// by function. A tile takes steps 0 -> 1 -> 2 -> 3. Each step costs units and reduces the tile's
+// error; steps with the largest reduction per cost come first.
 #ifndef DERMIS_ALLOTMENT_GLSL
 #define DERMIS_ALLOTMENT_GLSL
 
@@ -9,22 +10,23 @@ const int allocation_steps = 3;
 const uint allocation_bins = 256u;
 const uint no_bin = 0xffffffffu;
 
-// Units that step `k` costs: 8 samples a pixel of the tile are one.
+// Returns the cost of step `k` in units. A unit is 8 samples per pixel of the tile.
 uint step_cost(int k) { return k < 2 ? 1u : 2u; }
-// Samples of a pixel of a tile that took `steps`.
+// Returns the samples per pixel of a tile that took `steps`.
 int samples_of(uint steps) { return steps == 0u ? 0 : 4 << steps; }
 
-// What step `k` takes off a tile's error, for one unit.
+// Returns by how much step `k` reduces a tile's error, per unit.
 float step_gain(int k) { return k == 0 ? allot_gain_0 : k == 1 ? allot_gain_1 : allot_gain_2; }
 
-// Benefit over cost on a logarithmic scale, eight bins an octave: exponent and first bits of the product, which is
-// rounded alike everywhere.
+// Returns the bin of benefit over cost on a logarithmic scale with eight bins per octave: exponent
+// and first bits of the product, whose rounding is the same on all devices.
 uint step_bin(uint tile_error, int k, uint before) {
   if (tile_error == 0u)
     return no_bin;
   float priority = float(tile_error) * step_gain(k);
   if (before > uint(k))
-    priority *= allocation_stay; // what a tile had in the frame before it keeps more easily
+    // Makes a tile keep the samples that it had in the frame before.
+    priority *= allocation_stay;
   return uint(clamp(int(floatBitsToUint(priority) >> 20) - allocation_first_bin, 0, int(allocation_bins) - 1));
 }
 

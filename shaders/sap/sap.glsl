@@ -1,4 +1,5 @@
-// The surface-aware pyramid (SAP): what its kernels share. tests/passes/sap/cpu/sap_cpu.cpp mirrors these functions.
+// Functions shared by the kernels of the surface-aware pyramid (SAP).
+// tests/passes/sap/cpu/sap_cpu.cpp mirrors them.
 #ifndef DERMIS_SAP_GLSL
 #define DERMIS_SAP_GLSL
 
@@ -7,29 +8,30 @@
 #include "constants.glsl"
 #include "common/environment.glsl"
 
-const float sap_sigma = 0.8660254; // of [1 3 3 1] in its own spacings: sqrt(3)/2
+const float sap_sigma = 0.8660254; // standard deviation of [1 3 3 1] in its own spacings: sqrt(3)/2
 // Widths of the weights in sigmas, by measurement (tests/passes/sap/cpu/sap_levels.hpp).
 const float sap_depth_width = 2.0;      // distance from the tangent plane: stops at depth steps
-const float sap_tilt_width_down = 1.0;  // depth along the tangent plane: narrows the kernel on slopes
+// depth along the tangent plane: narrows the kernel on slopes
+const float sap_tilt_width_down = 1.0;
 const float sap_tilt_width_tent = 1.25;
-const float sap_confidence_width = 0.87; // distance from the further plane
+const float sap_confidence_width = 0.87; // distance from the farther plane
 const float sap_negligible = 1e-12;
 
 // exp(-x^2 / (2 width^2)) = exp2(factor * x^2)
 float sap_factor(float width) { return -0.5 * 1.44269504 / (width * width); }
-// Of two distances the one nearer to 0: a texel is off the surface by its distance from the tangent plane or in depth,
-// whichever is less.
+// Returns the smaller absolute distance. A texel's distance from the surface is the smaller of its
+// distance from the tangent plane and its difference in depth.
 float sap_nearer(float a, float b) { return min(abs(a), abs(b)); }
 
 struct sap_texel {
   float depth;  // mm
-  vec2 slope;   // change of depth from pixel to pixel, in footprints
+  vec2 slope;   // change of depth per pixel, in footprints
   float reach;  // factor on d: cos^(1/8) to the viewer times the scatter scale
-  float mass;   // share of the texel's own kernel that met the surface
-  uint id;      // profile, 0: nothing here
+  float mass;   // fraction of the texel's own kernel that hit the surface
+  uint id;      // profile, 0: no surface
 };
-// Beside the id of a texel's first surface where the level has two layers and the texel a second surface: that one's
-// images hold nothing anywhere else.
+// Flag next to the id of a texel's first surface: the level has two layers and the texel a second
+// surface. The images of the second layer are valid only at such texels.
 const uint sap_second_bit = 0x100u;
 bool sap_has_second(uvec4 bits) { return (bits.w & sap_second_bit) != 0u; }
 
@@ -41,13 +43,14 @@ sap_texel sap_unpack(uvec4 bits) {
   return sap_texel(uintBitsToFloat(bits.x), unpackHalf2x16(bits.y), pair.x, pair.y, bits.w & 0xffu);
 }
 
-// What a level hands down: light of its own and coarser levels, the share of the kernel that met the surface, confidence.
+// Values that a level passes to the finer one: light of its own and coarser levels, the fraction of
+// the kernel that hit the surface, and confidence.
 struct sap_scattered {
   vec3 light;
   float confidence;
   vec3 mass;
 };
-// All values must be halves already.
+// All values must be representable as halves.
 uvec4 sap_pack_scattered(sap_scattered t) {
   return uvec4(packHalf2x16(t.light.rg), packHalf2x16(vec2(t.light.b, t.confidence)), packHalf2x16(t.mass.rg),
                packHalf2x16(vec2(t.mass.b, 0.0)));
@@ -57,7 +60,8 @@ sap_scattered sap_unpack_scattered(uvec4 bits) {
   return sap_scattered(vec3(unpackHalf2x16(bits.x), pair.x), pair.y, vec3(unpackHalf2x16(bits.z), unpackHalf2x16(bits.w).x));
 }
 
-// The same with light in floats and the others in a byte each: kernels with the setting `storage`.
+// Packs light as floats and the other values as a byte each, for kernels with the setting
+// `storage`.
 uvec4 sap_pack_scattered_full(sap_scattered t) {
   return uvec4(floatBitsToUint(t.light), packUnorm4x8(vec4(t.mass, t.confidence)));
 }
@@ -66,15 +70,16 @@ sap_scattered sap_unpack_scattered_full(uvec4 bits) {
   return sap_scattered(uintBitsToFloat(bits.xyz), fractions.a, fractions.rgb);
 }
 
-// Geometric mean of a pixel's sides at a depth, mm.
+// Returns the geometric mean of a pixel's sides at a depth, mm.
 float sap_footprint(float depth) {
   return sqrt(abs(frame.ray_scale.x * frame.ray_scale.y)) * (is_perspective() ? depth : 1.0);
 }
-// Rise of a texel's tangent plane at an offset in pixels, mm.
+// Returns the rise of a texel's tangent plane at an offset in pixels, mm.
 float sap_rise(float depth, vec2 slope, vec2 offset) { return dot(slope, offset) * sap_footprint(depth); }
 
-// How far a texel is off another one's surface, by the nearer of its distances from the tangent plane and in depth, mm; and
-// off the planes of both.
+// Return the distance of a texel from another texel's surface in mm: the smaller of its distance
+// from the tangent plane and its difference in depth. sap_off_planes considers the planes of both
+// texels.
 float sap_off_plane(sap_texel own, sap_texel tap, vec2 offset) {
   float depth_step = tap.depth - own.depth;
   return sap_nearer(depth_step - sap_rise(own.depth, own.slope, offset), depth_step);
@@ -83,28 +88,28 @@ float sap_off_planes(sap_texel own, sap_texel tap, vec2 offset) {
   return sap_nearer(sap_off_plane(own, tap, offset), tap.depth - own.depth - sap_rise(tap.depth, tap.slope, offset));
 }
 ivec2 sap_level_size(int level) { return (frame.rect.zw + (1 << level) - 1) >> level; }
-// Levels from 1 on have a border of one texel; level 0 lies as the view does.
+// Levels from 1 on have a border of one texel; level 0 has the layout of the view.
 bool sap_inside(ivec2 at, int level) {
   int border = level > 0 ? 1 : 0;
   return all(greaterThanEqual(at, ivec2(-border))) && all(lessThan(at, sap_level_size(level) + border));
 }
-// Tile of the view that a pixel lies in. Level 0 is written in tiles with subsurface only; so is, at each level, the texel
-// that such a pixel lies in.
+// Returns the tile of the view that contains a pixel. Level 0 is written only in tiles with
+// subsurface. Coarser levels write the texels that contain such a pixel.
 int sap_tile(ivec2 pixel) { return (pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3); }
 ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at); }
 
-// Row `row` of a table at d px: sap_lookup of passes/sap/sap_weights.cpp.
+// Returns row `row` of a table at d px, as sap_lookup of passes/sap/sap_weights.cpp.
 float sap_lookup(int table, int row, float d_px) {
   int first = (table * (sap_levels + 1) + row) * sap_nodes;
   float position = (log2(max(d_px, 1e-30)) - sap_log2_d_first) * sap_nodes_per_octave;
   float clamped = clamp(position, 0.0, float(sap_nodes - 1));
   int node = min(int(clamped), sap_nodes - 2);
   float value = mix(sap_table[first + node], sap_table[first + node + 1], clamped - float(node));
-  // Below the first node all but the centre fades.
+  // Below the first node, all weights except the centre's fade to 0.
   float fraction = position < 0.0 ? d_px / exp2(sap_log2_d_first) : 1.0;
   return row == 0 ? 1.0 - fraction * (1.0 - value) : row == 1 ? fraction * value : value;
 }
-// Per channel; a profile with tables of its own has one a channel.
+// Returns the value per channel; a profile with its own tables has one table per channel.
 vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {
   int own = int(profiles[min(id, 255u)].sap_table);
   ivec3 table = own == 0 ? ivec3(variant) : own + 3 * variant + ivec3(0, 1, 2);

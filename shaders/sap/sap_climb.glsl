@@ -1,4 +1,5 @@
-// One step up, of one texel. Include after bindings as sap_up.glsl says, with `variant` and `storage`.
+// One step up, for one texel. Include after the bindings listed in sap_up.glsl, with `variant` and
+// `storage`.
 #ifndef DERMIS_SAP_CLIMB_GLSL
 #define DERMIS_SAP_CLIMB_GLSL
 
@@ -6,10 +7,10 @@ const int block_width = 2, block_height = 2, coarse_width = 2, coarse_height = 2
 const ivec2 odd_first = ivec2(1);
 #include "sap/sap_up.glsl"
 
-const float min_fraction = 0.004; // below it the tent is not worth its time
+const float min_fraction = 0.004; // the tent is not worth its time for a smaller weight
 
-// Bits of the texel at hand, whose place has parity `odd`, blended with what the coarser level hands down. `layers`: how
-// many are looked at.
+// Returns the bits of the current texel, whose position has parity `odd`, blended with the values
+// of the coarser level. `layers`: number of layers to read.
 uvec4 climb(ivec2 odd, int level, sap_texel own, vec3 light, int layers, bool smooth_level, bool last) {
   vec3 fraction = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
   sap_sum here = sap_sum(light, vec3(own.mass));

@@ -1,17 +1,21 @@
-// One level down: [1 3 3 1] x [1 3 3 1] over the children that lie on the parent's tangent plane, or the mean of 2x2
-// of them (SAP_BOX). What the first layer of a parent does not take can make a second one (SAP_SECOND), and both are
-// children of the next level. Works on one parent at a time, whose children are in `children` and `child_light`.
-// Include after bindings with `light` and `surface` (but for a box), `level_tiles` and, of two layers, `second_light` and
-// `second_surface`.
+// One level down: [1 3 3 1] x [1 3 3 1] over the children on the parent's tangent plane, or the
+// mean of 2x2 children (SAP_BOX). Children that the first layer of a parent does not use can form a
+// second layer (SAP_SECOND); both layers are children of the next level. Works on one parent at a
+// time, whose children are in `children` and `child_light`.
+// Include after bindings with `light` and `surface` (except for a box), `level_tiles` and, for two
+// layers, `second_light` and `second_surface`.
 #ifndef DERMIS_SAP_DOWN_GLSL
 #define DERMIS_SAP_DOWN_GLSL
 
 const int block_width = 2, block_height = 2;
 #include "sap/sap_tiles.glsl"
 
-const float hysteresis = 1.02;    // the first of equals stays the seed
-const float nearest_fraction = 0.25; // a plane is not extrapolated nearer than this share of its depth
-const float min_seed_part = 0.9; // what has less left is no seed of the second layer: it lies on the first one's surface, bent
+const float hysteresis = 1.02;    // keeps the first seed among equals
+// minimum fraction of a plane's depth to which the plane is extrapolated
+const float nearest_fraction = 0.25;
+// A child with less left is no seed of the second layer, because it lies on a bend of the first
+// layer's surface.
+const float min_seed_part = 0.9;
 
 #ifdef SAP_BOX
 const int children_across = 2;
@@ -24,11 +28,12 @@ const int max_layers = 2;
 const int max_layers = 1;
 #endif
 const int children_a_layer = children_across * children_across;
-sap_texel children[max_layers * children_a_layer]; // one layer behind the other
+sap_texel children[max_layers * children_a_layer]; // the second layer follows the first
 vec4 child_light[max_layers * children_a_layer];
-float child_left[max_layers * children_a_layer]; // what no layer of the parent has taken yet
+// fraction that no layer of the parent has used yet
+float child_left[max_layers * children_a_layer];
 
-// A block's parents share their children.
+// The parents of a block share children.
 const int side = block_width * 2 + children_across - 2;
 int shared_child(int parent, int child) {
   return (2 * (parent / block_width) + child / children_across) * side + 2 * (parent % block_width) + child % children_across;
@@ -44,7 +49,7 @@ bool child_written(texel_block block, ivec2 at, int finer) {
   ivec2 address = finer > 0 ? at + 1 : at;
   return sap_inside(at, finer) && tile_written(block.children, (address >> 3) - 2 * block.tile + 1);
 }
-// The children of all parents of a block, whose first one is `first`.
+// Reads the children of all parents of a block, starting at parent `first`.
 void read_block(texel_block block, ivec2 first, int finer) {
   [[unroll]] for (int i = 0; i < side * side; ++i) {
     ivec2 at = 2 * first - 1 + ivec2(i % side, i / side);
@@ -53,7 +58,7 @@ void read_block(texel_block block, ivec2 first, int finer) {
     block_light[i] = needed ? texelFetch(light_image, sap_address(at, finer), 0) : vec4(0.0);
   }
 }
-// Those of one of them; whether one has two layers.
+// Copies the children of one parent. Returns whether any of them has two layers.
 bool take_children(int parent) {
   uint flags = 0u;
   [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
@@ -71,7 +76,7 @@ void begin_parent(int layers) {
     child_left[c] = 1.0;
 }
 bool may_seed(int child) { return children[child].id != 0u && child_left[child] >= min_seed_part; }
-// Whether another layer has a seed.
+// Returns whether there is a seed for another layer.
 bool remains(int layers) {
   bool any_seed = false;
   [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
@@ -99,7 +104,7 @@ struct seed_search {
   float maximum;
   int child;
 };
-// Central child 0 to 3 of the first layer, 4 to 7 of the second.
+// Returns the central child: 0 to 3 of the first layer, 4 to 7 of the second.
 int central(int i) {
 #ifdef SAP_BOX
   return i;
@@ -107,7 +112,7 @@ int central(int i) {
   return 16 * (i / 4) + 5 + i % 2 + 4 * (i % 4 / 2);
 #endif
 }
-// How much the central children lie on a seed's surface.
+// Returns how much of the central children lies on a seed's surface.
 float support_of(sap_texel seed, float spacing, int layers) {
   float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(seed.depth)), support = 0.0;
   [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
@@ -118,8 +123,9 @@ float support_of(sap_texel seed, float spacing, int layers) {
   return support;
 }
 
-// The child whose plane most of the central ones support; without a central one, the weightiest outer one. Its
-// depth is that of its plane at the parent; id 0: no child at all.
+// Returns the child whose plane has the most support among the central children; without a central
+// child, the outer child with the largest weight. Its depth is the depth of its plane at the
+// parent; id 0 means no child.
 sap_texel find_seed(float spacing, int layers) {
   seed_search found = seed_search(sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u), 0.0, 0);
   [[unroll]] for (int a = 0; a < 4 * layers; ++a) {
@@ -148,7 +154,7 @@ sap_texel find_seed(float spacing, int layers) {
   return found.best;
 }
 
-// Sums over the children that lie on the surface of a seed.
+// Sums over the children on the surface of a seed.
 struct reduction {
   float all_weight, mass, total, total_flat, mean_depth, mean_reach;
   vec2 mean_slope;
@@ -181,7 +187,8 @@ void add_children(float spacing, sap_texel seed, int layers, inout reduction sum
   }
 }
 
-// The next layer of the parent: light, and surface with id 0 where nothing is left for it.
+// Computes the next layer of the parent: light and surface. The id is 0 if nothing is left for the
+// layer.
 void reduce(float spacing, int layers, out vec4 light, out uvec4 bits) {
   light = vec4(0.0);
   bits = uvec4(0u);

@@ -1,4 +1,5 @@
-// The last step up: scattered light and confidence of a pixel. Include after bindings as sap_up.glsl says.
+// The last step up: scattered light and confidence of a pixel. Include after the bindings listed in
+// sap_up.glsl.
 #ifndef DERMIS_SAP_GATHER_GLSL
 #define DERMIS_SAP_GATHER_GLSL
 
@@ -6,12 +7,13 @@ const int block_width = 4, block_height = 2, coarse_width = 4, coarse_height = 3
 const ivec2 odd_first = ivec2(0);
 #include "sap/sap_up.glsl"
 
-const float min_fraction = 0.002; // below it the tent is not worth its time
+const float min_fraction = 0.002; // the tent is not worth its time for a smaller weight
 
-// Of the texel at hand, whose place has parity `odd`.
+// Returns the light of the current texel, whose position has parity `odd`.
 vec4 gather(ivec2 odd, sap_texel own) {
   vec3 light = near_light[near_centre].rgb;
-  vec3 d_px = sap_d_px(own) * inversesqrt(near_light[near_centre].a); // a tilted pixel keeps more of its own light
+  // a tilted pixel keeps more of its own light
+  vec3 d_px = sap_d_px(own) * inversesqrt(near_light[near_centre].a);
   vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
   sap_sum near = sap_sum(light, vec3(own.mass));
   if (max(tent.r, max(tent.g, tent.b)) >= min_fraction)
@@ -21,12 +23,13 @@ vec4 gather(ivec2 odd, sap_texel own) {
   rest.mass *= max(1.0 - centre - tent, vec3(0.0));
   uint widest = profiles[min(own.id, 255u)].widest;
   confidence = mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
-  vec3 direct = profile_direct(own.id); // what never scatters needs no surface around
+  // Light that never scatters needs no surface around.
+  vec3 direct = profile_direct(own.id);
   vec3 mean = sap_blend(max(centre - direct, vec3(0.0)) * own.mass, light, tent * near.mass, near.light, rest).light;
   return vec4(mix(mean, light, direct), confidence);
 }
 
-// Of every pixel of the invocation's block.
+// Computes every pixel of the invocation's block.
 void gather_block() {
   texel_block block;
   if (!listed_block(0, block))

@@ -1,5 +1,5 @@
-// A pixel of the view as level 0 of the surface-aware pyramid has it. Include after bindings with `lighting`, `albedo`,
-// `scatter_scale` and the setting `texturing`.
+// A pixel of the view as a texel of level 0 of the surface-aware pyramid. Include after bindings
+// with `lighting`, `albedo`, `scatter_scale` and the setting `texturing`.
 #ifndef DERMIS_SAP_PIXEL_GLSL
 #define DERMIS_SAP_PIXEL_GLSL
 
@@ -9,7 +9,8 @@
 #include "common/radius.glsl"
 #include "sap/sap.glsl"
 
-// The surface behind a pixel at a depth above 0, and the fourth root of its area over its cross-section.
+// Returns the surface of a pixel at a depth above 0, and the fourth root of its area divided by its
+// cross-section.
 sap_texel sap_pixel_surface(ivec2 pixel, uint id, float depth, patch_neighbours around, out float area_root) {
   surface_patch patch_here = build_patch(pixel, depth, around);
   vec2 sides = pixel_footprint(depth);

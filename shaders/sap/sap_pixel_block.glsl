@@ -1,5 +1,5 @@
-// A block of the view's pixels, each read once; their patches see no pixel beyond it. For kernels that store no level 0.
-// Include after `pixels_across` and `pixels_down`.
+// A block of the view's pixels, each read once; patches ignore pixels beyond the block. For kernels
+// that store no level 0. Include after `pixels_across` and `pixels_down`.
 #ifndef DERMIS_SAP_PIXEL_BLOCK_GLSL
 #define DERMIS_SAP_PIXEL_BLOCK_GLSL
 
@@ -7,7 +7,7 @@
 
 const int block_pixels = pixels_across * pixels_down;
 uint pixel_profile[block_pixels];
-float pixel_depth[block_pixels]; // mm, 0 where there is nothing
+float pixel_depth[block_pixels]; // mm; 0 if nothing is visible
 
 float depth_of_profile(int x, int y, uint id) {
   bool inside = x >= 0 && y >= 0 && x < pixels_across && y < pixels_down;
@@ -15,7 +15,7 @@ float depth_of_profile(int x, int y, uint id) {
   return inside && pixel_profile[index] == id ? pixel_depth[index] : 0.0;
 }
 
-// The surface behind pixel i of the block, whose depth is above 0; as sap_pixel_surface.
+// Returns the surface of pixel i of the block, whose depth must be above 0, as sap_pixel_surface.
 sap_texel block_surface(ivec2 pixel, int i, out float area_root) {
   int x = i % pixels_across, y = i / pixels_across;
   uint id = pixel_profile[i];

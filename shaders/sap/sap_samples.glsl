@@ -1,6 +1,7 @@
-// Importance samples of the surface around a pixel, read from the pyramid's own levels: a sample stands for an area and
-// reads the texel of that size under it, if that texel lies on the surface it met. Include after bindings with `light`,
-// `surface` (level 0), `light_1` .. `light_5` and `surface_1` .. `surface_5`, and after `near_written`.
+// Importance samples of the surface around a pixel, read from the pyramid's own levels. A sample
+// represents an area and reads the texel of that size under it, if that texel lies on the surface
+// that the sample hit. Include after bindings with `light`, `surface` (level 0), `light_1` ..
+// `light_5` and `surface_1` .. `surface_5`, and after `near_written`.
 #ifndef DERMIS_SAP_SAMPLES_GLSL
 #define DERMIS_SAP_SAMPLES_GLSL
 
@@ -10,8 +11,10 @@
 
 const float golden_angle = 2.39996322972865332; // pi (3 - sqrt 5)
 const float two_pi = 6.28318530717958648;
-const int last_sample_level = 5; // 16 samples of a d of 20 px reach it within three d
-const float on_surface = 2.0;    // of a level's sigma: how far off its tangent plane a texel still stands for it
+// 16 samples at a d of 20 px reach this level within 3 d.
+const int last_sample_level = 5;
+// Maximum distance of a texel from the sample's tangent plane, in sigmas of the level.
+const float on_surface = 2.0;
 
 uvec4 level_surface(int level, ivec2 at) {
   switch (level) {
@@ -32,10 +35,10 @@ vec3 level_light(int level, ivec2 at) {
   }
 }
 
-// Area of a pixel's patch over that of the pixel's cross-section: 1 / cos to the viewer, from the slope that level 0
-// keeps.
+// Returns the area of a pixel's patch divided by the area of the pixel's cross-section: 1 / cos of
+// the angle to the viewer, from the slope in level 0.
 float sap_area(sap_texel t, vec2 pixel) {
-  vec2 rise = t.slope * sap_footprint(t.depth); // mm a pixel
+  vec2 rise = t.slope * sap_footprint(t.depth); // mm per pixel
   float zoom = is_perspective() ? t.depth : 1.0;
   vec3 ray = mix(vec3(0.0, 0.0, -1.0), view_position(pixel, t.depth) / t.depth, bvec3(is_perspective()));
   vec3 along_x = rise.x * ray + vec3(frame.ray_scale.x * zoom, 0.0, 0.0);
@@ -44,10 +47,10 @@ float sap_area(sap_texel t, vec2 pixel) {
   return clamp(length(cross(along_x, along_y)) * length(ray) / cross_section, 1.0, 1.0 / min_patch_cosine);
 }
 
-// Factor on d of the pixel's scatter_scale, out of its reach.
+// Returns the factor on d of the pixel's scatter_scale, from its reach.
 float sap_scale(sap_texel t, float area) { return t.reach * sqrt(sqrt(sqrt(area))); }
 
-// Light around the sample's pixel at a level of detail.
+// Returns the light around the sample's pixel at a level of detail.
 vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
   int level = min(int(lod + 0.5), last_sample_level);
   if (level > 0) {
@@ -64,8 +67,9 @@ vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
   return texelFetch(light_image, texel_of(q), 0).rgb;
 }
 
-// Mean of `count` samples, self-normalised; what lies within the direct radius is the pixel's own light. Radii are
-// stratified, at the golden angle, both shifted by `offset` (over 2^32).
+// Returns the self-normalised mean of `count` samples. Light within the direct radius is the
+// pixel's own light. Radii are stratified and angles are multiples of the golden angle; `offset`
+// shifts both, in units of 2^-32.
 vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int count, float lod_bias) {
   float area = sap_area(own, vec2(pixel));
   scatter_profile profile = find_profile(own.id, sap_scale(own, area));
@@ -75,7 +79,8 @@ vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int
 
   float r0 = 0.5 * min(footprint.x, footprint.y);
   float beyond = profile_survival(profile, r0)[widest];
-  r0 = profile_sample(profile, beyond).r; // what the sampler leaves out is what is taken from the pixel's own light
+  // The pixel's own light must cover exactly the radii that the sampler leaves out.
+  r0 = profile_sample(profile, beyond).r;
   vec3 direct = 1.0 - profile_survival(profile, r0 * sqrt(area));
 
   float pixels_per_sample = two_pi * beyond / (float(count) * footprint.x * footprint.y);
@@ -92,7 +97,8 @@ vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int
     sap_texel tap = sap_unpack(texelFetch(surface_image, texel_of(q), 0));
     if (tap.id != own.id)
       continue;
-    // The sample's own point on the patch, not the patch's centre: the truth averages over the patch.
+    // Uses the sample's own point on the patch, not the patch's centre, because the reference
+    // averages over the patch.
     float depth = tap.depth + sap_rise(tap.depth, tap.slope, at - vec2(q));
     float distance_3d = max(length(view_position(at, depth) - position), 1e-12);
     float zoom = is_perspective() ? tap.depth / own.depth : 1.0;

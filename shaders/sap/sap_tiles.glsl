@@ -1,6 +1,7 @@
-// Running over the listed 8x8 tiles of a level of the surface-aware pyramid, one block of texels an invocation: a block
-// reads what its texels share once, without shared memory, which the software driver reads slowly.
-// Include after bindings with `level_tiles`, and after `block_width` and `block_height`.
+// Iteration over the listed 8x8 tiles of a level of the surface-aware pyramid, one block of texels
+// per invocation. A block reads the texels that its own texels share once, without shared memory,
+// which is slow on software drivers. Include after bindings with `level_tiles`, and after
+// `block_width` and `block_height`.
 #ifndef DERMIS_SAP_TILES_GLSL
 #define DERMIS_SAP_TILES_GLSL
 
@@ -12,14 +13,15 @@ const int blocks_across = 8 / block_width;
 const int blocks_per_tile = blocks_across * (8 / block_height);
 
 struct texel_block {
-  ivec2 first;   // its first texel's address, counted from the level's corner: from its border on
+  ivec2 first;   // address of the first texel, counted from the corner of the level's border
   ivec2 tile;
   bool copy_only; // level 0: no pixel of the tile scatters further than itself
-  uint children; // which of the 3x3 tiles of the finer level that its own tile reduces were written
-  uint around;   // which of the 3x3 tiles around its own were
+  // Mask of written tiles among the 3x3 tiles of the finer level that the own tile reduces.
+  uint children;
+  uint around;   // mask of written tiles among the 3x3 tiles around
 };
 
-// False where the list ends.
+// Returns false beyond the end of the list.
 bool listed_block(int level, out texel_block block) {
   uint group = gl_WorkGroupID.y * tile_groups_per_row + gl_WorkGroupID.x;
   uint index = group * uint(64 / blocks_per_tile) + gl_LocalInvocationIndex / uint(blocks_per_tile);
@@ -37,7 +39,8 @@ bool listed_block(int level, out texel_block block) {
   return true;
 }
 
-// Whether the tile at an offset of 0 to 2 from the first of the 3x3 that a mask speaks of was written.
+// Returns whether a tile was written, by its offset of 0 to 2 from the first of the mask's 3x3
+// tiles.
 bool tile_written(uint mask, ivec2 offset) { return (mask >> uint(3 * offset.y + offset.x) & 1u) != 0u; }
 
 #endif

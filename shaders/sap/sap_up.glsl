@@ -1,14 +1,17 @@
-// One texel on the way up: its own level, tent-filtered, and what the coarser level hands down. Functions work on the texel at
-// hand: what lies around it at its level in `near_surface` and `near_light` (3x3), and under it in `corner_surface` and
-// `corner_scattered` (2x2). An invocation computes a block of texels: it reads them, a ring around them and the coarser
-// texels on which they lie once, and takes each texel's from there.
-// Include after bindings with `light`, `surface`, `coarse_surface`, `coarse_scattered` and `level_tiles`, and after
-// `block_width`, `block_height`, `coarse_width`, `coarse_height` and `odd_first`: 1 where a block's first texel is odd; across, down.
-// SAP_NO_RING: the kernel has texels of the level by itself, and no `light` and `surface`.
-// SAP_OWN_LAYERS, SAP_COARSE_LAYERS: layers that a texel of the level and of the coarser one can have, 1 unless defined; of the
-// second layer `second_light`, `second_surface`, `second_coarse_surface` and `second_coarse_scattered`. With two own layers a
-// block is read with one; texels that have to do with a second one are read by themselves.
-// SAP_SECOND_MAY_LACK: that of the coarser level is optional.
+// One texel on the way up: its own level, tent-filtered, and the values of the coarser level.
+// Functions work on the current texel. `near_surface` and `near_light` hold its 3x3 neighbourhood
+// in its own level; `corner_surface` and `corner_scattered` hold the 2x2 nearest texels of the
+// coarser level. An invocation computes a block of texels. It reads the block, a ring around the
+// block and the coarser texels under it once, and copies each texel's neighbourhood from there.
+// Include after bindings with `light`, `surface`, `coarse_surface`, `coarse_scattered` and
+// `level_tiles`, and after `block_width`, `block_height`, `coarse_width`, `coarse_height` and
+// `odd_first` (across, down: 1 if a block's first texel is odd).
+// - SAP_NO_RING: the kernel reads texels of the level by itself and has no `light` and `surface`.
+// - SAP_OWN_LAYERS, SAP_COARSE_LAYERS: maximum layers of a texel of the level and of the coarser
+//   level; 1 unless defined. The second layer needs `second_light`, `second_surface`,
+//   `second_coarse_surface` and `second_coarse_scattered`. With two own layers a block is read with
+//   one layer, and texels that involve a second layer are read one by one.
+// - SAP_SECOND_MAY_LACK: the second layer of the coarser level is optional.
 #ifndef DERMIS_SAP_UP_GLSL
 #define DERMIS_SAP_UP_GLSL
 
@@ -22,18 +25,18 @@
 
 struct sap_sum {
   vec3 light;
-  vec3 mass; // share of the kernel that met the surface
+  vec3 mass; // fraction of the kernel that hit the surface
 };
 
 const int corner_texels = 4, near_texels = 9, near_centre = 4;
-uvec4 corner_surface[SAP_COARSE_LAYERS * corner_texels]; // one layer behind the other
+uvec4 corner_surface[SAP_COARSE_LAYERS * corner_texels]; // the second layer follows the first
 uvec4 corner_scattered[SAP_COARSE_LAYERS * corner_texels];
 #ifndef SAP_NO_RING
 uvec4 near_surface[SAP_OWN_LAYERS * near_texels];
 vec4 near_light[SAP_OWN_LAYERS * near_texels];
 #endif
 
-// Of a block. Its texels of the coarser level have their second layers behind them unless the level itself has two.
+// Coarser texels of a block. Their second layers follow, unless the level itself has two layers.
 const int block_coarse_layers = SAP_OWN_LAYERS > 1 ? 1 : SAP_COARSE_LAYERS;
 const int coarse_texels = coarse_width * coarse_height;
 uvec4 coarse_surface[block_coarse_layers * coarse_texels];
@@ -44,10 +47,10 @@ const int ring_width = block_width + 2, ring_height = block_height + 2;
 uvec4 ring_surface[ring_width * ring_height];
 vec4 ring_light[ring_width * ring_height];
 
-// Index of texel k plus an offset in the ring's arrays.
+// Returns the index of texel k plus an offset in the ring's arrays.
 int ring_index(int k, int i, int j) { return (k / block_width + 1 + j) * ring_width + k % block_width + 1 + i; }
 
-// Reads the texels at `first` (a texel of the level) and, if asked, the ring around it.
+// Reads the texels from `first` (a texel of the level) on and, if requested, the ring around them.
 void read_ring(texel_block block, ivec2 first, int level, bool with_ring) {
   [[unroll]] for (int i = 0; i < ring_width * ring_height; ++i) {
     int x = i % ring_width - 1, y = i / ring_width - 1;
@@ -58,7 +61,7 @@ void read_ring(texel_block block, ivec2 first, int level, bool with_ring) {
     ring_light[i] = needed ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0);
   }
 }
-// Those of texel k. Its surface's bits and those around it, one or the other.
+// Copies the neighbourhood of texel k. Returns the union of its surface bits.
 uint take_near(int k) {
   uint bits = 0u;
   [[unroll]] for (int n = 0; n < near_texels; ++n) {
@@ -71,7 +74,7 @@ uint take_near(int k) {
 }
 #endif
 
-// Reads the coarser texels on which a block lies. They exist where a texel of the block does.
+// Reads the coarser texels under a block. They exist if a texel of the block exists.
 void read_coarser(ivec2 first, int level) {
   [[unroll]] for (int i = 0; i < coarse_texels; ++i) {
     ivec2 at = ((first - 1) >> 1) + ivec2(i % coarse_width, i / coarse_width);
@@ -88,11 +91,11 @@ void read_coarser(ivec2 first, int level) {
 #endif
   }
 }
-// Parity of texel k's place.
+// Returns the parity of the position of texel k.
 ivec2 odd_of(int k) { return (ivec2(k % block_width, k / block_width) + odd_first) & 1; }
-// Those under texel k. Their surfaces' bits, one or the other.
+// Copies the coarser texels under texel k. Returns the union of their surface bits.
 uint take_corners(int k) {
-  ivec2 at = ivec2(k % block_width, k / block_width) + odd_first; // as from an even texel
+  ivec2 at = ivec2(k % block_width, k / block_width) + odd_first; // relative to an even texel
   ivec2 first = ((at - 1) >> 1) - ((odd_first - 1) >> 1);
   uint bits = 0u;
   [[unroll]] for (int n = 0; n < block_coarse_layers * corner_texels; ++n) {
@@ -105,7 +108,7 @@ uint take_corners(int k) {
 }
 
 #if SAP_OWN_LAYERS > 1
-// Reads both layers of the texel at a place, as its block's, and of those around it, if asked.
+// Reads both layers of a texel of the block and, if requested, of its neighbours.
 void read_near(texel_block block, ivec2 offset, ivec2 place, int level, bool with_ring) {
   [[unroll]] for (int n = 0; n < near_texels; ++n) {
     ivec2 step = ivec2(n % 3 - 1, n / 3 - 1), at = place + step, tile = (block.first + offset + step) >> 3;
@@ -117,7 +120,7 @@ void read_near(texel_block block, ivec2 offset, ivec2 place, int level, bool wit
     near_light[near_texels + n] = needed ? texelFetch(second_light_image, sap_address(at, level), 0) : vec4(0.0);
   }
 }
-// And of those under it.
+// Reads both layers of the coarser texels under the texel.
 void read_corners(ivec2 place, int level, bool there) {
   [[unroll]] for (int n = 0; n < corner_texels; ++n) {
     ivec2 at = ((place - 1) >> 1) + ivec2(n % 2, n / 2);
@@ -132,17 +135,18 @@ void read_corners(ivec2 place, int level, bool there) {
 }
 #endif
 
-// Whether of a texel's two layers the second is the one to take.
+// Returns whether to use the second of a texel's two layers.
 bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel second, float second_off) {
   return second.id == own.id && (first.id != own.id || second_off < first_off);
 }
 
 #ifndef SAP_NO_RING
-// 3x3 tent over the level's own light, of its first `layers` layers.
+// Returns a 3x3 tent over the level's own light, over its first `layers` layers.
 sap_sum sap_tent(int level, sap_texel own, int layers) {
   float spacing = float(1 << level);
   float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(own.depth);
-  // Tilt in units of the tent's width: across, down, and along both diagonals; it is the same to both sides.
+  // Tilt in units of the tent's width: across, down, and along both diagonals. It is symmetric to
+  // both sides.
   vec2 tilt = own.slope * (spacing * per_sigma);
   vec4 tilts = vec4(tilt, tilt.x + tilt.y, tilt.x - tilt.y);
   vec4 narrowing = exp2(sap_factor(sap_tilt_width_tent) * tilts * tilts);
@@ -181,9 +185,10 @@ sap_sum sap_tent(int level, sap_texel own, int layers) {
 }
 #endif
 
-// Bilinear over the four nearest texels of the coarser level, of its first `layers` layers, along the surface, from a texel
-// of parity `odd`. `confidence` gets the share that survives with stricter weights of the further tangent plane: both
-// must see the other on theirs.
+// Interpolates bilinearly, along the surface, over the four nearest texels of the coarser level and
+// their first `layers` layers, from a texel of parity `odd`. `confidence` receives the fraction
+// that remains with stricter weights, which use the farther tangent plane: each texel must lie on
+// the plane of the other.
 sap_sum sap_from_coarser(ivec2 odd, int level, sap_texel own, vec3 fallback, int layers, out float confidence) {
   float spacing = float(1 << level);
   float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(own.depth));
@@ -225,13 +230,14 @@ sap_sum sap_from_coarser(ivec2 odd, int level, sap_texel own, vec3 fallback, int
   return sap_sum(mix(fallback, sum / max(mass, vec3(sap_negligible)), found), mass);
 }
 
-// d per channel in pixels along the surface.
+// Returns d per channel in pixels along the surface.
 vec3 sap_d_px(sap_texel own) {
   return profiles[min(own.id, 255u)].d_mm.rgb * (own.reach / sap_footprint(own.depth));
 }
 
-// Mean of three lights weighted by mass, a convex one: where they are alike it is what they are. Where they are not, its
-// differences round, and next to nothing beside glare would come out as less than nothing.
+// Returns the mean of three lights weighted by mass, as a convex combination that returns equal
+// lights unchanged. Unequal lights round, so the result is clamped: almost no light next to glare
+// could become negative.
 sap_sum sap_blend(vec3 weight_a, vec3 a, vec3 weight_b, vec3 b, sap_sum rest) {
   vec3 total = weight_a + weight_b + rest.mass;
   vec3 scale = 1.0 / max(total, vec3(sap_negligible));

@@ -1,7 +1,8 @@
 #version 460
-// Gives tiles samples until the frame's budget is spent: benefit over cost in 256 logarithmic bins, a scan over the bins,
-// and in the bin where the budget ends a scan over the tiles in row order. One group; sums of integers alone, so the same
-// doubts give the same tiles their samples. Each invocation owns a run of consecutive tiles.
+// Allocates samples to tiles until the frame's budget is spent. Sorts benefit over cost into 256
+// logarithmic bins, scans over the bins, and scans over the tiles in row order in the bin where the
+// budget ends. One group; integer sums only, so that equal error estimates give equal allocations.
+// Each invocation owns a run of consecutive tiles.
 #extension GL_GOOGLE_include_directive : require
 #include "sap/subsurface_allocate_samples.bindings.glsl"
 #include "common/environment.glsl"
@@ -15,13 +16,13 @@ layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
 
 shared uint cost_of_bin[allocation_bins];
 shared uint counts[lanes];
-shared int last_bin;    // bins above it are paid in full; below it nothing is
-shared uint last_units; // for the tiles of this bin
+shared int last_bin;    // bins above are paid in full, bins below not at all
+shared uint last_units; // units for the tiles of this bin
 
 uint tile_error_of(uint tile) { return class_of_tile(classes_data[tile]) == class_scatter ? tile_errors_data[tile] : 0u; }
 uint steps_before(uint tile) { return has_before() ? before_data[tile] : 0u; }
 
-// Inclusive, Hillis & Steele 1986.
+// Inclusive scan, Hillis & Steele 1986.
 void scan(uint lane) {
   barrier();
   for (uint stride = 1u; stride < lanes; stride *= 2u) {
@@ -46,7 +47,8 @@ void find_last_bin() {
   }
 }
 
-// Steps that a tile takes; `spent` counts what tiles before it wanted of the last bin.
+// Returns the steps that a tile takes. `spent` counts the units of the last bin that earlier tiles
+// requested.
 uint take_steps(uint tile, inout uint spent, inout uint units) {
   uint steps = 0u;
   for (int k = 0; k < allocation_steps; ++k) {
@@ -59,7 +61,7 @@ uint take_steps(uint tile, inout uint spent, inout uint units) {
       taken = spent <= last_units;
     }
     if (!taken)
-      break; // later steps bring less for their cost
+      break; // later steps have less benefit per cost
     ++steps;
     units += step_cost(k);
   }

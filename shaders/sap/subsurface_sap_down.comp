@@ -1,5 +1,5 @@
 #version 460
-// One level down. A block's four parents share their children.
+// Computes the next coarser level. The four parents of a block share their children.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_down.bindings.glsl"

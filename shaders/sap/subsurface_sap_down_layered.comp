@@ -1,6 +1,8 @@
 #version 460
-// One level down, with a second layer where one surface is not all there is. Parents are computed by fours that share their
-// children first; those with a child off their surface, or one that has two layers itself, again one by one, from both.
+// Computes the next coarser level, with a second layer where one surface does not hold all
+// children. First computes parents in groups of four that share their children. Then recomputes,
+// one by one and from both layers, the parents with a child off their surface or with a child that
+// has two layers.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_down_layered.bindings.glsl"
@@ -9,7 +11,7 @@
 #define SAP_SECOND
 #include "sap/sap_down.glsl"
 
-// Both layers of the children of the parent at a place.
+// Reads both layers of the children of a parent.
 void read_children(texel_block block, ivec2 parent, int finer) {
   [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
     ivec2 at = 2 * parent - 1 + ivec2(c % children_across, c / children_across);
@@ -32,7 +34,7 @@ void main() {
   ivec2 first = block.first - 1;
   float spacing = float(1 << finer);
   read_block(block, first, finer);
-  uint layered = 0u; // bit k: parent k has more than one layer to look at
+  uint layered = 0u; // bit k: parent k needs more than one layer
   [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
     ivec2 at = first + ivec2(k % block_width, k / block_width);
     if (!sap_inside(at, level))
@@ -46,7 +48,8 @@ void main() {
     imageStore(coarse_light_image, sap_address(at, level), stored(light));
     imageStore(coarse_surface_image, sap_address(at, level), bits);
   }
-  // Loops that test at their end: some drivers run all of a loop's body before they see that nobody is in it.
+  // The loops test at their end, because some drivers execute the body of a loop before they find
+  // that no invocation is active.
   if (layered != 0u)
     do {
       int k = findLSB(layered);

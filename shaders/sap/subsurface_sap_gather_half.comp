@@ -1,6 +1,7 @@
 #version 460
-// The last step up where level 0 was not stored: a pixel's own light at full resolution, all that comes from others from
-// level 1. An invocation reads a block of pixels once, whose patches see no pixel beyond it.
+// The last step up without a stored level 0: a pixel's own light at full resolution, and all light
+// of other pixels from level 1. An invocation reads a block of pixels once; patches ignore pixels
+// beyond the block.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_gather_half.bindings.glsl"
@@ -40,7 +41,8 @@ vec4 gather(int k, ivec2 pixel, vec3 light) {
   sap_sum rest = sap_from_coarser(odd_of(k), 0, own, light, 1, confidence);
   rest.mass *= max(1.0 - centre, vec3(0.0));
   confidence = mix(confidence, 1.0, centre[profiles[min(id, 255u)].widest]);
-  vec3 direct = profile_direct(id); // what never scatters needs no surface around
+  // Light that never scatters needs no surface around.
+  vec3 direct = profile_direct(id);
   vec3 mean = sap_blend(max(centre - direct, vec3(0.0)), light, vec3(0.0), light, rest).light;
   return vec4(mix(mean, light, direct), confidence);
 }

@@ -1,5 +1,5 @@
 #version 460
-// The last step up, from two layers a texel: scattered light of every listed pixel.
+// The last step up, from two layers per texel: writes the scattered light of every listed pixel.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_gather_layered.bindings.glsl"

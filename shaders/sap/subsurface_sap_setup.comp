@@ -1,6 +1,7 @@
 #version 460
-// Level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 where nothing scatters. An invocation computes a
-// block of pixels, whose patches need material and depth of a ring around it.
+// Computes level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 if nothing
+// scatters. An invocation computes a block of pixels, whose patches need material and depth of a
+// ring around the block.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup.bindings.glsl"
@@ -11,7 +12,7 @@ const int block_width = 4, block_height = 2;
 
 const int ring_width = block_width + 2, ring_height = block_height + 2;
 uint ring_profile[ring_width * ring_height];
-float ring_depth[ring_width * ring_height]; // mm, 0 where there is nothing
+float ring_depth[ring_width * ring_height]; // mm; 0 if nothing is visible
 
 void read_ring(ivec2 first) {
   [[unroll]] for (int i = 0; i < ring_width * ring_height; ++i) {

@@ -1,6 +1,7 @@
 #version 460
-// Level 1 of the surface-aware pyramid straight from the view: of 2x2 pixels those that lie on one surface. Level 0 is not
-// stored. An invocation reads the 4x4 pixels of its texels once, whose patches see no pixel beyond these.
+// Computes level 1 of the surface-aware pyramid directly from the view, from those of 2x2 pixels
+// that lie on one surface. Level 0 is not stored. An invocation reads the 4x4 pixels of its texels
+// once; patches ignore pixels beyond them.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup_half_res.bindings.glsl"

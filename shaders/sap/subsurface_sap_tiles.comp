@@ -1,7 +1,7 @@
 #version 460
-// Lists, for every level of the surface-aware pyramid, the 8x8 tiles that can hold surface, and the arguments of indirect
-// dispatches over them: one group, no atomics on the lists, so the same classes give the same lists. Each invocation owns a
-// run of consecutive words of 32 tiles.
+// Lists, for every level of the surface-aware pyramid, the 8x8 tiles that can hold surface, and
+// writes the arguments of indirect dispatches over them. One group and no atomics on the lists, so
+// that equal classes give equal lists. Each invocation owns a run of consecutive words of 32 tiles.
 #extension GL_GOOGLE_include_directive : require
 #include "sap/subsurface_sap_tiles.bindings.glsl"
 #include "common/environment.glsl"
@@ -12,14 +12,16 @@
 const uint lanes = 256u;
 layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
 
-const int flag_words = 1536; // a level with more tiles (views beyond 3500x3500) is listed whole
-shared uint flags[2][flag_words]; // of the level and of the finer one, a bit a tile
+// A level with more tiles (views beyond 3500x3500) is listed as a whole.
+const int flag_words = 1536;
+shared uint flags[2][flag_words]; // flags of the level and of the finer level, one bit per tile
 shared uint counts[lanes];
-shared uint scatters; // any tile: where none does, no level but the first is needed
+// Whether any tile scatters; if not, only level 0 is needed.
+shared uint scatters;
 
 bool fits(ivec2 tiles) { return tiles.x * tiles.y <= 32 * flag_words; }
 
-// Whether a tile of a level can hold surface; false outside.
+// Returns whether a tile of a level can hold surface; false outside the level.
 bool is_flagged(int level, ivec2 tile) {
   ivec2 tiles = sap_level_tiles(level);
   if (any(lessThan(tile, ivec2(0))) || any(greaterThanEqual(tile, tiles)))
@@ -32,7 +34,7 @@ bool is_flagged(int level, ivec2 tile) {
     flagged = class_of_tile(classes_data[index]) != class_none;
   return flagged;
 }
-// A bit for each of the 3x3 tiles from `first` on.
+// Returns a bit for each of the 3x3 tiles from `first` on.
 uint flags_from(int level, ivec2 first) {
   uint mask = 0u;
   for (int i = 0; i < 9; ++i)
@@ -40,7 +42,8 @@ uint flags_from(int level, ivec2 first) {
   return mask;
 }
 
-// A bit for each of the 32 tiles from 32 * word on that can hold surface. The finer level's are known.
+// Returns a bit for each of the 32 tiles from 32 * word on that can hold surface. The flags of the
+// finer level must be complete.
 uint find_word(int level, int word, ivec2 tiles) {
   int first = 32 * word, count = min(32, tiles.x * tiles.y - first);
   uint bits = 0u;
@@ -58,7 +61,7 @@ uint find_word(int level, int word, ivec2 tiles) {
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
-  uint next = uint(sap_levels); // the lists' heads come first
+  uint next = uint(sap_levels); // the heads of the lists come first
   if (lane == 0u)
     scatters = 0u;
   barrier();
@@ -68,7 +71,8 @@ void main() {
   if (any)
     atomicOr(scatters, 1u);
   barrier();
-  bool builds = scatters != 0u || !has_copy_arguments(); // else light is copied, and the levels' lists are empty
+  // Otherwise light is copied, and the lists of the levels are empty.
+  bool builds = scatters != 0u || !has_copy_arguments();
   for (int level = 0; level < (builds ? sap_levels : 1); ++level) {
     ivec2 tiles = sap_level_tiles(level);
     int words = (tiles.x * tiles.y + 31) >> 5, run = (words + int(lanes) - 1) / int(lanes);
@@ -111,7 +115,7 @@ void main() {
       copy_arguments_data[1] = (listed + tile_groups_per_row - 1u) / tile_groups_per_row;
       copy_arguments_data[2] = 1u;
     }
-    if (lane == 0u && level == 0) { // a group a tile
+    if (lane == 0u && level == 0) { // one group per tile
       tiles_data[0] = listed;
       arguments_data[0] = min(listed, tile_groups_per_row);
       arguments_data[1] = (listed + tile_groups_per_row - 1u) / tile_groups_per_row;

@@ -1,6 +1,7 @@
 #version 460
-// One level up: its own light and what the coarser level hands down, blended by the profile's shares. A block's four
-// texels lie on the same four of the coarser level, which may have two layers.
+// Computes the next finer level: blends its own light with the values of the coarser level by the
+// profile's fractions. The four texels of a block share the four texels of the coarser level, which
+// may have two layers.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_up.bindings.glsl"

@@ -1,7 +1,8 @@
 #version 460
-// One level up, two layers a texel: its own light and what the coarser level hands down, blended by the profile's shares.
-// Texels are computed by fours first; those with a second layer, of their own, beside or under them, again one by one, from
-// both layers.
+// Computes the next finer level with two layers per texel: blends its own light with the values of
+// the coarser level by the profile's fractions. First computes texels in groups of four. Then
+// recomputes, one by one and from both layers, the texels that have a second layer themselves, next
+// to them or in the coarser level.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_up_layered.bindings.glsl"
@@ -21,7 +22,7 @@ void main() {
   read_ring(block, first, level, smooth_level);
   if (!last)
     read_coarser(first, level);
-  uint layered = 0u; // bit k: texel k has more than one layer to look at
+  uint layered = 0u; // bit k: texel k needs more than one layer
   [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
     ivec2 at = first + ivec2(k % block_width, k / block_width);
     if (!sap_inside(at, level))
@@ -36,7 +37,8 @@ void main() {
       bits = climb(odd_of(k), level, own, near_light[near_centre].rgb, 1, smooth_level, last);
     imageStore(scattered_image, sap_address(at, level), bits);
   }
-  // Loops that test at their end: some drivers run all of a loop's body before they see that nobody is in it.
+  // The loops test at their end, because some drivers execute the body of a loop before they find
+  // that no invocation is active.
   if (layered != 0u)
     do {
       int k = findLSB(layered);

@@ -1,13 +1,14 @@
 #version 460
-// How far off a tile is expected to be: over its pixels, what the pyramid's confidence lacks times the light, times the
-// host's importance. Sums of integers, which no order changes.
+// Estimates the error of each tile: the sum over its pixels of (threshold - confidence) /
+// threshold, times the exposed luminance change by scattering, times the host's importance. Without
+// `light`, the luminance itself replaces the change. Integer sums do not depend on the order.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_tile_error_estimate.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 
-const float doubt_steps = 1024.0; // of one pixel's doubt under exposed light of 1
+const float doubt_steps = 1024.0; // steps for the error of one pixel under exposed light of 1
 const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
 
 shared uint sum;

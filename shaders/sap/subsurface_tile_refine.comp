@@ -1,6 +1,7 @@
 #version 460
-// Samples where a tile was given some, blended into the pyramid's light in place: the less its confidence, the more. No
-// seams: towards tiles that were given none the share of the samples falls to nothing.
+// Blends samples into the pyramid's light in place, in tiles that have samples; lower confidence
+// gives more weight to the samples. Towards tiles without samples, the weight of the samples falls
+// to 0, so that no seams appear.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_tile_refine.bindings.glsl"
@@ -14,7 +15,8 @@ bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) !
 #include "common/tile_edges.glsl"
 
 const float ramp_px = 4.0; // half a tile
-const float soft = 0.2; // of confidence, below `below`: from no share to all of it
+// Range of confidence below `below` over which the weight rises from 0 to 1.
+const float soft = 0.2;
 
 void main() {
   ivec2 pixel;

@@ -1,7 +1,8 @@
 #version 460
-// One pass along an axis of the kernel centre * delta + (1 - centre) * a(x) a(y): passes/separable/separable_kernel.hpp
-// fits and tabulates it, or jimenez_kernel.hpp. Taps of another profile are left out and the rest renormalised; a tap at another depth counts
-// by the profile at its true distance over that at its distance across the view.
+// One pass along an axis of the kernel centre * delta + (1 - centre) * a(x) a(y).
+// passes/separable/separable_kernel.hpp or jimenez_kernel.hpp fits and tabulates the kernel. Taps
+// of another profile are left out and the others renormalised. A tap at another depth is weighted
+// by the profile at its 3D distance, divided by the profile at its distance across the view.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "separable/subsurface_separable.bindings.glsl"
@@ -12,7 +13,7 @@
 #include "common/half.glsl"
 #include "common/profile.glsl"
 
-const int side_taps[3] = int[3](5, 8, 12); // of 11, 17, 25 taps
+const int side_taps[3] = int[3](5, 8, 12); // for 11, 17, 25 taps
 const int rows_per_node[3] = int[3](5 + 2, 8 + 2, 12 + 2);
 const int first_row[3] = int[3](0, separable_nodes * rows_per_node[0], separable_nodes * (rows_per_node[0] + rows_per_node[1]));
 
@@ -20,7 +21,7 @@ struct kernel_place {
   int low;       // row 0 of the node below
   int step;      // rows to the node above
   float part;    // 0 at the node below, 1 at the node above
-  float stretch; // of offsets beyond the last node
+  float stretch; // factor on offsets beyond the last node
 };
 
 kernel_place find_kernel(uint separable_row_start, int choice, float d_px) {
