@@ -1,4 +1,5 @@
-// Filtered importance sampling. Its levels come from a pyramid_setup with `profiles` apart.
+// Filtered importance sampling. Its levels come from a pyramid_setup that keeps profiles apart
+// (`profiles`).
 
 #include "passes/common/signatures/signatures.hpp"
 
@@ -76,7 +77,7 @@ constexpr PassTypeSetting afis_settings[] = {
                     "levels between two, rounded to one, or the pixel under the sample alone"),
 };
 
-constexpr Format replaced_formats[] = {Format::rgba16f}; // that a shader may load
+constexpr Format replaced_formats[] = {Format::rgba16f}; // formats that a shader may load
 constexpr Port afis_tiles_ports[] = {
     afis_ports[0],
     afis_ports[1],

@@ -1,5 +1,5 @@
-// The plain pyramid: light times mask, halved level by level. Every image has a border of two texels whose
-// outer ring is always 0, so that filtered reads find nothing outside.
+// The plain pyramid: light times mask, halved level by level. Every image has a border of two
+// texels whose outer ring is always 0, so that filtered reads return 0 outside.
 
 #include "passes/common/signatures/signatures.hpp"
 

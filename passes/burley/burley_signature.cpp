@@ -1,4 +1,4 @@
-// Burley's profile, sampled.
+// Importance sampling of Burley's profile.
 
 #include "passes/common/signatures/signatures.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
-// Costs as a JSON file: what `dermis calibrate` writes for a device and a host gives back at the next start.
+// Costs as a JSON file, which `dermis calibrate` writes for a device and a host loads at its next
+// start.
 
 #include "framegraph/text/document.hpp"
 #include "passes/choice/cost_model.hpp"
@@ -11,13 +12,13 @@
 namespace dermis::choice {
 
 struct Calibration {
-  std::string device; // name, for people
+  std::string device; // name for people
   std::vector<Cost> costs;
 };
 
-// Reads `"dermis_calibration": 2`. nullopt with errors in `diagnostics`. Thread: any.
+// Reads `"dermis_calibration": 2`. Returns nullopt with errors in `diagnostics`. Thread: any.
 std::optional<Calibration> read_calibration(const Document& document, Diagnostics& diagnostics);
-// The same costs give the same bytes.
+// Returns the JSON text. Equal costs give equal bytes.
 std::string write_calibration(const Calibration& calibration);
 
 } // namespace dermis::choice

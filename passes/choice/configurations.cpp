@@ -30,7 +30,8 @@ std::string value_text(const PassTypeSetting& setting, const SettingValue& value
   return fmt::format("{}", value.integer);
 }
 
-// Values that a pass runs with: those that follow a setting of the graph take the outcome's.
+// Returns the values that a pass runs with; values that follow a setting of the graph come from the
+// outcome.
 std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, const PassType& type,
                                     const std::vector<SettingValue>& settings) {
   std::vector<SettingValue> out;
@@ -41,7 +42,7 @@ std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, cons
   return out;
 }
 
-// The image whose size an over_written dispatch has.
+// Returns the image that gives the size of an over_written dispatch.
 const PlanResource* first_written_image(const Plan& plan, const PlanPass& pass, const PassType& type) {
   for (uint32_t port = 0; port < type.ports.size(); ++port)
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
@@ -58,7 +59,7 @@ uint64_t tiles_along(uint64_t pixels) {
   return (pixels + tile_side - 1) / tile_side;
 }
 
-// Does it run over the tiles that subsurface.allocate_samples lists?
+// Returns whether the pass runs over the tiles that subsurface.allocate_samples lists.
 bool samples_by_tile(const PassType& type) {
   return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles";
 }
@@ -148,7 +149,8 @@ std::vector<uint32_t> choices_of(const Graph& graph) {
   return out;
 }
 
-// Counts `digits` up like an odometer whose wheels are the choices' options; false after the last.
+// Advances `digits` like an odometer with one wheel per choice and one position per option. Returns
+// false after the last combination.
 bool count_up(const Graph& graph, const std::vector<uint32_t>& choices, std::vector<size_t>& digits) {
   for (size_t i = choices.size(); i-- > 0;) {
     if (++digits[i] < graph.settings[choices[i]].options.size()) return true;
@@ -164,7 +166,7 @@ bool refers_to(const Graph& graph, ExpressionId id, uint32_t setting) {
          refers_to(graph, one.right, setting);
 }
 
-// Does it decide which passes run, or what one of those that run does?
+// Returns whether the setting decides which passes run, or sets a value of a running pass.
 bool matters(const Graph& graph, const Plan& plan, uint32_t setting) {
   const auto decides = [&](const PassDeclaration& pass) { return refers_to(graph, pass.when, setting); };
   const auto follows = [&](const PlanSetting& value) {
@@ -274,7 +276,7 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
   case PassLoad::Groups::tile_grid:
     return (load.view_tiles + tiles_per_group - 1) / tiles_per_group;
   case PassLoad::Groups::listed_tiles:
-    // The pyramid is not built where light is copied.
+    // The pyramid is not built if light is copied.
     return pass.level < 0 ? load.listed_tiles
                           : load.listed_tiles - std::min(load.copied_tiles, load.listed_tiles);
   case PassLoad::Groups::copied_tiles:
@@ -309,7 +311,8 @@ Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoa
 
 uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
                       bool deterministic) {
-  constexpr uint64_t many = 1u << 16; // far apart, so that rounding does not matter
+  // large, so that rounding errors of the difference do not matter
+  constexpr uint64_t many = 1u << 16;
   if (!outcome.takes_samples) return UINT32_MAX;
   const auto expected = [&](uint64_t units) {
     load.sample_units = units;
@@ -322,7 +325,7 @@ uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad 
     const double left_ms = budget_ms - without.ms - given_deviations * spread_ms;
     return static_cast<uint32_t>(std::clamp(left_ms / unit_ms, 0.0, double(UINT32_MAX)));
   };
-  // Units deviate, too: fewer of them by no more than the most would.
+  // Sample units deviate, too. Fewer units deviate by no more than the maximum does.
   return units_beside(expected(std::min<uint64_t>(units_beside(without.spread_ms), many)).spread_ms);
 }
 

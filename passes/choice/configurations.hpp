@@ -1,6 +1,6 @@
 #pragma once
-// Everything that a graph's choices by budget can come to: a value for each of them, the plan it leads to,
-// what work that is and which technique.
+// Outcomes of a graph's choices by budget: a value for each choice, the resulting plan, its work
+// and its technique.
 
 #include "framegraph/compile/compile.hpp"
 #include "passes/choice/cost_model.hpp"
@@ -14,9 +14,10 @@
 
 namespace dermis::choice {
 
-inline constexpr size_t max_outcomes = 64; // of a graph: the product of the options of its choices
+// maximum per graph: the product of the options of its choices
+inline constexpr size_t max_outcomes = 64;
 
-// How many workgroups a pass launches.
+// Number of workgroups that a pass launches.
 struct PassLoad {
   CostId cost;
   enum class Groups : uint8_t {
@@ -28,67 +29,74 @@ struct PassLoad {
     copied_tiles,
     sample_units
   } groups = Groups::fixed;
-  uint64_t count = 1;   // of fixed
-  bool launches = true; // a kernel; clears do not
-  int32_t level = -1;   // of the surface-aware pyramid whose list of tiles it runs over; -1: none
+  uint64_t count = 1;   // for Groups::fixed
+  bool launches = true; // launches a kernel; clears do not
+  // level of the surface-aware pyramid whose tile list the pass runs over; -1: none
+  int32_t level = -1;
 };
 
 struct Outcome {
-  std::string name;                   // "technique=separable, taps=25": the choices that matter to what runs
+  std::string name; // "technique=separable, taps=25": the choices that affect the running passes
   std::vector<SettingValue> settings; // one per Graph::settings
-  uint32_t plan = 0;                  // into OutcomePlans::plans
-  int32_t technique = -1;             // into ErrorModel::techniques; -1: none runs
-  int32_t without_samples = -1; // the same where no tile is given samples; as technique where none can be
-  bool takes_samples = false;   // by tile, as many as the budget leaves
+  uint32_t plan = 0;                  // index into OutcomePlans::plans
+  int32_t technique = -1;             // index into ErrorModel::techniques; -1: none runs
+  // Technique if no tile has samples; equal to `technique` if the outcome takes no samples by tile.
+  int32_t without_samples = -1;
+  bool takes_samples = false;   // takes samples by tile, as many as the budget allows
   std::vector<PassLoad> passes; // in plan order
 };
 
-// Compiles one combination: dermis::compile, or from a cache.
+// Compiles one combination: dermis::compile, or a cache.
 using CompileOne = std::function<std::optional<CompiledPlan>(const CompileInput&, Diagnostics&)>;
 
 struct OutcomePlans {
-  std::vector<Outcome> outcomes; // at least one: the first has the defaults' values
+  std::vector<Outcome> outcomes; // at least one; the first has the default values
   std::vector<CompiledPlan>
-      plans; // different ones only: outcomes whose settings turn no pass on or off share
+      plans; // Distinct plans: outcomes whose settings turn no pass on or off share a plan.
 };
 
-// "subsurface.separable axis=vertical taps=25". `values`: one per setting of the pass type.
+// Returns the name of a work, such as "subsurface.separable axis=vertical taps=25". `values`: one
+// per setting of the pass type.
 std::string work_name(const PassType& type, std::span<const SettingValue> values);
 
-// Values of all choices by budget in every combination, those of other settings as in `input` (empty: the
-// defaults); so are choices that the host made itself, `pinned` (one per setting; empty: none). Combinations
-// that run the same passes with the same values are one. Costs are added to `costs`. nullopt with errors in
-// `diagnostics`: as compile(), and more than max_outcomes.
+// Enumerates the combinations of all choices by budget and compiles them. Other settings have the
+// values in `input` (empty: the defaults). So have choices that the host made itself, `pinned` (one
+// per setting; empty: none). Combinations that run the same passes with the same values are merged.
+// Adds costs to `costs`. Returns nullopt with errors in `diagnostics`: those of compile(), and more
+// than max_outcomes.
 std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const ErrorModel& errors,
                                           CostModel& costs, const CompileOne& compile,
                                           Diagnostics& diagnostics, const std::vector<bool>& pinned = {});
 
-// What each outcome's passes are and which technique: again after a setting changed that turns no pass on or
-// off, or with other models. `plans` as Outcome::plan counts them.
+// Updates the passes and the technique of each outcome, after a change of a setting that turns no
+// pass on or off, or with other models. `plans` is indexed by Outcome::plan.
 void describe_outcomes(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
                        const ErrorModel& errors, CostModel& costs, std::span<Outcome> outcomes);
 
-// What a frame is like, as far as it bears on costs.
+// Properties of a frame that affect costs.
 struct FrameLoad {
   uint64_t view_tiles = 0;   // 8x8 tiles of the render rectangle
-  uint64_t listed_tiles = 0; // of them with subsurface
-  uint64_t copied_tiles = 0; // where none scatters: all of them; else 0
-  uint64_t sample_units = 0; // that subsurface.allocate_samples spends
+  uint64_t listed_tiles = 0; // tiles with subsurface
+  uint64_t copied_tiles = 0; // all tiles with subsurface if none scatters, else 0
+  uint64_t sample_units = 0; // units that subsurface.allocate_samples spends
   uint64_t view_blocks = 0;  // 4x4 tiles of the render rectangle
 };
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
-// By the calibration alone, as on any other machine; no spread.
+// Returns the time by the calibration only, which is equal on all machines; no spread.
 Estimate calibrated_estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
 Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
-// Typical deviations that samples leave free of a budget which they fill: frames are late by more than two in
-// one of twenty (a mean deviation is .8 of a standard one). Work that is there in any case needs one.
+// Typical deviations of a budget that samples leave free when they fill it. One of twenty frames is
+// late by more than two (a mean deviation is 0.8 of a standard deviation). Work that runs in any
+// case needs one.
 inline constexpr double given_deviations = 2.0;
-// Units of samples that fit into `budget_ms` beside everything else, with the deviations of both; UINT32_MAX
-// where the outcome takes no samples by tile, or a unit costs nothing.
+// Returns the units of samples that fit into `budget_ms` in addition to all other work, with the
+// deviations of both. Returns UINT32_MAX if the outcome takes no samples by tile, or if a unit
+// costs nothing.
 uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
                       bool deterministic);
-// Where `given` of the `wanted` units are taken: between the mean squares without samples and with all. Units
-// that take off most come first, so that this is no less than what is measured.
+// Returns the expected RMSE if `given` of the `wanted` units are taken: interpolates linearly
+// between the mean squares without samples and with all samples. Units with the largest benefit
+// come first, so the result is an upper bound of the measured error.
 double expected_rmse(const ErrorModel& errors, const Outcome& outcome, double d_px, uint32_t given,
                      uint32_t wanted);
 

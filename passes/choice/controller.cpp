@@ -6,11 +6,14 @@
 namespace dermis::choice {
 namespace {
 
-constexpr double margin = 1.0;          // typical deviations that must fit beside the prediction
-constexpr double stay_tolerance = 1.03; // of the budget: what runs is not left for less
-constexpr double worth_a_switch = 0.97; // of the error that runs now: less is no reason to switch
-constexpr double cool_down = 1; // seconds between switches that no budget forces: with those back, 2 a second
-constexpr double usual_frame = 1.0 / 60; // seconds, where the host does not tell
+constexpr double margin = 1.0; // typical deviations that must fit in addition to the prediction
+// factor on the budget within which the running outcome stays
+constexpr double stay_tolerance = 1.03;
+// a switch needs an error below this fraction of the running outcome's
+constexpr double worth_a_switch = 0.97;
+// seconds between switches that no budget forces; with the switches back, 2 per second
+constexpr double cool_down = 1;
+constexpr double usual_frame = 1.0 / 60; // seconds, if the host gives no time
 
 double bound_ms(const Forecast& forecast) {
   return forecast.ms + margin * forecast.spread_ms;
@@ -20,7 +23,7 @@ bool less_error(const Forecast& a, const Forecast& b) {
   return a.rmse != b.rmse ? a.rmse < b.rmse : a.ms < b.ms;
 }
 
-// Fewest milliseconds, the earlier of equal ones.
+// Returns the outcome with the smallest time; the first of equal ones.
 uint32_t fastest(std::span<const Forecast> forecasts) {
   uint32_t best = 0;
   for (uint32_t i = 1; i < forecasts.size(); ++i)
@@ -28,7 +31,8 @@ uint32_t fastest(std::span<const Forecast> forecasts) {
   return best;
 }
 
-// Least error among those with `factor` times their bound in the budget; UINT32_MAX: none.
+// Returns the outcome with the least error among those for which `factor` times the bound fits the
+// budget. UINT32_MAX: none.
 uint32_t best_within(std::span<const Forecast> forecasts, double budget_ms, double factor) {
   uint32_t best = UINT32_MAX;
   for (uint32_t i = 0; i < forecasts.size(); ++i)

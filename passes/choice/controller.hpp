@@ -1,54 +1,56 @@
 #pragma once
-// Which of a graph's outcomes runs in the next frame: the least expected error whose predicted time fits the
-// budget, without switching to and fro.
+// The controller decides which of a graph's outcomes runs in the next frame: the least expected
+// error whose predicted time fits the budget, with hysteresis.
 
 #include <cstdint>
 #include <span>
 
 namespace dermis::choice {
 
-// What one outcome (a value for each setting "by": "budget") is expected to do in the next frame.
+// Expected result of one outcome (a value for each setting "by": "budget") in the next frame.
 struct Forecast {
-  double ms = 0, spread_ms = 0; // device time, and its typical deviation
+  double ms = 0, spread_ms = 0; // device time and its typical deviation
   double rmse = 0;              // expected error
-  double missed_rmse = 0;       // part of it: light through thin parts that it does not see
+  // part of rmse: light transmitted through thin parts that the outcome ignores
+  double missed_rmse = 0;
 };
 
 enum class ReasonKind : uint8_t {
-  no_budget,    // the host gave none: the defaults
-  first_frame,  // nothing ran before
-  fits_best,    // the least error that fits, and it ran before
-  better_fits,  // less error than what ran before, and it fits
-  over_budget,  // what ran before does not fit any more
+  no_budget,    // the host gave no budget: the defaults
+  first_frame,  // no outcome ran before
+  fits_best,    // the least error that fits; the outcome ran before
+  better_fits,  // less error than the previous outcome, and fits
+  over_budget,  // the previous outcome does not fit any more
   nothing_fits, // every outcome is over budget: the fastest
-  held,         // another is better, but not by enough, or the last switch is too near
+  held,         // another outcome is better, but by too little, or the last switch is too recent
 };
 
-// Room that an outcome needs in a budget before it is switched to. What fills a budget with samples leaves as
-// much, so that it is neither kept out nor pushed out by its own samples.
+// Factor on the bound of an outcome that must fit the budget before a switch to the outcome.
+// Outcomes that fill a budget with samples leave the same margin, so that their own samples neither
+// prevent a switch to them nor force a switch away.
 inline constexpr double entry_margin = 1.05;
 
 struct Decision {
   uint32_t outcome = 0;
   ReasonKind why = ReasonKind::first_frame;
-  uint32_t next_better =
-      UINT32_MAX;        // the fastest outcome with less error that does not fit; none: UINT32_MAX
-  double missing_ms = 0; // what the budget lacks for it
-  bool transmission_stats =
-      false; // but for light through them another outcome that fits would have less error
+  // The fastest outcome with less error that does not fit; UINT32_MAX: none.
+  uint32_t next_better = UINT32_MAX;
+  double missing_ms = 0; // milliseconds by which next_better exceeds the budget
+  // Whether another outcome that fits would have less error without transmitted light.
+  bool transmission_stats = false;
 };
 
-const char* why_text(const Decision& decision); // static, for people
+const char* why_text(const Decision& decision); // Returns a static text for people.
 
-// What a decision remembers of earlier ones. Plain data: a copy is another history.
+// State that a decision keeps of earlier decisions. Plain data: a copy is an independent history.
 struct DecisionState {
-  uint32_t outcome = UINT32_MAX; // of the last frame; none yet: UINT32_MAX
+  uint32_t outcome = UINT32_MAX; // outcome of the last frame; UINT32_MAX: none yet
   double seconds_since_switch = 0;
   uint32_t switches = 0;
 };
 
-// budget_ms > 0; `seconds` after the last frame, 0: a sixtieth. The same forecasts and state give the same
-// decision. Allocates nothing.
+// Decides for a frame. budget_ms > 0; `seconds` since the last frame, 0: 1/60 s. Equal forecasts
+// and state give equal decisions. Allocates nothing.
 Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds, DecisionState& state);
 
 } // namespace dermis::choice

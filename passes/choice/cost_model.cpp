@@ -6,17 +6,19 @@
 namespace dermis::choice {
 namespace {
 
-// Chosen on recorded timings of the software driver, whose single frames are off by up to three times.
-constexpr double unit_groups = 1024;     // brings both coefficients to the same size
-constexpr double time_memory = 0.96;     // weight of the past at each new frame: a memory of 25 frames
-constexpr double prior_weight = 0.5;     // of the calibration, in frames
-constexpr double no_prior_weight = 1e-3; // where there is none: only keeps the equations regular
-constexpr double outlier = 2.0;          // residuals beyond this many typical ones count less (Huber 1964)
-constexpr uint64_t settled = 4;          // observations before any counts as strange
-constexpr double first_spread = 0.3;     // assumed before anything was seen
+// Chosen on recorded timings of the software driver, whose single frames deviate by up to 3 times.
+constexpr double unit_groups = 1024; // scales both coefficients to similar size
+constexpr double time_memory = 0.96; // weight of the past at each new frame: a memory of 25 frames
+constexpr double prior_weight = 0.5; // weight of the calibration, in frames
+// weight without a calibration, which only keeps the equations regular
+constexpr double no_prior_weight = 1e-3;
+// residuals beyond this many typical residuals count less (Huber 1964)
+constexpr double outlier = 2.0;
+constexpr uint64_t settled = 4;      // observations before a residual can be an outlier
+constexpr double first_spread = 0.3; // assumed before the first observation
 constexpr double spread_memory = 0.9;
 constexpr double scale_memory = 0.995; // over all observations of all lines
-constexpr double tiny_ms = 1e-6;       // a nanosecond: timestamps are no finer
+constexpr double tiny_ms = 1e-6;       // 1 ns: timestamps are no finer
 
 double units(uint64_t groups) {
   return static_cast<double>(groups) / unit_groups;
@@ -29,7 +31,8 @@ std::string_view next_word(std::string_view& text) {
   return word;
 }
 
-// 0 for different kinds; else 1 and the settings that agree, which stand in the same order.
+// Returns 0 for different pass types; else 1 + the number of equal settings, which are in the same
+// order.
 size_t words_alike(std::string_view a, std::string_view b) {
   if (next_word(a) != next_word(b)) return 0;
   size_t count = 1;
@@ -91,7 +94,7 @@ double CostModel::device_scale() const {
   return scale_weight_ > 0 ? std::exp(scale_sum_ / scale_weight_) : 1.0;
 }
 
-// Weighted least squares, drawn towards the calibration; coefficients are not negative.
+// Weighted least squares with the calibration as prior; coefficients are not negative.
 CostModel::Coefficients CostModel::solve(const Line& line) const {
   const double scale = device_scale();
   const double prior[2] = {line.prior[0] * scale, line.prior[1] * scale};
@@ -133,7 +136,7 @@ void CostModel::observe(CostId id, uint64_t groups, double ms) {
   const double calibrated = line.prior[0] + line.prior[1] * x;
   if (line.has_prior && !line.guess && calibrated > tiny_ms && ms > tiny_ms) {
     scale_sum_ = scale_memory * scale_sum_ + calibrated * std::log(ms / calibrated);
-    scale_weight_ = scale_memory * scale_weight_ + calibrated; // long passes say more
+    scale_weight_ = scale_memory * scale_weight_ + calibrated; // long passes are more reliable
   }
   const double x_power[3] = {1, x, x * x};
   for (size_t i = 0; i < 3; ++i)

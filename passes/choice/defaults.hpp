@@ -1,5 +1,5 @@
 #pragma once
-// The tables that travel with the library: configs/choice/*.json.
+// Default tables embedded in the library: configs/choice/*.json.
 
 #include <string_view>
 

@@ -6,10 +6,12 @@
 namespace dermis::choice {
 namespace {
 
-constexpr double error_memory = 0.96; // of what is known, a probed frame: a memory of 25, as that of times
-constexpr double prior_frames = 4;    // that the table counts as
-constexpr double max_factor = 4;      // either way: a table that is further off is of other content
-constexpr double wild = 3;            // times what is known so far: a frame counts as no more than that
+// weight of the past at each probed frame: a memory of 25 frames, as for times
+constexpr double error_memory = 0.96;
+constexpr double prior_frames = 4; // weight of the table, in frames
+// in both directions: the table is for other content if it deviates more
+constexpr double max_factor = 4;
+constexpr double wild = 3; // a frame counts at most this many times the known error
 
 ErrorCorrection::Line& line_of(ErrorCorrection& correction, int32_t technique) {
   return correction.lines[static_cast<size_t>(technique + 1)];
@@ -17,7 +19,7 @@ ErrorCorrection::Line& line_of(ErrorCorrection& correction, int32_t technique) {
 
 double factor_of(const ErrorCorrection::Line& line) {
   if (line.newest <= 0) return 1;
-  const double prior = prior_frames * line.newest; // the table's word
+  const double prior = prior_frames * line.newest; // weight of the table
   return std::clamp(std::sqrt((line.probed + prior) / (line.expected + prior)), 1 / max_factor, max_factor);
 }
 

@@ -11,7 +11,7 @@ namespace dermis::choice {
 namespace {
 
 constexpr size_t max_points = 64, max_techniques = 256, max_pass_types = 16;
-constexpr double largest_through = 10; // times the light that a slab lets through
+constexpr double largest_through = 10; // maximum error relative to the light that a slab transmits
 constexpr double min_d_px = 1e-3, largest_d_px = 1e4, min_rmse = 1e-9, largest_rmse = 1e3;
 
 std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner, std::string_view key,

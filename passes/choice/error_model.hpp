@@ -1,6 +1,6 @@
 #pragma once
-// How far a technique is off, as measured beforehand: RMSE of linear luminance over the projected shape
-// parameter, for each technique and quality setting (docs/choice.md says how the tables are made).
+// Error model: measured RMSE of linear luminance over the projected shape parameter, for each
+// technique and quality setting. docs/choice.md describes how the tables are made.
 
 #include "framegraph/text/document.hpp"
 
@@ -12,50 +12,52 @@
 namespace dermis::choice {
 
 struct ErrorPoint {
-  double d_px = 1; // of the widest channel, projected, > 0
-  double rmse = 0; // > 0; exposed so that the light's 99.9th percentile is 1
+  double d_px = 1; // d of the widest channel in pixels, > 0
+  double rmse = 0; // > 0; exposed such that the 99.9th percentile of light is 1
 };
 
 struct SettingMatch {
-  std::string setting, value; // as a graph file would write the value, without quotes
+  std::string setting, value; // value as in a graph file, without quotes
 };
 
-// A pass that a technique is known by.
+// A pass that identifies a technique.
 struct PassTypeMatch {
   std::string type;
-  std::vector<SettingMatch> settings; // all of them, in any order; other settings do not matter
+  std::vector<SettingMatch> settings; // all must match, in any order; other settings do not matter
 };
 
 struct TechniqueError {
-  std::string name;                      // for people: "separable 25"
-  std::vector<PassTypeMatch> pass_types; // a graph that runs passes like all of these
-  std::vector<ErrorPoint> curve;         // d_px grows; at least one
-  double through = 0;                    // of the light that comes through thin parts, how much it is off by
-  bool by_rays = false; // the curve is against a truth by rays, not against that of the screen
+  std::string name;                      // name for people: "separable 25"
+  std::vector<PassTypeMatch> pass_types; // passes that a graph must run, all of them
+  std::vector<ErrorPoint> curve;         // ascending d_px; at least one point
+  double through = 0;                    // error relative to light transmitted through thin parts
+  // whether the curve was measured against a ray-traced reference, not a screen-space one
+  bool by_rays = false;
 };
 
 struct ErrorModel {
-  std::string scenes;                  // that the curves were measured on, for people
-  std::vector<ErrorPoint> unscattered; // where no technique runs
+  std::string scenes;                  // scenes on which the curves were measured, for people
+  std::vector<ErrorPoint> unscattered; // curve without a technique
   std::vector<TechniqueError> techniques;
   double unscattered_through = 0; // as TechniqueError::through
 };
 
-// Reads `"dermis_errors": 2`. nullopt with errors in `diagnostics`. Thread: any.
+// Reads `"dermis_errors": 2`. Returns nullopt with errors in `diagnostics`. Thread: any.
 std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics& diagnostics);
 
-// A pass of a plan with the values it runs with, as texts.
+// A pass of a plan with its values as texts.
 struct RunningPass {
   std::string_view type;
   std::vector<SettingMatch> settings;
 };
-// The technique that most of its conditions name; -1: none runs.
+// Returns the technique with most conditions among those whose conditions all hold; -1: none.
 int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& passes);
 
-// Straight between points on logarithmic axes, constant beyond the ends. technique -1: unscattered.
+// Returns the RMSE from the curve: linear between points on logarithmic axes, constant beyond the
+// ends. technique -1: unscattered.
 double expected_rmse(const ErrorModel& model, int32_t technique, double d_px);
-// What the curve does not know of: light through thin parts, of which there is `transmitted_rms` (as
-// subsurface::transmitted_rms).
+// Returns the error that the curve does not include: light transmitted through thin parts, whose
+// RMS is `transmitted_rms` (as subsurface::transmitted_rms).
 double missed_rmse(const ErrorModel& model, int32_t technique, double transmitted_rms);
 
 } // namespace dermis::choice

@@ -40,7 +40,7 @@ SampleAllocation allocate_samples(std::span<const uint32_t> tile_errors, std::sp
   for (; last_bin >= 0 && cost_of_bin[static_cast<size_t>(last_bin)] <= left; --last_bin)
     left -= cost_of_bin[static_cast<size_t>(last_bin)];
 
-  uint32_t spent = 0; // that tiles so far wanted of the last bin
+  uint32_t spent = 0; // units of the last bin that earlier tiles requested
   for (size_t i = 0; i < tile_errors.size(); ++i) {
     uint32_t steps = 0;
     for (int k = 0; k < allocation_steps; ++k) {

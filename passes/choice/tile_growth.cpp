@@ -6,7 +6,7 @@
 namespace dermis::choice {
 namespace {
 
-constexpr uint64_t fewest_tiles = 8; // below, one more or less is no trend
+constexpr uint64_t fewest_tiles = 8; // with fewer tiles, a change by one tile is no trend
 
 } // namespace
 

@@ -1,26 +1,26 @@
 #pragma once
-// How many tiles will have subsurface in a frame whose counts are not back yet: a camera that runs up to a
-// face brings more with each frame, and a budget has to hold in that frame, not in the one that was counted
-// last.
+// Predicts the number of tiles with subsurface in a frame whose counts are not back yet. A camera
+// that approaches a face adds tiles with each frame, and the budget must hold in the new frame, not
+// only in the frame that was counted last.
 
 #include <cstdint>
 
 namespace dermis::choice {
 
 struct TileGrowth {
-  uint64_t frame = 0, tiles = 0; // counted last; frame 0: nothing was
-  double growth = 1;             // expected from frame to frame, 1 .. max_growth
-  double last_step = 1;          // what the last two counts say
+  uint64_t frame = 0, tiles = 0; // last count; frame 0: none
+  double growth = 1;             // expected factor per frame, 1 .. max_growth
+  double last_step = 1;          // factor per frame between the last two counts
 };
 
 inline constexpr double max_growth = 1.5;
 
-// `tiles` with subsurface were counted in `frame`, which is newer than those before. What grew between three
-// counts is expected to go on; a cut grows once, and is not.
+// Adds the count `tiles` of tiles with subsurface in `frame`, which must be newer than earlier
+// frames. Growth between three counts is expected to continue; a cut grows only once and is not.
 void follow(TileGrowth& trend, uint64_t frame, uint64_t tiles);
 
-// As many times the tiles counted last are expected in `frame`: 1 .. max_growth^2. Never below 1: time that
-// a frame turns out not to need is no harm.
+// Returns the expected factor on the last count in `frame`: 1 .. max_growth^2. Never below 1,
+// because an overestimate of time is harmless.
 double growth_until(const TileGrowth& trend, uint64_t frame);
 
 } // namespace dermis::choice

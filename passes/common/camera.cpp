@@ -20,16 +20,17 @@ bool is_finite(const Matrix4& m) {
   return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });
 }
 
-// The w row of a perspective is 0 0 -1 0, or 0 0 1 0 where view space is left-handed; that of an orthographic
-// projection is 0 0 0 1. Where the last column has it instead, the matrix is on its side.
+// The w row of a perspective projection is 0 0 -1 0, or 0 0 1 0 if view space is left-handed; that
+// of an orthographic projection is 0 0 0 1. If the last column has these values instead, the matrix
+// is transposed.
 bool stored_by_columns(const Matrix4& m) {
   if (std::abs(m[11]) == 1 && m[15] == 0) return std::abs(m[14]) != 1;
   const bool last_column_empty = m[3] == 0 && m[7] == 0 && m[11] == 0;
   return last_column_empty && m[15] == 1 && (m[12] != 0 || m[13] != 0 || m[14] != 0);
 }
 
-// Rows x, y and w may depend on their own axis, on z (off-centre perspective) and on 1 (off-centre
-// orthographic projection) only.
+// Rows x, y and w may depend only on their own axis, on z (off-centre perspective) and on 1
+// (off-centre orthographic projection).
 Projection projection_of(const Matrix4& m) {
   if (!is_finite(m) || m[1] != 0 || m[4] != 0 || m[0] == 0 || m[5] == 0) return Projection::none;
   const bool perspective = m[12] == 0 && m[13] == 0 && m[14] != 0 && m[15] == 0 && m[3] == 0 && m[7] == 0;
@@ -39,8 +40,8 @@ Projection projection_of(const Matrix4& m) {
   return orthographic ? Projection::orthographic : Projection::none;
 }
 
-// Is everything that the depth range shows behind the camera? A far plane at infinity is on neither side. `m`
-// is of a right-handed view space.
+// Returns whether the whole depth range is behind the camera. A far plane at infinity is on neither
+// side. `m` must have a right-handed view space.
 bool shows_what_is_behind(const Matrix4& m) {
   const DepthDecode decode = depth_decode(m, 1);
   const double ends[] = {decode.b / decode.e, (decode.a + decode.b) / (decode.c + decode.e)};
@@ -50,7 +51,7 @@ bool shows_what_is_behind(const Matrix4& m) {
          std::any_of(std::begin(ends), std::end(ends), surely_behind);
 }
 
-// The same view space with the other handedness.
+// Returns the matrix for the same view space with the other handedness.
 Matrix4 with_mirrored_rows(const Matrix4& view_from_world) {
   Matrix4 m = view_from_world;
   for (size_t c = 0; c < 4; ++c)
@@ -82,7 +83,8 @@ CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> 
     right = {with_mirrored_view(matrices.clip_from_view), with_mirrored_rows(matrices.view_from_world),
              with_mirrored_view(matrices.previous_clip_from_view),
              with_mirrored_rows(matrices.previous_view_from_world)};
-  if (shows_what_is_behind(right.clip_from_view)) // a near plane of 1 unit looks like a w row
+  // A near plane at 1 unit can look like a w row.
+  if (shows_what_is_behind(right.clip_from_view))
     return now != Projection::orthographic && std::abs(matrices.clip_from_view[11]) == 1
                ? CameraFault::stored_by_columns
                : CameraFault::behind_camera;
@@ -133,8 +135,9 @@ std::optional<PixelRays> pixel_rays(const Matrix4& m, uint32_t width, uint32_t h
     return std::nullopt;
   const bool perspective = projection == Projection::right_perspective;
 
-  // With z = -depth, w = -m[14] depth (perspective) or m[15]: ndc * w = m[0] x - m[2] depth + m[3], solved
-  // for x. Orthographic lengths are in host units; a perspective's slopes have no unit.
+  // With z = -depth and w = -m[14] depth (perspective) or m[15]: ndc * w = m[0] x - m[2] depth +
+  // m[3], solved for x. Orthographic lengths are in host units; the slopes of a perspective
+  // projection have no unit.
   const double w = perspective ? -m[14] : m[15], unit = perspective ? 1 : metres_per_unit;
   const double shift_x = perspective ? m[2] : -m[3], shift_y = perspective ? m[6] : -m[7];
   const double first_x = 2 * (0.5 - jitter_px[0]) / width - 1,
@@ -174,7 +177,7 @@ std::optional<Matrix4> invert_affine(const Matrix4& m) {
 }
 
 DepthDecode depth_decode(const Matrix4& m, double metres_per_unit) {
-  // value = (-m[10] depth + m[11]) / (-m[14] depth + m[15]), solved for depth.
+  // Solves value = (-m[10] depth + m[11]) / (-m[14] depth + m[15]) for depth.
   return {.a = -m[15] * metres_per_unit, .b = m[11] * metres_per_unit, .c = -m[14], .e = m[10]};
 }
 

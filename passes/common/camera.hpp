@@ -1,6 +1,6 @@
 #pragma once
-// What a pixel sees: from a projection matrix to the few numbers with which truth and kernels rebuild
-// positions.
+// Camera: converts a projection matrix to the few numbers with which the reference and the kernels
+// reconstruct positions.
 
 #include <array>
 #include <cstdint>
@@ -9,17 +9,18 @@
 
 namespace dermis::subsurface {
 
-// A 4x4 matrix, row-major (m[4 * row + column]); it multiplies column vectors: clip = M * view.
+// A 4x4 matrix, row-major (m[4 * row + column]). It multiplies column vectors: clip = M * view.
 using Matrix4 = std::array<double, 16>;
 
 Matrix4 multiply(const Matrix4& a, const Matrix4& b);
-// Empty where the last row is not 0 0 0 1, or the rest cannot be inverted.
+// Returns nullopt if the last row is not 0 0 0 1, or if the rest is singular.
 std::optional<Matrix4> invert_affine(const Matrix4& m);
 
-// View space: x right, y up, looking down -z, in metres. Depth is the distance along the view axis, metres, >
-// 0. Pixel (i, j) counts from the render rectangle's upper left corner; its centre has the view position
-//   x = (scale_x * i + offset_x) * k,  y = (scale_y * j + offset_y) * k,  z = -depth,  k = perspective ?
-//   depth : 1.
+// View space: x right, y up, the camera looks along -z, in metres. Depth is the distance along the
+// view axis in metres, > 0. Pixel (i, j) counts from the upper left corner of the render rectangle.
+// Its centre has the view position
+//   x = (scale_x * i + offset_x) * k,  y = (scale_y * j + offset_y) * k,  z = -depth,
+//   k = perspective ? depth : 1.
 struct PixelRays {
   double scale_x = 1, offset_x = 0;  // metres per pixel (at depth 1 m if perspective)
   double scale_y = -1, offset_y = 0; // negative: pixel rows go down, y goes up
@@ -27,22 +28,22 @@ struct PixelRays {
 };
 
 // View depth in metres from a depth buffer's value: depth = (a * value + b) / (c * value + e).
-// Serves standard, reversed and infinite projections alike.
+// Works for standard, reversed and infinite projections.
 struct DepthDecode {
   double a = 0, b = 0, c = 0, e = 1;
 };
 
-// View space of a host has x to the right and y up. The camera looks down -z in a right-handed view space and
-// along +z in a left-handed one.
+// Handedness of a host's view space, which has x to the right and y up. The camera looks along -z
+// in a right-handed view space and along +z in a left-handed view space.
 enum class Handedness : uint8_t { right, left };
 
-// The matrices of a frame and of the frame before, as a host has them. Both clip_from_view exclude the jitter
-// or include it.
+// The host's matrices of a frame and of the frame before. Both clip_from_view exclude the jitter,
+// or both include it.
 struct CameraMatrices {
   Matrix4 clip_from_view{}, view_from_world{}, previous_clip_from_view{}, previous_view_from_world{};
 };
 
-// Why matrices of a host cannot be used; text_of() says it in words.
+// The reason why a host's matrices cannot be used; text_of() describes it.
 enum class CameraFault : uint8_t {
   none,
   no_projection,
@@ -52,33 +53,35 @@ enum class CameraFault : uint8_t {
   previous_right,         // the frame is left-handed, and previous_clip_from_view has w = -z
   previous_left,          // the frame is right-handed, and previous_clip_from_view has w = z
   behind_camera,          // depth 0..1 is behind the camera
-  previous_behind_camera, // the same of previous_clip_from_view
+  previous_behind_camera, // depth 0..1 of previous_clip_from_view is behind the camera
 };
 
-// Mirrors the matrices of a left-handed view space along z: everything else here works with right-handed
-// ones. A perspective projection states its handedness by the sign of its w row (w = -z: right, w = z: left).
-// An orthographic one cannot: it has the handedness that is `declared`, right where nothing is. A previous
-// projection that is none is not judged. On a fault nothing changes. Allocates nothing. Thread: any.
+// Mirrors the matrices of a left-handed view space along z, because all other functions expect
+// right-handed matrices. The sign of the w row gives the handedness of a perspective projection (w
+// = -z: right, w = z: left). An orthographic projection has the handedness `declared`, or right if
+// it is nullopt. An invalid previous projection is ignored. A fault leaves the matrices unchanged.
+// Allocates nothing. Thread: any.
 CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> declared, Handedness& found);
 
-// One sentence without a full stop; static. "" for none.
+// Returns a static sentence without a full stop; "" for none.
 std::string_view text_of(CameraFault fault);
 
-// The same projection for view positions whose z has the other sign.
+// Returns the projection for view positions with negated z.
 Matrix4 with_mirrored_view(const Matrix4& clip_from_view);
 
-// Rays of a w x h rectangle onto which clip space [-1, 1]^2 maps (Vulkan: y down, so m[1][1] < 0 for a camera
-// that is not flipped). `clip_from_view` excludes the jitter; `jitter_px` is how far the picture was shifted
-// by it (+x right, +y down). The matrix works in host units, `metres_per_unit` turns them into metres. Empty
-// if the matrix is not an axis-aligned perspective or orthographic projection of a right-handed view space
-// with finite entries, or a size or the unit is not positive.
+// Returns the rays of a w x h rectangle onto which clip space [-1, 1]^2 maps (Vulkan: y down, so
+// m[1][1] < 0 for a camera that is not flipped). `clip_from_view` excludes the jitter; `jitter_px`
+// is the shift of the picture by the jitter (+x right, +y down). The matrix is in host units;
+// `metres_per_unit` converts them to metres. Returns nullopt if the matrix is not an axis-aligned
+// perspective or orthographic projection of a right-handed view space with finite entries, or if a
+// size or the unit is not positive.
 std::optional<PixelRays> pixel_rays(const Matrix4& clip_from_view, uint32_t width, uint32_t height,
                                     double metres_per_unit, std::array<double, 2> jitter_px);
 
-// Decoder for a depth attachment written with the same matrix and Vulkan's depth range 0..1.
+// Returns the decoder of a depth attachment written with this matrix and Vulkan's depth range 0..1.
 DepthDecode depth_decode(const Matrix4& clip_from_view, double metres_per_unit);
 
-// Orthographic rays with square pixels of `pitch_m` metres, centred on the view axis.
+// Returns orthographic rays with square pixels of `pitch_m` metres, centred on the view axis.
 PixelRays orthographic_rays(uint32_t width, uint32_t height, double pitch_m);
 
 } // namespace dermis::subsurface

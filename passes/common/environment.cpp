@@ -15,12 +15,12 @@ constexpr uint32_t tile_pixels = 8;
 int32_t tiles_of(uint32_t pixels) {
   return static_cast<int32_t>((pixels + tile_pixels - 1) / tile_pixels);
 }
-// Burley's profile has closed forms and tables of its own; every other one brings them.
+// Burley's profile has closed forms and shared tables; all other profiles have their own.
 bool has_own_tables(const NumberedProfile& numbered) {
   return numbered.profile.model != ProfileModel::burley;
 }
 
-// The part of `out` about the frame before. False where there was none that can be looked back at.
+// Fills the part of `out` that describes the frame before. Returns false if that frame is unusable.
 bool fill_previous(const FrameInput& input, FrameConstants& out) {
   const auto rays =
       pixel_rays(input.camera.previous_clip_from_view, input.previous_width, input.previous_height,
@@ -51,7 +51,7 @@ bool fill_previous(const FrameInput& input, FrameConstants& out) {
 constexpr size_t sap_table_floats = size_t{sap_table_rows} * sap_node_count;
 using SapTables = std::array<float, sap_variant_count * sap_table_floats>; // by SapVariant
 
-// Zero of variants that are not used.
+// Tables of unused variants are 0.
 SapTables sap_tables_of(const ChannelShape& shape, PyramidUse use) {
   std::vector<SapVariant> used;
   if (use.surface) used = {SapVariant::base, SapVariant::smooth, SapVariant::half};
@@ -65,8 +65,8 @@ SapTables sap_tables_of(const ChannelShape& shape, PyramidUse use) {
   return tables;
 }
 
-// The same for each graph: fitted once. Nothing of it is on the heap, whose owner may be gone before the next
-// graph.
+// Returns the tables shared by all graphs, fitted once. They are not on the heap, because the
+// heap's owner may be destroyed before the next graph.
 const SapTables& burley_sap_tables(PyramidUse use) {
   if (!use.plain) {
     static const SapTables surface = sap_tables_of(burley_shape(1), {true, false});
@@ -86,7 +86,7 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   const auto rays = pixel_rays(input.camera.clip_from_view, input.rect_width, input.rect_height,
                                input.metres_per_unit, input.jitter_px);
   if (!rays || !std::isfinite(input.exposure)) return false;
-  // Rays are metres (per metre of depth when perspective, where the unit cancels).
+  // Rays are in metres (per metre of depth if perspective, where the unit cancels).
   const double ray_unit = rays->perspective ? 1.0 : mm_per_metre;
   const DepthDecode decode = depth_decode(input.camera.clip_from_view, input.metres_per_unit);
   out.rect[0] = static_cast<int32_t>(input.rect_x);
@@ -127,7 +127,7 @@ double transmitted_rms(const FrameCounters& counters) {
 
 double mean_d_px(const FrameCounters& counters) {
   if (counters.scattering_tiles == 0) return 0;
-  constexpr double half_step = 0.5; // that rounding down takes off
+  constexpr double half_step = 0.5; // mean of what rounding down removes
   const double steps = double(counters.log2_d_sum) / double(counters.scattering_tiles) + half_step;
   return std::exp2(steps / double(counter_log2_steps) - double(counter_log2_shift));
 }
@@ -137,7 +137,7 @@ std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> pr
   none.separable_row = no_separable_row;
   none.radial_row = no_radial_row;
   std::vector<ProfileEntry> table(profile_capacity, none);
-  uint32_t others = 0; // profiles that are not Burley's so far
+  uint32_t others = 0; // number of other models so far
   for (size_t i = 0; i < profiles.size(); ++i) {
     const NumberedProfile& numbered = profiles[i];
     const bool other = has_own_tables(numbered);

@@ -1,6 +1,7 @@
 #pragma once
-// What every kernel sees beside its ports (descriptor set 1): frame constants, profiles, kernel tables.
-// Layouts mirror shaders/common/environment.glsl; tests compare them with SPIR-V reflection.
+// Bindings that every kernel sees in addition to its ports (descriptor set 1): frame constants,
+// profiles, kernel tables. Layouts mirror shaders/common/environment.glsl; tests compare them with
+// SPIR-V reflection.
 
 #include "framegraph/model/graph.hpp"
 #include "passes/common/camera.hpp"
@@ -27,75 +28,89 @@ enum class EnvironmentSlot : uint32_t {
   count = 7
 };
 
-inline constexpr size_t max_probes = 32; // tiles of a frame
+inline constexpr size_t max_probes = 32; // probed tiles per frame
 
-// What subsurface.classify counts in a frame, as words of the counters binding.
+// Counters of a frame, as words of the counters binding. subsurface.classify writes them unless
+// noted otherwise.
 struct FrameCounters {
   uint32_t scattering_tiles = 0; // 8x8 tiles with a pixel that scatters further than itself
-  uint32_t copied_tiles = 0;     // tiles with subsurface below that
-  uint32_t log2_d_sum = 0; // over scattering tiles: counter_log2_steps * (log2 of the largest d in pixels
-                           // + counter_log2_shift), rounded down
-  uint32_t uniform_tiles =
-      0; // of subsurface.classify_uniform_light: would scatter, but the light is the same all around
+  uint32_t copied_tiles = 0;     // tiles with subsurface that scatters no further than a pixel
+  // Over scattering tiles: counter_log2_steps * (log2 of the largest d in pixels +
+  // counter_log2_shift), rounded down.
+  uint32_t log2_d_sum = 0;
+  // Written by subsurface.classify_uniform_light: tiles that would scatter, but have uniform light
+  // all around.
+  uint32_t uniform_tiles = 0;
   // Groups that one dispatch over the tiles of a level of the surface-aware pyramid launches.
   std::array<uint32_t, 9> level_groups{};
-  // Of subsurface.allocate_samples: tiles that took one, two and three steps of samples; units that they
-  // spend, and that all tiles would.
+  // Written by subsurface.allocate_samples: tiles that took one, two and three steps of samples;
+  // units that they spend, and that all tiles would spend.
   std::array<uint32_t, 3> sampled_tiles{};
   uint32_t sample_units = 0, sample_demand = 0;
-  uint32_t probe_count = 0; // of subsurface.probe: tiles that it looked at
-  // Of subsurface.transmission_stats: over tiles with subsurface, the mean square of the exposed light that
-  // comes through, at most 1, in steps of 1 / through_square_steps.
+  uint32_t probe_count = 0; // written by subsurface.probe: number of probed tiles
+  // Written by subsurface.transmission_stats: the mean square, over tiles with subsurface, of the
+  // exposed transmitted light, at most 1, in steps of 1 / through_square_steps.
   uint32_t through_steps = 0;
-  // Of each probed tile, as bits of floats, the sum of squared errors and the pixels that it was made of,
-  // both times the tiles that it stands for.
+  // For each probed tile, as bits of floats: the sum of squared errors and the number of pixels in
+  // this sum, both times the number of tiles that the tile represents.
   std::array<std::array<uint32_t, 2>, max_probes> probes{};
 };
 inline constexpr float counter_log2_shift = 8;      // d from 1/256 pixel
-inline constexpr float counter_log2_steps = 16;     // an octave; the sum of 4 M tiles fits 32 bits
+inline constexpr float counter_log2_steps = 16;     // per octave; the sum of 4 M tiles fits 32 bits
 inline constexpr float through_square_steps = 1023; // the sum of 4 M tiles fits 32 bits
-// Light that comes through thin parts, root mean square over the tiles with subsurface, exposed luminance.
+// Returns the root mean square of transmitted light over the tiles with subsurface, in exposed
+// luminance.
 double transmitted_rms(const FrameCounters& counters);
-// Geometric mean of d over the scattering tiles, pixels; 0 where there are none.
+// Returns the geometric mean of d over the scattering tiles, pixels; 0 without scattering tiles.
 double mean_d_px(const FrameCounters& counters);
 
 enum class DepthKind : uint32_t { device = 0, view_units = 1 };
 
-// std140. Lengths on the device are millimetres: fp32 keeps a micrometre at 10 m.
+// Frame constants in std140. Lengths on the device are in millimetres: fp32 resolves a micrometre
+// at 10 m.
 struct FrameConstants {
   int32_t rect[4];      // x, y, width, height of the render rectangle, pixels
   int32_t tiles[2];     // 8x8 tiles of the rectangle, x and y
   uint32_t frame_index; // low 32 bits
-  uint32_t flags;       // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid,
-                        // bit 3: the frame before was perspective, bit 4: normal images are left-handed
-  float ray_scale[2];   // view x, y = (scale * pixel + offset) * (perspective ? depth : 1); pixel counts from
-  float
-      ray_offset[2]; // the rectangle's corner, integers at pixel centres; mm (per mm of depth if perspective)
+  // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid, bit 3: the frame
+  // before was perspective, bit 4: normal images are left-handed
+  uint32_t flags;
+  // View x, y = (scale * pixel + offset) * (perspective ? depth : 1), in mm (per mm of depth if
+  // perspective). `pixel` counts from the rectangle's corner; integers are pixel centres.
+  float ray_scale[2];
+  float ray_offset[2];
   float depth_decode[4]; // depth mm = (a * value + b) / (c * value + e)
   float depth_unit;      // mm per unit of view distance
   float exposure;
   float jitter[2]; // pixels
-  // Of the frame before, where bit 2 of flags is not set:
-  float previous_from_view[3][4]; // rows; its view position of what stands still = M * (view position, 1), mm
-  float previous_ray_scale[2], previous_ray_offset[2]; // as ray_scale and ray_offset
+  // The frame before, down to previous_jitter; valid if bit 2 of flags is not set.
+  // Rows of M: the view position (mm) in the frame before of a static point = M * (view position,
+  // 1).
+  float previous_from_view[3][4];
+  // same convention as ray_scale and ray_offset
+  float previous_ray_scale[2], previous_ray_offset[2];
   int32_t previous_rect[4];
   float previous_jitter[2]; // pixels
-  uint32_t sample_units;    // that subsurface.allocate_samples may spend
+  uint32_t sample_units;    // units that subsurface.allocate_samples may spend
   float unused;             // rounds to 16 bytes
-  int32_t bounds[4]; // x, y, width, height of where subsurface may be, from the rectangle's corner, inside it
-  float view_from_world[3][4]; // rows; view position in mm = M * (world position in the host's units, 1)
+  // x, y, width, height of the area that may have subsurface, relative to the rectangle's corner
+  // and inside the rectangle
+  int32_t bounds[4];
+  // Rows of M: view position (mm) = M * (world position in the host's units, 1).
+  float view_from_world[3][4];
 };
 static_assert(sizeof(FrameConstants) == 240);
 
-// std430, one per profile id 0..255; entry 0 and undeclared ids have d = 0: light passes through.
+// Profile entry in std430, one per profile id 0..255. Entry 0 and undeclared ids have d = 0: light
+// passes through.
 struct ProfileEntry {
   float d_mm[3];          // shape parameter per channel
-  float d_max_mm;         // of the widest channel
-  uint32_t widest;        // channel index
-  uint32_t separable_row; // first row of its separable kernels; 0xffffffff: none were made
+  float d_max_mm;         // shape parameter of the widest channel
+  uint32_t widest;        // index of the widest channel
+  uint32_t separable_row; // first row of its separable kernels; 0xffffffff: none
   uint32_t radial_row;    // first row of its radial table; 0xffffffff: Burley's closed forms
-  uint32_t sap_table;     // first of its pyramid tables; 0: the shared ones, which are Burley's
-  float direct[3];        // share of light that never scatters
+  uint32_t sap_table;     // first of its pyramid tables; 0: the shared tables, which are Burley's
+  float direct[3];        // fraction of light that never scatters
   float unused;           // rounds the entry to 48 bytes
 };
 static_assert(sizeof(ProfileEntry) == 48);
@@ -106,10 +121,11 @@ inline constexpr uint32_t no_radial_row = 0xffffffffu;
 struct FrameInput {
   uint32_t rect_x = 0, rect_y = 0, rect_width = 0, rect_height = 0;
   std::array<int32_t, 4> bounds{}; // as FrameConstants::bounds
-  // Right-handed, clip_from_view without jitter. The previous one has its jitter, as the frame before was
-  // rendered; where the previous matrices are no projection, history counts as invalid.
+  // Right-handed matrices. clip_from_view excludes the jitter; previous_clip_from_view includes the
+  // jitter of the frame before. History counts as invalid if the previous matrices are no
+  // projection.
   CameraMatrices camera;
-  Handedness handedness = Handedness::right; // of the view space of normal images
+  Handedness handedness = Handedness::right; // handedness of the view space of normal images
   std::array<double, 2> jitter_px{};
   double metres_per_unit = 1.0;
   DepthKind depth_kind = DepthKind::device;
@@ -122,8 +138,9 @@ struct FrameInput {
   std::array<double, 2> previous_jitter_px{};
 };
 
-// False if the matrix is not an axis-aligned perspective or orthographic projection of a right-handed view
-// space, or a number is not finite; then `out` is unchanged. Allocates nothing. Thread: any.
+// Fills `out`. Returns false if the matrix is not an axis-aligned perspective or orthographic
+// projection of a right-handed view space, or if a number is not finite; then `out` is unchanged.
+// Allocates nothing. Thread: any.
 bool fill_frame_constants(const FrameInput& input, FrameConstants& out);
 
 struct NumberedProfile {
@@ -131,29 +148,31 @@ struct NumberedProfile {
   Profile profile;
 };
 
-// profile_capacity entries. Ids outside 1..255 are ignored. Tables of a profile are expected where
-// make_separable_table, make_radial_table and make_sap_tables put them for the same list.
+// Returns profile_capacity entries. Ignores ids outside 1..255. Expects the tables of a profile at
+// the rows where make_separable_table, make_radial_table and make_sap_tables place them for the
+// same list.
 std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles, bool with_separable);
-// For each profile in order the fitted rows (make_separable_rows), then the published kernel's
-// (make_jimenez_rows); one row of zeros if there are none. About .1 s a profile.
+// Returns, for each profile in order, the fitted rows (make_separable_rows), then the published
+// kernel's (make_jimenez_rows); one row of zeros without profiles. Takes about 0.1 s per profile.
 std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles);
-// Does the graph have a pass that reads the separable table?
+// Returns whether the graph has a pass that reads the separable table.
 bool uses_separable(const Graph& graph, const PassTypeRegistry& pass_types);
 
-// Radial tables of the profiles that are not Burley's, in order; one row of zeros if there are none.
+// Returns the radial tables of the profiles that are not Burley's, in order; one row of zeros
+// without any.
 std::vector<RadialRow> make_radial_table(std::span<const NumberedProfile> profiles);
 
-// Which of the pyramids' tables a graph's passes read.
+// The pyramids' tables that a graph's passes read.
 struct PyramidUse {
-  bool surface = false; // base and smooth: the surface-aware pyramid
+  bool surface = false; // base, smooth and half: the surface-aware pyramid
   bool plain = false;
   bool operator==(const PyramidUse&) const = default;
 };
 PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types);
-// Tables of make_sap_table (sap_weights.hpp): the shared ones, base, smooth, plain; then for each profile
-// that is not Burley's, in order, those of red, green and blue for base, for smooth and for plain. What is
-// not used is 0; a single zero where nothing is. About .1 s a shared table and the same for each channel of
-// another profile.
+// Returns the tables of make_sap_table (sap_weights.hpp). First the shared tables by SapVariant:
+// base, smooth, half, plain. Then, for each profile that is not Burley's, in order, the tables of
+// red, green and blue for each variant. Unused tables are 0; the result is a single zero if all are
+// unused. Takes about 0.1 s per shared table, and per channel of another profile.
 std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfile> profiles);
 
 } // namespace dermis::subsurface

@@ -1,7 +1,7 @@
 #pragma once
-// The static tables of descriptor set 1, all that a graph's passes need of them. They follow from the
-// profiles and from which techniques the graph has, not from its size or settings: a graph that is resized or
-// reloaded keeps them.
+// All static tables of descriptor set 1 that a graph's passes need. They depend on the profiles and
+// on the graph's techniques, not on its size or settings: a graph that is resized or reloaded keeps
+// them.
 
 #include "passes/common/environment.hpp"
 
@@ -10,7 +10,7 @@
 
 namespace dermis::subsurface {
 
-// Which fitted tables a graph's passes read.
+// The fitted tables that a graph's passes read.
 struct TableUse {
   bool separable = false;
   PyramidUse pyramid;
@@ -26,7 +26,8 @@ struct KernelTables {
 };
 
 TableUse table_use(const Graph& graph, const PassTypeRegistry& pass_types);
-// Fits what is used: up to .2 s for the pyramids and .1 s a profile for separable. Thread: any.
+// Fits the used tables: up to 0.2 s for the pyramids and 0.1 s per profile for separable. Thread:
+// any.
 KernelTables make_kernel_tables(const TableUse& use, std::span<const NumberedProfile> profiles);
 
 } // namespace dermis::subsurface

@@ -12,9 +12,9 @@ struct Kernel {
   std::span<const uint32_t> spirv;
 };
 
-// All kernels, in the order of the build's shader list. Static memory. Thread: any.
+// Returns all kernels, in the order of the build's shader list. Static memory. Thread: any.
 std::span<const Kernel> embedded_kernels();
-// Empty span for an unknown name.
+// Returns an empty span for an unknown name.
 std::span<const uint32_t> find_kernel(std::string_view shader);
 
 } // namespace dermis

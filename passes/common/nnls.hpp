@@ -1,5 +1,5 @@
 #pragma once
-// Least squares with non-negative unknowns, for a handful of unknowns.
+// Least squares with non-negative unknowns, for few unknowns.
 
 #include <algorithm>
 #include <array>
@@ -14,19 +14,19 @@ template <size_t N> struct NormalEquations {
   // Adds weight * row * row^T.
   void add_row(const std::array<double, N>& row, double weight) {
     for (size_t i = 0; i < N; ++i) {
-      if (row[i] == 0) continue; // unknowns that a fit does not have
+      if (row[i] == 0) continue; // unknowns that the fit does not use
       for (size_t j = 0; j < N; ++j)
         matrix[i][j] += weight * row[i] * row[j];
     }
   }
 };
 
-// The unknowns in `used` that solve their part of the equations (Cholesky); others 0. A pivot that vanishes
-// against its diagonal means that the unknown adds nothing to those before it: it gets 0.
+// Solves for the unknowns in `used` (Cholesky); others are 0. A pivot that is negligible against
+// its diagonal means that the unknown depends on earlier ones: it gets 0.
 template <size_t N>
 std::array<double, N> solve_some(const NormalEquations<N>& equations, const std::array<double, N>& right,
                                  const std::array<bool, N>& used) {
-  constexpr double singular = 1e-14; // of the diagonal: rounding of fp64 sums
+  constexpr double singular = 1e-14; // relative to the diagonal: rounding of fp64 sums
   std::array<std::array<double, N>, N> factor{};
   std::array<double, N> x{};
   for (size_t i = 0; i < N; ++i) {
@@ -56,11 +56,12 @@ std::array<double, N> solve_some(const NormalEquations<N>& equations, const std:
   return x;
 }
 
-// Minimises x^T M x - 2 right^T x over x >= 0: the active-set method of Lawson & Hanson 1974, chapter 23.
+// Minimises x^T M x - 2 right^T x over x >= 0 by the active-set method of Lawson & Hanson 1974,
+// chapter 23.
 template <size_t N>
 std::array<double, N> solve_non_negative(const NormalEquations<N>& equations,
                                          const std::array<double, N>& right) {
-  constexpr double slack = 1e-12; // of the largest gradient at 0
+  constexpr double slack = 1e-12; // relative to the largest gradient at 0
   double scale = 0;
   for (const double r : right)
     scale = std::max(scale, std::abs(r));

@@ -1,21 +1,22 @@
 #pragma once
-// The pass types of subsurface scattering: signatures alone, no device. Each kind's shader carries the same
-// name.
+// The pass types of subsurface scattering: only signatures, no device. The shader of each pass type
+// has the same name.
 
 #include "framegraph/model/pass_type.hpp"
 
 namespace dermis::subsurface {
 
-// Every kind a graph may use, in a fixed order. Thread: any.
+// Returns every pass type that a graph may use, in a fixed order. Thread: any.
 PassTypeRegistry make_pass_types();
 
-// Below this projected shape parameter d of the widest channel a pixel keeps its own light: 2.6 % of what
-// enters at the centre of a pixel leaves its square then (3.6 % the inscribed circle, 1 % the circumscribed
-// one), so that errors stay below .026 of the local contrast. The idea is epsilon_u of the 2021 paper,
-// sec. 7.
+// A pixel with a smaller projected shape parameter d of the widest channel keeps its own light. At
+// this d, 2.6 % of the light that enters at the centre of a pixel leaves its square (3.6 % leave
+// the inscribed circle, 1 % the circumscribed circle), so that errors stay below 0.026 of the local
+// contrast. The idea is epsilon_u of Xie, Xu & Boksansky 2021, sec. 7.
 inline constexpr double copy_below_d_px = 0.0546;
 
-// Pixels whose light reaches further than this are not probed: a reference reads the square of it.
+// Pixels whose light reaches further, in pixels, are not probed: a reference reads the square of
+// the reach.
 inline constexpr int32_t probe_max_reach = 320;
 
 } // namespace dermis::subsurface

@@ -8,15 +8,15 @@
 namespace dermis::subsurface {
 namespace {
 
-// 97.5 % of Student's t, within 1 % from two degrees of freedom on: Cornish and Fisher's expansion about the
-// normal's.
+// Returns the 97.5 % quantile of Student's t by Cornish and Fisher's expansion about the normal
+// distribution, within 1 % from two degrees of freedom on.
 double student_t(double freedom) {
   if (freedom < 2) return 12.706;
   constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
   const double n = freedom;
   return z + (z3 + z) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z) / (96 * n * n) +
          (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n) +
-         (freedom < 3 ? 0.45 : 0.0); // what the expansion lacks at two
+         (freedom < 3 ? 0.45 : 0.0); // correction of the expansion at two degrees of freedom
 }
 
 } // namespace
@@ -28,7 +28,8 @@ ProbedError probed_error(const FrameCounters& counters) {
   for (size_t i = 0; i < count; ++i)
     tiles[i] = {double(std::bit_cast<float>(counters.probes[i][0])),
                 double(std::bit_cast<float>(counters.probes[i][1]))};
-  std::sort(tiles.begin(), tiles.begin() + std::ptrdiff_t(count)); // the device hands them over in any order
+  // the device writes them in any order
+  std::sort(tiles.begin(), tiles.begin() + std::ptrdiff_t(count));
   for (const auto& [error, weight] : tiles) {
     errors += error;
     pixels += weight;

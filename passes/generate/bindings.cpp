@@ -33,7 +33,8 @@ std::string declare_port(const Port& port, uint32_t binding) {
     return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
   case Usage::storage_image_write:
     return fmt::format("layout({}) writeonly uniform {} {}_image;\n", layout, port.glsl_type, port.name);
-  case Usage::storage_image_update: // a load needs to know the format
+  // A load needs the format.
+  case Usage::storage_image_update:
     if (port.glsl_type.substr(0, 9) == "writeonly")
       return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
     return fmt::format("layout({}, rgba16f) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
@@ -78,7 +79,7 @@ std::string header_of(const PassType& type) {
   return out;
 }
 
-// Numbers that C++ and GLSL must agree on.
+// Returns the constants that C++ and GLSL share.
 std::string shared_constants() {
   return fmt::format(
       "// Generated from the constants of passes/common/.\n"

@@ -1,6 +1,6 @@
 #pragma once
-// GLSL that is written by the program: one header a kernel from its signature, so that bindings and push
-// constants are written once, and the numbers that C++ and GLSL must agree on.
+// Generated GLSL: one header per kernel with bindings and push constants from its signature, and
+// the constants that C++ and GLSL share.
 
 #include <string>
 #include <vector>
@@ -8,11 +8,12 @@
 namespace dermis {
 
 struct GeneratedFile {
-  std::string name; // "afis/subsurface_afis.bindings.glsl", "constants.glsl"; what #include names
+  // "afis/subsurface_afis.bindings.glsl", "constants.glsl": the name used by #include.
+  std::string name;
   std::string text;
 };
 
-// Those of all kernels. Free-threaded.
+// Returns the files of all kernels. Thread: any.
 std::vector<GeneratedFile> generated_glsl();
 
 } // namespace dermis

@@ -1,4 +1,4 @@
-// Build tool: writes the GLSL that comes from signatures. Usage: write_bindings <output folder>
+// Build tool that writes the GLSL generated from signatures. Usage: write_bindings <output folder>
 #include "passes/generate/bindings.hpp"
 
 #include <fmt/format.h>

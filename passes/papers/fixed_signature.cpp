@@ -1,4 +1,4 @@
-// A fixed number of samples without mips: a baseline.
+// Baseline: a fixed number of samples without mips.
 
 #include "passes/common/signatures/signatures.hpp"
 

@@ -17,7 +17,8 @@ std::vector<double> jimenez_offsets(uint32_t taps) {
 }
 
 std::vector<double> jimenez_weights(std::span<const double> offsets, double width, double strength) {
-  // A tap stands for half the way to each of its neighbours; the outermost have one.
+  // A tap represents half the distance to each of its neighbours; the outermost taps have one
+  // neighbour.
   std::vector<double> weights{offsets[0] * artist_R(0, width)};
   double total = weights[0];
   for (size_t i = 0; i < offsets.size(); ++i) {

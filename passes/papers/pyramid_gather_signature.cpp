@@ -1,4 +1,4 @@
-// The plain pyramid read through cubic B-splines: a baseline.
+// Baseline: the plain pyramid read through cubic B-splines.
 
 #include "passes/common/signatures/signatures.hpp"
 

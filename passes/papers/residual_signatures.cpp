@@ -1,5 +1,5 @@
-// What mends the surface-aware pyramid where it is unsure: samples of the surface around, read from the
-// pyramid's own levels.
+// Refinement of the surface-aware pyramid where confidence is low, by samples of the surface
+// around, read from the pyramid's own levels.
 
 #include "passes/common/signatures/level_ports.hpp"
 

@@ -1,4 +1,4 @@
-// How uneven the light of each tile is: an alternative to its expected error.
+// Variance of the light of each tile: an alternative to the tile error estimate.
 
 #include "passes/common/signatures/level_ports.hpp"
 

@@ -1,4 +1,4 @@
-// Scattering by rays: light that comes in wherever the host's scene has surfaces of the same profile.
+// Scattering by rays: light that enters wherever the host's scene has surfaces of the same profile.
 
 #include "passes/common/signatures/signatures.hpp"
 

@@ -1,5 +1,4 @@
-// Samples by tile: how far off each tile is expected to be, which tiles get samples, and the samples
-// themselves.
+// Samples by tile: error estimate of each tile, allocation of samples, and refinement by samples.
 
 #include "passes/common/signatures/level_ports.hpp"
 

@@ -1,5 +1,6 @@
-// The surface-aware pyramid: one pass type a step, one pass a level. Level 0 is the view, level l has a texel
-// every 2^l pixels and a border of one texel, which takes what lies beyond the last pixels.
+// The surface-aware pyramid: one pass type per step, one pass per level. Level 0 is the view. Level
+// l has a texel every 2^l pixels and a border of one texel, which covers what lies beyond the last
+// pixels.
 
 #include "passes/common/signatures/level_ports.hpp"
 #include "passes/sap/sap_weights.hpp"
@@ -8,7 +9,7 @@ namespace dermis::subsurface {
 
 namespace {
 
-// The first SapVariants.
+// names of the first SapVariants
 constexpr std::string_view variant_options[] = {"base", "smooth", "half"};
 
 constexpr std::string_view light_doc =
@@ -42,7 +43,7 @@ constexpr PassTypeSetting variant =
                     "level 1, below subsurface.sap_gather_half",
                     1);
 
-// With two layers at level 1 there is no other first level.
+// Two layers at level 1 need a full first level, so `half` is not available.
 constexpr PassTypeSetting layered_variant =
     setting::choice("variant", std::span(variant_options).first(2),
                     "base: tent at levels 0 and 1; smooth: at every level, which hides the grid", 1);
@@ -127,8 +128,8 @@ constexpr Port down_ports[] = {
 };
 constexpr PassTypeSetting down_settings[] = {level_setting(1, "that is written"), storage};
 
-// Of levels whose texels can have a second surface: ports of that layer beside those of the first. Its images
-// hold something only where the first surface says so.
+// Ports of the second layer, for levels whose texels can have a second surface. Its images are
+// valid only at texels whose first surface has the flag.
 constexpr std::string_view second_doc =
     "the same of the second layer, what lies off the first; nothing where a texel has one";
 constexpr Port second_coarse_surface{

@@ -15,7 +15,7 @@ struct Flags {
   bool at(int64_t x, int64_t y) const {
     return x >= 0 && y >= 0 && x < across && y < down && set[static_cast<size_t>(y * across + x)];
   }
-  // A bit for each of the 3x3 tiles from (x, y) on.
+  // Returns a bit for each of the 3x3 tiles from (x, y) on.
   uint32_t from(int64_t x, int64_t y) const {
     uint32_t mask = 0;
     for (uint32_t i = 0; i < 9; ++i)

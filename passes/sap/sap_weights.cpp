@@ -14,22 +14,22 @@ namespace {
 
 using std::numbers::pi;
 
-// Where the fit looks: rings of frequencies (cycles a pixel) from far below the widest kernel to the corner
+// Frequencies of the fit in cycles per pixel: rings from far below the widest kernel to the corner
 // of the band, each at a few angles of the first octant.
 constexpr size_t ring_count = 72, angle_count = 5;
 constexpr double sap_min_frequency = 1.0 / 4096, sap_max_frequency = 0.5;
-// Light on surfaces has a power spectrum near f^-2.5 (dead leaves, edges); rings are equal steps in log f,
-// whose area grows with f^2.
+// Light on surfaces has a power spectrum near f^-2.5 (dead leaves, edges). Rings are equal steps in
+// log f, whose area grows with f^2.
 constexpr double spectrum_exponent = -2.5;
-// Above this d the kernel's transfer function comes from the closed form: its spectrum times the pixel's
-// sinc, with the copies that sampling at pixel centres folds back.
+// Above this d (pixels), the kernel's transfer function comes from the closed form: its spectrum
+// times the pixel's sinc, with the aliases of sampling at pixel centres.
 constexpr double closed_form_from_d = 3;
-constexpr int folded_copies = 4; // on each side; those left out add less than 1e-4
-// Holds the sum of the weights at 1 against a unit total weight of all frequencies.
+constexpr int folded_copies = 4; // on each side; the others add less than 1e-4
+// Weight that holds the sum of the weights at 1, against a total weight of 1 for all frequencies.
 constexpr double sum_weight = 1e3;
 
 struct Frequency {
-  double x, y, weight; // weight of the squared error; all together 1
+  double x, y, weight; // weight of the squared error; the sum is 1
 };
 
 std::vector<Frequency> make_frequencies() {
@@ -53,8 +53,8 @@ double both_axes(const Frequency& f, double spacing, int power) {
   return std::pow(std::cos(pi * f.x * spacing) * std::cos(pi * f.y * spacing), power);
 }
 
-// A level read through a cubic B-spline at all the places of the view's pixels: its spectrum sinc^4 of the
-// spacing, with the copies that sampling at pixels folds back.
+// Transfer function of a level read through a cubic B-spline at all pixels: sinc^4 of the spacing,
+// with the aliases of sampling at pixels.
 double spline_axis(double f, double spacing) {
   double sum = 0;
   for (int m = -folded_copies; m <= folded_copies; ++m)
@@ -80,11 +80,11 @@ SapWeights basis_at(const Frequency& f, SapVariant variant) {
   return basis;
 }
 
-// What the closed form asks at a frequency and those that fold back on it, of no shape.
+// Terms of the closed form at a frequency and its aliases; independent of the shape.
 struct Folded {
-  static constexpr size_t copies = 2 * folded_copies + 1; // an axis
+  static constexpr size_t copies = 2 * folded_copies + 1; // per axis
   std::array<double, copies> sinc_x, sinc_y;
-  std::array<std::array<double, copies>, copies> k; // by y, x: radians a pixel
+  std::array<std::array<double, copies>, copies> k; // by y, x: radians per pixel
 };
 
 std::vector<Folded> fold(const std::vector<Frequency>& frequencies) {
@@ -101,8 +101,8 @@ std::vector<Folded> fold(const std::vector<Frequency>& frequencies) {
   return all;
 }
 
-// The truth's transfer function at all frequencies: of the summed pixel-integrated kernel, or of its closed
-// form.
+// Returns the reference's transfer function at all frequencies, from the summed pixel-integrated
+// kernel or its closed form.
 std::vector<double> target_of(const std::vector<Frequency>& frequencies, const std::vector<Folded>& folded,
                               const ChannelShape& shape) {
   std::vector<double> target;
@@ -143,12 +143,12 @@ std::vector<double> target_of(const std::vector<Frequency>& frequencies, const s
   return target;
 }
 
-// The least squares of a variant, of no shape.
+// The least-squares problem of a variant; independent of the shape.
 struct Problem {
   SapVariant variant;
   std::vector<SapWeights> basis = {}; // by frequency
   NormalEquations<sap_weight_count> equations = {};
-  SapWeights ones = {}; // of the weights that there are
+  SapWeights ones = {}; // 1 for each weight that exists
 };
 
 Problem make_problem(const std::vector<Frequency>& frequencies, SapVariant variant) {

@@ -14,25 +14,26 @@ namespace {
 using std::numbers::pi;
 constexpr size_t unknowns = separable_max_side + 2; // taps at 0 and at each side, then the delta
 
-// Frequencies of the fit: log-spaced radii from wavelengths of some hundred d to the pixel grid's corner,
-// over the first quadrant. A pair (fx, fy) stands for its area of the log-polar grid.
+// Frequencies of the fit: log-spaced radii from wavelengths of some hundred d to the pixel grid's
+// corner, over the first quadrant. A pair (fx, fy) represents its area of the log-polar grid.
 constexpr double separable_min_frequency = 1.0 / 2048;
 constexpr double separable_max_frequency = 0.70710678;
 constexpr int radii = 30;
 constexpr int angles = 5;
-// Power spectrum of natural images: amplitude 1/f, power f^-2 per unit area (Field 1987); on a log-polar grid
-// the area grows as f^2, which leaves equal weights.
+// Power spectrum of natural images: amplitude 1/f, power f^-2 per unit area (Field 1987). On a
+// log-polar grid the area grows as f^2, which gives equal weights.
 
 struct FitFrequency {
-  double x, y, weight, target = 0; // target: transfer of the truth's kernel
+  double x, y, weight, target = 0; // target: transfer of the reference's kernel
 };
 
-// What the transfer of the pixel's kernel asks at a frequency and those that alias with it, of no shape.
+// Terms of the transfer of the pixel's kernel at a frequency and its aliases; independent of the
+// shape.
 struct Aliases {
   static constexpr int maximum = 8; // periods on each side
   static constexpr size_t count = 2 * maximum + 1;
   std::array<double, count> sinc_x, sinc_y;
-  std::array<std::array<double, count>, count> k; // by y, x: radians a pixel
+  std::array<std::array<double, count>, count> k; // by y, x: radians per pixel
 };
 
 Aliases aliases_of(double fx, double fy) {
@@ -48,8 +49,8 @@ Aliases aliases_of(double fx, double fy) {
 }
 
 double transfer_of(const ChannelShape& shape, const Aliases& aliases) {
-  // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum settles to 1e-4 within 8 periods for d >=
-  // 1/16 px.
+  // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum converges to 1e-4 within 8
+  // periods for d >= 1/16 px.
   const int reach =
       shape.d > 0 ? std::clamp(static_cast<int>(2 + 2 / shape.d), 2, Aliases::maximum) : Aliases::maximum;
   const auto first = static_cast<size_t>(Aliases::maximum - reach),
@@ -61,7 +62,7 @@ double transfer_of(const ChannelShape& shape, const Aliases& aliases) {
   return shape.direct + (1 - shape.direct) * sum;
 }
 
-// The frequencies of every fit, and what they alias with.
+// The frequencies of every fit, and their aliases.
 struct Grid {
   std::vector<FitFrequency> frequencies;
   std::vector<Aliases> aliases;
@@ -90,7 +91,7 @@ std::vector<FitFrequency> with_targets(const Grid& grid, const ChannelShape& sha
   return all;
 }
 
-// Transfer of the two taps at +-offset, read with linear interpolation between texels.
+// Returns the transfer of the two taps at +-offset, read with linear interpolation between texels.
 double tap_transfer(double offset, double f) {
   const double below = std::floor(offset), part = offset - below;
   return 2 * ((1 - part) * std::cos(2 * pi * f * below) + part * std::cos(2 * pi * f * (below + 1)));
@@ -113,7 +114,7 @@ double dot(const Row& row, const Row& weights) {
   return sum;
 }
 
-// By frequency, both axes; of no shape.
+// By frequency, both axes; independent of the shape.
 struct Sample {
   Row x, y;
 };
@@ -131,12 +132,14 @@ SeparableFit fit_to(const std::vector<FitFrequency>& frequencies, const std::vec
   SeparableFit fit;
   const size_t taps = offsets.size() + 1;
 
-  // Unknown here: a unnormalised (its square carries 1 - centre) and the centre. Gauss-Newton on the product,
-  // each step a non-negative least-squares problem; the sum of the kernel, 1, is a row of large weight.
+  // Unknowns: an unnormalised `a` (its square includes 1 - centre) and the centre. Gauss-Newton on
+  // the product, with a non-negative least-squares problem per step; the sum of the kernel, 1, is a
+  // row of large weight.
   constexpr int steps = 12;
   constexpr double sum_weight = 1e6;
   Row a{};
-  for (size_t i = 0; i < taps; ++i) // start: the radial marginal's outer exponential
+  // Starts from the outer exponential of the radial marginal.
+  for (size_t i = 0; i < taps; ++i)
     a[i] = std::exp(-(i == 0 ? 0.0 : offsets[i - 1]) / (2 * d_px)) + 1e-3;
   double sum = a[0];
   for (size_t i = 1; i < taps; ++i)
@@ -199,7 +202,7 @@ double pixel_kernel_transfer(const ChannelShape& shape, double fx, double fy) {
 }
 
 std::vector<double> separable_offsets(double d_px, uint32_t taps) {
-  // Reach and spacing with the smallest error of fit over d = 1 .. 32 px, found by scanning
+  // Reach and spacing with the smallest fit error over d = 1 .. 32 px, found by scanning
   // (docs/techniques.md).
   const size_t side = (taps - 1) / 2;
   const double reach = (taps >= 25 ? 10.0 : taps >= 17 ? 7.0 : 5.0) * d_px;

@@ -1,4 +1,4 @@
-// The separable kernel: one pass an axis.
+// The separable kernel: one pass per axis.
 
 #include "passes/common/signatures/signatures.hpp"
 

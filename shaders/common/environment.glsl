@@ -16,7 +16,7 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   float depth_unit;  // mm per unit of view distance
   float exposure;
   vec2 jitter;       // pixels
-  // The frame before; valid if bit 2 of flags is not set.
+  // The frame before, down to previous_jitter; valid if bit 2 of flags is not set.
   // Rows of M: the view position (mm) in the frame before of a static point = M * (view position,
   // 1).
   vec4 previous_from_view[3];

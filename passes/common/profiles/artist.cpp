@@ -11,7 +11,7 @@ namespace dermis::subsurface {
 
 namespace {
 
-// Sum over the Gaussians of weight * term(variance).
+// Returns the sum over the Gaussians of weight * term(variance).
 template <class Term> double over_gaussians(double width, Term term) {
   double sum = 0;
   for (const ArtistGaussian& one : artist_gaussians)

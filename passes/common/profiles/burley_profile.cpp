@@ -8,12 +8,13 @@ namespace dermis::subsurface {
 
 namespace {
 
-// Q(v), least squares on the radius, second degree: max relative error of r 0.50 %.
+// Q(v), second degree, by least squares on the radius: maximum relative error of r 0.50 %.
 constexpr double q0 = 0.31853996, q1 = -0.26327845, q2 = 0.11306352;
 constexpr double scaling_centre = 0.33;
 
 double clamp_survival(double u) {
-  return u >= burley_min_survival ? std::min(u, 1.0) : burley_min_survival; // a NaN becomes the minimum
+  // a NaN becomes the minimum
+  return u >= burley_min_survival ? std::min(u, 1.0) : burley_min_survival;
 }
 
 double clamp_albedo(double albedo) {
@@ -35,8 +36,8 @@ double burley_pdf(double r, double d) {
 double burley_cdf(double r, double d) {
   if (!(r > 0)) return 0;
   if (!(d > 0)) return 1;
-  // expm1 keeps the digits of small radii, where both exponentials are close to 1: with e = e^(-r/3d) - 1 the
-  // other one is (1 + e)^3.
+  // expm1 keeps the digits of small radii, where both exponentials are close to 1. With e =
+  // e^(-r/3d) - 1, the other exponential is (1 + e)^3.
   const double e = std::expm1(-r / (3 * d));
   return -e * (1.5 + e * (0.75 + e * 0.25));
 }

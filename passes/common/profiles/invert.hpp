@@ -1,13 +1,15 @@
 #pragma once
-// The radius beyond which a given share of a profile's energy lies, for profiles without a closed inverse.
+// Radius beyond which a given fraction of a profile's energy lies, for profiles without a closed
+// inverse.
 
 #include <cmath>
 
 namespace dermis::subsurface {
 
-// Solves survival(r) = u for r >= 0, where survival falls from 1 to 0 and -density is its derivative. `guess`
-// is any positive length of the profile. Newton's steps on log survival, which is close to linear in the
-// tail; a step out of the bracket becomes a bisection. Relative error below 1e-12.
+// Solves survival(r) = u for r >= 0. `survival` falls from 1 to 0 and its derivative is -density.
+// `guess` is any positive length of the profile. Uses Newton's steps on log survival, which is
+// almost linear in the tail; a step out of the bracket becomes a bisection. Relative error below
+// 1e-12.
 template <class Survival, class Density>
 double invert_survival(double u, double guess, Survival survival, Density density) {
   constexpr int doublings = 200, steps = 200;

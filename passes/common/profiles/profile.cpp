@@ -34,7 +34,7 @@ std::string_view name_of(ProfileModel model) {
   return model_names[static_cast<size_t>(model)];
 }
 
-// A mean free path inside of the material becomes the one on the surface that gives the same d.
+// Converts a mean free path inside the material to the one on the surface that gives the same d.
 void read_burley(const Document& document, ObjectReader& reader, Profile& profile, Diagnostics& diagnostics) {
   const NodeId dmfp = document.find(reader.node(), "dmfp_mm"), mfp = document.find(reader.node(), "mfp_mm");
   const NodeId scaling_key = document.find(reader.node(), "scaling");
@@ -63,7 +63,7 @@ void read_burley(const Document& document, ObjectReader& reader, Profile& profil
   }
 }
 
-// False where keys of two models stand side by side.
+// Returns false if the object has keys of two models.
 bool read_numbers_into(const Document& document, ObjectReader& reader, Profile& profile,
                        Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);

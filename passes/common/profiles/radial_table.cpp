@@ -65,7 +65,8 @@ std::array<float, 3> radial_survival(std::span<const RadialRow> rows, float d_mm
   std::array<float, 3> result;
   for (size_t c = 0; c < 3; ++c) {
     result[c] = mix(rows[radial_nodes + at.low][c], rows[radial_nodes + at.low + 1][c], at.part);
-    if (position < 0) // the kernel is flat here: energy grows with the square of the radius
+    // The kernel is flat below the first node, so that energy grows with the square of the radius.
+    if (position < 0)
       result[c] = 1 - (1 - rows[radial_nodes][c]) *
                           std::exp2(2 * position / static_cast<float>(radial_nodes_per_octave));
   }
@@ -73,7 +74,7 @@ std::array<float, 3> radial_survival(std::span<const RadialRow> rows, float d_mm
 }
 
 RadialSample radial_sample(std::span<const RadialRow> rows, float u) {
-  // u in (0, 1]; the root is kept from 0, where its derivative is infinite and the radius 0.
+  // u in (0, 1]; the root stays above 0, where its derivative is infinite and the radius is 0.
   const float fraction = std::clamp(u, static_cast<float>(burley_min_survival), 1.0f);
   const float root = std::sqrt(std::max(-std::log2(fraction), 1e-7f));
   const Place at = place_at(root * static_cast<float>(radial_inverse_nodes_per_unit));

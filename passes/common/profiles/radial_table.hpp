@@ -1,6 +1,6 @@
 #pragma once
-// A profile without closed forms on the device: its density, survival and inverse as rows over radius.
-// shaders/common/profile.glsl reads them under the same names.
+// Device tables of a profile without closed forms: density, survival and inverse as rows over
+// radius. shaders/common/profile.glsl reads them under the same names.
 
 #include "passes/common/profiles/shape.hpp"
 
@@ -11,11 +11,13 @@ namespace dermis::subsurface {
 
 using RadialRow = std::array<float, 4>;
 
-// Two rows for each of radial_nodes nodes, all first kinds before all second ones.
-// Node i of r: log2(r / d) = radial_log2_r_first + i / radial_nodes_per_octave, d of the widest channel.
-//   first kind:  log2(2 pi R_c(r) mm^2) for red, green, blue (at least radial_min_log2), inverse: the
-//                radius in mm of the widest channel with sqrt(-log2 u) = i / radial_inverse_nodes_per_unit
-//   second kind: survival for red, green, blue, unused
+// Two rows for each of radial_nodes nodes; all rows of the first kind precede all rows of the
+// second. Node i of r: log2(r / d) = radial_log2_r_first + i / radial_nodes_per_octave, d of the
+// widest channel.
+// - First kind: log2(2 pi R_c(r) mm^2) for red, green, blue (at least radial_min_log2), and the
+//   inverse: the radius in mm of the widest channel with sqrt(-log2 u) = i /
+//   radial_inverse_nodes_per_unit.
+// - Second kind: survival for red, green, blue, unused.
 inline constexpr uint32_t radial_nodes = 385;
 inline constexpr double radial_log2_r_first = -8; // a profile is flat within 1/256 d
 inline constexpr double radial_nodes_per_octave = 24;
@@ -23,14 +25,19 @@ inline constexpr double radial_inverse_nodes_per_unit = 78; // up to u = 2^-24.2
 inline constexpr double radial_min_log2 = -200;
 inline constexpr uint32_t radial_rows_per_profile = 2 * radial_nodes;
 
-// `shape` in mm; `widest` is the channel with the largest d, which must be positive. About 10 ms.
+// Makes the rows. `shape` is in mm; `widest` is the channel with the largest d, which must be
+// positive. Takes about 10 ms.
 std::vector<RadialRow> make_radial_rows(const ProfileShape& shape, int widest);
 
-// What the kernels read from the rows, in fp32; r in mm for d_mm of the widest channel.
-std::array<float, 3> radial_falloff(std::span<const RadialRow> rows, float d_mm, float r);  // 2 pi R_c
-std::array<float, 3> radial_survival(std::span<const RadialRow> rows, float d_mm, float r); // 1 - cdf_c
+// Return the values that the kernels read from the rows, in fp32; r is in mm, d_mm is that of the
+// widest channel.
+// 2 pi R_c
+std::array<float, 3> radial_falloff(std::span<const RadialRow> rows, float d_mm, float r);
+// 1 - cdf_c
+std::array<float, 3> radial_survival(std::span<const RadialRow> rows, float d_mm, float r);
 struct RadialSample {
-  float r = 0, density = 0; // mm, 1/mm: exactly the density with which uniform u in (0, 1] gives r
+  // mm, 1/mm: the exact density with which uniform u in (0, 1] gives r.
+  float r = 0, density = 0;
 };
 RadialSample radial_sample(std::span<const RadialRow> rows, float u);
 

@@ -9,8 +9,8 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr double anchor_survival = 0.01; // where d of other models is matched
-constexpr double burley_reach_in_d = 20; // the truth's radius
+constexpr double anchor_survival = 0.01; // survival at which d of other models is matched
+constexpr double burley_reach_in_d = 20; // radius of the reference
 const double burley_anchor = burley_inverse_survival(anchor_survival, 1); // 12.95 d
 
 } // namespace
@@ -56,7 +56,8 @@ double shape_R(const ChannelShape& shape, double r) {
 
 void shape_R(const ChannelShape& shape, std::span<const double> r, std::span<double> result) {
   if (shape.model == ProfileModel::burley) return burley_R(r, shape.d, result);
-  const double last = burley_negligible_in_d * shape.d; // beyond it numbers become denormal, which takes long
+  // Beyond this radius numbers become denormal, which is slow.
+  const double last = burley_negligible_in_d * shape.d;
   for (size_t i = 0; i < r.size(); ++i)
     result[i] = r[i] < last ? shape_R(shape, r[i]) : 0;
 }

@@ -13,11 +13,11 @@ struct ComplexImage {
   std::vector<std::complex<double>> values;
 };
 
-// Smallest power of two that is not below n (n >= 1).
+// Returns the smallest power of two that is not below n (n >= 1).
 size_t power_of_two_from(size_t n);
 
-// Transforms in place, unnormalised; the inverse divides by width * height. Relative error about 1e-15 *
-// log2(size).
+// Transform in place, unnormalised; the inverse divides by width * height. Relative error about
+// 1e-15 * log2(size).
 void fft_forward(ComplexImage& image, unsigned threads);
 void fft_inverse(ComplexImage& image, unsigned threads);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Splits independent items over threads. Each item's result depends on the item alone, so results never
-// depend on the number of threads.
+// Splits independent items over threads. The result of each item depends only on the item, so
+// results never depend on the number of threads.
 
 #include <algorithm>
 #include <atomic>
@@ -10,8 +10,8 @@
 
 namespace dermis::subsurface {
 
-// Calls work(i) for every i in [0, count), each once, on `threads` threads (0: one a hardware thread) that
-// take `grain` items at a time. Returns when all are done. `work` must not throw.
+// Calls work(i) once for every i in [0, count), on `threads` threads (0: one per hardware thread)
+// that take `grain` items at a time. Returns when all are done. `work` must not throw.
 template <class Work> void parallel_for(size_t count, size_t grain, unsigned threads, Work&& work) {
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   const size_t step = std::max<size_t>(1, grain);

@@ -9,7 +9,7 @@ namespace dermis::subsurface {
 
 namespace {
 
-// Gauss-Legendre, 8 points on [-1, 1] (positive half).
+// Gauss-Legendre nodes, 8 points on [-1, 1] (positive half).
 constexpr std::array<double, 4> gauss_nodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                                0.9602898564975363};
 constexpr std::array<double, 4> gauss_weights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
@@ -26,7 +26,7 @@ void add_wedge(double height, double a, double b, const ProfileShape& shape, Per
     }
 }
 
-// The triangle between the point and one edge, as angles seen from the foot of the perpendicular.
+// Adds the triangle between the point and one edge, in angles about the foot of the perpendicular.
 void add_edge(const Vector3& from, const Vector3& to, const ProfileShape& shape, PerChannel& sum) {
   const Vector3 edge = to - from;
   const double size = length(edge);

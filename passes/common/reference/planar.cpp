@@ -13,7 +13,7 @@ namespace dermis::subsurface {
 
 namespace {
 
-// The rectangle that holds all pixels of one profile.
+// The bounding rectangle of all pixels of one profile.
 struct Region {
   uint32_t x0 = UINT32_MAX, x1 = 0, y0 = UINT32_MAX, y1 = 0; // inclusive
 
@@ -37,7 +37,7 @@ std::array<Region, 256> find_regions(const ReferenceInput& input) {
   return regions;
 }
 
-// One convolution serves light and mask: they travel as real and imaginary part through a real kernel.
+// One convolution computes light and mask, as real and imaginary part with a real kernel.
 void convolve_channel(const ReferenceInput& input, const Region& region, uint8_t id, size_t channel,
                       double direct, const std::vector<PerChannel>& quadrant, size_t reach_x, size_t reach_y,
                       unsigned threads, std::vector<double>& result) {
@@ -71,8 +71,9 @@ void convolve_channel(const ReferenceInput& input, const Region& region, uint8_t
     image.values[i] *= kernel.values[i].real();
   fft_inverse(image, threads);
   each_pixel([&](size_t i, const std::complex<double>& value) {
-    double& light = result[3 * i + channel]; // the pixel itself counts: the mask's share is positive
-    // A weighted mean of light is no brighter and no darker than all of it; the FFT's rounding is.
+    // The pixel itself counts, so the mask's weight is positive.
+    double& light = result[3 * i + channel];
+    // A weighted mean of light is within the range of all light; rounding of the FFT may leave it.
     light += (1 - direct) * (std::clamp(value.real() / value.imag(), minimum, maximum) - light);
   });
 }

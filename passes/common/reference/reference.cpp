@@ -16,7 +16,8 @@ struct PixelRange {
   int64_t x0, x1, y0, y1; // inclusive
 };
 
-// Pixels that can show a point within `radius` of `point`: the box around the sphere, projected.
+// Returns the pixels that can show a point within `radius` of `point`: the box around the sphere,
+// projected.
 PixelRange pixels_within(const ReferenceInput& input, const Vector3& point, double radius) {
   const PixelRays& rays = input.rays;
   const PixelRange all{0, int64_t{input.width} - 1, 0, int64_t{input.height} - 1};
@@ -38,7 +39,7 @@ PixelRange pixels_within(const ReferenceInput& input, const Vector3& point, doub
   return {x0, x1, y0, y1};
 }
 
-// Light that comes to one point, and all that could come.
+// Accumulates the light that reaches one point, and the total weight.
 class Gathered {
 public:
   explicit Gathered(const ProfileShape& shape) : shape_(shape) {}
@@ -50,7 +51,8 @@ public:
     }
   }
 
-  // Of a patch that is so far away that its centre stands for it. Many are weighed at once.
+  // Adds a patch that is far enough away to be represented by its centre. Weights are computed in
+  // batches.
   void add_far(double distance, double area, const float* light) {
     distances_[waiting_] = distance;
     areas_[waiting_] = area;
@@ -58,7 +60,7 @@ public:
     if (++waiting_ == distances_.size()) weigh();
   }
 
-  // What is there instead of the point's own light.
+  // Returns the light that replaces the point's own light.
   PerChannel scattered(const PerChannel& own) {
     weigh();
     PerChannel result = own;

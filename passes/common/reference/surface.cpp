@@ -17,14 +17,14 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// From the pixel towards the viewer, unit length.
+// Returns the direction from the pixel towards the viewer, unit length.
 Vector3 to_viewer(const PixelRays& rays, double x, double y) {
   if (!rays.perspective) return {0, 0, 1};
   const Vector3 ray = pixel_ray(rays, x, y);
   return scaled(ray, -1 / length(ray));
 }
 
-// Tilts a unit normal towards the viewer until it meets the limit.
+// Tilts a unit normal towards the viewer until the cosine reaches the limit.
 Vector3 limited(const Vector3& normal, const Vector3& viewer) {
   const double cosine = dot(normal, viewer);
   if (cosine >= min_patch_cosine) return normal;
@@ -51,8 +51,8 @@ struct DepthImage {
   }
 };
 
-// The tangent along one axis: the difference to the neighbour (of the same profile) that is nearer in depth;
-// straight across the view where neither exists.
+// Returns the tangent along one axis: the difference to the neighbour (of the same profile) that is
+// nearer in depth; straight across the view if neither exists.
 Vector3 tangent(const DepthImage& image, const PixelRays& rays, int64_t x, int64_t y, int64_t dx,
                 int64_t dy) {
   const uint8_t id = image.profile[static_cast<size_t>(y) * image.width + static_cast<size_t>(x)];
@@ -77,7 +77,7 @@ Patch build_patch(const DepthImage& image, const PixelRays& rays, uint32_t x, ui
   normal = limited(size > 0 ? scaled(normal, 1 / size) : viewer, viewer);
 
   const double z = image.depth[i];
-  double footprint = std::abs(rays.scale_x * rays.scale_y); // at right angles to the ray
+  double footprint = std::abs(rays.scale_x * rays.scale_y); // perpendicular to the ray
   if (rays.perspective) footprint *= z * z / length(pixel_ray(rays, x, y));
   return {pixel_position(rays, x, y, z), normal, footprint / dot(normal, viewer)};
 }
@@ -96,7 +96,8 @@ Vector3 pixel_position(const PixelRays& rays, double x, double y, double depth) 
 Vector3 patch_point(const PixelRays& rays, const Patch& patch, double x, double y) {
   const Vector3 ray = pixel_ray(rays, x, y);
   if (rays.perspective) {
-    // The tilt limit keeps the quotient positive, but for pixels that span a large part of a radian.
+    // The tilt limit keeps the quotient positive, except for pixels that span a large part of a
+    // radian.
     const double z = -patch.position[2];
     const double quotient = dot(patch.normal, patch.position) / dot(patch.normal, ray);
     return scaled(ray, quotient > 0.5 * z && quotient < 2 * z ? quotient : z);

@@ -1,5 +1,5 @@
 #pragma once
-// The surface that a depth image shows: each pixel's position, its patch's normal and area.
+// The surface in a depth image: each pixel's position, its patch's normal and area.
 
 #include "passes/common/camera.hpp"
 
@@ -23,17 +23,18 @@ inline double length(const Vector3& a) {
   return std::sqrt(dot(a, a));
 }
 
-// The part of the surface behind one pixel: where the pixel's footprint meets the tangent plane at its
-// centre. The plane follows from depth differences to the neighbours of the same profile (of the two on an
-// axis, the one that is nearer in depth), never from a shading normal. Its tilt is limited: cos >=
-// min_patch_cosine.
+// The part of the surface covered by one pixel: the intersection of the pixel's footprint with the
+// tangent plane at its centre. The plane follows from depth differences to the neighbours of the
+// same profile (on each axis the neighbour that is nearer in depth), never from a shading normal.
+// Its tilt is limited: cos >= min_patch_cosine.
 struct Patch {
   Vector3 position{}; // view space, metres
   Vector3 normal{};   // unit length, towards the viewer
-  double area = 0;    // square metres, footprint / cos; 0: no subsurface surface here
+  double area = 0;    // square metres, footprint / cos; 0: no subsurface
 };
 
-// 1/cos is capped at 1/0.15 (definition of the truth): a grazing patch counts for at most 6.7 footprints.
+// 1/cos is capped at 1/0.15 (definition of the reference): a grazing patch counts for at most 6.7
+// footprints.
 inline constexpr double min_patch_cosine = 0.15;
 
 struct Surface {
@@ -42,16 +43,17 @@ struct Surface {
   std::vector<Patch> patches; // width * height, row-major
 };
 
-// Direction through continuous pixel coordinates (integers are centres), with z = -1 (perspective).
-// Orthographic views have the direction (0, 0, -1) and this function returns a point of the ray at depth 0.
+// Returns the direction through continuous pixel coordinates (integers are centres), with z = -1
+// (perspective). For orthographic views, whose direction is (0, 0, -1), returns a point of the ray
+// at depth 0.
 Vector3 pixel_ray(const PixelRays& rays, double x, double y);
-// Point at view depth `depth` metres.
+// Returns the point at view depth `depth` metres.
 Vector3 pixel_position(const PixelRays& rays, double x, double y, double depth);
-// Where the ray through (x, y) meets the patch's plane.
+// Returns the intersection of the ray through (x, y) with the patch's plane.
 Vector3 patch_point(const PixelRays& rays, const Patch& patch, double x, double y);
 
-// Builds all patches. `depth` in metres and `profile` hold width * height values. Pixels with profile 0, or
-// whose depth is not positive and finite, have area 0.
+// Builds all patches. `depth` in metres and `profile` hold width * height values. Pixels with
+// profile 0, or whose depth is not positive and finite, have area 0.
 Surface build_surface(uint32_t width, uint32_t height, const PixelRays& rays, std::span<const float> depth,
                       std::span<const uint8_t> profile, unsigned threads);
 

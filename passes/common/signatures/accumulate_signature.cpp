@@ -1,4 +1,4 @@
-// Light over frames, for hosts without anti-aliasing of their own.
+// Accumulation of light over frames, for hosts without their own temporal anti-aliasing.
 
 #include "passes/common/signatures/signatures.hpp"
 

@@ -1,4 +1,4 @@
-// Zeros for what is written in part afterwards.
+// Clears resources that later passes write only in part.
 
 #include "passes/common/signatures/signatures.hpp"
 

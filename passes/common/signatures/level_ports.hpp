@@ -1,5 +1,5 @@
 #pragma once
-// Ports for what the surface-aware pyramid keeps of a level, as other kinds read it.
+// Ports of other pass types that read a level of the surface-aware pyramid.
 
 #include "passes/common/signatures/signatures.hpp"
 

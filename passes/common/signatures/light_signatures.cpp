@@ -1,4 +1,4 @@
-// Light on its way into scattering and out of it.
+// Passes that prepare light for scattering and write it back.
 
 #include "passes/common/signatures/signatures.hpp"
 
@@ -50,7 +50,7 @@ constexpr PassTypeSetting combine_settings[] = {
                     "bound, or of scattered"),
 };
 
-constexpr Format scattered_formats[] = {Format::rgba16f}; // that a shader may load
+constexpr Format scattered_formats[] = {Format::rgba16f}; // formats that a shader may load
 constexpr Port copy_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
      port::color_formats, true},
@@ -141,7 +141,7 @@ const PassType transmission_stats_type{
     .ports = thin_parts_ports,
     .settings = {},
     .dispatch = DispatchShape::over_tiles,
-    .side_effects = true, // it tells the host
+    .side_effects = true, // reports to the host
 };
 
 const PassType combine_type{

@@ -7,11 +7,11 @@ namespace {
 
 constexpr uint32_t pixel = 1, tile = 8, cell = 32;                    // sides of squares
 constexpr uint32_t word = 4, range = 16, reservoir = 64, domain = 32; // bytes
-constexpr uint32_t dispatch = 16, levels = 9,
-                   level_heads = 1024; // VkDispatchIndirectCommand and one word; bytes
+// dispatch: VkDispatchIndirectCommand and one word; level_heads: bytes.
+constexpr uint32_t dispatch = 16, levels = 9, level_heads = 1024;
 
 constexpr PortNeed needs[] = {
-    // Buffers first: needs_of() gives them alone for steps of a pyramid.
+    // Buffers first, because needs_of() returns only the buffers for steps of a pyramid.
     {"classes", tile, word},
     {"tiles", tile, word, word},
     {"tile_errors", tile, word},
@@ -24,14 +24,14 @@ constexpr PortNeed needs[] = {
     {"domains", pixel, domain},
     {"lights_before", 0, 0, 64},
     {"lights_kept", 0, 0, 64},
-    {"vertices", 0, 0, 32}, // of the host's scene: an element
+    {"vertices", 0, 0, 32}, // one element of the host's scene
     {"indices", 0, 0, word},
     {"instances", 0, 0, 64},
     {"lights", 0, 0, 64},
     {"light_range", tile, range},
     {"light_cells", cell, range},
-    {"level_tiles", tile, range,
-     level_heads}, // two entries a tile hold all levels: together they have a third more
+    // Two entries per tile hold all levels, which together have a third more tiles.
+    {"level_tiles", tile, range, level_heads},
     {"arguments", 0, 0, dispatch},
     {"copy_arguments", 0, 0, dispatch},
     {"level_arguments", 0, 0, levels* dispatch},

@@ -1,6 +1,7 @@
 #pragma once
-// How large what a port is bound to has to be. Ports of one name mean the same in every kind; what the
-// kernels of a pyramid's steps see depends on the level, and only their buffers are here.
+// Minimum sizes of resources bound to ports. Ports of one name have the same size in every pass
+// type. The image sizes of a pyramid's steps depend on the level, so only their buffers are listed
+// here.
 
 #include "framegraph/model/pass_type.hpp"
 
@@ -8,7 +9,7 @@
 
 namespace dermis::subsurface {
 
-// Of a kind by its name.
+// Returns the needs of a pass type by its name.
 std::span<const PortNeed> needs_of(std::string_view kind);
 
 } // namespace dermis::subsurface

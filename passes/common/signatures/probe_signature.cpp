@@ -42,7 +42,7 @@ const PassType probe_type{
     .ports = probe_ports,
     .settings = probe_settings,
     .dispatch = DispatchShape::over_tile_grid,
-    .side_effects = true, // it tells the host
+    .side_effects = true, // reports to the host
 };
 
 } // namespace dermis::subsurface

@@ -1,44 +1,57 @@
 #pragma once
-// One signature a kernel; kinds.cpp lists them. Split by what they serve: tiles, light in and out,
-// scattering.
+// One signature per kernel; pass_types.cpp lists them. Grouped by purpose: tiles, light in and out,
+// scattering. The comment above a declaration names its file.
 
 #include "framegraph/model/pass_type.hpp"
 
 namespace dermis::subsurface {
 
-extern const PassType classify_type, classify_uniform_light_type, tile_list_type,
-    debug_tile_class_type; // tile_signatures.cpp
+// tile_signatures.cpp
+extern const PassType classify_type, classify_uniform_light_type, tile_list_type, debug_tile_class_type;
+// light_signatures.cpp
 extern const PassType setup_type, combine_type, export_scattered_type, copy_tiles_type, transmission_type,
-    transmission_stats_type;                                   // light_signatures.cpp
-extern const PassType burley_type;                             // burley_signature.cpp
-extern const PassType separable_type;                          // separable_signature.cpp
-extern const PassType fixed_type;                              // papers/fixed_signature.cpp
-extern const PassType afis_type, guided_type, afis_tiles_type; // afis_signatures.cpp
-extern const PassType pyramid_setup_type, pyramid_down_type;   // pyramid_signatures.cpp
-extern const PassType pyramid_gather_type;                     // papers/pyramid_gather_signature.cpp
+    transmission_stats_type;
+// burley/burley_signature.cpp
+extern const PassType burley_type;
+// separable/separable_signature.cpp
+extern const PassType separable_type;
+// papers/fixed_signature.cpp
+extern const PassType fixed_type;
+// afis/afis_signatures.cpp
+extern const PassType afis_type, guided_type, afis_tiles_type;
+// afis/pyramid_signatures.cpp
+extern const PassType pyramid_setup_type, pyramid_down_type;
+// papers/pyramid_gather_signature.cpp
+extern const PassType pyramid_gather_type;
+// sap/sap_signatures.cpp
 extern const PassType sap_tiles_type, sap_setup_type, sap_down_type, sap_up_type, sap_gather_type,
     sap_down_layered_type, sap_up_layered_type, sap_gather_layered_type, sap_setup_half_res_type,
-    sap_gather_half_type;                                                   // sap_signatures.cpp
-extern const PassType refine_type, global_light_change_type, residual_type; // residual_signatures.cpp
-extern const PassType tile_error_estimate_type, allocate_samples_type,
-    tile_refine_type;                     // sample_signatures.cpp
-extern const PassType tile_variance_type; // papers/tile_variance_signature.cpp
-extern const PassType probe_type;         // probe_signature.cpp
-extern const PassType accumulate_type;    // accumulate_signature.cpp
-extern const PassType clear_type;         // clear_signature.cpp
-
-extern const PassType restir_initial_type, restir_temporal_type, restir_spatial_type,
-    restir_resolve_type; // restir_signatures.cpp
+    sap_gather_half_type;
+// papers/residual_signatures.cpp
+extern const PassType refine_type, global_light_change_type, residual_type;
+// sap/sample_signatures.cpp
+extern const PassType tile_error_estimate_type, allocate_samples_type, tile_refine_type;
+// papers/tile_variance_signature.cpp
+extern const PassType tile_variance_type;
+// probe_signature.cpp
+extern const PassType probe_type;
+// accumulate_signature.cpp
+extern const PassType accumulate_type;
+// clear_signature.cpp
+extern const PassType clear_type;
+// restir/restir_signatures.cpp
+extern const PassType restir_initial_type, restir_temporal_type, restir_spatial_type, restir_resolve_type;
 
 // Ports that several pass types declare with the same meaning.
 namespace port {
-// What an image has to be for the channels that kernels read and write of it.
+// Allowed formats, by the channels that kernels read and write.
+// Three channels.
 inline constexpr Format color_formats[] = {Format::rgba16f, Format::rgba32f, Format::b10g11r11f,
-                                           Format::rgba8_unorm, Format::rgba8_srgb}; // three
-inline constexpr Format light_formats[] = {Format::rgba16f,
-                                           Format::rgba32f}; // four, areas above 1 among them
-inline constexpr Format way_formats[] = {Format::rg16f, Format::rg32f, Format::rgba16f,
-                                         Format::rgba32f}; // two, below 0 as well
+                                           Format::rgba8_unorm, Format::rgba8_srgb};
+// Four channels, with areas above 1.
+inline constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
+// Two channels, with negative values.
+inline constexpr Format way_formats[] = {Format::rg16f, Format::rg32f, Format::rgba16f, Format::rgba32f};
 inline constexpr Port material{
     "material", Usage::sampled_image, false, "utexture2D", "profile id per pixel, 0 = no subsurface", {}};
 inline constexpr Port depth{"depth",
@@ -76,7 +89,7 @@ inline constexpr Port scattered{"scattered",
                                 color_formats};
 inline constexpr std::string_view level_doc =
     "rgb light times mask, a = mask: the share of the texel with subsurface";
-// A level of the plain pyramid to read.
+// Returns a port that reads a level of the plain pyramid.
 constexpr Port level_port(std::string_view name) {
   return {name, Usage::sampled_image, false, "texture2D", level_doc, light_formats};
 }
@@ -97,8 +110,8 @@ inline constexpr Port samples_per_tile{
     "uint",
     "by tile of the render rectangle: steps of samples it was given, 0 to 3",
     {}};
-// Of an image that was cleared in the same frame and is written where there is subsurface: what was not
-// written reads 0 in the next frame.
+// GLSL type of an image that is cleared in the same frame and written where there is subsurface:
+// texels that were not written read 0 in the next frame.
 inline constexpr std::string_view part_of_cleared = "writeonly image2D";
 inline constexpr Port sampling{
     "sampling",
@@ -129,7 +142,7 @@ constexpr SettingValue option_value(int64_t index) {
 }
 
 namespace setting {
-// One of `options`; options[standard] where a graph says nothing.
+// Declares a choice among `options`; options[standard] is the default.
 constexpr PassTypeSetting choice(std::string_view name, std::span<const std::string_view> options,
                                  std::string_view doc, int64_t standard = 0) {
   return {.name = name,
@@ -154,7 +167,7 @@ constexpr PassTypeSetting real(std::string_view name, double standard, double mi
           .doc = doc};
 }
 
-// A view may have its own value, and each frame another one.
+// Allows a value per view, which may change every frame.
 constexpr PassTypeSetting per_frame(PassTypeSetting setting) {
   setting.per_frame = true;
   return setting;

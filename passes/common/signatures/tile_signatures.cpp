@@ -1,4 +1,5 @@
-// Which 8x8 tiles hold subsurface, and the list of them that indirect dispatches run over.
+// Classification of 8x8 tiles, and the list of tiles with subsurface that indirect dispatches run
+// over.
 
 #include "passes/common/signatures/signatures.hpp"
 
