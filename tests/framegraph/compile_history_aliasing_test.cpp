@@ -1,4 +1,4 @@
-// The memory of a history that holds nothing for a while belongs to transients meanwhile.
+// Transients reuse the memory of a history instance while the instance holds no live contents.
 
 #include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/random_graph.hpp"
@@ -30,7 +30,7 @@ const PlanResource& find(const GraphBuilder& b, const Plan& plan, const std::str
   return plan.resources.front();
 }
 
-// Bytes of the transients if histories lent nothing.
+// Size in bytes of the transient heap if no transient were aliased into a history.
 uint64_t bytes_without_history_aliasing(const Plan& plan) {
   std::vector<PackItem> items;
   for (const PlanResource& resource : plan.resources) {
@@ -41,7 +41,8 @@ uint64_t bytes_without_history_aliasing(const Plan& plan) {
   return pack_items(items).size;
 }
 
-// A chain of images before the history `sum` is written from its `frames` earlier frames, or after.
+// Builds a chain of images that runs before or after the pass that writes the history `sum`. That
+// pass reads the oldest of the `frames` earlier frames.
 GraphBuilder chain(uint32_t frames, bool after) {
   GraphBuilder b;
   b.import("light");
@@ -59,13 +60,13 @@ GraphBuilder chain(uint32_t frames, bool after) {
   return b;
 }
 
-TEST(HistoryAliasing, AnImageLiesInTheInstanceThatIsNotWrittenYet) {
+TEST(HistoryAliasing, AliasesInstanceNotWrittenYet) {
   const GraphBuilder b = chain(1, false);
   const CompiledPlan whole = compiled(b);
   const PlanResource &one = find(b, whole.plan, "one"), &sum = find(b, whole.plan, "sum");
   ASSERT_TRUE(aliases_history(whole.plan, one));
   ASSERT_EQ(one.instance_count, 2u);
-  for (uint32_t i = 0; i < 2; ++i) // that of this frame
+  for (uint32_t i = 0; i < 2; ++i) // The instance of this frame.
     EXPECT_EQ(whole.plan.placements[one.first_instance + i].offset,
               whole.plan.placements[sum.first_instance + i].offset);
   EXPECT_LT(whole.plan.transient_bytes, bytes_without_history_aliasing(whole.plan));
@@ -73,20 +74,20 @@ TEST(HistoryAliasing, AnImageLiesInTheInstanceThatIsNotWrittenYet) {
               HasSubstr("memory of the history 'sum'"));
 }
 
-TEST(HistoryAliasing, AnImageLiesInTheInstanceWhoseFrameWasReadForTheLastTime) {
+TEST(HistoryAliasing, AliasesInstanceAfterItsLastRead) {
   for (const uint32_t frames : {1u, 2u, 3u}) {
     const GraphBuilder b = chain(frames, true);
     const Plan plan = compiled(b).plan;
     const PlanResource &one = find(b, plan, "one"), &sum = find(b, plan, "sum");
     ASSERT_TRUE(aliases_history(plan, one));
     ASSERT_EQ(one.instance_count, frames + 1);
-    for (uint32_t i = 0; i < one.instance_count; ++i) // that of the next frame
+    for (uint32_t i = 0; i < one.instance_count; ++i) // The instance of the next frame.
       EXPECT_EQ(plan.placements[one.first_instance + i].offset,
                 plan.placements[sum.first_instance + (i + 1) % sum.instance_count].offset);
   }
 }
 
-TEST(HistoryAliasing, NothingIsLentWhereMemoryIsNotToBeShared) {
+TEST(HistoryAliasing, NoAliasing_OptionOffOrKeptAlive) {
   const GraphBuilder b = chain(1, false);
   CompileInput input = b.input();
   input.alias = false;
@@ -98,7 +99,7 @@ TEST(HistoryAliasing, NothingIsLentWhereMemoryIsNotToBeShared) {
     EXPECT_FALSE(aliases_history(kept, resource));
 }
 
-TEST(HistoryAliasing, ABorrowerInAnotherInstanceIsRefused) {
+TEST(HistoryAliasing, Verifier_WrongInstance_IsRefused) {
   for (const bool after : {false, true})
     for (const uint32_t frames : {1u, 2u, 3u}) {
       const GraphBuilder b = chain(frames, after);
@@ -119,12 +120,12 @@ TEST(HistoryAliasing, ABorrowerInAnotherInstanceIsRefused) {
     }
 }
 
-TEST(HistoryAliasing, SavesMemoryOfRandomGraphsAndChangesNoPixel) {
-  constexpr uint32_t frames = 9; // each of up to four instances is lent twice
+TEST(HistoryAliasing, RandomGraphs_SaveMemoryWithEqualPixels) {
+  constexpr uint32_t frames = 9; // Each of up to four instances is aliased twice.
   uint64_t with = 0, without = 0, aliased_resources = 0;
   for (uint64_t seed = 0; seed < seeds_to_try(1500, 10000); ++seed) {
     const GraphBuilder b = random_graph(seed);
-    const Plan plan = compiled(b).plan; // and the verifier accepts it
+    const Plan plan = compiled(b).plan; // compiled() also runs the verifier.
     uint64_t here = 0;
     for (const PlanResource& resource : plan.resources)
       here += aliases_history(plan, resource);

@@ -1,4 +1,4 @@
-// Laws that every plan obeys, tried on graphs drawn from fixed seeds.
+// Checks properties that hold for every plan, on graphs randomly generated from fixed seeds.
 
 #include "tests/framegraph/plan_mutations.hpp"
 #include "tests/framegraph/random_graph.hpp"
@@ -24,7 +24,7 @@ TEST(RandomGraphs, EveryPlanIsAcceptedByTheVerifier) {
     for (const PlanBarrier& barrier : plan.barriers)
       aliases += barrier.why == PlanBarrier::ReasonKind::alias;
   }
-  // The generator reaches what the law is about.
+  // The generator has to produce enough passes and barriers for the property to mean anything.
   EXPECT_GT(passes, 5 * seeds);
   EXPECT_GT(barriers, 10 * seeds);
   EXPECT_GT(histories, seeds / 4);
@@ -43,7 +43,7 @@ TEST(RandomGraphs, NoBarrierCanBeDropped) {
   }
 }
 
-TEST(RandomGraphs, NoHeapIsSmallerThanWhatLivesInItAtOnce) {
+TEST(RandomGraphs, HeapSize_IsAtLeastThePeakOfLiveMemory) {
   uint64_t heaps = 0, optimal = 0;
   for (uint64_t seed = 0; seed < seeds; ++seed) {
     const auto plan = compiled(random_graph(seed)).plan;
@@ -53,7 +53,8 @@ TEST(RandomGraphs, NoHeapIsSmallerThanWhatLivesInItAtOnce) {
       optimal += heap.size == heap.max_live_bytes;
     }
   }
-  EXPECT_GT(optimal * 10, heaps * 9); // best fit by size meets the bound on nearly all small graphs
+  // Best fit by size reaches the lower bound on nearly all small graphs.
+  EXPECT_GT(optimal * 10, heaps * 9);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Sizes, formats, limits and memory.
+// Tests how the compiler resolves sizes, formats, device limits and memory.
 
 #include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/pack.hpp"
@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-// light (import) -> middle -> result (export); `middle` is what the tests vary.
+// Builds light (import) -> middle -> result (export). The tests vary `middle`.
 struct Chain : GraphBuilder {
   Chain() {
     import("light");
@@ -39,8 +39,8 @@ TEST(Sizes, FollowTheViewWithTheStatedRounding) {
   Chain b;
   b.middle().size.x = b.middle().size.y = {3, 4};
   auto middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
-  EXPECT_EQ(middle.width, 76u); // 75.75
-  EXPECT_EQ(middle.height, 6u); // 5.25
+  EXPECT_EQ(middle.width, 76u); // 75.75 is rounded up.
+  EXPECT_EQ(middle.height, 6u); // 5.25 is rounded up.
   b.middle().size.rounding = Rounding::floor;
   middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
   EXPECT_EQ(middle.width, 75u);
@@ -49,7 +49,7 @@ TEST(Sizes, FollowTheViewWithTheStatedRounding) {
   middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
   EXPECT_EQ(middle.width, 80u);
   EXPECT_EQ(middle.height, 8u);
-  b.middle().size.border = 1; // on both sides, after aligning
+  b.middle().size.border = 1; // The border is added on both sides, after aligning.
   middle = resource_of(b, compiled(b, b.input(101, 7)).plan, "middle");
   EXPECT_EQ(middle.width, 82u);
   EXPECT_EQ(middle.height, 10u);
@@ -76,7 +76,7 @@ TEST(Sizes, MayFollowAnotherResourceWhereverItIsDeclared) {
   EXPECT_EQ(resource_of(b, compiled(b).plan, "middle").width, 16u);
 }
 
-TEST(Sizes, ReferringInACircleIsRefusedNamingTheCircle) {
+TEST(Sizes, CircularReference_IsRefusedWithTheCycle) {
   Chain b;
   for (const auto& [from, to] : {std::pair{1u, 2u}, {2u, 1u}}) {
     b.graph.resources[from].size.base = SizeExpression::Base::resource;
@@ -90,7 +90,7 @@ TEST(Sizes, ReferringInACircleIsRefusedNamingTheCircle) {
   EXPECT_EQ(errors[0].related[0].first.line, b.graph.resources[2].where.line);
 }
 
-TEST(Sizes, BeyondTheDeviceAreRefusedOnceAndNotForWhatFollowsThem) {
+TEST(Sizes, BeyondTheDevice_IsRefusedOnce) {
   Chain b;
   b.middle().size.x = {1000, 1};
   b.graph.resources[2].size.base = SizeExpression::Base::resource;
@@ -109,7 +109,7 @@ TEST(Sizes, BuffersCountTilesAndExtraElements) {
   b.exported("result");
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
   b.pass("scatter", "test.tiles", {{"tiles", "tiles"}}, {{"out", "result"}});
-  // ceil(65 / 8) * ceil(9 / 8) tiles and 4 more elements, of 4 bytes
+  // ceil(65 / 8) * ceil(9 / 8) tiles and 4 more elements, of 4 bytes each.
   EXPECT_EQ(resource_of(b, compiled(b, b.input(65, 9)).plan, "tiles").bytes, (9u * 2u + 4u) * 4u);
   b.graph.resources[0].extra_elements = UINT64_MAX;
   EXPECT_EQ(refused(b)[0].id, DiagnosticId::size_out_of_range);
@@ -126,15 +126,16 @@ TEST(Sizes, MipChains) {
   EXPECT_EQ(refused(b)[0].id, DiagnosticId::size_out_of_range);
 }
 
-TEST(Formats, TheFirstOneThatEveryPortAndTheDeviceCanUseIsTaken) {
+TEST(Formats, FirstFormatUsableByPortsAndDeviceIsTaken) {
   Chain b;
   b.middle().formats = {Format::rgba8_srgb, Format::b10g11r11f, Format::rgba16f};
-  auto whole = compiled(b); // sRGB cannot be stored to
+  auto whole = compiled(b); // Kernels cannot store to sRGB formats.
   EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::b10g11r11f);
   EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
               HasSubstr("not rgba8_srgb: the device 'generic' does not support it"));
   b.graph.passes[1].type =
-      b.pass_types.find("test.narrow"); // reads through the same port number, rgba16f only
+      // Reads through the port with the same number, which allows only rgba16f.
+      b.pass_types.find("test.narrow");
   b.read(1, 0).port = 0;
   b.written(1, 0).port = 1;
   whole = compiled(b);
@@ -147,7 +148,7 @@ TEST(Formats, TheFirstOneThatEveryPortAndTheDeviceCanUseIsTaken) {
   EXPECT_EQ(errors[0].id, DiagnosticId::no_usable_format);
 }
 
-TEST(Formats, TheComponentTypeCountsAsWell) {
+TEST(Formats, ComponentTypeIsRespected) {
   GraphBuilder b;
   b.image("ids").formats = {Format::r8_unorm, Format::r8_uint};
   b.exported("result");
@@ -159,7 +160,7 @@ TEST(Formats, TheComponentTypeCountsAsWell) {
               HasSubstr("port 'ids' of pass 'use' cannot work with it"));
 }
 
-TEST(Formats, TheHostsOneFitsTheComponentType) {
+TEST(Formats, HostFormatMustFitTheComponentType) {
   GraphBuilder b;
   b.import("ids").formats = {Format::r8_uint, Format::r8_unorm};
   b.exported("result");
@@ -170,7 +171,8 @@ TEST(Formats, TheHostsOneFitsTheComponentType) {
   EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::no_usable_format);
 }
 
-TEST(Formats, EveryResourceWithoutAUsableOneIsReported) { // also those that are declared alike
+// Resources with equal declarations are reported separately, too.
+TEST(Formats, EveryResourceWithoutUsableFormatIsReported) {
   Chain b;
   for (const char* name : {"other", "third"}) {
     b.image(name).formats = {Format::r8_unorm};
@@ -185,7 +187,7 @@ TEST(Formats, EveryResourceWithoutAUsableOneIsReported) { // also those that are
   }
 }
 
-TEST(Sizes, ManyShapesInAnyOrderAreKeptApart) {
+TEST(Sizes, ManyShapesInAnyOrderStayDistinct) {
   GraphBuilder b;
   b.import("light");
   struct Expected {
@@ -193,7 +195,7 @@ TEST(Sizes, ManyShapesInAnyOrderAreKeptApart) {
     Format format;
   };
   const auto expected = [](uint32_t i) {
-    const uint32_t shape = i * 37 % 96; // each comes back, others between
+    const uint32_t shape = i * 37 % 96; // Each shape is declared again after other shapes.
     return Expected{64 * (1 + shape % 6), 64 * (1 + shape / 6 % 4), 1 + shape / 24 % 2,
                     shape / 48 == 0 ? Format::rgba16f : Format::r32f};
   };
@@ -218,7 +220,7 @@ TEST(Sizes, ManyShapesInAnyOrderAreKeptApart) {
   }
 }
 
-TEST(Formats, TheHostBindsOneOfTheDeclaredOnes) {
+TEST(Formats, HostFormatMustBeDeclared) {
   Chain b;
   b.graph.resources[0].formats = {Format::rgba16f, Format::b10g11r11f};
   auto input = b.input();
@@ -232,17 +234,17 @@ TEST(Formats, TheHostBindsOneOfTheDeclaredOnes) {
   EXPECT_THAT(errors[0].text, HasSubstr("binds 'light' as r8_unorm; declared are rgba16f, b10g11r11f"));
 }
 
-TEST(Limits, AreThoseOfTheDevice) {
+TEST(Limits, DeviceLimitsAreEnforced) {
   Chain b;
   b.device.max_workgroup_count = 7;
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::device_limit); // 64 / 8 = 8 groups across
+  EXPECT_EQ(refused(b)[0].id, DiagnosticId::device_limit); // 64 / 8 = 8 groups in x.
   b.device.max_workgroup_count = 8;
   compiled(b);
   b.device.max_push_constants_bytes = 3;
   EXPECT_EQ(refused(b)[0].id, DiagnosticId::device_limit);
 }
 
-TEST(Limits, WhatIsAskedOfTheCompilerMustFitTheGraph) {
+TEST(Limits, CompileInputMustFitTheGraph) {
   Chain b;
   EXPECT_EQ(refused(b, b.input(0, 64))[0].id, DiagnosticId::compile_input);
   EXPECT_EQ(refused(b, b.input(64, 16385))[0].id, DiagnosticId::compile_input);
@@ -252,7 +254,7 @@ TEST(Limits, WhatIsAskedOfTheCompilerMustFitTheGraph) {
   EXPECT_THAT(refused(b, input), SizeIs(2));
 }
 
-TEST(Packing, ItemsAliveTogetherNeverShareAByte) {
+TEST(Packing, ItemsAliveTogetherNeverOverlap) {
   const std::vector<PackItem> items = {
       {100, 64, 0, 3}, {50, 64, 1, 2}, {200, 256, 2, 5}, {10, 1, 4, 4}, {0, 1, 0, 5}};
   const Packing packing = pack_items(items);
@@ -266,7 +268,7 @@ TEST(Packing, ItemsAliveTogetherNeverShareAByte) {
       EXPECT_TRUE(!together || apart || items[i].size == 0 || items[k].size == 0) << i << " and " << k;
     }
   }
-  EXPECT_EQ(packing.lower_bound, 350u); // 100 + 50 + 200 in pass 2
+  EXPECT_EQ(packing.lower_bound, 350u); // 100 + 50 + 200 are alive in pass 2.
 }
 
 TEST(Packing, ItemsThatFollowEachOtherShareTheirMemory) {
@@ -276,7 +278,7 @@ TEST(Packing, ItemsThatFollowEachOtherShareTheirMemory) {
   EXPECT_EQ(pack_items({}).size, 0u);
 }
 
-TEST(Packing, NumbersThatShareBitsAreFoundOnEveryProcessor) {
+TEST(Packing, CommonBitsAreFoundOnEveryProcessor) {
   SplitMix64 random{1};
   for (uint32_t round = 0; round < 1000; ++round) {
     std::array<uint32_t, numbers_at_once> numbers{};
@@ -291,7 +293,7 @@ TEST(Packing, NumbersThatShareBitsAreFoundOnEveryProcessor) {
   }
 }
 
-TEST(Packing, MemoryTypesThatDoNotAgreeGetHeapsOfTheirOwn) {
+TEST(Packing, IncompatibleMemoryTypesGetSeparateHeaps) {
   GraphBuilder b;
   b.buffer("tiles");
   b.image("middle");
@@ -304,7 +306,8 @@ TEST(Packing, MemoryTypesThatDoNotAgreeGetHeapsOfTheirOwn) {
   auto plan = compiled(b).plan;
   ASSERT_THAT(plan.heaps, SizeIs(1));
   EXPECT_EQ(plan.heaps[0].memory_type_bits, 0b0010u);
-  b.device.device_local_type_bits = 0b0101; // sharing would leave neither of the local types
+  // A common heap would leave no local memory type for both.
+  b.device.device_local_type_bits = 0b0101;
   plan = compiled(b).plan;
   ASSERT_THAT(plan.heaps, SizeIs(2));
   EXPECT_EQ(plan.heaps[0].memory_type_bits, 0b0110u);

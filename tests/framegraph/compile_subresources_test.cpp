@@ -1,5 +1,5 @@
-// Laws of parts: mips and layers that ports tell apart have versions, lifetimes of their contents, layouts
-// and barriers of their own.
+// Tests subresource ranges: mips and layers that ports distinguish have their own versions,
+// lifetimes, layouts and barriers.
 
 #include "tests/framegraph/graph_builder.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// light -> chain#0 -> chain#1 -> chain#2, all of it -> result
+// Builds light -> chain#0 -> chain#1 -> chain#2, then the whole chain -> result.
 GraphBuilder pyramid() {
   GraphBuilder b;
   b.import("light");
@@ -47,7 +47,7 @@ std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan
   return found;
 }
 
-TEST(ImagePart, IsReadAsItIsWritten) {
+TEST(ImagePart, ReferenceText_RoundTrips) {
   for (const char* text :
        {"", "#0", "#14", "#1..3", "#2..", "[0]", "[2047]", "[1..4]", "#0[1]", "#1..2[3..]"}) {
     const auto part = parse_part(text);
@@ -61,7 +61,7 @@ TEST(ImagePart, IsReadAsItIsWritten) {
     EXPECT_FALSE(parse_part(text)) << text;
 }
 
-TEST(Parts, AMipIsReadWhileAnotherOneIsWritten) {
+TEST(Subresources, OneMipIsReadWhileAnotherIsWritten) {
   const auto b = pyramid();
   const Plan plan = compiled(b).plan;
   EXPECT_EQ(pass_names(b, plan), "base down1 down2 gather");
@@ -71,12 +71,13 @@ TEST(Parts, AMipIsReadWhileAnotherOneIsWritten) {
   EXPECT_EQ(written.range, (SubresourceRange{1, 1, 0, 1}));
   EXPECT_EQ(written.layout, Layout::general);
   EXPECT_EQ(access_of(b, plan, "gather", 0).range, (SubresourceRange{0, 3, 0, 1}));
-  const auto last = barriers_before(b, plan, "gather", "chain"); // the others are readable already
+  // Earlier barriers have made the other mips readable.
+  const auto last = barriers_before(b, plan, "gather", "chain");
   ASSERT_EQ(last.size(), 1u);
   EXPECT_EQ(last[0].range, (SubresourceRange{2, 1, 0, 1}));
 }
 
-// light -> kept#0 -> kept#1, result from both of the frame before
+// Builds light -> kept#0 -> kept#1; `result` reads both mips of the previous frame.
 GraphBuilder kept_mips() {
   GraphBuilder b;
   b.import("light");
@@ -88,18 +89,18 @@ GraphBuilder kept_mips() {
   return b;
 }
 
-TEST(Parts, EachMipOfAHistoryStartsAFrameInALayoutOfItsOwn) {
+TEST(Subresources, HistoryMipsKeepSeparateLayouts) {
   const Plan plan = compiled(kept_mips()).plan;
   ASSERT_EQ(plan.histories.size(), 1u);
   EXPECT_EQ(plan.histories[0].parts, 2u);
   EXPECT_THAT(plan.history_parts,
               ::testing::ElementsAre(SubresourceRange{0, 1, 0, 1}, SubresourceRange{1, 1, 0, 1}));
-  // Mip 0 was read as an image in the frame that wrote it; mip 1 rests as it was written.
+  // Mip 0 keeps the layout of its last read; mip 1 keeps the layout of its write.
   EXPECT_THAT(plan.history_layouts, ::testing::ElementsAre(Layout::undefined, Layout::undefined,
                                                            Layout::shader_read_only, Layout::general));
 }
 
-TEST(Parts, AnEarlierFrameOfAMipThatNobodyWritesIsRefused) {
+TEST(Subresources, HistoryOfUnwrittenMip_IsRefused) {
   auto b = kept_mips();
   b.graph.resources[1].mips = 3;
   b.exported("late");
@@ -110,7 +111,7 @@ TEST(Parts, AnEarlierFrameOfAMipThatNobodyWritesIsRefused) {
   EXPECT_THAT(errors[0].text, HasSubstr("'kept#2@-1', but no pass that is on writes 'kept#2'"));
 }
 
-// Covers parts that nobody writes in a chain at an optional port.
+// Expects the diagnostic for an optional port that reads a mip chain with unwritten mips.
 Diagnostic half_written(const GraphBuilder& b, DiagnosticId id = DiagnosticId::read_before_write) {
   const auto errors = refused(b);
   EXPECT_EQ(errors.size(), 1u);
@@ -118,10 +119,10 @@ Diagnostic half_written(const GraphBuilder& b, DiagnosticId id = DiagnosticId::r
   return errors[0];
 }
 
-TEST(Parts, AHalfWrittenChainAtAnOptionalPortIsRefused) {
+TEST(Subresources, PartlyWrittenChain_AtOptionalPort_IsRefused) {
   GraphBuilder b;
   b.import("light");
-  b.image("chain").mips = 0; // 7
+  b.image("chain").mips = 0; // A full chain has 7 mips.
   b.exported("result");
   b.pass("base", "test.need", {{"a", "light"}}, {{"out", "chain#0"}});
   b.pass("third", "test.need", {{"a", "light"}}, {{"out", "chain#2"}});
@@ -129,10 +130,11 @@ TEST(Parts, AHalfWrittenChainAtAnOptionalPortIsRefused) {
   const Diagnostic one = half_written(b);
   EXPECT_THAT(one.text, HasSubstr("pass 'gather', port 'a' reads 'chain', but no pass that is on writes "
                                   "'chain#1' or 'chain#3..6'"));
-  EXPECT_EQ(one.related.size(), 1u); // where it is declared: no pass writes what is missing
+  // The related place is the declaration, because no pass writes the missing mip.
+  EXPECT_EQ(one.related.size(), 1u);
 }
 
-TEST(Parts, TheWriterThatIsOffIsNamedWhereAPartIsMissing) {
+TEST(Subresources, MissingPart_NamesTheDisabledWriter) {
   auto b = pyramid();
   b.boolean("on", false);
   b.graph.passes[2].when = b.when("on");
@@ -142,7 +144,7 @@ TEST(Parts, TheWriterThatIsOffIsNamedWhereAPartIsMissing) {
   EXPECT_THAT(one.related[1].second, HasSubstr("'down2' writes it and is off"));
 }
 
-TEST(Parts, HalfWrittenLayersAndHistoriesAreRefused) {
+TEST(Subresources, PartlyWrittenLayersAndHistories_AreRefused) {
   GraphBuilder layers;
   layers.import("light");
   layers.image("cube").layers = 6;
@@ -157,7 +159,7 @@ TEST(Parts, HalfWrittenLayersAndHistoriesAreRefused) {
               HasSubstr("reads 'kept@-1', but no pass that is on writes 'kept#2'"));
 }
 
-TEST(Parts, AnOptionalPortOfWhichNoPartIsWrittenStaysUnbound) {
+TEST(Subresources, OptionalPort_NothingWritten_StaysUnbound) {
   auto b = pyramid();
   b.boolean("on", false);
   b.exported("second");
@@ -173,7 +175,7 @@ TEST(Parts, AnOptionalPortOfWhichNoPartIsWrittenStaysUnbound) {
   EXPECT_EQ(text.find(unbound), text.rfind(unbound)) << text;
 }
 
-TEST(Parts, WhatNobodyReadsOfAnImageIsNotMade) {
+TEST(Subresources, UnreadPartIsCulled) {
   auto b = pyramid();
   b.read(3, 0).part = *parse_part("#0..1");
   const auto plan = compiled(b);
@@ -181,7 +183,7 @@ TEST(Parts, WhatNobodyReadsOfAnImageIsNotMade) {
   EXPECT_THAT(reasons(b, plan, Reason::About::pass, 2), HasSubstr("culled"));
 }
 
-TEST(Parts, WhatIsReadOfAnImageHasBeenWritten) {
+TEST(Subresources, ReadOfUnwrittenPart_IsRefused) {
   auto b = pyramid();
   b.graph.resources[1].mips = 4;
   const auto errors = refused(b);
@@ -192,7 +194,7 @@ TEST(Parts, WhatIsReadOfAnImageHasBeenWritten) {
   EXPECT_EQ(errors[0].related.size(), 1u) << "the declaration: nobody writes mip 3";
 }
 
-TEST(Parts, OnlyWritersOfAMissingMipAreListed) {
+TEST(Subresources, OnlyWritersOfTheMissingMipAreListed) {
   auto b = pyramid();
   b.graph.resources[1].mips = 4;
   b.boolean("deep", false);
@@ -205,7 +207,7 @@ TEST(Parts, OnlyWritersOfAMissingMipAreListed) {
   EXPECT_THAT(errors[0].related[1].second, HasSubstr("'down3' writes it and is off"));
 }
 
-TEST(Parts, TwoWritersOfOneMipAreRefusedOnce) {
+TEST(Subresources, TwoWritersOfOneMipAreRefusedOnce) {
   auto b = pyramid();
   b.pass("again", "test.need", {{"a", "light"}}, {{"out", "chain#0..1"}});
   const auto errors = refused(b);
@@ -213,9 +215,9 @@ TEST(Parts, TwoWritersOfOneMipAreRefusedOnce) {
   EXPECT_EQ(errors[0].id, DiagnosticId::second_producer);
 }
 
-TEST(Parts, MipsBeyondThoseOfTheViewAreRefused) {
+TEST(Subresources, MipsBeyondTheViewAreRefused) {
   auto b = pyramid();
-  b.graph.resources[1].mips = 0; // the full chain: 64 texels have 7
+  b.graph.resources[1].mips = 0; // mips = 0 declares the full chain; 64 texels have 7 mips.
   b.pass("far", "test.need", {{"a", "chain#7"}}, {{"out", "chain#8[1]"}});
   const auto errors = refused(b);
   ASSERT_EQ(errors.size(), 2u);
@@ -228,7 +230,7 @@ TEST(Parts, MipsBeyondThoseOfTheViewAreRefused) {
   EXPECT_THAT(errors[1].text, HasSubstr("'chain#8[1]'"));
 }
 
-TEST(Parts, AnOpenRangeEndsWithTheImage) {
+TEST(Subresources, OpenRangeEndsWithTheImage) {
   for (const uint32_t side : {8u, 64u}) {
     auto b = pyramid();
     b.graph.resources[1].mips = 0;
@@ -239,7 +241,7 @@ TEST(Parts, AnOpenRangeEndsWithTheImage) {
   }
 }
 
-TEST(Parts, NothingStandsInForAPart) {
+TEST(Subresources, OtherwiseForAPart_IsRefused) {
   auto b = pyramid();
   b.boolean("small", true);
   b.image("half");
@@ -251,7 +253,7 @@ TEST(Parts, NothingStandsInForAPart) {
   EXPECT_THAT(errors[0].text, HasSubstr("ports name parts of 'chain'"));
 }
 
-TEST(Parts, MoreThanCanBeCountedAreRefused) {
+TEST(Subresources, TooManySubresources_AreRefused) {
   GraphBuilder b;
   auto& array = b.image("array");
   array.layers = 256;
@@ -267,7 +269,7 @@ TEST(Parts, MoreThanCanBeCountedAreRefused) {
   EXPECT_THAT(errors[0].text, HasSubstr("1024 parts of 'array'"));
 }
 
-TEST(Parts, ThatGoTheSameWayShareABarrier) {
+TEST(Subresources, EqualTransitionsShareABarrier) {
   GraphBuilder b;
   auto& image = b.image("image");
   image.mips = image.layers = 2;
@@ -285,10 +287,10 @@ TEST(Parts, ThatGoTheSameWayShareABarrier) {
     parts += barrier.range.mips * barrier.range.layers;
   for (const PlanBarrier& barrier : barriers_before(b, plan, "show", "image"))
     parts += barrier.range.mips * barrier.range.layers;
-  EXPECT_EQ(parts, 5u); // the touched one twice
+  EXPECT_EQ(parts, 5u); // The mip that is written in place counts twice.
 }
 
-TEST(Parts, APortSeesAllOfThemInOneLayout) {
+TEST(Subresources, OnePortUsesOneLayout) {
   GraphBuilder b;
   b.image("image").mips = 2;
   b.exported("result");

@@ -1,4 +1,5 @@
-// What the compiler's switches promise, on graphs drawn from fixed seeds; `compiled` verifies every plan.
+// Tests the compiler options on graphs randomly generated from fixed seeds; `compiled` verifies
+// every plan.
 
 #include "tests/framegraph/random_graph.hpp"
 
@@ -17,7 +18,7 @@ uint64_t transient_bytes(const GraphBuilder& builder, const CompileInput& input)
   return compiled(builder, input).plan.transient_bytes;
 }
 
-TEST(Switches, MoreWorkOnPackingNeverMakesTheHeapLarger) {
+TEST(Switches, MorePackingEffortNeverEnlargesTheHeap) {
   for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
@@ -29,7 +30,7 @@ TEST(Switches, MoreWorkOnPackingNeverMakesTheHeapLarger) {
   }
 }
 
-TEST(Switches, WithoutAliasingNoTransientsShareMemoryAndTheHeapIsTheirSum) {
+TEST(Switches, AliasingOff_HeapIsTheSumOfTransients) {
   uint64_t larger = 0;
   for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
@@ -46,11 +47,12 @@ TEST(Switches, WithoutAliasingNoTransientsShareMemoryAndTheHeapIsTheirSum) {
       }
     if (HasFailure()) return;
   }
-  EXPECT_GT(larger, switched_graphs / 4); // the generator makes graphs where sharing pays
+  // The generator has to make graphs in which aliasing saves memory.
+  EXPECT_GT(larger, switched_graphs / 4);
 }
 
-// Only what the graph's own images and buffers may be used for differs.
-TEST(Switches, PoisonChangesUsagesAndNothingElse) {
+// Only the usage flags of the graph's own images and buffers differ.
+TEST(Switches, DebugFill_ChangesOnlyUsageFlags) {
   for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
@@ -68,7 +70,7 @@ TEST(Switches, PoisonChangesUsagesAndNothingElse) {
   }
 }
 
-TEST(Switches, AResourceKeptAliveSharesItsMemoryWithNothing) {
+TEST(Switches, ResourceKeptAlive_SharesNoMemory) {
   for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
@@ -86,7 +88,7 @@ TEST(Switches, AResourceKeptAliveSharesItsMemoryWithNothing) {
   }
 }
 
-TEST(Switches, ARandomOrderIsLegalRepeatableAndNotAlwaysTheSame) {
+TEST(Switches, RandomOrder_IsLegalRepeatableAndVaries) {
   uint64_t graphs_with_choice = 0;
   for (uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -101,10 +103,10 @@ TEST(Switches, ARandomOrderIsLegalRepeatableAndNotAlwaysTheSame) {
     }
     graphs_with_choice += orders.size() > 1;
   }
-  EXPECT_GT(graphs_with_choice, 5u); // dense graphs have one legal order only
+  EXPECT_GT(graphs_with_choice, 5u); // Dense graphs have only one legal order.
 }
 
-TEST(Switches, WithoutCullingNoPassIsLost) {
+TEST(Switches, CullingOff_EveryPassRuns) {
   uint64_t more = 0;
   for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
@@ -119,7 +121,7 @@ TEST(Switches, WithoutCullingNoPassIsLost) {
   EXPECT_GT(more, 0u);
 }
 
-TEST(Switches, ReasonsAreASideTableThatDoesNotChangeThePlan) {
+TEST(Switches, RecordingReasonsDoesNotChangeThePlan) {
   for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);
     const auto builder = random_graph(seed);
@@ -135,7 +137,7 @@ TEST(Switches, ReasonsAreASideTableThatDoesNotChangeThePlan) {
   }
 }
 
-TEST(Switches, ACompilerThatHasSeenOtherGraphsMakesTheSamePlan) {
+TEST(Switches, ReusedCompiler_MakesTheSamePlan) {
   Compiler used;
   for (uint64_t seed = 0; seed < switched_graphs; ++seed) {
     SCOPED_TRACE(seed);

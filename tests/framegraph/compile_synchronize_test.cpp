@@ -1,4 +1,4 @@
-// Barriers, layouts and history: what waits for what, and only that.
+// Tests that barriers, layouts and histories wait for every hazard and for nothing else.
 
 #include "tests/framegraph/graph_builder.hpp"
 #include "tests/framegraph/hazard_oracle.hpp"
@@ -24,7 +24,8 @@ std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan
   return {};
 }
 
-// The one barrier on `resource` before `pass`; a default one with resource none if there is none.
+// Returns the only barrier on `resource` before `pass`, or a default barrier with no resource if
+// none exists.
 PlanBarrier barrier_on(const GraphBuilder& b, const Plan& plan, const std::string& pass,
                        const std::string& resource, uint32_t frames_back = 0) {
   PlanBarrier found;
@@ -68,7 +69,7 @@ TEST(Synchronize, ASecondReadInTheSameLayoutNeedsNoBarrier) {
   EXPECT_EQ(barrier_on(b, whole.plan, "two", "light").resource, no_instance);
 }
 
-TEST(Synchronize, ABufferReadAtTwoStagesGetsOneBarrierForBoth) {
+TEST(Synchronize, BufferReadAtTwoStagesGetsOneBarrier) {
   GraphBuilder b;
   b.buffer("tiles");
   b.exported("result");
@@ -82,7 +83,7 @@ TEST(Synchronize, ABufferReadAtTwoStagesGetsOneBarrierForBoth) {
   EXPECT_EQ(barrier.new_layout, Layout::undefined);
 }
 
-TEST(Synchronize, AReadAtAStageThatDidNotSeeTheWriteGetsItsOwnBarrier) {
+TEST(Synchronize, ReadAtAnotherStage_GetsItsOwnBarrier) {
   GraphBuilder b;
   b.buffer("tiles");
   b.exported("first");
@@ -98,7 +99,7 @@ TEST(Synchronize, AReadAtAStageThatDidNotSeeTheWriteGetsItsOwnBarrier) {
   EXPECT_EQ(barrier_on(b, whole.plan, "three", "tiles").resource, no_instance);
 }
 
-TEST(Synchronize, AnUpdateWaitsForReadersAndForTheWriteItReads) {
+TEST(Synchronize, UpdateWaitsForReadersAndTheWriteItReads) {
   GraphBuilder b;
   b.buffer("tiles");
   b.exported("first");
@@ -112,8 +113,8 @@ TEST(Synchronize, AnUpdateWaitsForReadersAndForTheWriteItReads) {
   EXPECT_EQ(barrier.source_stages, stage::draw_indirect | stage::compute_shader);
 }
 
-TEST(Synchronize, APureWriteAfterReadIsAnExecutionDependency) {
-  // A host buffer that is read and then overwritten without being read by the writer.
+TEST(Synchronize, WriteAfterReadIsAnExecutionDependency) {
+  // The host buffer is read, then overwritten by a pass that does not read it.
   GraphBuilder b;
   auto& tiles = b.buffer("tiles");
   tiles.origin = Origin::imported;
@@ -130,7 +131,7 @@ TEST(Synchronize, APureWriteAfterReadIsAnExecutionDependency) {
   EXPECT_EQ(barrier.destination_access, access::none);
 }
 
-TEST(Synchronize, ReadingAndWritingOneImageInOnePassUsesOneLayout) {
+TEST(Synchronize, ReadAndWriteInOnePassUseOneLayout) {
   GraphBuilder b;
   b.import("light").exported = true;
   b.pass("combine", "test.blend", {{"own", "light"}}, {{"out", "light"}});
@@ -140,7 +141,7 @@ TEST(Synchronize, ReadingAndWritingOneImageInOnePassUsesOneLayout) {
   EXPECT_EQ(barrier_on(b, whole.plan, "combine", "light").new_layout, Layout::general);
 }
 
-TEST(Synchronize, HostSlotsAreTakenOverOnceAndHandedBackOnce) {
+TEST(Synchronize, HostSlotsAreAcquiredAndReleasedOnce) {
   GraphBuilder b;
   b.import("light");
   b.import("unused");
@@ -159,7 +160,7 @@ TEST(Synchronize, HostSlotsAreTakenOverOnceAndHandedBackOnce) {
   }
 }
 
-TEST(Aliasing, ANewOccupantWaitsForEveryOldOneAndDiscardsItsContents) {
+TEST(Aliasing, NewOccupantWaitsForAllOldOnesAndDiscards) {
   GraphBuilder b;
   b.import("light");
   for (const char* name : {"one", "two", "three", "four"})
@@ -172,13 +173,13 @@ TEST(Aliasing, ANewOccupantWaitsForEveryOldOneAndDiscardsItsContents) {
   b.pass("p5", "test.need", {{"a", "four"}}, {{"out", "result"}});
   const auto whole = compiled(b);
   ASSERT_THAT(whole.plan.heaps, SizeIs(1));
-  // Two of four are alive at a time.
+  // At most two of the four images are alive at a time.
   EXPECT_EQ(whole.plan.heaps[0].size, 2 * whole.plan.placements[0].size);
   const auto barrier = barrier_on(b, whole.plan, "p3", "three");
   EXPECT_EQ(barrier.why, ReasonKind::alias);
   EXPECT_EQ(barrier.old_layout, Layout::undefined);
   EXPECT_EQ(barrier.source_stages, stage::compute_shader);
-  // 'one' was last read by p2; across the frame boundary both are last read, so nothing is left to make
+  // p2 reads 'one' last. Across the frame boundary both were last read, so no write has to be made
   // available.
   EXPECT_EQ(barrier.source_access, access::none);
   uint32_t index = 0;
@@ -187,7 +188,7 @@ TEST(Aliasing, ANewOccupantWaitsForEveryOldOneAndDiscardsItsContents) {
   EXPECT_THAT(reasons(b, whole, Reason::About::barrier, index), HasSubstr("takes over memory of"));
 }
 
-TEST(Aliasing, TheFirstOccupantOfAFrameWaitsForTheLastOnesOfTheFrameBefore) {
+TEST(Aliasing, FirstOccupantWaitsForThePreviousFrame) {
   GraphBuilder b;
   b.import("light");
   b.buffer("tiles");
@@ -210,7 +211,7 @@ GraphBuilder accumulation(uint32_t frames, const char* read) {
   return b;
 }
 
-TEST(History, InstancesTakeTurnsAndKeepTheirContentsOverThreeFrames) {
+TEST(History, InstancesRotateAndKeepThreeFrames) {
   const auto b = accumulation(2, "sum@-2");
   const auto whole = compiled(b);
   ASSERT_THAT(whole.plan.histories, SizeIs(1));
@@ -218,15 +219,15 @@ TEST(History, InstancesTakeTurnsAndKeepTheirContentsOverThreeFrames) {
   EXPECT_EQ(sum.instance_count, 3u);
   EXPECT_EQ(whole.plan.history_bytes, 3 * whole.plan.placements[sum.first_instance].size);
   EXPECT_EQ(whole.plan.transient_bytes, 0u);
-  // Written in 'general', read by 'show' in 'shader_read_only': it rests there, one frame and two frames
-  // later.
+  // `sum` is written in `general` and read by 'show' in `shader_read_only`. It keeps that layout
+  // one and two frames later.
   EXPECT_THAT(whole.plan.history_layouts,
               ::testing::ElementsAre(Layout::undefined, Layout::shader_read_only, Layout::shader_read_only));
   for (uint32_t i = 0; i < 3; ++i)
     EXPECT_TRUE(whole.plan.placements[sum.first_instance + i].persistent);
 }
 
-TEST(InPlace, WithoutOwnTexelsAPassCannotReadWhatItWrites) {
+TEST(InPlace, WithoutOwnTexelsReadAndWriteAreRefused) {
   GraphBuilder b;
   b.import("light").exported = true;
   b.pass("blur", "test.need", {{"a", "light"}}, {{"out", "light"}});
@@ -236,7 +237,7 @@ TEST(InPlace, WithoutOwnTexelsAPassCannotReadWhatItWrites) {
   EXPECT_THAT(errors[0].text, HasSubstr("'blur' reads 'light' through its port 'a'"));
 }
 
-TEST(InPlace, WithTheseSettingsAStandInIsJudged) {
+TEST(InPlace, OtherwiseValueIsCheckedForRaces) {
   GraphBuilder b;
   b.boolean("on", true);
   b.import("light").exported = true;
@@ -251,7 +252,7 @@ TEST(InPlace, WithTheseSettingsAStandInIsJudged) {
   EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::in_place_race);
 }
 
-TEST(InPlace, TheVerifierRefusesARaceInsideAPass) {
+TEST(InPlace, VerifierRefusesARaceInsideAPass) {
   GraphBuilder b;
   b.import("light").exported = true;
   b.pass("blend", "test.blend", {{"own", "light"}}, {{"out", "light"}});
@@ -267,7 +268,7 @@ const PlanResource& history_of(const Plan& plan) {
   return plan.resources[plan.histories.at(0).resource];
 }
 
-TEST(History, ThatWasReadBeforeItIsWrittenIsRenewedInPlace) {
+TEST(History, ReadBeforeWritten_IsUpdatedInPlace) {
   GraphBuilder b;
   b.import("light");
   b.history("sum", 2);
@@ -294,7 +295,7 @@ GraphBuilder blend(const char* port) {
   return b;
 }
 
-TEST(History, IsWrittenOverByThePassThatReadsItOnlyTexelByTexel) {
+TEST(History, ReadWithOwnTexels_IsOverwritten) {
   const auto own = compiled(blend("own")).plan;
   EXPECT_EQ(history_of(own).instance_count, 1u);
   for (const PlanAccess& access : own.accesses)
@@ -305,7 +306,7 @@ TEST(History, IsWrittenOverByThePassThatReadsItOnlyTexelByTexel) {
   EXPECT_EQ(history_of(compiled(blend("a")).plan).instance_count, 2u);
 }
 
-TEST(History, ThatAnotherPassReadsLaterIsNotWrittenOver) {
+TEST(History, ReadByALaterPass_IsNotOverwritten) {
   GraphBuilder b = blend("own");
   b.exported("before");
   b.pass("look back", "test.need", {{"a", "sum@-1"}}, {{"out", "before"}});
@@ -314,7 +315,7 @@ TEST(History, ThatAnotherPassReadsLaterIsNotWrittenOver) {
   EXPECT_EQ(history_of(compiled(b, input).plan).instance_count, 2u);
 }
 
-TEST(History, TheVerifierRefusesAFrameThatIsWrittenOverTooEarly) {
+TEST(History, VerifierRefusesAnEarlyOverwrite) {
   Plan freely = compiled(blend("own")).plan;
   for (PlanAccess& access : freely.accesses)
     access.own_texels = false;
@@ -324,7 +325,7 @@ TEST(History, TheVerifierRefusesAFrameThatIsWrittenOverTooEarly) {
   EXPECT_FALSE(verify(flat).violations.empty());
 }
 
-TEST(History, ItsValidityNeverChangesThePacking) {
+TEST(History, ValidityNeverChangesThePacking) {
   for (const char* port : {"own", "a"}) {
     const GraphBuilder usual = blend(port);
     GraphBuilder other = blend(port);
@@ -340,7 +341,7 @@ TEST(History, ItsValidityNeverChangesThePacking) {
   }
 }
 
-TEST(History, OnlyAsManyInstancesAsThisPlanReadsBack) {
+TEST(History, HasOnlyTheInstancesThatThePlanReads) {
   EXPECT_EQ(compiled(accumulation(3, "sum@-1")).plan.histories[0].frames, 1u);
   const auto unread = compiled(accumulation(3, "light"));
   EXPECT_THAT(unread.plan.histories, SizeIs(0));
@@ -348,7 +349,7 @@ TEST(History, OnlyAsManyInstancesAsThisPlanReadsBack) {
   EXPECT_GT(unread.plan.transient_bytes, 0u);
 }
 
-TEST(History, TheFirstReadWaitsForTheFrameBeforeAndTheNewestReusesTheOldest) {
+TEST(History, ReadWaitsForPreviousFrame_NewestReusesOldest) {
   GraphBuilder b;
   b.import("light");
   b.history("sum");
@@ -365,7 +366,8 @@ TEST(History, TheFirstReadWaitsForTheFrameBeforeAndTheNewestReusesTheOldest) {
   const auto newest = barrier_on(b, whole.plan, "accumulate", "sum", 0);
   EXPECT_EQ(newest.why, ReasonKind::history);
   EXPECT_EQ(newest.old_layout, Layout::undefined);
-  EXPECT_EQ(newest.source_stages, stage::compute_shader); // last read in the frame before
+  // The previous frame read this instance last.
+  EXPECT_EQ(newest.source_stages, stage::compute_shader);
   EXPECT_EQ(newest.source_access, access::none);
 }
 
@@ -385,8 +387,9 @@ GraphBuilder with_conditional_reader() {
   return b;
 }
 
-// The last pass made to write alone, and to wait for the reader alone, which saw what was written before.
-TEST(Verify, AReaderThatMayBeLeftOutShowsAWriterNothing) {
+// The test makes the last pass write-only and lets it wait only for the reader, which had waited
+// for the earlier write.
+TEST(Verify, ConditionalReader_OrdersNoLaterWriter) {
   const auto b = with_conditional_reader();
   Plan plan = compiled(b).plan;
   for (const PlanPass& pass : plan.passes) {
@@ -398,13 +401,14 @@ TEST(Verify, AReaderThatMayBeLeftOutShowsAWriterNothing) {
   }
   EXPECT_FALSE(verify(plan).violations.empty());
   EXPECT_NE(first_hazard(plan), "");
-  for (PlanAccess& access : plan.accesses) // were it always read, that would do
+  // If the reader ran in every frame, this barrier would be enough.
+  for (PlanAccess& access : plan.accesses)
     access.when = ReadWhen::always;
   EXPECT_TRUE(verify(plan).violations.empty());
   EXPECT_EQ(first_hazard(plan), "");
 }
 
-TEST(Synchronize, WhatStandsInForAHistoryThatNobodyWritesIsAlwaysRead) {
+TEST(Synchronize, OtherwiseOfUnwrittenHistory_IsAlwaysRead) {
   auto b = with_conditional_reader();
   b.boolean("keep", false);
   b.graph.passes[1].when = b.when("keep");

@@ -1,4 +1,5 @@
-// Versions, choices, culling and order: which passes run, in which order, and what is refused.
+// Tests versions, conditions, culling and order: which passes run, in which order, and which graphs
+// are refused.
 
 #include "tests/framegraph/graph_builder.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-// light (import) -> blur -> result (export)
+// Builds light (import) -> blur -> result (export).
 GraphBuilder chain() {
   GraphBuilder b;
   b.import("light");
@@ -22,7 +23,7 @@ GraphBuilder chain() {
   return b;
 }
 
-TEST(Culling, APassThatNothingBoundNeedsDoesNotRunNorDoItsProducers) {
+TEST(Culling, UnneededPassAndItsProducersDoNotRun) {
   GraphBuilder b = chain();
   b.image("x");
   b.image("y");
@@ -45,7 +46,7 @@ TEST(Culling, APassWithSideEffectsKeepsWhatItReads) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish make_x look");
 }
 
-TEST(Culling, AnUnboundOptionalExportIsNoReasonToRun) {
+TEST(Culling, UnboundOptionalExportKeepsNothingAlive) {
   GraphBuilder b = chain();
   b.exported("debug").optional = true;
   b.pass("draw_debug", "test.shade", {{"a", "blurred"}}, {{"out", "debug"}});
@@ -56,7 +57,7 @@ TEST(Culling, AnUnboundOptionalExportIsNoReasonToRun) {
   EXPECT_EQ(pass_names(b, compiled(b, input).plan), "blur finish");
 }
 
-TEST(Culling, AnOptionalExportThatIsReadInsideBecomesATransientWhenUnbound) {
+TEST(Culling, UnboundExportReadInside_BecomesTransient) {
   GraphBuilder b = chain();
   b.exported("debug").optional = true;
   b.exported("second");
@@ -70,7 +71,8 @@ TEST(Culling, AnOptionalExportThatIsReadInsideBecomesATransientWhenUnbound) {
     if (resource.declared == b.resource("debug")) {
       EXPECT_FALSE(resource.exported);
       EXPECT_NE(resource.first_instance, no_instance);
-      EXPECT_EQ(resource.slot, 2); // light, result, debug, second: slots do not move with what is bound
+      // Slots (light, result, debug, second) do not depend on which of them are bound.
+      EXPECT_EQ(resource.slot, 2);
     }
 }
 
@@ -106,7 +108,7 @@ TEST(Culling, AnOptionalPortOfAnUnboundImportStaysUnbound) {
               HasSubstr("optional port 'b' stays unbound"));
 }
 
-TEST(Choice, ReadersOfAPassThatIsOffGetItsOtherwise) {
+TEST(Choice, DisabledPass_ReadersGetItsOtherwise) {
   GraphBuilder b;
   b.boolean("on", true);
   b.import("light");
@@ -126,8 +128,9 @@ TEST(Choice, ReadersOfAPassThatIsOffGetItsOtherwise) {
   EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("blur").value), HasSubstr("off"));
 }
 
-TEST(Choice, OtherwiseSeesTheVersionThatThePassWouldHaveSeen) {
-  // 'light' is updated in place after the pass that is off: its readers get the version before the update.
+TEST(Choice, Otherwise_IsTheVersionThePassWouldHaveRead) {
+  // 'light' is updated in place after the disabled pass, whose readers get the version before the
+  // update.
   GraphBuilder b;
   b.boolean("on", false);
   b.import("light").exported = true;
@@ -141,7 +144,7 @@ TEST(Choice, OtherwiseSeesTheVersionThatThePassWouldHaveSeen) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "finish brighten");
 }
 
-TEST(Choice, ReadersOfAPassThatIsOffWithoutOtherwiseAreRefusedNamingIt) {
+TEST(Choice, DisabledPassWithoutOtherwise_IsNamed) {
   GraphBuilder b;
   b.boolean("on", false);
   b.import("light");
@@ -172,7 +175,7 @@ TEST(Choice, ExclusiveProducersOfOneResourceAreFine) {
   EXPECT_EQ(pass_names(b, compiled(b, input).plan), "fast_way finish");
 }
 
-TEST(Choice, TwoProducersThatAreBothOnAreRefusedNamingBoth) {
+TEST(Choice, TwoEnabledProducers_AreRefusedNamingBoth) {
   GraphBuilder b = chain();
   b.pass("blur_again", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
   const auto errors = refused(b);
@@ -235,18 +238,19 @@ TEST(Exports, ARequiredExportThatNothingWritesIsRefused) {
   EXPECT_THAT(errors[0].related[0].second, HasSubstr("'finish' writes it and is off"));
 }
 
-TEST(Exports, AnImportUpdatedInPlaceIsLeftAloneWhenItsPassesAreOff) {
+TEST(Exports, ImportUpdatedInPlace_PassesOff_IsUnchanged) {
   GraphBuilder b;
   b.boolean("on", false);
   b.import("light").exported = true;
   b.pass("brighten", "test.update", {}, {{"image", "light"}}).when = b.when("on");
   const auto plan = compiled(b);
   EXPECT_THAT(plan.plan.passes, SizeIs(0));
-  ASSERT_EQ(plan.plan.final_barrier_count, 1u); // still handed back in the state the host wants
+  // The import is still released in the state that the host requests.
+  ASSERT_EQ(plan.plan.final_barrier_count, 1u);
   EXPECT_TRUE(plan.plan.barriers[0].from_host && plan.plan.barriers[0].to_host);
 }
 
-TEST(Versions, AReaderSeesTheLatestVersionWrittenBeforeItInTheFile) {
+TEST(Versions, ReaderSeesTheLatestEarlierVersion) {
   GraphBuilder b;
   b.import("light").exported = true;
   b.exported("before");
@@ -257,7 +261,7 @@ TEST(Versions, AReaderSeesTheLatestVersionWrittenBeforeItInTheFile) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "copy_before brighten copy_after");
 }
 
-TEST(Versions, AReaderMayStandBeforeTheOnlyProducerInTheFile) {
+TEST(Versions, ReaderMayPrecedeTheOnlyProducer) {
   GraphBuilder b;
   b.import("light");
   b.image("blurred");
@@ -278,7 +282,7 @@ TEST(Versions, AReaderBeforeSeveralProducersIsRefused) {
   EXPECT_EQ(refused(b)[0].id, DiagnosticId::ambiguous_version);
 }
 
-TEST(Versions, UpdatingWhatNobodyWroteIsRefused) {
+TEST(Versions, UpdateOfUnwrittenResourceIsRefused) {
   GraphBuilder b = chain();
   b.image("sum");
   b.exported("total");
@@ -296,7 +300,7 @@ TEST(Versions, WritingTheSameResourceThroughTwoPortsIsRefused) {
   EXPECT_EQ(refused(b)[0].id, DiagnosticId::second_producer);
 }
 
-TEST(Order, ACycleIsRefusedNamingEachPassWithItsPlace) {
+TEST(Order, CycleIsRefusedWithThePlaceOfEachPass) {
   GraphBuilder b = chain();
   b.image("x");
   b.image("y");
@@ -315,7 +319,7 @@ TEST(Order, ACycleIsRefusedNamingEachPassWithItsPlace) {
   EXPECT_THAT(errors[0].related[1].second, HasSubstr("'first' reads 'y' from 'second'"));
 }
 
-TEST(Order, ACycleIsRefusedEvenAmongPassesThatNothingNeeds) {
+TEST(Order, CycleAmongUnneededPassesIsRefused) {
   GraphBuilder b = chain();
   b.image("x");
   b.image("y");
@@ -346,7 +350,7 @@ TEST(Order, AHistoryReadIsNoCycle) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "accumulate show");
 }
 
-TEST(History, ReadingTheHistoryOfWhatIsNoLongerWrittenIsRefused) {
+TEST(History, ReadOfAHistoryWithoutWriterIsRefused) {
   GraphBuilder b;
   b.boolean("on", false);
   b.import("light");
@@ -360,7 +364,7 @@ TEST(History, ReadingTheHistoryOfWhatIsNoLongerWrittenIsRefused) {
   EXPECT_THAT(errors[0].text, HasSubstr("reads 'sum@-1'"));
 }
 
-TEST(History, APassWhoseOutputIsOnlyReadInLaterFramesRuns) {
+TEST(History, PassReadOnlyInLaterFramesRuns) {
   GraphBuilder b;
   b.import("light");
   b.history("last");
@@ -370,14 +374,14 @@ TEST(History, APassWhoseOutputIsOnlyReadInLaterFramesRuns) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "show keep");
 }
 
-TEST(History, AHistoryThatOnlyItsOwnWriterReadsKeepsNothingAlive) {
+TEST(History, ReadOnlyByItsWriter_KeepsNothingAlive) {
   GraphBuilder b = chain();
   b.history("sum");
   b.pass("accumulate", "test.shade", {{"a", "light"}, {"b", "sum@-1"}}, {{"out", "sum"}});
   EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish");
 }
 
-TEST(History, TheHostsMemoryHasNone) {
+TEST(History, HostResourceCannotBeAHistory) {
   GraphBuilder b = chain();
   b.graph.resources[2].history.frames = 1;
   EXPECT_EQ(refused(b)[0].id, DiagnosticId::history_of_host_memory);

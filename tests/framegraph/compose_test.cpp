@@ -1,5 +1,5 @@
-// Graphs put together from fragments and overlays: what comes of it, and that every message points into the
-// file that set the value.
+// Tests graphs composed of fragments and overlays, and that every message points into the file that
+// set the value.
 
 #include "framegraph/compose/compose.hpp"
 #include "framegraph/text/limits.hpp"
@@ -60,7 +60,7 @@ std::string file_of(const Composed& composed, const SourceLocation& where) {
   return composed.diagnostics.files[where.file.value].name;
 }
 
-// The only message: its id, its file and what it says.
+// Expects exactly one message with this id, file and text.
 void expect_one(const Composed& composed, Id id, const std::string& place,
                 const std::vector<std::string>& words) {
   EXPECT_FALSE(composed.graph);
@@ -107,7 +107,7 @@ TEST(Overlay, PassesAreInsertedReplacedAndRemovedByName) {
       (std::vector<std::string>{"blur", "copy", "mix", "fresh"}));
 }
 
-TEST(Overlay, StackInTheGivenOrderAndTheLastOneCounts) {
+TEST(Overlay, StackInOrderAndTheLastOneWins) {
   const std::string first = overlay(R"({ "set": "/settings/samples/int", "to": 20 },
     { "set": "/settings/extra", "to": { "bool": true } })");
   const std::string second = overlay(R"({ "set": "/settings/samples/int", "to": 30 })");
@@ -125,7 +125,7 @@ TEST(Overlay, StackInTheGivenOrderAndTheLastOneCounts) {
   EXPECT_EQ(put_together(whole_graph(), {second, first}).graph->settings[1].default_value.integer, 20);
 }
 
-TEST(Overlay, ElementsOfArraysGoByNameOrIndexAndDashAppends) {
+TEST(Overlay, ArrayElements_ByNameIndexOrDash) {
   const Composed composed =
       put_together(whole_graph(), {overlay(R"({ "set": "/imports/light/format/rgba32f", "to": "r32f" },
     { "set": "/resources/fixed/size/1", "to": 48 }, { "set": "/settings/style/enum/-", "to": "odd" },
@@ -137,7 +137,7 @@ TEST(Overlay, ElementsOfArraysGoByNameOrIndexAndDashAppends) {
   EXPECT_EQ(composed.graph->passes[1].settings.size(), 4u);
 }
 
-TEST(Overlay, AValueThatIsWrongIsToldInTheFileThatSetIt) {
+TEST(Overlay, WrongValueIsReportedInTheFileThatSetIt) {
   expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/settings/samples/int", "to": 99 })")}),
              Id::setting_range, "overlay0.json:2:41", {"99", "graph.json:4:", "the range ends here"});
   expect_one(
@@ -148,7 +148,7 @@ TEST(Overlay, AValueThatIsWrongIsToldInTheFileThatSetIt) {
       Id::missing_key, "overlay0.json:2:36", {"'halff'"});
 }
 
-TEST(Overlay, AnEditNamesWhatIsThere) {
+TEST(Overlay, EditOfAMissingTarget_IsRefused) {
   expect_one(put_together(whole_graph(), {overlay(R"({ "remove": "/passes/blurr" })")}), Id::edit_target,
              "overlay0.json:2:13", {"'remove' of edit 1", "'blurr'", "did you mean 'blur'?"});
   expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/resource/half/mips", "to": 1 })")}),
@@ -165,7 +165,7 @@ TEST(Overlay, AnEditNamesWhatIsThere) {
       Id::edit_target, "overlay0.json:2:19", {"did you mean 'mix'?"});
 }
 
-TEST(Overlay, MayAddTheFirstSettingAndMembersOfAPass) {
+TEST(Overlay, CanAddTheFirstSettingAndPassMembers) {
   const std::string graph = R"({ "dermis": 2, "name": "plain",
   "resources": { "a": { "format": "rgba16f", "size": "view" } },
   "passes": [ { "pass": "copy", "type": "test.blur", "read": { "source": "light" }, "write": { "target": "a" } } ] })";
@@ -180,7 +180,7 @@ TEST(Overlay, MayAddTheFirstSettingAndMembersOfAPass) {
   ASSERT_EQ(composed.graph->passes.size(), 1u);
 }
 
-TEST(Overlay, WhatAnEarlierOneRemovedIsNamed) {
+TEST(Overlay, EditOfARemovedTarget_NamesTheRemover) {
   const Composed composed =
       put_together(whole_graph(), {overlay(R"({ "remove": "/passes/copy" })"),
                                    overlay(R"({ "set": "/passes/copy/set/radius", "to": 1 })")});
@@ -188,7 +188,7 @@ TEST(Overlay, WhatAnEarlierOneRemovedIsNamed) {
              {"no 'copy' here", "overlay0.json:2:13", "'/passes/copy' is removed here"});
 }
 
-TEST(Overlay, ItsOwnMistakesAreToldOnceEach) {
+TEST(Overlay, EachOverlayErrorIsReportedOnce) {
   expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 3, \"edits\": [] }"}),
              Id::unsupported_version, "overlay0.json:1:21", {});
   expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 2, \"edit\": [] }"}), Id::unknown_key,
@@ -203,7 +203,7 @@ TEST(Overlay, ItsOwnMistakesAreToldOnceEach) {
              Id::wrong_type, "overlay0.json:2:32", {"a pass of edit 1"});
 }
 
-TEST(Overlay, NestingStaysInsideTheLimitHoweverManyEditsBuildIt) {
+TEST(Overlay, NestingBuiltByEditsStaysWithinTheLimit) {
   std::string deep = "1", edits, path = "/x";
   for (int i = 0; i < 40; ++i)
     deep = "{ \"a\": " + deep + " }";
@@ -220,7 +220,7 @@ constexpr const char* tiles_fragment = R"({ "dermis_fragment": 2, "note": "finds
   "resources": { "list": { "buffer": { "stride": 4, "count": "view/8", "extra": 4 } } },
   "passes": [ { "pass": "find", "type": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } } ] })";
 
-// whole_graph with its first pass and its buffer in a fragment.
+// Returns whole_graph with its first pass and its buffer moved into a fragment.
 std::string including_graph(const std::string& include = R"({ "include": "parts/tiles.json" })") {
   std::string text = damaged(
       ",\n    \"list\": { \"buffer\": { \"stride\": 4, \"count\": \"view/8\", \"extra\": 4 } } }", " }");
@@ -229,7 +229,7 @@ std::string including_graph(const std::string& include = R"({ "include": "parts/
   return text.replace(text.find(pass), pass.size(), include);
 }
 
-TEST(Include, AFragmentsPassesStandWhereItIsIncludedAndItsOtherMembersJoin) {
+TEST(Include, FragmentPassesAreInsertedAtTheInclude) {
   const Composed composed = put_together(including_graph(), {}, {{"parts/tiles.json", tiles_fragment}});
   EXPECT_EQ(pass_names(composed), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
   EXPECT_EQ(composed.graph->resources.back().name, "list");
@@ -238,7 +238,7 @@ TEST(Include, AFragmentsPassesStandWhereItIsIncludedAndItsOtherMembersJoin) {
   EXPECT_EQ(composed.graph->resources.size(), read(whole_graph()).graph->resources.size());
 }
 
-TEST(Include, AFileThatSeveralNeedIsThereOnce) {
+TEST(Include, SharedFileIsIncludedOnce) {
   const std::string outer =
       R"({ "dermis_fragment": 2, "passes": [ { "include": "parts/tiles.json" } ], "exports": ["light"] })";
   const Composed composed = put_together(
@@ -257,7 +257,7 @@ TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
              Id::other_kind_of_file, "parts/tiles.json:1:3", {"dermis_fragment"});
 }
 
-TEST(Include, TwoFilesMayDeclareANameAlikeButNotDifferently) {
+TEST(Include, EqualDeclarationsMerge_DifferentAreRefused) {
   std::string other = tiles_fragment;
   other.replace(other.find("r8_uint"), 7, "r16_uint");
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", other}}), Id::duplicate_name,
@@ -265,7 +265,7 @@ TEST(Include, TwoFilesMayDeclareANameAlikeButNotDifferently) {
              {"'material' of \"imports\"", "not alike", "graph.json:", "first declared here"});
 }
 
-TEST(Include, OverlaysSeeWhatWasIncludedAndMayIncludeThemselves) {
+TEST(Include, OverlaysSeeIncludesAndCanInclude) {
   const Composed changed =
       put_together(including_graph(), {overlay(R"({ "set": "/resources/list/buffer/extra", "to": 8 })")},
                    {{"parts/tiles.json", tiles_fragment}});
@@ -278,7 +278,7 @@ TEST(Include, OverlaysSeeWhatWasIncludedAndMayIncludeThemselves) {
   EXPECT_EQ(pass_names(including), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
 }
 
-TEST(Include, NamesLeadNowhereElse) {
+TEST(Include, PathsOutsideTheRootsAreRefused) {
   for (const char* name : {"/etc/passwd", "../x.json", "a/../../x.json", "a/./x.json", "a//x.json", "a/", "",
                            "C:/x.json", "a\\\\x.json"}) {
     Files files{{name, tiles_fragment}};
@@ -290,7 +290,7 @@ TEST(Include, NamesLeadNowhereElse) {
       Id::bad_file_name, "graph.json:18:18", {"257 bytes"});
 }
 
-TEST(Include, AFileThatIsNotThereIsNamedAtTheInclude) {
+TEST(Include, MissingFileIsReportedAtTheInclude) {
   expect_one(put_together(including_graph(), {}), Id::file_unreadable, "graph.json:18:18",
              {"'parts/tiles.json'", "it is not there"});
   Diagnostics diagnostics;
@@ -329,7 +329,7 @@ TEST(Include, DepthAndNumberOfFilesAreLimited) {
   EXPECT_NE(composed.diagnostics.list[0].text.find("64 files"), std::string::npos);
 }
 
-TEST(Include, AFragmentCanBeCheckedAlone) {
+TEST(Include, FragmentCanBeCheckedOnItsOwn) {
   Diagnostics diagnostics;
   auto document = parse_document("tiles.json", tiles_fragment, diagnostics);
   const auto alone = compose_fragment(std::move(*document), {}, diagnostics);

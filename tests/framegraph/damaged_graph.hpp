@@ -1,6 +1,6 @@
 #pragma once
-// A damage to the good graph of model_support.hpp, and the law that it gives exactly one diagnostic, at the
-// place of the damage, naming both sides.
+// Describes a change that breaks the graph of model_support.hpp, and checks that it gives exactly
+// one diagnostic, at the place of the change, with all expected words.
 
 #include "tests/framegraph/model_support.hpp"
 
@@ -9,10 +9,10 @@
 namespace dermis::testing {
 
 struct Damage {
-  const char* property; // also the name of the test
+  const char* property; // Also the name of the test.
   const char *from, *to;
   DiagnosticId id;
-  const char* at; // the damaged text has this once, and the diagnostic points at its beginning
+  const char* at; // Occurs once in the changed text; the diagnostic points at its beginning.
   std::vector<std::string> words;
 };
 
@@ -24,7 +24,7 @@ inline std::string property_of(const ::testing::TestParamInfo<Damage>& one) {
   return one.param.property;
 }
 
-// `damage` gives one diagnostic, at its place.
+// Expects one diagnostic, at the place of `damage`.
 inline void expect_one_diagnostic(const Damage& damage) {
   const std::string text = damaged(damage.from, damage.to);
   const size_t at = text.find(damage.at);
@@ -33,7 +33,8 @@ inline void expect_one_diagnostic(const Damage& damage) {
   const std::string before = text.substr(0, at);
   const auto line = static_cast<uint32_t>(1 + std::count(before.begin(), before.end(), '\n'));
   const auto column =
-      static_cast<uint32_t>(at - (before.rfind('\n') + 1) + 1); // npos + 1 = 0 on the first line
+      // On the first line rfind gives npos, and npos + 1 = 0.
+      static_cast<uint32_t>(at - (before.rfind('\n') + 1) + 1);
   const Read result = read(text);
   EXPECT_FALSE(result.graph);
   expect_only(result.diagnostics, damage.id, line, column, damage.words);

@@ -1,4 +1,4 @@
-// Exports of a plan: complete, well formed, and the same bytes every time.
+// Tests that exports of a plan are complete, well formed and identical bytes every time.
 
 #include "framegraph/explain/names.hpp"
 #include "framegraph/explain/plan_dot.hpp"
@@ -90,7 +90,7 @@ TEST(PlanText, NamesTheSettingsThatSwitchAPassOff) {
               HasSubstr("draw: off: its 'when' is false with debug = false"));
 }
 
-TEST(PlanText, SaysForWhomABarrierStandsEarlierThanNeeded) {
+TEST(PlanText, NamesThePassThatNeedsAnEarlierBarrier) {
   GraphBuilder b;
   b.import("light");
   b.import("shade");
@@ -109,7 +109,7 @@ TEST(PlanText, SaysForWhomABarrierStandsEarlierThanNeeded) {
               HasSubstr("waits for point 1 of the async queue, behind 'middle'"));
 }
 
-TEST(PlanText, SaysWhyWhatTheCallerAskedForIsSo) {
+TEST(PlanText, ExplainsTheRequestedOptions) {
   auto b = sample();
   b.pass("watch", "test.probe", {{"a", "light"}}, {});
   EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b)),
@@ -123,7 +123,7 @@ TEST(PlanText, SaysWhyWhatTheCallerAskedForIsSo) {
   EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)), HasSubstr("in an order drawn at random"));
 }
 
-TEST(PlanText, HasWordsForEveryReasonAndNameOfRandomGraphs) {
+TEST(PlanText, RandomGraphs_EveryReasonHasText) {
   for (uint64_t seed = 0; seed < 60; ++seed) {
     const auto b = random_graph(seed);
     CompileInput drawn = b.input(), whole = b.input();
@@ -156,7 +156,7 @@ TEST(Names, UnknownBitsAreWrittenAsNumbers) {
   EXPECT_EQ(bytes_text(1536), "1.5 KiB");
 }
 
-TEST(JsonWriter, EscapesAndNestsAndRefusesNumbersJsonDoesNotHave) {
+TEST(JsonWriter, EscapesNestsAndRefusesNonFiniteNumbers) {
   JsonWriter out;
   out.open_object().member("text", "a\"\\\n\x01").key("list").open_array(true).value(1).value(-2.5);
   out.value(std::numeric_limits<double>::infinity()).value(UINT64_MAX).close();

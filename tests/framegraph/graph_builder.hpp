@@ -1,6 +1,6 @@
 #pragma once
-// Graphs built by hand, so that the compiler is tested apart from the reader. Every declaration gets a line
-// of its own, in the order of the calls.
+// Builds graphs in code, so that the compiler is tested without the reader. Every declaration gets
+// its own line number, in the order of the calls.
 
 #include "framegraph/compile/compile.hpp"
 
@@ -11,14 +11,21 @@
 
 namespace dermis::testing {
 
-// Port and "resource", "resource#1[0]", "resource@-1", "resource@-1?" (required to be valid) or
+// Pairs a port with "resource", "resource#1[0]", "resource@-1", "resource@-1?" (must be valid) or
 // "resource@-1?otherwise".
 using Bindings = std::vector<std::pair<std::string, std::string>>;
 
-// Kinds: test.shade (a b c -> out, out2), test.update (a, own texel by texel, image in place), test.fill
-// (clears target), test.list (writes buffer tiles), test.count (updates buffer tiles), test.tiles (tiles as
-// list and indirect arguments, a -> out), test.probe (reads a, has side effects), test.narrow (a -> out,
-// rgba16f only), test.blend (a, own texel by texel -> out), test.ids (ids, whole numbers -> out).
+// Returns these pass types:
+// - test.shade (a b c -> out, out2)
+// - test.update (a, own texel by texel, image in place)
+// - test.fill (clears target)
+// - test.list (writes buffer tiles)
+// - test.count (updates buffer tiles)
+// - test.tiles (tiles as list and indirect arguments, a -> out)
+// - test.probe (reads a, has side effects)
+// - test.narrow (a -> out, only rgba16f)
+// - test.blend (a, own texel by texel -> out)
+// - test.ids (ids, whole numbers -> out)
 PassTypeRegistry test_pass_types();
 
 struct GraphBuilder {
@@ -32,34 +39,38 @@ struct GraphBuilder {
   SourceLocation next_line();
   ResourceDeclaration& import(const std::string& name);
   ResourceDeclaration& image(const std::string& name);
-  ResourceDeclaration& buffer(const std::string& name);   // one element of 4 bytes a tile, and 4 more
-  ResourceDeclaration& exported(const std::string& name); // a declared image that the host binds
+  // Adds a buffer with one element of 4 bytes per tile, and 4 more.
+  ResourceDeclaration& buffer(const std::string& name);
+  ResourceDeclaration& exported(const std::string& name); // Adds an image that the host binds.
   ResourceDeclaration& history(const std::string& name, uint32_t frames = 1);
   SettingDeclaration& boolean(const std::string& name, bool value);
   PassDeclaration& pass(const std::string& name, const std::string& type, const Bindings& reads,
                         const Bindings& writes);
-  ExpressionId when(const std::string& setting, bool wanted = true); // "setting" or "not setting"
+  // Takes "setting" or "not setting".
+  ExpressionId when(const std::string& setting, bool wanted = true);
   void otherwise(PassDeclaration& pass, const std::string& output, const std::string& instead);
 
-  PortBinding reference(uint32_t port, const std::string& text) const; // as there, without "?"
-  PortBinding& read(uint32_t pass, uint32_t index); // what a pass reads, in the order of the call
+  // Parses a reference as in Bindings, without "?".
+  PortBinding reference(uint32_t port, const std::string& text) const;
+  // Returns read number `index` of the pass, in the order of the call.
+  PortBinding& read(uint32_t pass, uint32_t index);
   PortBinding& written(uint32_t pass, uint32_t index);
   ResourceId resource(const std::string& name) const;
   PassId pass_id(const std::string& name) const;
   CompileInput input(uint32_t width = 64, uint32_t height = 64) const;
 };
 
-// Compiles, expects success and that the verifier proves the plan; fails the test otherwise.
+// Compiles and runs the verifier. Fails the test if either reports an error.
 CompiledPlan compiled(const GraphBuilder& builder);
 CompiledPlan compiled(const GraphBuilder& builder, const CompileInput& input);
 
-// Compiles, expects errors, returns them.
+// Compiles, expects errors and returns them.
 std::vector<Diagnostic> refused(const GraphBuilder& builder);
 std::vector<Diagnostic> refused(const GraphBuilder& builder, const CompileInput& input);
 
-// Names of the passes of a plan, in order, with a space between them.
+// Returns the pass names of a plan in order, separated by spaces.
 std::string pass_names(const GraphBuilder& builder, const Plan& plan);
-// All reasons about one thing.
+// Returns all recorded reasons about one pass or resource.
 std::string reasons(const GraphBuilder& builder, const CompiledPlan& compiled, Reason::About about,
                     uint32_t index);
 

@@ -13,14 +13,14 @@ bool is_slot(const ResourceDeclaration& resource) {
   return resource.origin == Origin::imported || resource.exported;
 }
 
-// By mip, then by layer.
+// Indexed by mip, then by layer.
 using Contents = std::vector<std::optional<Pixels>>;
 
 Contents undefined(const ResourceDeclaration& resource) {
   return Contents(size_t{resource.mips} * resource.layers);
 }
 
-// Numbers of the mips of layers that the part holds.
+// Returns the indices of the subresources in the part.
 std::vector<size_t> numbers(const ResourceDeclaration& resource, const ImagePart& part) {
   std::vector<size_t> result;
   for (uint32_t m = part.first_mip; m < (part.mips == 0 ? resource.mips : part.first_mip + part.mips); ++m)
@@ -37,7 +37,8 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
   std::vector<SettingValue> settings;
   for (const SettingDeclaration& setting : graph.settings)
     settings.push_back(setting.default_value);
-  // contents_of[r][f]: of resource r at the end of frame f, or as far as the frame has come.
+  // contents_of[r][f] is resource r at the end of frame f, or its current state in the frame that
+  // runs.
   std::vector<std::vector<Contents>> contents_of(graph.resources.size());
   Interpretation out(frames);
   for (uint32_t frame = 0; frame < frames; ++frame) {
@@ -48,7 +49,8 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
       if (import) contents_of[r].back().assign(1, host_pixels(contents, frame, slot));
       slot += is_slot(graph.resources[r]) ? 1 : 0;
     }
-    const auto in_history = [&](const PortBinding& binding) { // written since the last cut that counts
+    // Whether enough frames were written since the last cut.
+    const auto in_history = [&](const PortBinding& binding) {
       const HistoryDeclaration& history = graph.resources[binding.resource.value].history;
       const bool cuts_count = history.on_cut == HistoryDeclaration::OnCut::invalidate;
       for (uint32_t back = 0; back < binding.frames_back; ++back)
@@ -57,12 +59,12 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
     };
     const auto read = [&](const PortBinding& binding, std::vector<StandInInput>& inputs) {
       const ResourceDeclaration& resource = graph.resources[binding.resource.value];
-      if (!in_history(binding)) { // histories start from zero
+      if (!in_history(binding)) { // Histories start from zero.
         inputs.insert(inputs.end(), numbers(resource, binding.part).size(), {binding.port, Pixels{}});
         return;
       }
       const Contents& found = contents_of[binding.resource.value][frame - binding.frames_back];
-      if (binding.part.whole()) // of whatever stands for the resource
+      if (binding.part.whole()) // The parts of the resource that is read instead.
         for (const auto& pixels : found) {
           EXPECT_TRUE(pixels.has_value()) << resource.name;
           inputs.push_back({binding.port, pixels.value_or(Pixels{})});
@@ -76,7 +78,8 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
     for (uint32_t p = 0; p < graph.passes.size(); ++p) {
       const PassDeclaration& pass = graph.passes[p];
       if (pass.when.valid() && !evaluate(graph, pass.when, settings)) {
-        for (const PassThrough& one : pass.otherwise) // its readers see this instead
+        // Readers of a disabled pass see this resource instead.
+        for (const PassThrough& one : pass.otherwise)
           contents_of[one.output.value][frame] = contents_of[one.instead.value][frame];
         continue;
       }

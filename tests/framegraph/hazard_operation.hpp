@@ -1,22 +1,23 @@
 #pragma once
-// The commands of a plan as the oracle of hazards sees them, one thing at a time.
+// The commands of a plan as the hazard oracle sees them, one subresource at a time.
 
 #include "framegraph/compile/plan.hpp"
 
 namespace dermis::testing {
 
-// What one command does to one thing. A thing is one mip of one layer of an instance of a resource.
+// The effect of one command on one subresource: one mip of one layer of one resource instance.
 struct Operation {
   enum class What { access, barrier, frame_begins, wait } what = What::access;
-  uint32_t step = 0; // passes and barriers, counted through all frames; accesses of a pass share one
+  // Passes and barriers, counted through all frames; the accesses of a pass have one step.
+  uint32_t step = 0;
   uint32_t frame = 0;
   uint32_t resource = 0, instance = 0;
   const PlanAccess* access = nullptr;
   const PlanBarrier* barrier = nullptr;
   uint32_t mip = 0, layer = 0;
   Queue queue = Queue::main;
-  uint32_t until = 0; // waits: the last step of the other queue that is done by then
-  // Where the thing's instance lies; the host's have a heap each.
+  uint32_t until = 0; // For a wait: the last step of the other queue that has finished by then.
+  // The memory of the instance. Each host resource has its own heap.
   uint64_t heap = 0, begin = 0, end = 1;
 };
 

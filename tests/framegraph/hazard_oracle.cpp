@@ -16,10 +16,10 @@ struct Oracle {
   const Plan& plan;
   std::vector<Operation> all;
   std::vector<size_t> next_write =
-      {};                     // by operation: the next one of another step that writes the same thing
-  std::string misplaced = {}; // what is wrong with points and releases
+      {}; // By operation: the next operation of another step that writes the same subresource.
+  std::string misplaced = {}; // The first error in signals, waits, releases and orderings.
 
-  // --- what the operations are
+  // --- Operations of the unrolled frames
 
   uint32_t instance(uint32_t resource, uint32_t frames_back, uint32_t frame) const {
     const uint32_t count = plan.resources[resource].instance_count;
@@ -46,7 +46,7 @@ struct Oracle {
 
   static size_t number(Queue queue) { return queue == Queue::main ? 0 : 1; }
 
-  // `step_of`: the passes of this frame so far.
+  // `step_of` holds the steps of the earlier passes of this frame.
   bool follows(const PlanOrdering& ordering, const std::vector<uint32_t>& step_of) const {
     if (ordering.earlier >= step_of.size()) return false;
     const Queue queue = plan.passes[ordering.later].queue;
@@ -59,7 +59,7 @@ struct Oracle {
 
   void unroll(uint32_t frames) {
     uint32_t step = 0;
-    std::vector<uint32_t> reached[2]; // steps, by queue and point
+    std::vector<uint32_t> reached[2]; // Steps, by queue and timeline point.
     for (uint32_t f = 0; f < frames; ++f) {
       const size_t before[2] = {reached[0].size(), reached[1].size()};
       const auto barriers = [&](uint32_t first, uint32_t count, Queue queue, bool releases) {
@@ -98,7 +98,7 @@ struct Oracle {
       for (uint32_t r = 0; r < plan.resources.size(); ++r)
         add({Operation::What::frame_begins, step++, f, r, instance(r, 0, f), nullptr, nullptr},
             plan.resources[r].whole());
-      std::vector<uint32_t> step_of; // by pass
+      std::vector<uint32_t> step_of; // Indexed by pass.
       for (const PlanPass& pass : plan.passes) {
         wait(pass.wait, pass.queue);
         for (const PlanOrdering& ordering : plan.orderings)
@@ -133,11 +133,12 @@ struct Oracle {
     if (a.heap != b.heap || std::max(a.begin, b.begin) >= std::min(a.end, b.end)) return false;
     return !same_instance(a, b) || same_subresource(a, b);
   }
-  // Does the operation reach this byte of the heap that `thing` lies in, or all of the thing itself?
+  // Whether the operation covers this byte of the heap of `subresource`, or `subresource` itself.
   bool reaches(const Operation& o, const Operation& subresource, uint64_t byte) const {
     return overlap(o, subresource) && (same_instance(o, subresource) || (o.begin <= byte && byte < o.end));
   }
-  // One byte of each piece of what two operations share that no placement divides.
+  // Returns one byte of each piece of the common range of two operations, cut where other
+  // placements begin or end.
   std::vector<uint64_t> common_bytes(const Operation& a, const Operation& b) const {
     if (host(a.resource)) return {0};
     const uint64_t begin = std::max(a.begin, b.begin), end = std::min(a.end, b.end);
@@ -149,7 +150,7 @@ struct Oracle {
     bytes.erase(std::unique(bytes.begin(), bytes.end()), bytes.end());
     return bytes;
   }
-  // Barriers that are operations on the contents themselves: changes of layout and of owner.
+  // Whether the operation is a barrier that changes the contents: a change of layout or owner.
   bool transition(const Operation& o) const {
     return is_barrier(o) && (o.barrier->from_host || o.barrier->to_host ||
                              o.barrier->transfer != PlanBarrier::Transfer::none ||
@@ -158,13 +159,14 @@ struct Oracle {
   bool acts(const Operation& o) const { return accesses(o) || transition(o); }
   bool writes(const Operation& o) const { return written(o) != 0 || transition(o); }
 
-  // --- what the barriers between two operations establish
+  // --- Dependencies that the barriers between two operations establish
 
   struct Path {
-    Stage ordered[2] = {0, 0};                      // by queue: stages that wait for the first operation
-    uint32_t since[2] = {no_instance, no_instance}; // by queue: the step from which on some do
+    Stage ordered[2] = {0, 0}; // By queue: stages that wait for the first operation.
+    // By queue: the first step from which stages wait.
+    uint32_t since[2] = {no_instance, no_instance};
     bool available = false;
-    bool visible = false; // to what the second one reads
+    bool visible = false; // Visible to the reads of the second operation.
     bool visible_to_write = false;
   };
 
@@ -210,8 +212,8 @@ struct Oracle {
     return p;
   }
 
-  // Another operation on the thing of `first`, between the two, that replaces what `first` left: it had to
-  // wait for `first`, and `second` has to wait for it.
+  // Whether an operation between the two overwrites the result of `first`. The overwriting
+  // operation waits for `first`, and `second` waits for the overwriting operation.
   bool replaced(size_t first, size_t second) const {
     const size_t k = next_write[first];
     return k < second && all[k].step != all[second].step;
@@ -219,7 +221,7 @@ struct Oracle {
 
   void find_next_writes() {
     next_write.assign(all.size(), all.size());
-    std::map<std::array<uint32_t, 4>, size_t> nearest; // by thing: the write behind that comes first
+    std::map<std::array<uint32_t, 4>, size_t> nearest; // By subresource: the nearest later write.
     for (size_t i = all.size(); i-- > 0;) {
       const Operation& o = all[i];
       if (o.what == Operation::What::wait) continue;
@@ -237,12 +239,12 @@ struct Oracle {
     return false;
   }
 
-  // --- the questions
+  // --- Checks
 
-  std::string pair(size_t first, size_t second) const { // of two that act, one of which writes
+  std::string pair(size_t first, size_t second) const { // At least one of both writes.
     const Operation &a = all[first], &b = all[second];
     if (a.step == b.step || !overlap(a, b)) return "";
-    if (is_barrier(b) && b.barrier->from_host) return ""; // the host has seen to that
+    if (is_barrier(b) && b.barrier->from_host) return ""; // The host synchronizes its own work.
     if (replaced(first, second)) return "";
     for (const uint64_t byte : common_bytes(a, b))
       if (std::string wrong = pair(first, second, byte); !wrong.empty()) return wrong;
@@ -272,12 +274,13 @@ struct Oracle {
       if (history.resource == resource) return &history;
     return nullptr;
   }
-  bool keeps_oldest(uint32_t resource) const { // in the instance of this frame, until that is written
+  // The instance of this frame holds the oldest frame until it is written.
+  bool keeps_oldest(uint32_t resource) const {
     const PlanHistory* history = history_of(resource);
     return history && plan.resources[resource].instance_count == history->frames;
   }
 
-  // Does the pass of operation `at` write the bytes that it touches, through another access?
+  // Whether another access of the same pass writes the bytes of operation `at`.
   bool raced(size_t at) const {
     const Operation& o = all[at];
     const bool own = written(o) == 0 && o.access->own_texels;
@@ -291,7 +294,7 @@ struct Oracle {
     return false;
   }
 
-  // Does operation `second` read the frame it means?
+  // Whether operation `second` reads the requested frame.
   bool right_frame(size_t second) const {
     const Operation& o = all[second];
     if (!history_of(o.resource)) return true;
@@ -299,10 +302,10 @@ struct Oracle {
       if (all[k].step != o.step && same_subresource(all[k], o) && written(all[k]) != 0)
         return all[k].frame + o.access->frames_back == o.frame + all[k].access->frames_back;
     const uint32_t first_frames = o.access->frames_back;
-    return o.frame < first_frames; // as the executor starts it
+    return o.frame < first_frames; // The executor clears histories before their first frame.
   }
 
-  // Do the contents that operation `second` reads mean something?
+  // Whether the contents that operation `second` reads are defined.
   bool defined(size_t second) const {
     for (size_t k = second; k-- > 0;) {
       const Operation& o = all[k];
@@ -320,10 +323,11 @@ struct Oracle {
         return false;
       }
     }
-    return history_of(all[second].resource) != nullptr; // as the executor starts it
+    // The executor clears histories before their first frame.
+    return history_of(all[second].resource) != nullptr;
   }
 
-  // The layout of a thing just before operation `at`.
+  // Returns the layout of a subresource just before operation `at`.
   Layout layout(const Operation& subresource, size_t at) const {
     for (size_t k = at; k-- > 0;)
       if (transition(all[k]) && all[k].barrier->transfer != PlanBarrier::Transfer::release &&
@@ -336,7 +340,7 @@ struct Oracle {
     return Layout::undefined;
   }
 
-  // As the plan promises it for this mip and layer when a frame starts.
+  // Returns the layout that the plan states for this mip and layer at the start of a frame.
   Layout kept_layout(const PlanHistory& history, const Operation& subresource, uint32_t back) const {
     for (uint32_t part = 0; part < history.parts; ++part) {
       const SubresourceRange& range = plan.history_parts[history.first_part + part];
@@ -355,7 +359,7 @@ struct Oracle {
     return true;
   }
 
-  // Was it handed back in the frame that ends before operation `at`?
+  // Whether the resource was released to the host in the frame that ends before operation `at`.
   bool handed_back(size_t at) const {
     if (all[at].frame == 0) return true;
     for (size_t k = at; k-- > 0 && all[k].frame + 1 >= all[at].frame;)
@@ -367,7 +371,7 @@ struct Oracle {
     Queue queue = Queue::main;
     const PlanBarrier* released = nullptr;
   };
-  // Whose a thing is just before operation `at`, and whether that queue has released it.
+  // Returns the queue that owns a subresource just before operation `at`, and its pending release.
   Owner owner(size_t at) const {
     for (size_t k = at; k-- > 0;) {
       const Operation& o = all[k];
@@ -385,7 +389,8 @@ struct Oracle {
     const Operation& o = all[at];
     const Owner own = owner(at);
     if (accesses(o)) {
-      const bool fresh = !image(o) && read(o) == 0; // what was there before does not count
+      // A write without a read discards earlier contents.
+      const bool fresh = !image(o) && read(o) == 0;
       return own.released || (own.queue != o.queue && !fresh) ? "belongs to the other queue" : "";
     }
     if (!is_barrier(o)) return "";
@@ -459,7 +464,7 @@ struct Oracle {
       for (size_t k = 0; k < i; ++k) {
         const Placement &m = plan.placements[i], &n = plan.placements[k];
         const bool disjoint =
-            m.persistent != n.persistent || // lent: contents tell
+            m.persistent != n.persistent || // A history alias: the content checks cover it.
             (!m.persistent && !n.persistent && (m.last_use < n.first_use || n.last_use < m.first_use));
         const bool bytes =
             m.heap == n.heap && std::max(m.offset, n.offset) < std::min(m.offset + m.size, n.offset + n.size);
@@ -477,12 +482,13 @@ std::string first_hazard(const Plan& plan) {
   uint32_t frames = 3;
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
-  for (const PlanResource& resource : plan.resources) // contents of each instance, until it is the oldest
+  // Instances need enough frames for each to become the oldest.
+  for (const PlanResource& resource : plan.resources)
     frames = std::max(frames, 2 * resource.instance_count + 1);
-  oracle.unroll(frames + 1); // the beginning of the last one tells how the one before ended
+  oracle.unroll(frames + 1); // The beginning of the last frame checks how the frame before ended.
   if (!oracle.misplaced.empty()) return oracle.misplaced;
   oracle.find_next_writes();
-  std::vector<size_t> acting, writing; // operations before b
+  std::vector<size_t> acting, writing; // Operations before b.
   for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {
     const Operation& o = oracle.all[b];
     if (o.frame == frames && o.what != Operation::What::frame_begins) break;

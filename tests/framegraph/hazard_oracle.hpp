@@ -1,7 +1,7 @@
 #pragma once
-// A second opinion on plans, slow and plain: looks at every pair of operations of several frames on memory
-// with a byte in common, and for each pair again at every barrier between them. Shares no code with the
-// verifier, nor its state: nothing is carried from one operation to the next.
+// An independent, slow checker of plans. It compares every pair of operations of several frames on
+// memory with a common byte, and follows each pair through every barrier between them. It shares no
+// code and no state with the verifier, and carries nothing from one operation to the next.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -9,7 +9,8 @@
 
 namespace dermis::testing {
 
-// The first hazard, in words; "" if there is none. Indices of the plan must be in range.
+// Returns a text for the first hazard, or "" if there is none. Indices of the plan must be in
+// range.
 std::string first_hazard(const Plan& plan);
 
 } // namespace dermis::testing

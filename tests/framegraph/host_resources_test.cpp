@@ -1,4 +1,5 @@
-// Buffers and acceleration structures that the host binds, and options that need what a device may lack.
+// Tests buffers and acceleration structures that the host binds, and options that need features a
+// device may lack.
 
 #include "framegraph/compile/availability.hpp"
 #include "framegraph/compile/compile.hpp"
@@ -78,7 +79,7 @@ struct Mistake {
   const char* property;
   const char *from, *to;
   DiagnosticId id;
-  const char* at; // first occurrence of this is where the diagnostic points
+  const char* at; // The diagnostic points at the first occurrence of this text.
   std::vector<std::string> words;
 };
 
@@ -201,7 +202,7 @@ std::string only_pass(const Graph& graph, const CompiledPlan& compiled) {
   return graph.passes[compiled.plan.passes.front().declared.value].name;
 }
 
-TEST(HostResources, AreTakenOverReadAtTheComputeStageAndHandedBack) {
+TEST(HostResources, AreAcquiredReadAndReleased) {
   const HostRead loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = generic_profile();
@@ -254,7 +255,7 @@ TEST(HostResources, ArePartOfASavedPlan) {
   EXPECT_EQ(back->key.features, bit_of(Feature::ray_query));
 }
 
-TEST(Options, ThatTheDeviceCannotRunGiveWayToOneThatItCan) {
+TEST(Options, UnavailableOnDevice_FallBack) {
   const HostRead loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph);
   const DeviceProfile device = without_rays();
@@ -271,12 +272,12 @@ TEST(Options, ThatTheDeviceCannotRunGiveWayToOneThatItCan) {
   EXPECT_EQ(result.diagnostics.list[0].id, Id::option_unavailable);
 }
 
-TEST(Options, ThatNeedAnImportGiveWayWhereItIsNotBound) {
+TEST(Options, UnboundImport_FallBack) {
   const HostRead loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph);
   const DeviceProfile device = generic_profile();
   std::vector<bool> bound(loaded.graph->resources.size(), true);
-  bound[1] = false; // the scene
+  bound[1] = false; // Unbinds the scene.
   const Compiled result = compiled(*loaded.graph, device, bound);
   ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
@@ -284,7 +285,7 @@ TEST(Options, ThatNeedAnImportGiveWayWhereItIsNotBound) {
   EXPECT_NE(text.find("not offered: 'scene' is not bound"), std::string::npos) << text;
 }
 
-TEST(Features, ThatAGraphRequiresAreNeededToRunIt) {
+TEST(Features, RequiredByTheGraph_MustBeAvailable) {
   const HostRead loaded =
       read_with_host(with("\"name\": \"traced\"", "\"name\": \"traced\",\n  \"requires\": [\"ray_query\"]"));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
@@ -294,7 +295,7 @@ TEST(Features, ThatAGraphRequiresAreNeededToRunIt) {
   expect_only(result.diagnostics, Id::device_feature, 2, 3, {"'traced'", "ray_query"});
 }
 
-TEST(Features, ThatAKernelNeedsAreNeededToRunItsPass) {
+TEST(Features, RequiredByAKernel_MustBeAvailable) {
   const HostRead loaded =
       read_with_host(with(", \"requires\": { \"trace\": [\"ray_query\", \"scene\"] }", ""));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);

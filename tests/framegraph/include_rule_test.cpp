@@ -1,4 +1,5 @@
-// A room may include only rooms above it: the rule of the architecture, read off the #include lines.
+// Enforces the include rule of the architecture on all #include lines: a folder includes only
+// folders before it.
 
 #include <algorithm>
 #include <filesystem>
@@ -12,11 +13,11 @@
 namespace dermis {
 namespace {
 
-// Rooms in the order in which they may know of each other; a file belongs to the longest prefix that fits.
+// Folders in include order. A file belongs to the folder with the longest matching prefix.
 constexpr std::string_view folders[] = {"framegraph/", "framegraph/vulkan/", "passes/", "integration/",
                                         "tests/"};
 
-// Index into rooms; -1: no room of ours (system headers, shaders).
+// Returns an index into `folders`, or -1 for other files (system headers, shaders).
 int folder_of(std::string_view path) {
   int best = -1;
   for (int i = 0; i < static_cast<int>(std::size(folders)); ++i) {
@@ -27,7 +28,8 @@ int folder_of(std::string_view path) {
   return best;
 }
 
-// The path between the quotes or brackets of an #include line; empty for any other line.
+// Returns the path between the quotes or brackets of an #include line, or an empty view for any
+// other line.
 std::string included(std::string_view line) {
   const auto skip = [&](std::string_view characters) {
     line.remove_prefix(std::min(line.find_first_not_of(characters), line.size()));
@@ -43,7 +45,7 @@ std::string included(std::string_view line) {
   return std::string(line.substr(0, line.find_first_of("\">")));
 }
 
-// What is wrong with `path` (from the repository root) including `target`; empty: nothing.
+// Returns the error if `path` (from the repository root) must not include `target`, else "".
 std::string violation(const std::string& path, const std::string& target) {
   const int from = folder_of(path), to = folder_of(target);
   if (from < 0) return {};
@@ -55,7 +57,7 @@ std::string violation(const std::string& path, const std::string& target) {
   return {};
 }
 
-// Folders in the order in which they may know of each other, below each of these roots.
+// The include order of the folders below one root.
 struct Order {
   std::string_view root;
   std::vector<std::string_view> folders;
@@ -71,7 +73,8 @@ const Order orders[] = {
 };
 constexpr std::string_view techniques[] = {"separable", "burley", "sap", "afis", "restir"};
 
-// Index of the folder of `path` in `order`; -1: another root, or a file of the root itself.
+// Returns the index of the folder of `path` in `order`, or -1 for another root and for files of the
+// root itself.
 int place_of(const Order& order, std::string_view path) {
   if (!path.starts_with(order.root)) return -1;
   path.remove_prefix(order.root.size());
@@ -87,7 +90,7 @@ std::string_view technique_of(std::string_view path) {
   return {};
 }
 
-// What is wrong with `path` including `target`, both of one part of the house; empty: nothing.
+// Returns the error if `path` must not include `target` within one root, else "".
 std::string violation_within(const std::string& path, const std::string& target) {
   for (const Order& order : orders) {
     const int from = place_of(order, path), to = place_of(order, target);
@@ -105,7 +108,7 @@ std::string violation_within(const std::string& path, const std::string& target)
   return {};
 }
 
-TEST(IncludeRule, NoFileIncludesARoomBelowItsOwn) {
+TEST(IncludeRule, NoFileIncludesALaterFolder) {
   const std::filesystem::path root = DERMIS_SOURCE_DIR;
   size_t files = 0, includes = 0;
   for (const char* folder : {"framegraph", "passes", "integration"}) {
@@ -126,12 +129,12 @@ TEST(IncludeRule, NoFileIncludesARoomBelowItsOwn) {
       }
     }
   }
-  // A scan that found nothing would prove nothing.
+  // Fails if the scan finds too few files.
   EXPECT_GT(files, 10u);
   EXPECT_GT(includes, files);
 }
 
-TEST(IncludeRule, TheRuleSeesWhatItForbids) {
+TEST(IncludeRule, ForbiddenIncludesAreFound) {
   EXPECT_EQ(included("  # include \"framegraph/text/document.hpp\" // x"), "framegraph/text/document.hpp");
   EXPECT_EQ(included("#include <vulkan/vulkan.h>"), "vulkan/vulkan.h");
   EXPECT_EQ(included("// #include \"passes/x.hpp\""), "");
@@ -145,7 +148,7 @@ TEST(IncludeRule, TheRuleSeesWhatItForbids) {
   EXPECT_EQ(violation("passes/common/x.cpp", "framegraph/vulkan/device.hpp"), "");
 }
 
-TEST(IncludeRule, FoldersIncludeOnlyThoseBeforeThem) {
+TEST(IncludeRule, FoldersIncludeOnlyEarlierFolders) {
   EXPECT_NE(violation_within("framegraph/text/diagnostic.hpp", "framegraph/model/ids.hpp"), "");
   EXPECT_NE(
       violation_within("integration/tools/command/expect/a.cpp", "integration/tools/command/inspect/b.hpp"),

@@ -1,5 +1,5 @@
-// Metamorphic laws: whatever a plan is free to choose, the host gets the same pixels, and they are those that
-// the graph's declarations mean.
+// Metamorphic properties: whatever the compiler may choose, the host gets equal pixels, and they
+// match the graph's declarations.
 
 #include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/plan_mutations.hpp"
@@ -13,8 +13,8 @@
 namespace dermis::testing {
 namespace {
 
-constexpr uint32_t frames = 5; // each of up to four history instances is reused
-constexpr uint64_t orders = 3; // tried of each plan
+constexpr uint32_t frames = 5; // Each of up to four history instances is reused.
+constexpr uint64_t orders = 3; // Number of orders tried per plan.
 
 uint64_t random_graphs() {
   return seeds_to_try(1500, 10000);
@@ -24,8 +24,8 @@ InterpretOptions options(uint64_t contents, uint64_t poison = 1, uint64_t order 
   return {frames, contents, poison, order};
 }
 
-// Exports that nothing reads turned optional and left unbound, where the seed says so: what only they needed
-// is culled.
+// Makes some unread exports optional and unbound, chosen by the seed. The passes that only they
+// need are culled.
 std::vector<bool> leave_out_exports(GraphBuilder& builder, uint64_t seed) {
   std::vector<bool> bound(builder.graph.resources.size(), true);
   for (uint32_t r = 0; r < builder.graph.resources.size(); ++r) {
@@ -37,7 +37,8 @@ std::vector<bool> leave_out_exports(GraphBuilder& builder, uint64_t seed) {
   return bound;
 }
 
-// Side effects that read every image keep every pass that writes one.
+// Adds a pass with side effects that reads every image, so that every pass that writes an image is
+// live.
 GraphBuilder with_all_images_needed(GraphBuilder builder) {
   const size_t resources = builder.graph.resources.size();
   for (size_t r = 0; r < resources; ++r)
@@ -48,7 +49,7 @@ GraphBuilder with_all_images_needed(GraphBuilder builder) {
   return builder;
 }
 
-TEST(Interpreter, EveryPlanGivesThePixelsThatTheGraphMeans) {
+TEST(Interpreter, EveryPlanGivesTheReferencePixels) {
   uint64_t compared = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     const auto builder = random_graph(seed);
@@ -57,16 +58,16 @@ TEST(Interpreter, EveryPlanGivesThePixelsThatTheGraphMeans) {
     for (const auto& slot : reference.back())
       compared += slot.has_value();
   }
-  EXPECT_GT(compared, random_graphs()); // at least the export that every graph has
+  EXPECT_GT(compared, random_graphs()); // Every graph has at least one export.
 }
 
-// Cuts change which histories are valid, and with that what passes read; the plan stays the same.
-TEST(Interpreter, CutsChangeWhatIsReadAndNothingElse) {
+// Cuts change which histories are valid, and so what passes read; the plan stays the same.
+TEST(Interpreter, CutsChangeOnlyWhatIsRead) {
   uint64_t conditional = 0, changed = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
-    const uint64_t cuts = (seed % 31 + 1) << 1u; // every set of the frames 1 .. 5 - 1
+    const uint64_t cuts = (seed % 31 + 1) << 1u; // Every set of the frames 1 .. 4.
     const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed, cuts);
     InterpretOptions with_cuts = options(seed, seed, seed % orders);
     with_cuts.cuts = cuts;
@@ -79,7 +80,7 @@ TEST(Interpreter, CutsChangeWhatIsReadAndNothingElse) {
   EXPECT_GT(changed, random_graphs() / 4);
 }
 
-TEST(Interpreter, OrdersThatTheBarriersAllowAndPoisonChangeNothing) {
+TEST(Interpreter, LegalOrdersAndUndefinedContentsChangeNothing) {
   uint64_t moved = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     const auto builder = random_graph(seed);
@@ -93,7 +94,7 @@ TEST(Interpreter, OrdersThatTheBarriersAllowAndPoisonChangeNothing) {
   EXPECT_GT(moved, random_graphs() / 2);
 }
 
-TEST(Interpreter, MemoryOfItsOwnForEveryResourceChangesNothing) {
+TEST(Interpreter, SeparateMemoryChangesNothing) {
   uint64_t shared = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     const auto builder = random_graph(seed);
@@ -104,10 +105,10 @@ TEST(Interpreter, MemoryOfItsOwnForEveryResourceChangesNothing) {
     for (size_t h = 0; h < plan.heaps.size(); ++h)
       shared += apart.heaps[h].size > plan.heaps[h].size;
   }
-  EXPECT_GT(shared, random_graphs() / 4); // many of the plans do share memory
+  EXPECT_GT(shared, random_graphs() / 4); // Many of the plans have to share memory.
 }
 
-TEST(Interpreter, WhatIsCulledChangesNothingForTheHost) {
+TEST(Interpreter, CullingChangesNothingForTheHost) {
   uint64_t fewer = 0, more = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     GraphBuilder builder = random_graph(seed);
@@ -128,7 +129,8 @@ TEST(Interpreter, WhatIsCulledChangesNothingForTheHost) {
     for (size_t frame = 0; frame < frames; ++frame)
       for (size_t slot = 0; slot < wanted[frame].size(); ++slot)
         if (slot >= found[frame].size() || !found[frame][slot]) wanted[frame][slot].reset();
-    for (size_t r = 0, slot = 0; r < bound.size(); ++r) { // only what was left out is missing
+    // Only the unbound exports may be missing.
+    for (size_t r = 0, slot = 0; r < bound.size(); ++r) {
       const ResourceDeclaration& resource = builder.graph.resources[r];
       if (resource.origin != Origin::imported && !resource.exported) continue;
       if (bound[r]) {
@@ -143,11 +145,11 @@ TEST(Interpreter, WhatIsCulledChangesNothingForTheHost) {
   EXPECT_GT(more, random_graphs() / 8);
 }
 
-// The laws above could hold of an interpreter that notices nothing. All barriers of a pass go at once, and no
-// memory is shared: one of them alone may hold the pass back from the writers of all its inputs. A few passes
-// still wait for them by way of a third one.
-TEST(Interpreter, PixelsChangeWhereAPassDoesNotWaitForWhatItReads) {
-  constexpr uint64_t tries = 16; // orders of each plan
+// Checks that the interpreter detects missing barriers. The test drops all barriers of a pass at
+// once and shares no memory, because one barrier may order the pass after the writers of all its
+// inputs. A few passes still wait for the writers through a third pass.
+TEST(Interpreter, PixelsChange_WithoutBarriersOfAPass) {
+  constexpr uint64_t tries = 16; // Orders of each plan.
   uint64_t dropped = 0, noticed = 0;
   for (uint64_t seed = 0; seed < seeds_to_try(60, 300); ++seed) {
     const auto builder = random_graph(seed);
@@ -174,7 +176,7 @@ TEST(Interpreter, PixelsChangeWhereAPassDoesNotWaitForWhatItReads) {
   EXPECT_GT(noticed * 20, dropped * 19);
 }
 
-TEST(Interpreter, PixelsChangeWhereMemoryIsSharedWhileBothAreAlive) {
+TEST(Interpreter, PixelsChange_LiveMemoryIsShared) {
   uint64_t moved = 0, noticed = 0;
   for (uint64_t seed = 0; seed < seeds_to_try(100, 1000); ++seed) {
     const auto builder = random_graph(seed);

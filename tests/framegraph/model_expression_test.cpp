@@ -9,7 +9,8 @@ namespace {
 using testing::all_messages;
 using testing::expect_only;
 
-// Settings: flag (true), count (16), scale (1.5), mode (enum a b c: b), other (enum x y: x).
+// Declares the settings flag (true), count (16), scale (1.5), mode (enum a b c: b) and other (enum
+// x y: x).
 struct Fixture {
   Graph graph;
   Diagnostics diagnostics;
@@ -42,41 +43,22 @@ struct Case {
   bool value;
 };
 
-TEST(Expression, HasTheValueOfItsReading) {
+TEST(Expression, EvaluatesWithTheStatedPrecedence) {
   for (const Case& one :
-       {Case{"flag", true},
-        Case{"not flag", false},
-        Case{"not not flag", true},
-        Case{"true", true},
-        Case{"false", false},
-        Case{"count == 16", true},
-        Case{"count != 16", false},
-        Case{"count < 16", false},
-        Case{"count <= 16", true},
-        Case{"count > 15.5", true},
-        Case{"16 >= count", true},
-        Case{"count > -1", true},
-        Case{"scale == 1.5", true},
-        Case{"scale < 2", true},
-        Case{"scale > 1e0", true},
-        Case{"mode == 'b'", true},
-        Case{"'b' == mode", true},
-        Case{"mode != 'b'", false},
-        Case{"mode in ['a', 'c']", false},
-        Case{"mode in ['b']", true},
-        Case{"mode not in ['a', 'c']", true},
-        Case{"count in [1, 16]", true},
-        Case{"count in [1, 16.5]", false},
-        Case{"flag in [false]", false},
-        Case{"flag == true", true},
+       {Case{"flag", true}, Case{"not flag", false}, Case{"not not flag", true}, Case{"true", true},
+        Case{"false", false}, Case{"count == 16", true}, Case{"count != 16", false},
+        Case{"count < 16", false}, Case{"count <= 16", true}, Case{"count > 15.5", true},
+        Case{"16 >= count", true}, Case{"count > -1", true}, Case{"scale == 1.5", true},
+        Case{"scale < 2", true}, Case{"scale > 1e0", true}, Case{"mode == 'b'", true},
+        Case{"'b' == mode", true}, Case{"mode != 'b'", false}, Case{"mode in ['a', 'c']", false},
+        Case{"mode in ['b']", true}, Case{"mode not in ['a', 'c']", true}, Case{"count in [1, 16]", true},
+        Case{"count in [1, 16.5]", false}, Case{"flag in [false]", false}, Case{"flag == true", true},
         Case{"flag == (count == 16)", true},
-        Case{"mode == 'a' and count == 1 or flag", true}, // and binds more tightly than or
-        Case{"mode == 'a' and (count == 1 or flag)", false},
-        Case{"flag or flag and false", true},
-        Case{"not mode == 'a' and flag", true}, // not binds more tightly than and, less than ==
-        Case{"  mode\\tin\\n[ 'a' ,'b']  ", true},
-        Case{"mode == mode", true},
-        Case{"count == 9223372036854775807", false}}) {
+        Case{"mode == 'a' and count == 1 or flag", true}, // `and` binds more tightly than `or`.
+        Case{"mode == 'a' and (count == 1 or flag)", false}, Case{"flag or flag and false", true},
+        // `not` binds more tightly than `and`, but less tightly than `==`.
+        Case{"not mode == 'a' and flag", true}, Case{"  mode\\tin\\n[ 'a' ,'b']  ", true},
+        Case{"mode == mode", true}, Case{"count == 9223372036854775807", false}}) {
     Fixture fixture;
     const ExpressionId id = fixture.parse(one.text);
     ASSERT_TRUE(id.valid()) << one.text << "\n" << all_messages(fixture.diagnostics);
@@ -92,7 +74,7 @@ TEST(Expression, HasTheValueOfItsReading) {
 struct Wrong {
   const char* text;
   DiagnosticId id;
-  uint32_t at; // byte of the expression, from 0
+  uint32_t at; // Byte of the expression, from 0.
   const char* word;
 };
 
@@ -144,7 +126,7 @@ TEST(Expression, ErrorsPointIntoTheString) {
        }) {
     Fixture fixture;
     EXPECT_FALSE(fixture.parse(one.text).valid()) << one.text;
-    // Line 2, behind the opening quote in column 1.
+    // The expression starts on line 2, after the opening quote in column 1.
     expect_only(fixture.diagnostics, one.id, 2, one.at + 2, {one.word});
     EXPECT_TRUE(fixture.graph.expressions.empty()) << "nothing is left behind";
   }
@@ -177,11 +159,11 @@ TEST(Expression, NestingAndLengthAreBounded) {
   expect_only(long_one.diagnostics, DiagnosticId::limit_exceeded, 2, 1);
 }
 
-// Random strings of the language's own words: parsed and evaluated, or refused with one error, never a crash.
+// Random strings of the language's tokens are parsed and evaluated, or refused with one error.
 TEST(Expression, EveryStringIsParsedOrExplained) {
   const char* words[] = {"flag", "count", "mode", "'a'", "'q'", "1",  "2.5", "and", "or", "not", "in",
                          "[",    "]",     "(",    ")",   ",",   "==", "<",   ">=",  "!",  "'",   "zzz"};
-  uint32_t state = 1; // linear congruential, numbers of Numerical Recipes
+  uint32_t state = 1; // Linear congruential generator with the constants of Numerical Recipes.
   const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 16; };
   for (int round = 0; round < 20000; ++round) {
     std::string text;
@@ -195,8 +177,8 @@ TEST(Expression, EveryStringIsParsedOrExplained) {
   }
 }
 
-// Conditions of which all combinations of a few values show whether they can hold together.
-TEST(Expression, ConditionsHoldTogetherAsAllValuesSay) {
+// Compares with an exhaustive search over a few values whether two conditions can hold together.
+TEST(Expression, Conditions_CompatibilityMatchesExhaustiveSearch) {
   Fixture fixture;
   fixture.graph.settings[1].maximum = 4;
   fixture.graph.settings[2].maximum = 2;

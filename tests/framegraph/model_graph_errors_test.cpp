@@ -1,4 +1,4 @@
-// Each damage to a good graph gives exactly one diagnostic: what a graph declares.
+// Each change that breaks the declarations of a good graph gives exactly one diagnostic.
 
 #include "tests/framegraph/damaged_graph.hpp"
 

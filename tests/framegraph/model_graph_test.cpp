@@ -7,7 +7,7 @@ namespace {
 
 using namespace dermis::testing;
 
-TEST(Graph, EveryDeclarationOfAFileArrivesWithItsNamesResolved) {
+TEST(Graph, EveryDeclarationIsReadAndResolved) {
   const Read whole = read(whole_graph());
   ASSERT_TRUE(whole.graph) << all_messages(whole.diagnostics);
   EXPECT_TRUE(whole.diagnostics.list.empty()) << all_messages(whole.diagnostics);
@@ -111,7 +111,7 @@ TEST(Graph, PassesWithConditionsMayWriteTheSameResource) {
   EXPECT_TRUE(exclusive.graph) << all_messages(exclusive.diagnostics);
 }
 
-TEST(Graph, AReaderMayStandBeforeItsProducer) {
+TEST(Graph, ReaderMayPrecedeItsProducer) {
   const Read forward =
       read(R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
     "resources": { "x": { "format": "rgba16f", "size": "view" } }, "passes": [
@@ -120,7 +120,8 @@ TEST(Graph, AReaderMayStandBeforeItsProducer) {
   EXPECT_TRUE(forward.graph) << all_messages(forward.diagnostics);
 }
 
-// Every deletion of one line, and of one token: refused with a diagnostic or accepted, never a crash.
+// Every deletion of one line or one token is refused with a diagnostic or accepted, and never
+// crashes.
 TEST(Graph, DamagedGraphsAreAcceptedOrExplained) {
   const std::string whole = whole_graph();
   const auto check = [](const std::string& text) {

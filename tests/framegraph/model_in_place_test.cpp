@@ -43,7 +43,7 @@ struct Case {
   const char* name;
   const char* passes;
   DiagnosticId id = DiagnosticId::in_place_race;
-  std::vector<std::string> words = {}; // of the message; none: the graph is accepted
+  std::vector<std::string> words = {}; // Words of the message; empty if the graph is accepted.
 };
 
 struct Outcome {
@@ -73,7 +73,7 @@ Outcome read_passes(const char* passes) {
   return out;
 }
 
-// The last pass: only the export needs it.
+// The last pass, which only writes the export.
 #define SHOW(resource)                                                                                       \
   R"({ "pass": "show", "type": "t.blur", "read": { "a": ")" resource R"(" }, "write": { "o": "out" } })"
 #define X_FROM_LIGHT(when)                                                                                   \
@@ -187,7 +187,7 @@ const Case accepted[] = {
 
 struct InPlace : ::testing::TestWithParam<Case> {};
 
-TEST_P(InPlace, IsJudgedInEveryStateOfTheSettings) {
+TEST_P(InPlace, EveryStateOfTheSettingsIsChecked) {
   const Case& one = GetParam();
   const Outcome result = read_passes(one.passes);
   if (one.words.empty()) {

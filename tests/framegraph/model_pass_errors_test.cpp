@@ -1,4 +1,5 @@
-// Each damage to a good graph gives exactly one diagnostic: what passes say and how they hang together.
+// Each change that breaks the passes of a good graph or their connections gives exactly one
+// diagnostic.
 
 #include "tests/framegraph/damaged_graph.hpp"
 
@@ -249,7 +250,7 @@ INSTANTIATE_TEST_SUITE_P(Queues, DamagedPass,
                                                   {"'queue' of pass 'mix'", "'async'"}}),
                          property_of);
 
-TEST(Queue, OfAPassIsMainUnlessItSaysSo) {
+TEST(Queue, DefaultIsMain) {
   const Read result = read(damaged("\"pass\": \"mix\", ", "\"pass\": \"mix\", \"queue\": \"async\", "));
   ASSERT_TRUE(result.graph) << all_messages(result.diagnostics);
   EXPECT_FALSE(result.graph->passes[2].async);
@@ -296,17 +297,17 @@ INSTANTIATE_TEST_SUITE_P(
                              {"'half#x'", "#1..3"}}),
     property_of);
 
-TEST(ValidHistory, APortThatMustBeBoundSaysWhatItReadsElse) {
+TEST(ValidHistory, RequiredPortNeedsAnOtherwise) {
   std::string text =
       damaged("\"source\": \"light\"", "\"source\": { \"from\": \"kept@-1\", \"requires\": \"valid\" }");
-  EXPECT_TRUE(read(text).graph); // zeros: the history is cleared first
+  EXPECT_TRUE(read(text).graph); // The read gives zeros: the history is cleared first.
   text.replace(text.find("\"first\": \"clear\", "), std::string("\"first\": \"clear\", ").size(), "");
   const Read result = read(text);
   EXPECT_FALSE(result.graph);
   expect_only(result.diagnostics, Id::bad_requires, 21, 37, {"port 'source' of pass 'blur'", "'kept@-1'"});
 }
 
-TEST(ValidHistory, IsReadAsTwoBindingsOfOnePort) {
+TEST(ValidHistory, BecomesTwoBindingsOfOnePort) {
   const Read result =
       read(damaged("\"history\": \"kept@-2\"", "\"history\": { \"from\": \"kept@-2\", \"requires\": "
                                                "\"valid\", \"otherwise\": \"light\" }"));

@@ -1,4 +1,4 @@
-// Root causes are told, all in one run; their consequences are not.
+// All root causes are reported in one run; their consequences are not reported.
 
 #include "framegraph/text/limits.hpp"
 #include "tests/framegraph/model_support.hpp"
@@ -24,14 +24,14 @@ TEST(GraphErrors, TwoPassesThatAlwaysRunDoNotWriteTheSameResource) {
               {"'one' and 'two'", "'x'", "'one' writes it here"});
 }
 
-TEST(GraphErrors, WhatPassesOnlyUpdateHasNoContents) {
+TEST(GraphErrors, ResourceOnlyUpdated_HasNoContents) {
   const Read result = read(small_graph(R"(
 { "pass": "one", "type": "test.mix", "read": { "source": "a" }, "write": { "target": "x" } })"));
   EXPECT_FALSE(result.graph);
   expect_only(result.diagnostics, Id::no_producer, 3, 86, {"pass 'one' updates 'x'", "only update"});
 }
 
-TEST(GraphErrors, WhatNoPassWritesCannotBeRead) {
+TEST(GraphErrors, ResourceNeverWritten_CannotBeRead) {
   const Read result = read(small_graph(R"(
 { "pass": "one", "type": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } },
 { "pass": "two", "type": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } })"));
@@ -39,14 +39,16 @@ TEST(GraphErrors, WhatNoPassWritesCannotBeRead) {
   expect_only(result.diagnostics, Id::no_producer, 3, 58, {"pass 'one' reads 'x'", "declared here"});
 }
 
-TEST(GraphErrors, AllRootCausesAreReportedInOneRunAndTheirConsequencesAreNot) {
-  std::string text = damaged("\"r8_uint\"", "\"r8uint\""); // readers of material stay silent
+TEST(GraphErrors, OnlyRootCausesAreReportedInOneRun) {
+  // Gives no diagnostic for readers of `material`.
+  std::string text = damaged("\"r8_uint\"", "\"r8uint\"");
   const auto also = [&](std::string_view from, std::string_view to) {
     ASSERT_NE(text.find(from), std::string::npos);
     text.replace(text.find(from), from.size(), to);
   };
-  also("\"int\": 16", "\"int\": 1.5");                         // "$samples" stays silent
-  also("\"type\": \"test.list\"", "\"type\": \"test.lisst\""); // the reader of list stays silent
+  also("\"int\": 16", "\"int\": 1.5"); // Gives no diagnostic for "$samples".
+  // Gives no diagnostic for the reader of `list`.
+  also("\"type\": \"test.list\"", "\"type\": \"test.lisst\"");
   also("\"kept@-2\"", "\"keptt@-2\"");
   const Read result = read(text);
   EXPECT_FALSE(result.graph);
@@ -57,7 +59,7 @@ TEST(GraphErrors, AllRootCausesAreReportedInOneRunAndTheirConsequencesAreNot) {
   EXPECT_EQ(result.diagnostics.list[3].id, Id::unknown_resource);
 }
 
-TEST(GraphErrors, AnUnknownKindIsReportedOnceWithAllItsPasses) {
+TEST(GraphErrors, UnknownPassType_IsReportedOnceWithAllPasses) {
   std::string text = whole_graph();
   for (size_t at = 0; (at = text.find("\"test.blur\"", at)) != std::string::npos; ++at)
     text.replace(at, 11, "\"host.bloom\"");
@@ -73,7 +75,7 @@ TEST(GraphErrors, AnUnknownKindIsReportedOnceWithAllItsPasses) {
   EXPECT_NE(std::string(diagnostic_info(one.id).hint).find("--pass-types FILE"), std::string::npos);
 }
 
-TEST(GraphErrors, SectionsOfTheWrongTypeSilenceWhatReferredToThem) {
+TEST(GraphErrors, WrongSectionType_SuppressesReferenceErrors) {
   for (const char* section : {"settings", "imports", "resources", "passes"}) {
     std::string text = whole_graph();
     const std::string key = std::string("  \"") + section + "\": ";

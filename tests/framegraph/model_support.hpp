@@ -1,5 +1,5 @@
 #pragma once
-// A small registry of pass types and a graph to damage.
+// A small registry of pass types, and a graph for tests to break.
 
 #include "framegraph/model/read_graph.hpp"
 #include "tests/framegraph/text_support.hpp"
@@ -65,7 +65,7 @@ inline Read read(std::string text) {
   return out;
 }
 
-// Every feature once, one declaration a line.
+// Contains every feature once, with one declaration per line.
 inline std::string whole_graph() {
   return R"({ "$schema": "x", "dermis": 2, "name": "whole", "note": "all of it",
   "settings": {
@@ -98,7 +98,7 @@ inline std::string whole_graph() {
   "exports": ["light", "fixed"] })";
 }
 
-// `whole_graph` with the only occurrence of `from` replaced.
+// Returns `whole_graph` with the only occurrence of `from` replaced.
 inline std::string damaged(std::string_view from, std::string_view to) {
   std::string text = whole_graph();
   const size_t at = text.find(from);

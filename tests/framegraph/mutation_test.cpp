@@ -1,5 +1,5 @@
-// Who notices a plan that was changed by hand? The verifier, in every case in which the exhaustive oracle
-// says that the change matters, and in no other.
+// Mutation tests: the verifier refuses a modified plan exactly when the exhaustive oracle finds a
+// hazard.
 
 #include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/hazard_oracle.hpp"
@@ -38,13 +38,13 @@ Tally compare_verdicts(uint64_t quick, uint64_t full, ForEachMutant for_each_mut
   return tally;
 }
 
-TEST(Mutation, TheOracleAcceptsWhatTheCompilerMakes) {
+TEST(Mutation, OracleAcceptsCompiledPlans) {
   for_random_plans(300, 3000, [](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     EXPECT_EQ(first_hazard(plan), "") << "seed " << seed;
   });
 }
 
-TEST(Mutation, NoBarrierOfAThousandPlansCanBeDropped) {
+TEST(Mutation, DroppedBarrier_IsRefused) {
   uint64_t dropped = 0;
   for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b, ++dropped)
@@ -54,19 +54,19 @@ TEST(Mutation, NoBarrierOfAThousandPlansCanBeDropped) {
   EXPECT_GT(dropped, 10000u);
 }
 
-// Alias barriers name the accesses of every earlier occupant, also those that a later one waited for; few
-// other masks may be wider than they need to be.
-TEST(Mutation, AWeakerMaskIsRefusedExactlyWhereItMatters) {
+// Alias barriers name the accesses of every earlier occupant, including those that a later occupant
+// waited for. Few other masks may be wider than necessary.
+TEST(Mutation, WeakerMask_IsRefusedIfHazardous) {
   const Tally tally = compare_verdicts(60, 600, for_each_weaker_mask);
   EXPECT_GT(tally.refused * 20, tally.tried * 19);
 }
 
-TEST(Mutation, APlacementInOtherMemoryIsRefusedExactlyWhereItMatters) {
+TEST(Mutation, MovedPlacement_IsRefusedIfHazardous) {
   const Tally tally = compare_verdicts(150, 1500, for_each_shifted_placement);
   EXPECT_GT(tally.refused * 10, tally.tried * 9);
 }
 
-TEST(Mutation, NoAliasDependencyCanBeLost) {
+TEST(Mutation, LostAliasDependency_IsRefused) {
   uint64_t lost = 0;
   for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b) {
@@ -81,10 +81,11 @@ TEST(Mutation, NoAliasDependencyCanBeLost) {
   EXPECT_GT(lost, 1000u);
 }
 
-// A flip that is no hazard (both slots hold older frames) still reads the wrong frame, which the pixels tell
-// once the difference has come through all histories on its way to the host. It does not where it leads to a
-// stand-in alone, which is read in frames in which all histories are zeros.
-TEST(Mutation, AFlippedHistorySlotIsRefusedOrChangesThePixels) {
+// A flip may be free of hazards if both slots hold older frames, but the pass still reads the wrong
+// frame. The pixels show that after the difference has passed through all histories to the host.
+// The exception is a flip that only leads to a placeholder, which is read while all histories are
+// zero.
+TEST(Mutation, FlippedHistorySlot_IsRefusedOrChangesPixels) {
   constexpr uint32_t frames = 14;
   Tally tally;
   for_random_plans(300, 3000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
@@ -106,27 +107,27 @@ TEST(Mutation, AFlippedHistorySlotIsRefusedOrChangesThePixels) {
 }
 
 // The declaration does not matter for a history whose frames have separate memory.
-TEST(Mutation, LostOwnTexelsAreRefusedWhereTheyMatter) {
+TEST(Mutation, LostOwnTexels_IsRefusedIfHazardous) {
   const Tally tally = compare_verdicts(300, 3000, for_each_lost_own_texels);
   EXPECT_GT(tally.refused, 30u);
   EXPECT_GT(tally.tried, tally.refused);
 }
 
-TEST(Mutation, ARedirectedAccessIsRefusedWhereItMatters) {
+TEST(Mutation, RedirectedAccess_IsRefusedIfHazardous) {
   const Tally tally = compare_verdicts(60, 600, for_each_redirected_access);
   EXPECT_GT(tally.refused, 500u);
 }
 
-TEST(Mutation, SwappedPassesAreRefusedExactlyWhereItMatters) {
+TEST(Mutation, SwappedPasses_AreRefusedIfHazardous) {
   const Tally tally = compare_verdicts(150, 1500, for_each_swap);
   EXPECT_GT(tally.refused, 100u);
-  EXPECT_GT(tally.tried, tally.refused); // some do not depend on each other
+  EXPECT_GT(tally.tried, tally.refused); // Some neighbouring passes are independent.
 }
 
-TEST(Mutation, ABarrierAtAnotherPassIsRefusedExactlyWhereItMatters) {
+TEST(Mutation, MovedBarrier_IsRefusedIfHazardous) {
   const Tally tally = compare_verdicts(60, 600, for_each_moved_barrier);
   EXPECT_GT(tally.refused, 100u);
-  EXPECT_GT(tally.tried, tally.refused); // some wait for what ended long before
+  EXPECT_GT(tally.tried, tally.refused); // Some barriers wait for work that ended long before.
 }
 
 } // namespace

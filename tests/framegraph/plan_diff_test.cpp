@@ -1,5 +1,5 @@
-// What differs between two plans: nothing between a plan and itself, the same read from either side, and for
-// each thing that is changed a line that names it.
+// Tests the difference of two plans: empty for equal plans, symmetric, and with a line that names
+// each change.
 
 #include "framegraph/explain/plan_diff.hpp"
 #include "framegraph/text/document.hpp"
@@ -28,7 +28,7 @@ const PlanDiffSection& section(const PlanDiff& diff, std::string_view name) {
   return none;
 }
 
-using Line = std::tuple<std::string, std::string, std::string>; // name, a, b
+using Line = std::tuple<std::string, std::string, std::string>; // Name, a, b.
 
 std::vector<Line> lines(const PlanDiffSection& of, bool turned) {
   std::vector<Line> out;
@@ -43,7 +43,7 @@ bool is_json(const std::string& text) {
   return parse_document("diff", text, diagnostics).has_value();
 }
 
-TEST(PlanDiff, OfAPlanAndItselfIsEmpty) {
+TEST(PlanDiff, EqualPlans_GiveAnEmptyDiff) {
   for (uint64_t seed = 0; seed < 100; ++seed) {
     const GraphBuilder builder = random_graph(seed);
     const SavedPlan plan = saved(builder.input());
@@ -57,7 +57,7 @@ TEST(PlanDiff, OfAPlanAndItselfIsEmpty) {
   }
 }
 
-TEST(PlanDiff, ReadFromTheOtherSideIsTheSame) {
+TEST(PlanDiff, IsSymmetric) {
   for (uint64_t seed = 0; seed < 100; ++seed) {
     const GraphBuilder first = random_graph(seed), second = random_graph(seed + 1);
     CompileInput fast = first.input();
@@ -69,7 +69,8 @@ TEST(PlanDiff, ReadFromTheOtherSideIsTheSame) {
       EXPECT_EQ(there.same, back.same);
       ASSERT_EQ(there.sections.size(), back.sections.size());
       for (size_t s = 0; s < there.sections.size(); ++s)
-        if (there.sections[s].name != "order") { // which of two that changed places has moved is one's choice
+        // Either of two swapped passes may be reported as moved.
+        if (there.sections[s].name != "order") {
           EXPECT_EQ(lines(there.sections[s], false), lines(back.sections[s], true)) << there.sections[s].name;
         }
       EXPECT_EQ(section(there, "order").differences.size(), section(back, "order").differences.size());
@@ -99,7 +100,7 @@ struct Change {
   std::function<void(SavedPlan&)> apply;
 };
 
-TEST(PlanDiff, NamesEachThingThatIsChanged) {
+TEST(PlanDiff, NamesEachChange) {
   const GraphBuilder builder = sample();
   const SavedPlan plan = saved(builder.input());
   const uint32_t lit = [&] {
@@ -158,7 +159,7 @@ TEST(PlanDiff, NamesEachThingThatIsChanged) {
   }
 }
 
-TEST(PlanDiff, TellsTheFewestPassesThatMoved) {
+TEST(PlanDiff, ReportsTheFewestMovedPasses) {
   const GraphBuilder builder = sample();
   const SavedPlan plan = saved(builder.input());
   SavedPlan turned = plan;

@@ -60,7 +60,8 @@ void for_each_shifted_placement(const Plan& plan, const VisitMutant& visit) {
       if (i == k || moved.heap != onto.heap || moved.offset == onto.offset) continue;
       Plan mutant = plan;
       mutant.placements[i].offset = onto.offset;
-      Heap& heap = mutant.heaps[moved.heap]; // it is not the heap's end that shall be noticed
+      // The heap grows with the placement, so that the mutant does not fail the bounds check.
+      Heap& heap = mutant.heaps[moved.heap];
       heap.size = std::max(heap.size, onto.offset + moved.size);
       visit(mutant, fmt::format("placement {} at the offset of {}", i, k));
     }
@@ -135,7 +136,7 @@ void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit) {
 
 namespace {
 
-// Whoever waited for its point waits for the one before it; later ones count from there.
+// Waits for the removed point become waits for the previous point; later points are renumbered.
 Plan without_signal(const Plan& plan, size_t pass) {
   Plan mutant = plan;
   const uint32_t lost = plan.passes[pass].signal;

@@ -1,5 +1,5 @@
 #pragma once
-// Plans changed by hand, for tests that ask who notices.
+// Modified plans for mutation tests.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -10,22 +10,28 @@ namespace dermis::testing {
 
 Plan without_barrier(const Plan& plan, uint32_t index);
 
-// Every placement in memory of its own.
+// Returns the plan with separate memory for every placement.
 Plan without_aliasing(const Plan& plan);
 
-// Calls with each plan that differs from `plan` by one change, and with what was changed.
+// Calls with each plan that differs from `plan` by one change, and with a description of the
+// change.
 using VisitMutant = std::function<void(const Plan& mutant, const std::string& what)>;
 
-void for_each_weaker_mask(const Plan& plan, const VisitMutant& visit);       // one bit of one barrier missing
-void for_each_shifted_placement(const Plan& plan, const VisitMutant& visit); // to where another one begins
-void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit);      // an access to another old frame
+// Clears one bit of one barrier's masks.
+void for_each_weaker_mask(const Plan& plan, const VisitMutant& visit);
+// Moves a placement to the beginning of another placement.
+void for_each_shifted_placement(const Plan& plan, const VisitMutant& visit);
+// Makes an access read another old frame.
+void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit);
 void for_each_lost_own_texels(const Plan& plan, const VisitMutant& visit);
-void for_each_redirected_access(const Plan& plan, const VisitMutant& visit); // to what its pass writes
-void for_each_swap(const Plan& plan, const VisitMutant& visit); // of two passes that follow each other
-void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit); // to the pass before or after
+// Redirects an access to a resource that its pass writes.
+void for_each_redirected_access(const Plan& plan, const VisitMutant& visit);
+void for_each_swap(const Plan& plan, const VisitMutant& visit); // Swaps two consecutive passes.
+// Moves a barrier to the previous or next pass.
+void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit);
 
-// A wait missing or for the point before; a signal missing, so that all who waited for it do so for the one
-// before.
+// Removes a wait or lowers it to the previous point; removes a signal, so that its waits use the
+// previous point.
 void for_each_lost_point(const Plan& plan, const VisitMutant& visit);
 
 } // namespace dermis::testing

@@ -17,19 +17,21 @@ struct Random : SplitMix64 {
 struct Draft {
   GraphBuilder b;
   Random random;
-  std::vector<std::string> readable; // images with contents at this point of the file
-  std::vector<std::string> buffers;  // likewise
+  std::vector<std::string> readable; // Images with contents at this point of the file.
+  std::vector<std::string> buffers;  // Buffers with contents at this point of the file.
   std::vector<std::string>
-      histories; // may be read at @-1 .. @-frames from the start, are all written in the end
+      // Histories readable at @-1 .. @-frames from the start; all of them are written by the end.
+      histories;
   Sizes sizes = Sizes::mixed;
   uint32_t count = 0;
-  Random division{0};                           // of histories: draws of its own
-  std::map<std::string, uint32_t> divided = {}; // histories: mips that ports tell apart
+  Random division{0}; // A separate generator for histories.
+  // The number of mips of each history whose mips are separate subresources.
+  std::map<std::string, uint32_t> divided = {};
 
   std::string fresh(const char* stem) { return fmt::format("{}{}", stem, count++); }
   const std::string& any(const std::vector<std::string>& from) { return from[random.below(from.size())]; }
 
-  // All of a history, or a mip, or a mip of the first layer.
+  // Names a whole history, one mip, or one mip of its first layer.
   std::string some_of(const std::string& history) {
     const auto mips = divided.find(history);
     if (mips == divided.end() || division.chance(40)) return {};
@@ -37,7 +39,7 @@ struct Draft {
     return fmt::format("#{}{}", mip, division.chance(30) ? "[0]" : "");
   }
 
-  // One pass for each mip, from the mip before among others.
+  // Adds one pass per mip, which also reads the previous mip.
   void keep_mips(const std::string& history, uint32_t mips) {
     const auto frames = b.graph.resources[b.resource(history).value].history.frames;
     for (uint32_t m = 0; m < mips; ++m) {
@@ -67,9 +69,10 @@ struct Draft {
     return result;
   }
 
-  // Whether what stands at a reading port may be (part of) `image` in this frame.
+  // Whether a source of a reading port may be (part of) `image` in this frame.
   static bool may_meet(const std::string& source, const std::string& image) {
-    const std::string now = source.substr(source.find('?') + 1); // the stand-in, or all: npos + 1 is 0
+    // The otherwise value, or the whole source: npos + 1 is 0.
+    const std::string now = source.substr(source.find('?') + 1);
     const auto name = [](const std::string& text) { return text.substr(0, text.find_first_of("#[@")); };
     return now.find('@') == std::string::npos && name(now) == name(image);
   }
@@ -77,14 +80,15 @@ struct Draft {
   std::string new_image() {
     const auto name = fresh("image");
     auto& declared = random.chance(15) ? b.exported(name) : b.image(name);
-    // One page of memory, four or nine: several may follow each other in the memory of one.
+    // Sizes are one, four or nine pages of memory, so that several small images can reuse a large
+    // one.
     const int64_t multiple = sizes == Sizes::mixed ? 1 + random.below(3) : 1;
     const int64_t divisor = 1 + random.below(3);
     declared.size.x = declared.size.y = {multiple, divisor};
     return name;
   }
 
-  // The pass that writes a history. Some read its oldest frame texel by texel.
+  // Adds the pass that writes a history. Some of these passes read its oldest frame texel by texel.
   void keep(const std::string& history) {
     const auto frames = b.graph.resources[b.resource(history).value].history.frames;
     if (random.chance(40))
@@ -94,8 +98,8 @@ struct Draft {
       b.pass(fresh("keep"), "test.shade", reads(3), {{"out", history}});
   }
 
-  // An image of several mips and layers: each mip of each layer from what is there by then, some of them at
-  // once; then parts of it are readable, and written in place.
+  // Adds an image of several mips and layers that are written in one or several passes. Later
+  // passes can read parts of it and write parts in place.
   void parts() {
     const auto name = fresh("parts");
     auto& declared = b.image(name);
@@ -126,7 +130,8 @@ struct Draft {
     readable.push_back(name);
     readable.push_back(fmt::format("{}#{}", name, random.below(mips)));
     const uint32_t first_mip =
-        random.below(mips); // a statement a draw: compilers order arguments as they like
+        // One statement per random number: compilers evaluate arguments in different orders.
+        random.below(mips);
     readable.push_back(fmt::format("{}#{}..[{}]", name, first_mip, random.below(layers)));
   }
 
@@ -149,7 +154,8 @@ struct Draft {
           {{"out", out}});
       readable.push_back(out);
     } else if (kind == 3) {
-      const std::string image = any(readable); // drawn first: compilers differ in the order of arguments
+      // Generated first: compilers evaluate arguments in different orders.
+      const std::string image = any(readable);
       Bindings inputs = reads(1);
       for (auto& [port, source] : inputs)
         if (may_meet(source, image)) port = "own";
@@ -208,7 +214,7 @@ GraphBuilder random_graph(uint64_t seed, Sizes sizes) {
       draft.keep(history);
   draft.b.exported("result");
   draft.b.pass("finish", "test.shade", draft.reads(3), {{"out", "result"}});
-  for (PassDeclaration& pass : draft.b.graph.passes) // counts where there are two queues
+  for (PassDeclaration& pass : draft.b.graph.passes) // Has an effect only with two queues.
     pass.async = draft.random.chance(35);
   return std::move(draft.b);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Graphs drawn from a seed: valid by construction, with in-place updates, histories, buffers, imports and
-// exports, and images of which ports name parts.
+// Graphs generated from a seed, valid by construction: with in-place updates, histories, buffers,
+// imports, exports, and images whose ports name parts.
 
 #include "tests/framegraph/graph_builder.hpp"
 
@@ -9,13 +9,13 @@
 namespace dermis::testing {
 
 enum class Sizes : uint8_t {
-  mixed,   // resources take one page of memory up to nine
-  one_page // each takes one
+  mixed,   // Resources take one to nine pages of memory.
+  one_page // Each resource takes one page.
 };
 
 GraphBuilder random_graph(uint64_t seed, Sizes sizes = Sizes::mixed);
 
-// Lets some passes run after others that stand before them, for no reason of data.
+// Orders some passes after earlier passes of the file without a data dependency.
 void draw_orders(GraphBuilder& builder, uint64_t seed);
 
 } // namespace dermis::testing

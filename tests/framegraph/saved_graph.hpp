@@ -1,5 +1,5 @@
 #pragma once
-// The plan of a graph that has to compile, as it is saved.
+// Returns the saved plan of a graph that has to compile.
 
 #include "framegraph/serial/plan_file.hpp"
 
@@ -7,7 +7,7 @@
 
 namespace dermis::testing {
 
-// Empty where the graph does not compile: the test has failed.
+// Returns an empty plan and fails the test if the graph does not compile.
 inline SavedPlan saved(const CompileInput& input) {
   Diagnostics diagnostics;
   const auto compiled = compile(input, diagnostics);

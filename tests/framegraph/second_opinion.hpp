@@ -1,5 +1,5 @@
 #pragma once
-// The verifier and the oracle side by side.
+// Compares the verdicts of the verifier and the oracle.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -12,7 +12,8 @@ struct Tally {
   uint64_t tried = 0, refused = 0;
 };
 
-// Counts whether the verifier refuses `mutant`; a fatal failure of the running test if the oracle disagrees.
+// Counts the mutant as tried, and as refused if the verifier refuses it. Adds a fatal failure to
+// the running test if the oracle disagrees.
 void expect_same_verdict(const Plan& mutant, const std::string& what, Tally& tally);
 
 } // namespace dermis::testing

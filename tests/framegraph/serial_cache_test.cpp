@@ -1,4 +1,4 @@
-// Cached plans are the plans that compiling gives, and no key stands for another.
+// Cached plans equal compiled plans, and different inputs never have equal keys.
 
 #include "framegraph/serial/plan_cache.hpp"
 #include "framegraph/serial/plan_file.hpp"
@@ -30,7 +30,7 @@ TEST(PlanCache, GivesTheBytesAndTheReasonsThatCompilingGives) {
   }
 }
 
-TEST(PlanCache, CompilesASettingThatFlipsOnceForEachSide) {
+TEST(PlanCache, TogglingASetting_CompilesOncePerValue) {
   GraphBuilder builder = random_graph(8);
   builder.boolean("flag", true);
   PlanCache cache;
@@ -49,7 +49,7 @@ TEST(PlanCache, CompilesASettingThatFlipsOnceForEachSide) {
   EXPECT_EQ(cache.hits, 8u);
 }
 
-TEST(PlanCache, NeverTakesOnePlanForAnother) {
+TEST(PlanCache, DifferentInputs_NeverShareAPlan) {
   const GraphBuilder builder = random_graph(8), other = random_graph(9);
   PlanCache cache;
   Diagnostics diagnostics;
@@ -61,7 +61,7 @@ TEST(PlanCache, NeverTakesOnePlanForAnother) {
   EXPECT_EQ(cache.hits, 0u);
 }
 
-TEST(PlanCache, KeepsAsManyPlansAsItMayAndDropsTheOneNotUsedForLongest) {
+TEST(PlanCache, Full_EvictsTheLeastRecentlyUsedPlan) {
   const GraphBuilder builder = random_graph(8);
   PlanCache cache;
   Diagnostics diagnostics;
@@ -79,7 +79,7 @@ TEST(PlanCache, KeepsAsManyPlansAsItMayAndDropsTheOneNotUsedForLongest) {
   EXPECT_FALSE(use(65));
 }
 
-TEST(PlanCache, KeepsNothingThatDoesNotCompile) {
+TEST(PlanCache, FailedCompilation_IsNotCached) {
   const GraphBuilder builder = random_graph(8);
   PlanCache cache;
   for (uint32_t i = 0; i < 2; ++i) {

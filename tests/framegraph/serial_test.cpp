@@ -1,4 +1,4 @@
-// Saved plans: what is read is what was written, whatever else is in a file is refused in bounded memory.
+// Saved plans read back as they were written; any other file is refused in bounded memory.
 
 #include "framegraph/serial/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
@@ -31,14 +31,14 @@ std::string refusal(std::string_view bytes) {
   return diagnostics.list[0].text;
 }
 
-TEST(Digest, IsThatOfTheStandard) { // FIPS 180-4's examples of one and two blocks, and of none
+TEST(Digest, MatchesTheStandard) { // FIPS 180-4 examples of zero, one and two blocks.
   EXPECT_EQ(digest_text(sha256("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(digest_text(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   EXPECT_EQ(digest_text(sha256("")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
-TEST(SavedPlan, ReadBackIsWhatWasWritten) {
+TEST(SavedPlan, ReadsBackAsWritten) {
   for (uint64_t seed = 0; seed < 300; ++seed) {
     const GraphBuilder builder = random_graph(seed);
     const SavedPlan before = saved(builder.input());
@@ -73,29 +73,29 @@ TEST(SavedPlan, KeepsNumbersOf64Bits) {
   EXPECT_EQ(after->plan.barriers[0].source_stages, plan.plan.barriers[0].source_stages);
 }
 
-TEST(SavedPlan, CutAnywhereIsRefused) {
+TEST(SavedPlan, TruncatedFile_IsRefused) {
   const std::string bytes = file_of(5);
   for (size_t size = 0; size < bytes.size(); ++size)
     EXPECT_NE(refusal(std::string_view(bytes).substr(0, size)), "") << size;
   EXPECT_THAT(refusal(bytes + "x"), HasSubstr("1 bytes are left over"));
 }
 
-TEST(SavedPlan, OfAnotherVersionIsRefused) {
+TEST(SavedPlan, OtherVersion_IsRefused) {
   std::string bytes = file_of(5);
   bytes[8] = 9;
   EXPECT_EQ(refusal(bytes), "the plan has version 9, this program reads version 6");
   EXPECT_EQ(refusal("{}"), "a saved plan begins with DERMPLAN");
 }
 
-TEST(SavedPlan, WithACountBeyondItsEndIsRefusedBeforeMemoryIsTaken) {
+TEST(SavedPlan, ExcessiveCount_IsRefusedBeforeAllocation) {
   SavedPlan plan;
-  std::string bytes = write_plan(plan); // its last lists are empty: then 3 * 4 + 2 * 8 bytes
+  std::string bytes = write_plan(plan); // The last lists are empty, so 3 * 4 + 2 * 8 bytes follow.
   const size_t layouts = bytes.size() - 32;
   bytes.replace(layouts, 4, "\xff\xff\xff\xff");
   EXPECT_THAT(refusal(bytes), HasSubstr("'history layouts' has 4294967295 entries, the file has room for 7"));
 }
 
-TEST(SavedPlan, WithAnyByteChangedIsRefusedOrIsAnotherPlanThatCanBeFollowed) {
+TEST(SavedPlan, ChangedByte_IsRefusedOrAValidPlan) {
   size_t accepted = 0, tried = 0;
   for (const uint64_t seed : {1u, 2u, 8u}) {
     const std::string bytes = file_of(seed);
@@ -116,7 +116,7 @@ TEST(SavedPlan, WithAnyByteChangedIsRefusedOrIsAnotherPlanThatCanBeFollowed) {
   EXPECT_LT(accepted, tried);
 }
 
-TEST(SavedPlan, WhoseIndicesLeadNowhereIsRefused) {
+TEST(SavedPlan, IndexOutOfRange_IsRefused) {
   const GraphBuilder builder = random_graph(8);
   const SavedPlan good = saved(builder.input());
   const auto rejected_with = [&](auto&& change) {
@@ -138,7 +138,7 @@ TEST(SavedPlan, WhoseIndicesLeadNowhereIsRefused) {
               HasSubstr("do not stand in the order of their passes"));
 }
 
-TEST(PlanKey, DiffersWhereverThePlanCould) {
+TEST(PlanKey, DiffersIfThePlanCanDiffer) {
   GraphBuilder builder = random_graph(8);
   DeviceProfile other = generic_profile();
   other.name = "other";
@@ -175,7 +175,7 @@ TEST(PlanKey, DiffersWhereverThePlanCould) {
   EXPECT_FALSE(is_new([](CompileInput& input) { input.order_seed = 4; })) << "nothing is drawn";
 }
 
-TEST(PlanKey, FillsInWhatIsLeftOut) {
+TEST(PlanKey, FillsInDefaults) {
   GraphBuilder builder = random_graph(8);
   builder.boolean("flag", true);
   const std::string key = key_bytes(plan_key(builder.input()));

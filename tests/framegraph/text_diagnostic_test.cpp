@@ -15,7 +15,7 @@ Diagnostics with_text(std::string text) {
   return out;
 }
 
-TEST(Diagnostic, ForPeopleHasPlaceIdTextPointerExcerptCaretAndHint) {
+TEST(Diagnostic, TextForm_HasPlaceIdExcerptCaretAndHint) {
   Diagnostics all = with_text("{\n  \"sise\": 1\n}");
   all.add(DiagnosticId::unknown_key, {{0}, 2, 3, "/sise"}, "import 'depth' has no key 'sise'").suggestion =
       "did you mean 'size'?";
@@ -63,7 +63,7 @@ TEST(Diagnostic, PlacesOutsideTheTextGiveNoExcerptAndNoCrash) {
   }
 }
 
-TEST(Diagnostic, AsJsonIsJsonWhateverTheTexts) {
+TEST(Diagnostic, JsonIsValidForAnyText) {
   Diagnostics all = with_text("x");
   all.files[0].name = "quote\".json";
   all.add(DiagnosticId::syntax, {{0}, 1, 1, "/a\\b"}, "line\nbreak \x01 \xff \xc3\xa9")
@@ -80,7 +80,7 @@ TEST(Diagnostic, AsJsonIsJsonWhateverTheTexts) {
   EXPECT_EQ(format_as_json(Diagnostics()), "[]");
 }
 
-TEST(Diagnostic, ErrorsBeyondTheListedOnesStillCountAsErrors) {
+TEST(Diagnostic, ErrorsBeyondTheListLimitStillCount) {
   Diagnostics all;
   for (size_t i = 0; i < limits::diagnostics; ++i)
     all.add(DiagnosticId::too_many_diagnostics, {}, "a mere note");
@@ -99,7 +99,7 @@ TEST(Diagnostic, EveryIdHasANameAHintAndItsNumberInItsCode) {
   }
 }
 
-TEST(Diagnostics, SarifHasTheRuleThePlaceInCodePointsAndWhatIsRelated) {
+TEST(Diagnostics, SarifHasRulePlaceAndRelatedPlaces) {
   testing::Parsed parsed = testing::parse("{\n  \"\xc3\xa9\": 1, \"\xc3\xa9\": 2 }");
   ASSERT_EQ(parsed.diagnostics.list.size(), 1u);
   parsed.diagnostics.files[0].name = "folder with space/\xc3\xa9#1.json";
@@ -114,7 +114,7 @@ TEST(Diagnostics, SarifHasTheRuleThePlaceInCodePointsAndWhatIsRelated) {
     EXPECT_NE(log.find(part), std::string::npos) << part << "\n" << log;
 }
 
-TEST(Diagnostics, SarifListsEachRuleOnceAndIsWholeWithoutMessages) {
+TEST(Diagnostics, SarifListsEachRuleOnce_EmptyIsValid) {
   Diagnostics none;
   EXPECT_TRUE(testing::parse(format_as_sarif(none, "0")).document);
   Diagnostics two;

@@ -64,7 +64,7 @@ TEST(Document, ValuesAreReadExactly) {
   EXPECT_EQ(d[{7}].integer, 0);
 }
 
-TEST(Document, ACommaTooManyAndOneThatIsMissingAreCalledSo) {
+TEST(Document, ExtraAndMissingCommasAreNamed) {
   for (const char* text : {"{ \"a\": 1, }", "[1, ]", "[[1], ]"}) {
     const Parsed parsed = parse(text);
     ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text;
@@ -82,7 +82,7 @@ TEST(Document, ACommaTooManyAndOneThatIsMissingAreCalledSo) {
   }
 }
 
-TEST(Document, AByteOrderMarkIsNoPartOfTheFirstLine) {
+TEST(Document, ByteOrderMarkIsNotPartOfTheFirstLine) {
   const Parsed parsed = parse("\xef\xbb\xbf[7]");
   ASSERT_TRUE(parsed.document) << all_messages(parsed.diagnostics);
   EXPECT_EQ(place(parsed.document->where({1})), "1:2");
@@ -94,11 +94,15 @@ TEST(Document, APlaceInsideAStringIsFoundThroughEscapes) {
   const Document& d = *parsed.document;
   ASSERT_EQ(d.text({1}), "a\xc3\xa9\n\xf0\x9f\x98\x80"
                          "b");
-  EXPECT_EQ(place(where_in_string(d, {1}, 0, parsed.diagnostics)), "2:4");  // a
-  EXPECT_EQ(place(where_in_string(d, {1}, 1, parsed.diagnostics)), "2:5");  // \u00e9: two bytes
-  EXPECT_EQ(place(where_in_string(d, {1}, 3, parsed.diagnostics)), "2:11"); // \n
-  EXPECT_EQ(place(where_in_string(d, {1}, 4, parsed.diagnostics)), "2:13"); // pair: four bytes
-  EXPECT_EQ(place(where_in_string(d, {1}, 8, parsed.diagnostics)), "2:25"); // b
+  EXPECT_EQ(place(where_in_string(d, {1}, 0, parsed.diagnostics)), "2:4"); // Character "a".
+  // Character "\u00e9": two bytes.
+  EXPECT_EQ(place(where_in_string(d, {1}, 1, parsed.diagnostics)), "2:5");
+  // Character "
+  // ".
+  EXPECT_EQ(place(where_in_string(d, {1}, 3, parsed.diagnostics)), "2:11");
+  // A surrogate pair: four bytes.
+  EXPECT_EQ(place(where_in_string(d, {1}, 4, parsed.diagnostics)), "2:13");
+  EXPECT_EQ(place(where_in_string(d, {1}, 8, parsed.diagnostics)), "2:25"); // Character "b".
 }
 
 TEST(Document, DuplicateKeysAreRefusedWithBothLocations) {
@@ -109,7 +113,7 @@ TEST(Document, DuplicateKeysAreRefusedWithBothLocations) {
   EXPECT_EQ(place(parsed.diagnostics.list[0].related[0].first), "1:3");
 }
 
-TEST(Document, EveryRepetitionOfAKeyIsReportedInTheOrderOfTheText) {
+TEST(Document, RepeatedKeysAreReportedInTextOrder) {
   const Parsed parsed = parse("{\"z\":1,\"a\":1,\"z\":1,\"a\":1,\"z\":1}");
   ASSERT_EQ(parsed.diagnostics.list.size(), 3u);
   EXPECT_EQ(place(parsed.diagnostics.list[0].where), "1:14");
@@ -145,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Malformed{"[1, /* no */ 2]", 1, 6}, Malformed{"[NaN]", 1, 2},
                       Malformed{"[\"a\\u0000b\"]", 1, 2}, Malformed{"{\"\\u0000\": 1}", 1, 2}));
 
-TEST(Document, TextBehindANulByteIsNotSilentlyIgnored) {
+TEST(Document, TextAfterANulByteIsNotIgnored) {
   using namespace std::string_literals;
   const Parsed parsed = parse("[1]\n\0 rubbish"s);
   EXPECT_FALSE(parsed.document);
@@ -170,7 +174,7 @@ TEST(Document, NumbersBeyondDoubleAreRefused) {
   expect_only(parsed.diagnostics, DiagnosticId::out_of_range, 1, 8, {"1e999"});
 }
 
-TEST(Document, IllFormedUtf8IsRefusedWhereItStands) {
+TEST(Document, IllFormedUtf8IsRefusedAtItsPlace) {
   for (const char* bytes : {"\xff", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\xc3"}) {
     const Parsed parsed = parse(std::string("[\n\"ab") + bytes + "\"]");
     EXPECT_FALSE(parsed.document);
@@ -189,14 +193,14 @@ TEST(Document, AFileBeyondTheLimitIsRefusedBeforeItIsRead) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / "dermis_text_document_test_large.json";
   std::ofstream(path).put('[');
-  std::filesystem::resize_file(path, 1ull << 34); // sparse; reading it would take 16 GiB
+  std::filesystem::resize_file(path, 1ull << 34); // Sparse: reading it would take 16 GiB.
   Diagnostics diagnostics;
   EXPECT_FALSE(read_document(path.string(), diagnostics));
   std::filesystem::remove(path);
   expect_only(diagnostics, DiagnosticId::limit_exceeded, 0, 0, {"17179869184"});
 }
 
-TEST(Document, WhatIsNoReadableFileIsRefused) {
+TEST(Document, UnreadableFileIsRefused) {
   Diagnostics missing;
   EXPECT_FALSE(read_document("/nonexistent/graph.json", missing));
   expect_only(missing, DiagnosticId::file_unreadable, 0, 0, {"/nonexistent/graph.json", "does not exist"});
@@ -240,12 +244,12 @@ TEST(Document, MoreValuesThanTheLimitAreRefused) {
     text += ",0";
   const Parsed parsed = parse(text + "]");
   EXPECT_FALSE(parsed.document);
-  // The root is one value, so entry number `nodes` (counted from 1) is the first too many; two bytes an
-  // entry.
+  // The root is one value, so entry number `nodes` (counted from 1) is the first beyond the limit.
+  // An entry is two bytes.
   expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, static_cast<uint32_t>(2 * limits::nodes));
 }
 
-TEST(Document, HugeNumbersOfRepeatedKeysCostBoundedDiagnostics) {
+TEST(Document, ManyRepeatedKeysGiveBoundedDiagnostics) {
   std::string text = "{\"k\":0";
   for (size_t i = 0; i + 3 < limits::nodes; ++i)
     text += ",\"k\":0";
@@ -255,7 +259,8 @@ TEST(Document, HugeNumbersOfRepeatedKeysCostBoundedDiagnostics) {
   EXPECT_EQ(parsed.diagnostics.list.back().id, DiagnosticId::too_many_diagnostics);
 }
 
-// Every prefix and every single-byte change of a valid text: no crash, and refused texts say why.
+// Every prefix and every single-byte change of a valid text is accepted or refused with a
+// diagnostic, without a crash.
 TEST(Document, DamagedTextsAreAcceptedOrExplained) {
   const std::string whole =
       "{ \"a\": [1, -2.5e3, \"x\\u00e9\\n\", true, null], // c\n \"b\": { \"c\": {} } }";

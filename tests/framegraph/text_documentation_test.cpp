@@ -1,4 +1,4 @@
-// What docs/ says about files and messages holds for the code.
+// Checks that docs/ describes files and messages as the code implements them.
 
 #include "tests/framegraph/model_support.hpp"
 

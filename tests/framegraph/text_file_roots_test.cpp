@@ -1,4 +1,4 @@
-// Where files that other files name may lie.
+// Tests which paths a file may use to name other files.
 
 #include "framegraph/text/file_roots.hpp"
 
@@ -34,7 +34,7 @@ struct FileRoots : ::testing::Test {
   }
 };
 
-TEST_F(FileRoots, WhatIsBelowARootHasAPlace) {
+TEST_F(FileRoots, PathBelowARoot_IsAccepted) {
   const fs::path root = top / "root";
   for (const char* name : {"in/file", "in/absent", "inner/file", "in/../in/file", "./in/./file"})
     EXPECT_EQ(problem(root, name, root), "") << name;
@@ -46,7 +46,7 @@ TEST_F(FileRoots, WhatIsBelowARootHasAPlace) {
   EXPECT_EQ(place_file(root, "inner/file", std::vector<fs::path>{root}).real, root / "in/file");
 }
 
-TEST_F(FileRoots, WhatLeadsOutHasNone) {
+TEST_F(FileRoots, PathOutsideTheRoots_IsRefused) {
   const fs::path root = top / "root";
   for (const std::string& name :
        {std::string("../root_beside/file"), std::string("out/file"), std::string("out"),
@@ -58,7 +58,7 @@ TEST_F(FileRoots, WhatLeadsOutHasNone) {
   EXPECT_THAT(problem("", "../x", ""), HasSubstr("'.'"));
 }
 
-TEST_F(FileRoots, NamesThatNoSystemTakesHaveNone) {
+TEST_F(FileRoots, NonPortableName_IsRefused) {
   const fs::path root = top / "root";
   EXPECT_EQ(problem(root, "", root), "it is no name of a file");
   EXPECT_EQ(problem(root, std::string("in/file\0.json", 13), root), "it is no name of a file");
@@ -67,7 +67,7 @@ TEST_F(FileRoots, NamesThatNoSystemTakesHaveNone) {
   EXPECT_NE(problem(root, "loop/file", root), "");
 }
 
-TEST_F(FileRoots, AFilesHomeIsItsFolderOrItsProject) {
+TEST_F(FileRoots, HomeIsTheFolderOrTheProject) {
   EXPECT_EQ(home_of("a/b/scene.json"), fs::path("a/b"));
   EXPECT_EQ(home_of("configs/scenes/bust.json"), fs::path("configs/"));
   EXPECT_EQ(home_of("/x/profiles/skin.json"), fs::path("/x/"));
@@ -76,7 +76,7 @@ TEST_F(FileRoots, AFilesHomeIsItsFolderOrItsProject) {
   const fs::path before = fs::current_path();
   fs::create_directories(top / "project/scenes");
   fs::current_path(top / "project/scenes");
-  EXPECT_EQ(home_of("bust.json"), fs::path("..")); // told from where it is
+  EXPECT_EQ(home_of("bust.json"), fs::path("..")); // The path is relative to the current directory.
   fs::current_path(before);
 }
 

@@ -57,7 +57,7 @@ TEST(Reader, AMisspeltRequiredKeyIsOneDiagnostic) {
               {"thing", "'cuont'", "did you mean 'count'?"});
 }
 
-TEST(Reader, OneMisspeltKeyStandsForOneMissingKeyOnly) {
+TEST(Reader, OneMisspeltKeyExplainsOneMissingKey) {
   Parsed parsed = parse("{ \"cuont\": 1, \"coutn\": 2, \"shade\": 3 }");
   ObjectReader object(*parsed.document, parsed.document->root(), "thing", parsed.diagnostics);
   object.integer("count", 0, 1);
@@ -65,9 +65,9 @@ TEST(Reader, OneMisspeltKeyStandsForOneMissingKeyOnly) {
   EXPECT_FALSE(object.finish());
   ASSERT_EQ(parsed.diagnostics.list.size(), 4u) << all_messages(parsed.diagnostics);
   EXPECT_EQ(parsed.diagnostics.list[0].suggestion, "did you mean 'count'?");
-  EXPECT_EQ(parsed.diagnostics.list[1].id, DiagnosticId::missing_key); // 'name'
+  EXPECT_EQ(parsed.diagnostics.list[1].id, DiagnosticId::missing_key); // For 'name'.
   EXPECT_EQ(parsed.diagnostics.list[2].suggestion, "did you mean 'count'?");
-  EXPECT_EQ(parsed.diagnostics.list[3].suggestion, ""); // 'shade'
+  EXPECT_EQ(parsed.diagnostics.list[3].suggestion, ""); // For 'shade'.
 }
 
 TEST(Reader, AMissingKeyIsNamedAtTheObject) {
@@ -146,7 +146,7 @@ TEST(Reader, NamesAreIdentifiersOfLimitedLength) {
   expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, 8);
 }
 
-TEST(Reader, NotesMustBeStringsAndSchemaStandsAtTheRootOnly) {
+TEST(Reader, NotesAreStrings_SchemaOnlyAtTheRoot) {
   Parsed note = parse("{ \"note\": 1 }");
   EXPECT_FALSE(ObjectReader(*note.document, {0}, "thing", note.diagnostics).finish());
   expect_only(note.diagnostics, DiagnosticId::wrong_type, 1, 11);
@@ -179,7 +179,7 @@ TEST(Reader, TheVersionKeyIsRequiredAndChecked) {
   expect_only(array.diagnostics, DiagnosticId::wrong_type, 1, 1);
 }
 
-TEST(Reader, HundredsOfThousandsOfUnknownKeysCostBoundedDiagnostics) {
+TEST(Reader, ManyUnknownKeysGiveBoundedDiagnostics) {
   std::string text = "{\"k0\":0";
   for (size_t i = 1; i < 200000; ++i)
     text += ",\"k" + std::to_string(i) + "\":0";
@@ -189,7 +189,7 @@ TEST(Reader, HundredsOfThousandsOfUnknownKeysCostBoundedDiagnostics) {
   EXPECT_EQ(parsed.diagnostics.list.size(), limits::diagnostics + 1);
 }
 
-TEST(Suggest, DistanceCountsInsertionsDeletionsSubstitutionsAndSwaps) {
+TEST(Suggest, DistanceCountsEditsAndSwaps) {
   EXPECT_EQ(edit_distance("size", "size", 9), 0u);
   EXPECT_EQ(edit_distance("size", "Size", 9), 0u);
   EXPECT_EQ(edit_distance("size", "szie", 9), 1u);
@@ -199,7 +199,7 @@ TEST(Suggest, DistanceCountsInsertionsDeletionsSubstitutionsAndSwaps) {
   EXPECT_EQ(edit_distance("kitten", "sitting", 1), 2u) << "limit + 1";
 }
 
-TEST(Suggest, NothingIsSuggestedForAWordThatResemblesNone) {
+TEST(Suggest, NothingIsSuggestedForAnUnrelatedWord) {
   constexpr std::string_view words[] = {"format", "size"};
   EXPECT_EQ(nearest("fromat", words), "format");
   EXPECT_EQ(nearest("quaternion", words), "");

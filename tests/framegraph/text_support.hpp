@@ -1,5 +1,5 @@
 #pragma once
-// Parsing a text in a test and looking for the one diagnostic it must give.
+// Parses a text in a test and finds the one expected diagnostic.
 
 #include "framegraph/text/document.hpp"
 
@@ -28,7 +28,7 @@ inline std::string all_messages(const Diagnostics& diagnostics) {
   return out;
 }
 
-// The only diagnostic, of that id at that place; its text contains each of `words`.
+// Expects exactly one diagnostic, with this id and place, whose text contains each of `words`.
 inline void expect_only(const Diagnostics& diagnostics, DiagnosticId id, uint32_t line, uint32_t column,
                         const std::vector<std::string>& words = {}) {
   ASSERT_EQ(diagnostics.list.size(), 1u) << all_messages(diagnostics);

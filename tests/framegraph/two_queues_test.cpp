@@ -1,5 +1,5 @@
-// Laws of plans with an async queue: nothing that one queue needs of the other is lost, nothing waits in
-// vain, and whatever order the points allow gives the same pixels.
+// Tests plans with an async queue: all cross-queue dependencies are kept, no wait is redundant, and
+// every order that the semaphore points allow gives equal pixels.
 
 #include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/hazard_oracle.hpp"
@@ -50,7 +50,7 @@ void for_random_plans(uint64_t quick, uint64_t full, Visit visit, Sizes sizes = 
   }
 }
 
-// light -> a -> (async) b -> c, and a -> d beside it
+// Builds light -> a -> (async) b -> c, and a -> d in parallel.
 GraphBuilder fork() {
   GraphBuilder b;
   b.import("light");
@@ -64,10 +64,10 @@ GraphBuilder fork() {
   return b;
 }
 
-TEST(TwoQueues, AForkAndAJoinAreOnePointEach) {
+TEST(TwoQueues, ForkAndJoinTakeOnePointEach) {
   const auto b = fork();
   CompileInput input = two_queues(b);
-  input.alias = false; // memory that changes hands makes queues wait as well
+  input.alias = false; // Aliased memory can also make a queue wait for the other.
   const auto whole = compiled(b, input);
   const Plan& plan = whole.plan;
   ASSERT_EQ(pass_names(b, plan), "first aside beside join");
@@ -89,7 +89,7 @@ TEST(TwoQueues, ASingleQueueIsTheDefault) {
     EXPECT_EQ(barrier.transfer, PlanBarrier::Transfer::none);
 }
 
-TEST(TwoQueues, WhatTheHostBindsStaysOnTheMainQueue) {
+TEST(TwoQueues, HostResourcesStayOnTheMainQueue) {
   auto b = fork();
   b.graph.passes[0].async = true;
   const auto whole = compiled(b, two_queues(b));
@@ -105,12 +105,13 @@ TEST(TwoQueues, AfterIsAPointBetweenPassesOfTwoQueues) {
   const auto whole = compiled(b, input);
   ASSERT_EQ(pass_names(b, whole.plan), "first aside beside join");
   EXPECT_EQ(whole.plan.passes[2].wait, 1u);
-  EXPECT_EQ(whole.plan.passes[3].wait, no_point); // it waited already
+  EXPECT_EQ(whole.plan.passes[3].wait, no_point); // The pass has waited already.
   EXPECT_THAT(reasons(b, whole, Reason::About::pass, 2),
               HasSubstr("runs after 'aside': the probe is to see it finished"));
   Plan mutant = whole.plan;
   mutant.passes[3].wait =
-      std::exchange(mutant.passes[2].wait, no_point); // nothing of `aside` is needed before
+      // Nothing of `aside` is needed before this pass.
+      std::exchange(mutant.passes[2].wait, no_point);
   EXPECT_THAT(verify(mutant).violations.front(),
               HasSubstr("pass 2: does not come after pass 1, as it is to"));
   EXPECT_NE(first_hazard(mutant), "");
@@ -128,7 +129,7 @@ TEST(TwoQueues, AfterIsNoPointBetweenPassesOfOneQueue) {
   EXPECT_NE(first_hazard(mutant), "");
 }
 
-TEST(TwoQueues, WhateverOrderThePointsAllowKeepsWhatAfterOrders) {
+TEST(TwoQueues, EveryLegalOrder_KeepsAfter) {
   uint64_t kept = 0;
   for (uint64_t seed = 0; seed < seeds_to_try(400, 4000); ++seed) {
     auto builder = random_graph(seed);
@@ -136,7 +137,8 @@ TEST(TwoQueues, WhateverOrderThePointsAllowKeepsWhatAfterOrders) {
     const Plan plan = compiled(builder, two_queues(builder)).plan;
     const std::vector<Command> commands = record(plan, 0, 3);
     for (uint64_t order = 1; order <= 3; ++order) {
-      std::map<std::pair<uint32_t, uint32_t>, size_t> place; // frame and position in the plan -> in the order
+      // Maps (frame, position in the plan) to the position in the order.
+      std::map<std::pair<uint32_t, uint32_t>, size_t> place;
       for (const uint32_t c : legal_order(plan, memory_of(plan), commands, order))
         if (commands[c].is_pass && commands[c].wait_until == no_wait)
           place.emplace(std::pair(commands[c].frame, commands[c].index), place.size());
@@ -151,7 +153,7 @@ TEST(TwoQueues, WhateverOrderThePointsAllowKeepsWhatAfterOrders) {
   EXPECT_GT(kept, 300u);
 }
 
-TEST(TwoQueues, TheOracleAcceptsWhatTheCompilerMakes) {
+TEST(TwoQueues, OracleAcceptsCompiledPlans) {
   uint64_t transfers = 0;
   for_random_plans(300, 3000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     EXPECT_EQ(first_hazard(plan), "") << "seed " << seed;
@@ -161,16 +163,16 @@ TEST(TwoQueues, TheOracleAcceptsWhatTheCompilerMakes) {
   EXPECT_GT(transfers, 100u);
 }
 
-// Two passes of the async queue wait for the frame before, the second for more of it: compiled() asks the
-// verifier. These seeds draw it.
-TEST(TwoQueues, TheFrameBeforeIsWaitedForAsFarAsAnyPassNeeds) {
+// Two passes of the async queue wait for the previous frame, and the second needs a later point.
+// compiled() runs the verifier. These seeds generate the case.
+TEST(TwoQueues, WaitsForPreviousFrame_CoverEveryPass) {
   for (const uint64_t seed : {2642u, 4607u, 4977u}) {
     const auto builder = random_graph(seed, Sizes::one_page);
     EXPECT_GT(async_passes(compiled(builder, two_queues(builder)).plan), 0u) << "seed " << seed;
   }
 }
 
-TEST(TwoQueues, WhateverOrderThePointsAllowGivesThePixelsThatTheGraphMeans) {
+TEST(TwoQueues, EveryLegalOrder_GivesTheReferencePixels) {
   for_random_plans(1500, 10000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
     const Interpretation reference = graph_reference(builder.graph, builder.pass_types, queue_frames, seed);
     for (uint64_t order = 0; order <= 3; ++order)
@@ -185,9 +187,9 @@ void expect_no_needless_barrier(const Plan& plan, uint64_t seed) {
         << "seed " << seed << ": without barrier " << b;
 }
 
-// Another pass reads a buffer in other ways, behind one for which a wait had made it visible. These seeds
-// draw it.
-TEST(TwoQueues, WhatAWaitHasShownNeedsNoBarrierForAnotherUsageEither) {
+// A later pass reads a buffer with another usage, after a pass whose wait made the buffer visible.
+// These seeds generate the case.
+TEST(TwoQueues, VisibleByAWait_NeedsNoBarrierForOtherUsages) {
   for (const uint64_t seed : {25505u, 34848u, 73763u}) {
     const auto builder = random_graph(seed, Sizes::one_page);
     expect_no_needless_barrier(compiled(builder, two_queues(builder)).plan, seed);
@@ -198,7 +200,8 @@ TEST(TwoQueues, WhatAWaitHasShownNeedsNoBarrierForAnotherUsageEither) {
   }
 }
 
-// Dropped one by one, each is refused: by the verifier in every plan, by the oracle too in the first ones.
+// Each mutant is refused: by the verifier in every plan, and by the oracle in the first
+// `judged_twice` plans.
 template <class ForEachMutant>
 void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, uint64_t minimum,
                           ForEachMutant for_each_mutant) {
@@ -219,18 +222,18 @@ void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, 
   EXPECT_GT(dropped, minimum);
 }
 
-TEST(TwoQueues, NoBarrierAndNoHalfOfATransferCanBeDropped) {
+TEST(TwoQueues, DroppedBarrierOrHalfTransfer_IsRefused) {
   expect_none_needless(100, 1000, 10000, 10000, [](const Plan& plan, const VisitMutant& visit) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b)
       visit(without_barrier(plan, b), fmt::format("without barrier {}", b));
   });
 }
 
-TEST(TwoQueues, NoWaitAndNoSignalCanBeLostOrComeEarlier) {
+TEST(TwoQueues, LostOrEarlierWaitOrSignal_IsRefused) {
   expect_none_needless(300, 1000, 10000, 2000, for_each_lost_point);
 }
 
-TEST(TwoQueues, AWeakerMaskIsRefusedExactlyWhereItMatters) {
+TEST(TwoQueues, WeakerMask_IsRefusedIfHazardous) {
   Tally tally;
   for_random_plans(60, 600, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for_each_weaker_mask(plan, [&](const Plan& mutant, const std::string& what) {
@@ -240,7 +243,7 @@ TEST(TwoQueues, AWeakerMaskIsRefusedExactlyWhereItMatters) {
   EXPECT_GT(tally.refused, 100u);
 }
 
-TEST(TwoQueues, APassOnTheOtherQueueIsRefusedExactlyWhereItMatters) {
+TEST(TwoQueues, PassOnTheOtherQueue_IsRefusedIfHazardous) {
   Tally tally;
   for_random_plans(150, 1500, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (size_t p = 0; p < plan.passes.size() && !HasFatalFailure(); ++p) {

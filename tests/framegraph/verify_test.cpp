@@ -1,4 +1,4 @@
-// The verifier refuses what is wrong: each mutation breaks one thing of a plan it accepts.
+// The verifier refuses wrong plans: each mutation breaks one property of an accepted plan.
 
 #include "framegraph/verify/verify.hpp"
 
@@ -19,7 +19,8 @@ using ::testing::Not;
 
 constexpr uint64_t verified_graphs = 150;
 
-// A history, an alias, a buffer read at two stages, an import updated in place.
+// Builds a graph with a history, an alias, a buffer read at two stages, and an import updated in
+// place.
 GraphBuilder everything() {
   GraphBuilder b;
   b.import("light").exported = true;
@@ -46,12 +47,12 @@ void expect_rejected(const std::function<void(Plan&)>& mutate, const std::string
   EXPECT_THAT(verify(plan).violations, Contains(HasSubstr(record_reason)));
 }
 
-TEST(Verify, AcceptsWhatTheCompilerMakes) {
+TEST(Verify, AcceptsCompiledPlans) {
   const auto b = everything();
   EXPECT_TRUE(verify(compiled(b).plan).proven());
 }
 
-TEST(Verify, RefusesMemoryThatIsSharedWhileBothAreAlive) {
+TEST(Verify, RefusesAliasedLiveMemory) {
   expect_rejected(
       [](Plan& plan) {
         for (Placement& placement : plan.placements)
@@ -60,8 +61,8 @@ TEST(Verify, RefusesMemoryThatIsSharedWhileBothAreAlive) {
       "alive at the same time share memory");
 }
 
-// Each is alive in one pass only, and all use the same bytes.
-TEST(Verify, JudgesThousandsOfPlacementsInTheSameBytes) {
+// Each placement is alive in only one pass, and all placements use the same bytes.
+TEST(Verify, ThousandsOfPlacementsInTheSameBytes_GetAVerdict) {
   const auto b = everything();
   Plan plan = compiled(b).plan;
   const auto transient = std::find_if(plan.placements.begin(), plan.placements.end(),
@@ -82,7 +83,7 @@ TEST(Verify, JudgesThousandsOfPlacementsInTheSameBytes) {
   EXPECT_THAT(verify(plan).violations, Contains(HasSubstr("alive at the same time share memory")));
 }
 
-// The longest chain that a graph may have. All of its images pass through the same memory, a pass each.
+// Builds the longest chain that a graph may have. All images use the same memory, one pass each.
 GraphBuilder chain(bool equal_sizes, bool forward, uint32_t mips) {
   constexpr uint32_t count = 4000;
   GraphBuilder b;
@@ -109,8 +110,9 @@ GraphBuilder chain(bool equal_sizes, bool forward, uint32_t mips) {
   return b;
 }
 
-// compiled() asks for a verdict: a verifier whose time grows with the square of the passes gives up here.
-TEST(Verify, JudgesTheLongestChains) {
+// compiled() runs the verifier, which gives up if its time grows with the square of the number of
+// passes.
+TEST(Verify, LongestChains_GetAVerdict) {
   for (const bool equal_sizes : {true, false})
     for (const bool forward : {true, false}) {
       const auto b = chain(equal_sizes, forward, 1);
@@ -120,8 +122,8 @@ TEST(Verify, JudgesTheLongestChains) {
   EXPECT_EQ(compiled(in_parts).plan.passes.size(), 4000u);
 }
 
-// A plan that divides each of many images into as many parts as an image can have.
-TEST(Verify, SaysThatItGaveUpAndObjectsToNothing) {
+// Each of many images is divided into the maximum number of subresources.
+TEST(Verify, ExcessiveWork_GivesUpWithoutViolations) {
   const auto b = everything();
   Plan plan = compiled(b).plan;
   for (uint32_t i = 0; i < 20; ++i) {
@@ -156,8 +158,8 @@ TEST(Verify, SaysThatItGaveUpAndObjectsToNothing) {
   EXPECT_FALSE(verdict.proven());
 }
 
-// Each access of a pass is compared with each other one.
-TEST(Verify, GivesUpWhereAPassHasTooManyAccesses) {
+// Every two accesses of a pass are compared.
+TEST(Verify, TooManyAccesses_GivesUp) {
   const auto b = everything();
   Plan plan = compiled(b).plan;
   PlanPass& last = plan.passes.back();
@@ -213,7 +215,7 @@ TEST(Verify, RefusesAReadOutsideItsLifetime) {
       "outside its lifetime");
 }
 
-TEST(Verify, RefusesEveryBarrierThatLosesItsSource) {
+TEST(Verify, RefusesBarriersWithoutSourceStages) {
   for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto plan = compiled(random_graph(seed)).plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
@@ -226,13 +228,14 @@ TEST(Verify, RefusesEveryBarrierThatLosesItsSource) {
   }
 }
 
-TEST(Verify, RefusesEveryBarrierThatLosesAWriteItMustMakeAvailable) {
+TEST(Verify, RefusesBarriersWithoutSourceAccess) {
   for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto builder = random_graph(seed);
     const auto whole = compiled(builder);
     const Plan& plan = whole.plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
-      // An alias barrier names the writes of every occupant, also those that a later occupant made available.
+      // An alias barrier names the writes of every occupant, including writes that a later occupant
+      // made available.
       if (plan.barriers[i].source_access == 0 || plan.barriers[i].why == PlanBarrier::ReasonKind::alias)
         continue;
       Plan mutant = plan;
@@ -245,7 +248,7 @@ TEST(Verify, RefusesEveryBarrierThatLosesAWriteItMustMakeAvailable) {
   }
 }
 
-TEST(Verify, RefusesEveryBarrierThatDoesNotReachItsReader) {
+TEST(Verify, RefusesBarriersWithoutDestination) {
   for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto plan = compiled(random_graph(seed)).plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
@@ -258,7 +261,7 @@ TEST(Verify, RefusesEveryBarrierThatDoesNotReachItsReader) {
   }
 }
 
-// A pass that consumes what the pass before it made cannot run first.
+// A pass cannot run before the pass that produces its input.
 TEST(Verify, RefusesSwappedPasses) {
   const auto b = everything();
   const Plan plan = compiled(b).plan;

@@ -11,12 +11,13 @@
 namespace dermis {
 namespace {
 
-// One effect of a command on one piece of memory.
+// One access of a command to one piece of memory.
 struct Touch {
   uint32_t command = 0;
   bool is_barrier = false;
-  Stage source = 0;      // barriers: what they wait for; passes: where the access happens
-  Stage destination = 0; // barriers: what waits for them
+  // For barriers: the stages waited for. For passes: the stages of the access.
+  Stage source = 0;
+  Stage destination = 0; // For barriers: the stages that wait.
   bool from_host = false, to_host = false;
   Queue queue = Queue::main;
 };
@@ -33,11 +34,12 @@ bool waits(const Touch& later, const Touch& earlier) {
   return earlier.is_barrier && (later.source & earlier.destination) != 0;
 }
 
-// By piece of memory, in the order of the commands.
+// Returns the accesses to each piece of memory, in command order.
 std::vector<std::vector<Touch>> touches_of(const Plan& plan, const Memory& memory,
                                            const std::vector<Command>& commands) {
   std::vector<std::vector<Touch>> touches(memory.overlap.size());
-  const auto touch = [&](const auto& what, uint32_t frame, const Touch& one) { // once a piece
+  // Adds at most one access per piece.
+  const auto touch = [&](const auto& what, uint32_t frame, const Touch& one) {
     for (const uint32_t own : memory.pieces(plan, what.resource, what.frames_back, frame, what.range))
       for (const uint32_t piece : memory.overlap[own])
         if (touches[piece].empty() || !same(touches[piece].back(), one)) touches[piece].push_back(one);
@@ -81,7 +83,7 @@ Memory memory_of(const Plan& plan) {
     uint32_t resource, instance, placement;
   };
   Memory memory;
-  std::vector<Owner> owners; // by piece
+  std::vector<Owner> owners; // By piece.
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
     const PlanResource& resource = plan.resources[r];
     memory.first.push_back(static_cast<uint32_t>(owners.size()));
@@ -108,7 +110,7 @@ Memory memory_of(const Plan& plan) {
 std::vector<Command> record(const Plan& plan, uint32_t first, uint32_t end) {
   std::vector<Command> commands;
   uint32_t batch = 0;
-  std::array<std::vector<uint32_t>, 2> reached; // commands, by queue and point
+  std::array<std::vector<uint32_t>, 2> reached; // Commands, by queue and timeline point.
   const auto barriers = [&](uint32_t frame, uint32_t begin, uint32_t count, Queue queue) {
     for (uint32_t b = begin; b < begin + count; ++b)
       commands.push_back({frame, false, b, batch, queue, no_wait});
@@ -165,7 +167,7 @@ std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
   for (const auto& all : followers)
     for (const uint32_t b : all)
       ++waits_for[b];
-  // Whatever may run next runs by a priority drawn for each command, which moves some of them far.
+  // The ready command with the highest random priority runs next, which moves some commands far.
   using Ready = std::pair<uint64_t, uint32_t>;
   std::priority_queue<Ready> ready;
   const auto release = [&](uint32_t c) { ready.emplace(arbitrary_pixels(seed, c)[0], c); };

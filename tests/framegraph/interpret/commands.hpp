@@ -1,5 +1,6 @@
 #pragma once
-// A plan over several frames as one list of commands, and the orders in which a device may run them.
+// Unrolls a plan over several frames into one list of commands, and generates the orders in which a
+// device may run them.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -8,13 +9,14 @@
 
 namespace dermis {
 
-// A piece of memory with contents of its own: one mip of one layer of an image, or a buffer, in a placement
-// or in what the host binds to a resource.
+// Pieces of memory with separate contents: each mip of each layer of an image, or a buffer, in a
+// placement or in a host resource.
 struct Memory {
-  std::vector<uint32_t> first;                // by resource: number of its first piece
-  std::vector<std::vector<uint32_t>> overlap; // by piece: pieces with a byte in common, itself included
+  std::vector<uint32_t> first; // By resource: the index of its first piece.
+  // By piece: all pieces with a common byte, including itself.
+  std::vector<std::vector<uint32_t>> overlap;
 
-  // The pieces of one instance in the range: mips first, each by layers.
+  // Returns the pieces of one instance in the range: by mip, then by layer.
   std::vector<uint32_t> pieces(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame,
                                const SubresourceRange& range) const;
 };
@@ -27,20 +29,22 @@ inline constexpr uint32_t no_wait = 0xffffffffu;
 struct Command {
   uint32_t frame = 0;
   bool is_pass = false;
-  uint32_t index = 0; // into Plan::passes or Plan::barriers
-  uint32_t batch = 0; // barriers of one batch have the same number and do not wait for each other
+  uint32_t index = 0; // Index into Plan::passes or Plan::barriers.
+  uint32_t batch = 0; // Barriers of one batch have the same number and do not wait for each other.
   Queue queue = Queue::main;
-  uint32_t wait_until = no_wait; // a wait: for all commands of the other queue up to this one
+  uint32_t wait_until = no_wait; // A wait: for all commands of the other queue up to this index.
 };
 
-// All commands of the frames first .. end - 1, in the order in which they are recorded.
+// Returns all commands of the frames first .. end - 1, in recorded order.
 std::vector<Command> record(const Plan& plan, uint32_t first, uint32_t end);
 
-// An order of `commands`, as indices into it, that execution dependencies allow and `seed` picks; seed 0: as
-// recorded. A barrier waits for accesses and barriers before it, in its source scope, on memory that overlaps
-// its own; accesses after it, in its destination scope, on such memory wait for it. What the host gives for
-// one frame waits for what it was given back in the frame before. A wait waits for commands of the other
-// queue, and all later ones of its own for it. Nothing else waits.
+// Returns an order of `commands`, as indices, that execution dependencies allow; seed 0 is the
+// recorded order.
+// - A barrier waits for earlier accesses and barriers in its source scope on memory that overlaps
+//   its own. Later accesses in its destination scope on such memory wait for the barrier.
+// - An acquire from the host waits for the release to the host in the previous frame.
+// - A wait waits for commands of the other queue; all later commands of its own queue wait for it.
+// - Nothing else waits.
 std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
                                   const std::vector<Command>& commands, uint64_t seed);
 

@@ -18,8 +18,8 @@ struct Interpreter {
   const InterpretOptions& options;
   Memory memory;
   std::vector<Pixels> pieces;
-  std::vector<Owner> owners = {}; // by piece
-  uint64_t spoiled = 0;           // how often contents were lost: each time to other pixels
+  std::vector<Owner> owners = {}; // By piece.
+  uint64_t spoiled = 0;           // Counts lost contents: each loss gives other pixels.
   Interpretation out;
 
   Pixels poison() { return arbitrary_pixels(~options.poison, spoiled++); }
@@ -45,7 +45,7 @@ struct Interpreter {
     pieces[piece] = pixels;
   }
 
-  // Contents that one queue left are lost to the other one, unless they were released and acquired.
+  // Contents of one queue are lost for the other queue, unless they were released and acquired.
   void touch(uint32_t piece, Queue queue) {
     if (owners[piece] != owner_of(queue)) pieces[piece] = poison();
     owners[piece] = owner_of(queue);
@@ -67,7 +67,7 @@ struct Interpreter {
       if (barrier.from_host)
         pieces[piece] = host_pixels(options.contents, frame, slot);
       else if (resource.type == ResourceType::image && barrier.old_layout == Layout::undefined)
-        write(piece, poison()); // discarded
+        write(piece, poison()); // An undefined old layout discards the contents.
       if (barrier.to_host) out[frame][slot] = pieces[piece];
     }
   }
@@ -76,7 +76,7 @@ struct Interpreter {
     return history.declaration.on_cut == HistoryDeclaration::OnCut::invalidate && (cuts >> frame & 1u) != 0;
   }
 
-  // Have as many frames been written since the history began?
+  // Whether enough frames were written since the history began.
   bool valid(const PlanAccess& access, uint32_t frame) const {
     for (const PlanHistory& history : plan.histories) {
       if (history.resource != access.resource) continue;
@@ -100,7 +100,7 @@ struct Interpreter {
     return true;
   }
 
-  // As the executor does before such a frame.
+  // The executor clears these histories before such a frame, too.
   void restart_histories(uint32_t frame) {
     for (const PlanHistory& history : plan.histories)
       for (uint32_t back = 1; cut_before(history, options.cuts, frame) && back <= history.frames; ++back)
@@ -144,7 +144,7 @@ Pixels host_pixels(uint64_t contents, uint32_t frame, uint32_t slot) {
 Interpretation interpret(const Plan& plan, const InterpretOptions& options) {
   Interpreter machine{plan, options, {}, {}, {}, 0, {}};
   machine.prepare();
-  for (uint32_t first = 0; first < options.frames;) { // from cut to cut
+  for (uint32_t first = 0; first < options.frames;) { // Runs from one cut to the next.
     machine.restart_histories(first);
     uint32_t end = first + 1;
     while (end < options.frames && (options.cuts >> end & 1u) == 0)

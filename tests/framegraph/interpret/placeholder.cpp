@@ -13,7 +13,7 @@ uint64_t mix(uint64_t sum, uint64_t value) {
   return scramble(sum ^ scramble(value));
 }
 
-constexpr size_t neighbours[] = {0, 1, 3}; // pixels ahead: a stencil that is not symmetric
+constexpr size_t neighbours[] = {0, 1, 3}; // Offsets in pixels; the stencil is not symmetric.
 
 } // namespace
 

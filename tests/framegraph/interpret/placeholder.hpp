@@ -1,6 +1,7 @@
 #pragma once
-// Arithmetic in place of kernels: small images whose every pixel tells what it was computed from. Two
-// computations that agree on all pixels did the same work on the same inputs, but for collisions of 64 bits.
+// Arithmetic in place of kernels, on small images whose pixels are hashes of all inputs. Two
+// computations with equal pixels did the same work on the same inputs, except for collisions of 64
+// bits.
 
 #include <array>
 #include <cstdint>
@@ -8,19 +9,21 @@
 
 namespace dermis {
 
-using Pixels = std::array<uint64_t, 8>; // every buffer and every mip of a layer, whatever its size
+// Used for every buffer and every mip of a layer, whatever its size.
+using Pixels = std::array<uint64_t, 8>;
 
 struct StandInInput {
   uint32_t port = 0;
   Pixels pixels{};
 };
 
-// Pixels that depend on `seed` and `stream` alone: contents of the host, or contents that mean nothing.
+// Returns pixels that depend only on `seed` and `stream`: contents of the host, or undefined
+// contents.
 Pixels arbitrary_pixels(uint64_t seed, uint64_t stream);
 
-// What pass number `pass` writes to `port` from these inputs, in the order given; to the mip and layer number
-// `part` of those that the port sees. Each pixel depends on
-// several pixels of every input. Settings have no part in it.
+// Returns the pixels that pass number `pass` writes to `port` from these inputs, in this order.
+// `part` is the index of the mip and layer among those of the port. Each pixel depends on several
+// pixels of every input. Settings have no effect.
 Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part, std::span<const StandInInput> inputs);
 
 } // namespace dermis

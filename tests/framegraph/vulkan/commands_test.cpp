@@ -1,4 +1,4 @@
-// What is recorded, seen through a function table that records calls instead of making them.
+// Tests the recorded commands through a function table that records calls.
 #include "integration/tools/command/bench/record/allocation_count.hpp"
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
@@ -11,11 +11,11 @@ using ::testing::ElementsAre;
 
 constexpr size_t max_barriers = 64;
 
-struct Recorded { // static: functions of the driver have no user pointer
+struct Recorded { // Static: Vulkan functions have no user pointer.
   VkImageMemoryBarrier2 barriers[max_barriers];
   size_t barrier_count = 0, batches = 0, dispatches = 0, labels = 0;
   uint32_t groups[3];
-  VkMemoryBarrier2 all_memory; // the last that names no resource
+  VkMemoryBarrier2 all_memory; // The last barrier that names no resource.
   size_t all_memory_count = 0, dispatches_before_it = 0;
 };
 Recorded recorded;
@@ -65,7 +65,7 @@ protected:
   }
   vulkan::RecordResult record(vulkan::Rectangle rectangle = {}, bool taken_over = false) {
     vulkan::FrameInput input;
-    input.command_buffer = reinterpret_cast<VkCommandBuffer>(this); // never looked at
+    input.command_buffer = reinterpret_cast<VkCommandBuffer>(this); // Never dereferenced.
     input.images = images;
     input.rectangle = rectangle;
     input.taken_over = taken_over;
@@ -82,7 +82,7 @@ protected:
   }
 };
 
-TEST_F(CommandsTest, AnImageOfAnotherQueueFamilyIsAcquiredFirstAndReleasedLast) {
+TEST_F(CommandsTest, OtherQueueFamily_IsAcquiredAndReleased) {
   const SmallGraph g = update();
   make_executor(g, 16, 16);
   const uint32_t other = queue_family + 1;
@@ -106,7 +106,7 @@ TEST_F(CommandsTest, AnImageOfAnotherQueueFamilyIsAcquiredFirstAndReleasedLast) 
     EXPECT_EQ(recorded.barriers[i].srcQueueFamilyIndex, VK_QUEUE_FAMILY_IGNORED) << i;
 }
 
-TEST_F(CommandsTest, TheOwnQueueFamilyIsNoTransfer) {
+TEST_F(CommandsTest, OwnQueueFamily_NeedsNoTransfer) {
   const SmallGraph g = update();
   make_executor(g, 16, 16);
   bind(g, "light", {});
@@ -116,7 +116,7 @@ TEST_F(CommandsTest, TheOwnQueueFamilyIsNoTransfer) {
     EXPECT_EQ(recorded.barriers[i].srcQueueFamilyIndex, VK_QUEUE_FAMILY_IGNORED) << i;
 }
 
-TEST_F(CommandsTest, NoBarrierWhereTheHostHasNothingToWaitForAndTheLayoutFits) {
+TEST_F(CommandsTest, NoBarrier_WithoutHostWorkAndLayoutChange) {
   SmallGraph g;
   g.import("light", Format::r32f);
   g.exported("result");
@@ -134,7 +134,7 @@ TEST_F(CommandsTest, NoBarrierWhereTheHostHasNothingToWaitForAndTheLayoutFits) {
   EXPECT_EQ(before_dispatch, 0u);
 }
 
-TEST_F(CommandsTest, AFrameAfterThoseOfAnotherPlanFirstWaitsForAllTheyWrote) {
+TEST_F(CommandsTest, FirstFrameAfterAnotherPlan_WaitsForItsWrites) {
   const SmallGraph g = update();
   make_executor(g, 16, 16);
   bind(g, "light", {});
@@ -150,10 +150,10 @@ TEST_F(CommandsTest, AFrameAfterThoseOfAnotherPlanFirstWaitsForAllTheyWrote) {
   EXPECT_EQ(recorded.all_memory.dstAccessMask, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
-TEST_F(CommandsTest, MemoryThatOthersHadIsTakenOverByABarrierThatNamesNoResource) {
+TEST_F(CommandsTest, AliasedMemory_UsesAGlobalBarrier) {
   SmallGraph g;
   g.import("light", Format::r32f).exported = true;
-  for (const char* name : {"one", "two", "three"}) // the third lies where the first did
+  for (const char* name : {"one", "two", "three"}) // The third image uses the memory of the first.
     g.image(name);
   g.pass("a", "test.add", {{"a", "light"}}, {{"target", "one"}});
   g.pass("b", "test.add", {{"a", "one"}}, {{"target", "two"}});
@@ -162,14 +162,15 @@ TEST_F(CommandsTest, MemoryThatOthersHadIsTakenOverByABarrierThatNamesNoResource
   make_executor(g, 16, 16);
   bind(g, "light", {});
   ASSERT_FALSE(record());
-  // 'one' after 'three' of the frame before, 'three' after 'one'; 'two' has its memory to itself.
+  // 'one' waits for 'three' of the previous frame, and 'three' waits for 'one'; 'two' has separate
+  // memory.
   EXPECT_EQ(recorded.all_memory_count, 2u);
   EXPECT_EQ(recorded.dispatches_before_it, 2u);
   EXPECT_EQ(recorded.all_memory.srcStageMask, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
   EXPECT_EQ(recorded.all_memory.srcAccessMask, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
   EXPECT_EQ(recorded.all_memory.dstStageMask, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
   EXPECT_EQ(recorded.all_memory.dstAccessMask, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-  // The validation layer wants to be told of writes by the images' own barriers, too, though 'one' was read.
+  // The validation layer needs image barriers that name the writes, even though 'one' was read.
   size_t taken_over = 0;
   for (size_t i = 0; i < recorded.barrier_count; ++i)
     taken_over += recorded.barriers[i].oldLayout == VK_IMAGE_LAYOUT_UNDEFINED &&
@@ -189,7 +190,8 @@ TEST_F(CommandsTest, GroupsCoverTheRenderRectangleAndEveryPassHasALabel) {
   EXPECT_THAT(recorded.groups, ElementsAre(3, 1, 1));
 }
 
-// The validation layer allocates when it reads queries back; only the library's own allocations count here.
+// The validation layer allocates memory when it reads queries back; only the library's allocations
+// count here.
 VkResult VKAPI_CALL read_no_queries(VkDevice, VkQueryPool, uint32_t, uint32_t, size_t, void*, VkDeviceSize,
                                     VkQueryResultFlags) {
   return VK_NOT_READY;

@@ -1,4 +1,5 @@
-// The host's device: every function named, every format number right, sizes as the driver says them.
+// Tests the host's device: missing functions are named, format numbers are right, and sizes match
+// the driver.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
@@ -51,7 +52,7 @@ TEST(Vocabulary, UsagesHaveVulkansBits) {
   EXPECT_EQ(usage_info(Usage::clear).vk_usage, uint32_t{VK_BUFFER_USAGE_TRANSFER_DST_BIT});
 }
 
-// A getter that hides some functions needs the true one behind it; getters have no user pointer.
+// A getter that hides functions needs the original getter; getters have no user pointer.
 PFN_vkGetInstanceProcAddr true_getter = nullptr;
 PFN_vkGetDeviceProcAddr true_device_getter = nullptr;
 
@@ -103,7 +104,7 @@ TEST_F(DeviceTest, NullHandlesAndUnknownQueueFamiliesAreRefused) {
   EXPECT_THAT(error.text, HasSubstr("queue family 1000"));
 }
 
-TEST_F(DeviceTest, TheProfileSaysWhatTheDriverSays) {
+TEST_F(DeviceTest, ProfileMatchesTheDriver) {
   EXPECT_EQ(profile.name, dermis_device.properties.deviceName);
   EXPECT_TRUE(profile.supports(Format::rgba16f, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT))
       << "required of every Vulkan device";

@@ -88,8 +88,8 @@ vulkan::RecordResult ExecutorTest::frame(float time, vulkan::Rectangle rectangle
   input.frame_index = ++frame_index;
   input.reset_history = reset_history;
   input.before = replaced.get();
-  // The contract: frame_index - frames_in_flight is finished. Waiting for all of an older pair keeps two in
-  // flight.
+  // The contract is that frame_index - frames_in_flight has finished. Waiting for all frames of an
+  // older pair keeps two frames in flight.
   if (frame_index % test_frames_in_flight == 1) wait();
   const vulkan::RecordResult result = executor->record(input);
   submit(input.command_buffer);

@@ -1,5 +1,5 @@
 #pragma once
-// A device, an executor on it and host images by name: what the device tests of this room share.
+// A device, an executor on it and named host images, for the device tests of this folder.
 
 #include "framegraph/vulkan/device_profile.hpp"
 #include "tests/framegraph/vulkan/small_graph.hpp"
@@ -19,7 +19,8 @@ protected:
                      const std::vector<std::string>& unbound = {});
   vulkan::Error try_executor(const SmallGraph& graph, const Plan& plan, const vulkan::Device& on,
                              std::unique_ptr<vulkan::Executor>& result);
-  // Makes an r32f image of the size and binds it to the slot: comes and goes in `layout`.
+  // Makes an r32f image of the frame's size and binds it to the slot; `layout` is its state before
+  // and after a frame.
   TestImage bind(const SmallGraph& graph, const std::string& slot, const std::vector<float>& texels,
                  VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL);
   void bind_image(const SmallGraph& graph, const std::string& slot, const TestImage& image,
@@ -31,12 +32,12 @@ protected:
   vulkan::Device dermis_device;
   DeviceProfile profile;
   std::unique_ptr<vulkan::Executor> executor;
-  std::unique_ptr<vulkan::Executor> replaced; // FrameInput::before, or none
-  std::vector<vulkan::HostImage> images; // by slot
+  std::unique_ptr<vulkan::Executor> replaced; // Value of FrameInput::before, or null.
+  std::vector<vulkan::HostImage> images;      // By slot.
   std::vector<SettingValue> settings;
   uint64_t frame_index = 0;
-  bool poison = false;   // of the next executor
-  bool counters = false; // likewise: its environment has counters
+  bool poison = false;   // Applies to the next executor.
+  bool counters = false; // Adds counters to the environment of the next executor.
   uint32_t view_width = 0, view_height = 0;
 };
 

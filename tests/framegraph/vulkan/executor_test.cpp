@@ -1,4 +1,4 @@
-// Laws of running a plan: what the passes were told to do is what is in the host's images afterwards.
+// Tests that the host's images contain the results of all passes after a frame.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -9,11 +9,11 @@ namespace {
 using ::testing::Each;
 using ::testing::FloatEq;
 
-constexpr uint32_t width = 21, height = 13; // not multiples of a tile
+constexpr uint32_t width = 21, height = 13; // Not multiples of the tile side.
 
-// Values below are small integers and quarters: exact in r32f, so exact equality is the tolerance.
+// Values below are small integers and quarters, exact in r32f, so the tests compare for equality.
 
-TEST_F(ExecutorTest, AWriteIsReadByTheNextPass) {
+TEST_F(ExecutorTest, NextPassReadsTheWrite) {
   SmallGraph g;
   g.exported("result");
   g.image("first");
@@ -67,7 +67,7 @@ TEST_F(ExecutorTest, AnImportIsUpdatedInPlace) {
   EXPECT_THAT(read(light), Each(FloatEq(10.0f)));
 }
 
-TEST_F(ExecutorTest, ImagesGoBackInTheStateTheHostAskedFor) {
+TEST_F(ExecutorTest, ImagesAreReleasedInTheRequestedState) {
   SmallGraph g;
   g.import("light", Format::r32f);
   g.import("depth", Format::d32f);
@@ -107,7 +107,8 @@ TEST_F(ExecutorTest, AnUnboundOptionalPortReadsZeroAndItsMaskBitIsClear) {
   bind(g, "light", std::vector<float>(width * height, 4.0f));
   const TestImage result = bind(g, "result", {});
   ASSERT_FALSE(frame());
-  EXPECT_THAT(read(result), Each(FloatEq(4.0f))); // -1000 times anything else than zero would show
+  // A placeholder other than zero would add -1000 times its value.
+  EXPECT_THAT(read(result), Each(FloatEq(4.0f)));
 }
 
 TEST_F(ExecutorTest, ABoundOptionalPortIsRead) {
@@ -129,7 +130,7 @@ TEST_F(ExecutorTest, ABoundOptionalPortIsRead) {
   const TestImage result = bind(g, "result", {});
   ASSERT_FALSE(frame());
   EXPECT_THAT(read(result), Each(FloatEq(11.0f)));
-  constexpr uint16_t minus_eleven = 0xc980; // fp16: -1.375 * 2^3
+  constexpr uint16_t minus_eleven = 0xc980; // fp16: -1.375 * 2^3.
   EXPECT_THAT(values_of<uint16_t>(download(second, VK_IMAGE_LAYOUT_GENERAL)), Each(minus_eleven));
 }
 
@@ -159,7 +160,7 @@ TEST_F(ExecutorTest, AnIndirectDispatchRunsOverTheListedTiles) {
   g.pass("classes", "test.classes", {}, {{"classes", "classes"}});
   g.pass("list", "test.list", {{"classes", "classes"}}, {{"tiles", "tiles"}, {"arguments", "arguments"}});
   g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}}, {{"target", "light"}});
-  make_executor(g, 200, 72); // 25 x 9 tiles: four groups over the tile grid
+  make_executor(g, 200, 72); // 25 x 9 tiles: four groups over the tile grid.
   const TestImage light = bind(g, "light", std::vector<float>(200 * 72, 0.0f));
   for (int i = 1; i <= 2; ++i)
     ASSERT_FALSE(frame());
@@ -193,11 +194,11 @@ TEST_F(ExecutorTest, TheEnvironmentGivesTablesAndALinearSampler) {
   make_executor(g, width, height);
   const TestImage result = bind(g, "result", {});
   ASSERT_FALSE(frame());
-  // A quarter of the way to the next texel, times table[1] = 2. Filter weights have at least 4 bits of
-  // fraction beyond the quarter (subTexelPrecisionBits >= 4), which holds a quarter exactly.
+  // Sampling a quarter of the way to the next texel, times table[1] = 2. Filter weights have at
+  // least 4 fraction bits (subTexelPrecisionBits >= 4), so a quarter is exact.
   const std::vector<float> texels = read(result);
   EXPECT_FLOAT_EQ(texels[5], 2.0f * (1.0f + 4.0f * 5.25f));
-  EXPECT_FLOAT_EQ(texels[width - 1], 2.0f * (1.0f + 4.0f * 20.0f)); // clamped to the edge
+  EXPECT_FLOAT_EQ(texels[width - 1], 2.0f * (1.0f + 4.0f * 20.0f)); // Clamped to the edge.
 }
 
 TEST_F(ExecutorTest, ASettingOfTheHostIsEffectiveInTheNextFrame) {

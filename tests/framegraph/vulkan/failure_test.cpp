@@ -1,4 +1,4 @@
-// Whatever call of the driver fails, creation says which, leaves nothing behind, and can be tried again.
+// If any driver call fails, creation names the call, frees everything, and can be tried again.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -10,8 +10,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using vulkan::FunctionTable;
 
-// Functions of the driver have no user pointer, so what they share is static; tests of this file run one by
-// one.
+// Vulkan functions have no user pointer, so their state is static; tests of this file run
+// sequentially.
 struct Faults {
   FunctionTable driver;
   uint32_t calls = 0, fail_at = 0;
@@ -59,7 +59,7 @@ protected:
   }
 };
 
-TEST_F(FailureTest, EveryFailingCallIsNamedAndNothingIsLeftBehind) {
+TEST_F(FailureTest, EveryFailingCallIsNamed_NothingLeaks) {
   const SmallGraph g = graph();
   const Plan plan = g.compile(profile, 16, 16);
   faults = {dermis_device.vk, 0, 0};
@@ -80,7 +80,7 @@ TEST_F(FailureTest, EveryFailingCallIsNamedAndNothingIsLeftBehind) {
   }
   EXPECT_GT(failures, 20u) << "images, memory, pipelines, sets: there are that many calls";
   EXPECT_LT(faults.fail_at, more_than_enough);
-  // What was left behind would be named by validation when the fixture destroys the device.
+  // Validation reports leaked objects when the fixture destroys the device.
 }
 
 TEST_F(FailureTest, AMissingKernelIsNamed) {

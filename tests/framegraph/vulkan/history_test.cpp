@@ -1,5 +1,5 @@
-// Laws of histories: what a frame wrote is what the next reads, across submissions, and age and validity tell
-// so.
+// Tests that a frame reads what the previous frame wrote, across submissions, and that age and
+// validity are reported.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ using ::testing::FloatEq;
 
 constexpr uint32_t side = 16;
 
-// count = count@-1 + 1, shown in result.
+// Computes count = count@-1 + 1 and copies it to `result`.
 SmallGraph counter(uint32_t frames = 1) {
   SmallGraph g;
   g.exported("result");
@@ -25,7 +25,7 @@ SmallGraph counter(uint32_t frames = 1) {
 
 class HistoryTest : public ExecutorTest {};
 
-TEST_F(HistoryTest, ANewHistoryIsZeroAndEachFrameSeesTheOneBefore) {
+TEST_F(HistoryTest, NewHistoryIsZero_FramesReadThePrevious) {
   const SmallGraph g = counter();
   make_executor(g, side, side);
   const TestImage result = bind(g, "result", {});
@@ -34,8 +34,8 @@ TEST_F(HistoryTest, ANewHistoryIsZeroAndEachFrameSeesTheOneBefore) {
   EXPECT_THAT(read(result), Each(FloatEq(5.0f)));
 }
 
-TEST_F(HistoryTest, TwoFramesBackIsTwoFramesBack) {
-  const SmallGraph g = counter(2); // two interleaved counters
+TEST_F(HistoryTest, TwoFramesBack_ReadsTheRightFrame) {
+  const SmallGraph g = counter(2); // Two interleaved counters.
   make_executor(g, side, side);
   const TestImage result = bind(g, "result", {});
   const float expected[] = {1, 1, 2, 2, 3, 3, 4};
@@ -45,7 +45,7 @@ TEST_F(HistoryTest, TwoFramesBackIsTwoFramesBack) {
   }
 }
 
-TEST_F(HistoryTest, RenewedInPlaceKeepsCountingAndStartsAnewAfterACut) {
+TEST_F(HistoryTest, UpdatedInPlace_CountsAndRestartsAfterACut) {
   SmallGraph g;
   g.exported("result");
   g.history("count");
@@ -62,7 +62,7 @@ TEST_F(HistoryTest, RenewedInPlaceKeepsCountingAndStartsAnewAfterACut) {
   EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
 }
 
-TEST_F(HistoryTest, WhereAHistoryIsNotValidItsPortReadsWhatTheGraphSays) {
+TEST_F(HistoryTest, InvalidHistory_PortReadsItsOtherwise) {
   SmallGraph g;
   g.exported("result");
   g.history("count");
@@ -73,15 +73,15 @@ TEST_F(HistoryTest, WhereAHistoryIsNotValidItsPortReadsWhatTheGraphSays) {
   g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
   make_executor(g, side, side);
   const TestImage result = bind(g, "result", {});
-  // From 10 and nothing, then twice the frame before, and one more each time.
+  // Starts from 10 without history; each later frame doubles the previous frame and adds one.
   const float expected[] = {11, 23, 47, 11, 23};
   for (size_t i = 0; i < std::size(expected); ++i) {
-    ASSERT_FALSE(frame(0.0f, {}, i == 3)); // the camera cuts
+    ASSERT_FALSE(frame(0.0f, {}, i == 3)); // The camera cuts.
     EXPECT_THAT(read(result), Each(FloatEq(expected[i]))) << "frame " << i;
   }
 }
 
-TEST_F(HistoryTest, TwoFramesBackIsValidFromTheThirdFrameOn) {
+TEST_F(HistoryTest, TwoFramesBack_IsValidFromTheThirdFrame) {
   SmallGraph g;
   g.exported("result");
   g.history("count", 2);
@@ -97,7 +97,7 @@ TEST_F(HistoryTest, TwoFramesBackIsValidFromTheThirdFrameOn) {
   }
 }
 
-TEST_F(HistoryTest, AgeGrowsWithEveryFrameAndACutSaysWhy) {
+TEST_F(HistoryTest, AgeGrowsEachFrame_CutGivesItsReason) {
   const SmallGraph g = counter();
   make_executor(g, side, side);
   const TestImage result = bind(g, "result", {});
@@ -122,7 +122,7 @@ TEST_F(HistoryTest, AgeGrowsWithEveryFrameAndACutSaysWhy) {
   EXPECT_EQ(executor->history_state(0).age, 1u);
 }
 
-TEST_F(HistoryTest, AHistoryThatKeepsSurvivesACut) {
+TEST_F(HistoryTest, OnCutKeep_SurvivesACut) {
   SmallGraph g = counter();
   for (ResourceDeclaration& resource : g.graph.resources)
     resource.history.on_cut = HistoryDeclaration::OnCut::keep;
@@ -135,7 +135,7 @@ TEST_F(HistoryTest, AHistoryThatKeepsSurvivesACut) {
   EXPECT_EQ(executor->history_state(0).age, 4u);
 }
 
-// The graph as it was, or of another size, takes over from what ran.
+// The same graph, or a graph of another size, replaces a running executor.
 class ReplacedHistory : public HistoryTest {
 protected:
   void take_over(const SmallGraph& graph, uint32_t width, uint32_t height) {
@@ -144,7 +144,7 @@ protected:
   }
 };
 
-TEST_F(ReplacedHistory, TheSameGraphMadeAnewGoesOnCounting) {
+TEST_F(ReplacedHistory, SameGraph_KeepsCounting) {
   const SmallGraph g = counter(2);
   make_executor(g, side, side);
   const TestImage result = bind(g, "result", {});
@@ -158,12 +158,12 @@ TEST_F(ReplacedHistory, TheSameGraphMadeAnewGoesOnCounting) {
     ASSERT_FALSE(frame());
     EXPECT_THAT(read(result), Each(FloatEq(expected)));
     wait();
-    replaced.reset(); // copied from once
+    replaced.reset(); // The executor is copied from only once.
   }
 }
 
-TEST_F(ReplacedHistory, ABufferGoesOnAsImagesDo) {
-  // Tiles that the frame before listed count one more in `light`.
+TEST_F(ReplacedHistory, SameGraph_KeepsBuffers) {
+  // `light` counts one more in each tile that the previous frame listed.
   SmallGraph g;
   g.import("light", Format::r32f).exported = true;
   g.buffer("classes", 0).history.frames = 1;
@@ -182,7 +182,7 @@ TEST_F(ReplacedHistory, ABufferGoesOnAsImagesDo) {
   make_executor(g, side, side);
   const TestImage light = bind(g, "light", std::vector<float>(size_t{side} * side, 0.0f));
   ASSERT_FALSE(frame());
-  first_tiles_show(light, 0); // a new buffer is zero
+  first_tiles_show(light, 0); // A new buffer is zero.
   ASSERT_FALSE(frame());
   first_tiles_show(light, 1);
   take_over(g, side, side);
@@ -193,13 +193,13 @@ TEST_F(ReplacedHistory, ABufferGoesOnAsImagesDo) {
     wait();
     replaced.reset();
   }
-  take_over(g, side, side / 2); // of another size: as new
+  take_over(g, side, side / 2); // Another size starts anew.
   EXPECT_FALSE(executor->history_state(0, false, replaced.get()).valid);
   wait();
   replaced.reset();
 }
 
-TEST_F(ReplacedHistory, OfAnotherSizeItGoesOnOnlyWhereItIsToBeRescaled) {
+TEST_F(ReplacedHistory, OtherSize_KeepsOnlyRescaledHistories) {
   for (const bool rescale : {false, true}) {
     SmallGraph g = counter();
     for (ResourceDeclaration& resource : g.graph.resources)
@@ -219,7 +219,7 @@ TEST_F(ReplacedHistory, OfAnotherSizeItGoesOnOnlyWhereItIsToBeRescaled) {
   }
 }
 
-TEST_F(ReplacedHistory, ACutInTheFrameOfAnotherSizeStartsAnew) {
+TEST_F(ReplacedHistory, OtherSizeWithACut_StartsAnew) {
   SmallGraph g = counter();
   for (ResourceDeclaration& resource : g.graph.resources)
     resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
@@ -236,8 +236,8 @@ TEST_F(ReplacedHistory, ACutInTheFrameOfAnotherSizeStartsAnew) {
   replaced.reset();
 }
 
-TEST_F(ReplacedHistory, TexelsOfAnotherSizeAreTheNearestOnes) {
-  // shown = kept@-1; kept = source, a ramp.
+TEST_F(ReplacedHistory, OtherSize_TakesTheNearestTexel) {
+  // Computes shown = kept@-1 and kept = source, a ramp.
   SmallGraph g;
   g.import("source", Format::r32f);
   g.exported("result");
@@ -260,13 +260,14 @@ TEST_F(ReplacedHistory, TexelsOfAnotherSizeAreTheNearestOnes) {
   const std::vector<float> shown = read(result);
   for (uint32_t y = 0; y < 2 * side; ++y)
     for (uint32_t x = 0; x < side / 2;
-         ++x) // the middle of a texel twice as wide lies between two: either is near
+         // The centre of a texel of twice the width lies between two old texels; both are nearest.
+         ++x)
       EXPECT_THAT(shown[y * (side / 2) + x], ::testing::AnyOf(FloatEq(ramp[y / 2 * side + 2 * x]),
                                                               FloatEq(ramp[y / 2 * side + 2 * x + 1])))
           << x << ", " << y;
 }
 
-TEST_F(ReplacedHistory, WhatAnotherKindOfPassWroteIsForgotten) {
+TEST_F(ReplacedHistory, OtherPassType_StartsAnew) {
   SmallGraph filled;
   filled.exported("result");
   filled.history("count");
@@ -288,7 +289,7 @@ class DiscardedFrame : public HistoryTest {
 protected:
   void record_in_vain(bool reset_history = false) {
     vulkan::FrameInput lost;
-    lost.command_buffer = begin_commands(); // never submitted
+    lost.command_buffer = begin_commands(); // Never submitted.
     lost.images = images;
     lost.frame_index = frame_index + 1;
     lost.reset_history = reset_history;
@@ -296,14 +297,14 @@ protected:
   }
 };
 
-TEST_F(DiscardedFrame, NeverHappened) {
+TEST_F(DiscardedFrame, LeavesNoEffect) {
   const SmallGraph g = counter(2);
   make_executor(g, side, side);
   const TestImage result = bind(g, "result", {});
   const float expected[] = {1, 1, 2, 2, 3, 3};
   for (size_t i = 0; i < std::size(expected); ++i) {
     const vulkan::HistoryState before = executor->history_state(0);
-    record_in_vain(i % 2 == 1); // also one that forgets all
+    record_in_vain(i % 2 == 1); // Also tests a frame that resets all histories.
     ASSERT_TRUE(executor->discard_frame(frame_index + 1));
     const vulkan::HistoryState after = executor->history_state(0);
     EXPECT_EQ(after.age, i);
@@ -315,7 +316,7 @@ TEST_F(DiscardedFrame, NeverHappened) {
   }
 }
 
-TEST_F(DiscardedFrame, IsTheLastOneAndTakenBackOnce) {
+TEST_F(DiscardedFrame, OnlyTheLastFrameOnce) {
   const SmallGraph g = counter();
   make_executor(g, side, side);
   bind(g, "result", {});
@@ -341,7 +342,7 @@ TEST_F(DiscardedFrame, LeavesNoCounters) {
   wait();
   uint32_t words[1];
   EXPECT_TRUE(executor->read_counters(1, words));
-  record_in_vain(); // frame 3, in the place of frame 1
+  record_in_vain(); // Frame 3 uses the slot of frame 1.
   ASSERT_TRUE(executor->discard_frame(3));
   EXPECT_FALSE(executor->read_counters(3, words));
   EXPECT_FALSE(executor->read_counters(1, words)) << "frame 3 cleared them";

@@ -1,4 +1,5 @@
-// Laws of poison: who reads only what was written sees no difference, and who does not is found out.
+// Tests the debug fill: results do not change if only written memory is read, and reads of
+// undefined memory give NaN.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -48,22 +49,23 @@ TEST_F(PoisonTest, ResultsDoNotDependOnUndefinedMemory) {
   g.pass("show", "test.add", {{"a", "sum"}}, {{"target", "result"}});
   const std::vector<float> plain = run(g, false, {}), poisoned = run(g, true, {});
   EXPECT_EQ(plain, poisoned);
-  EXPECT_GT(poisoned[0], 0.0f); // not NaN, and not nothing
+  EXPECT_GT(poisoned[0], 0.0f); // Not NaN and not zero.
 }
 
-TEST_F(PoisonTest, WhatNobodyWroteIsNotANumber) {
+TEST_F(PoisonTest, UndefinedMemoryIsNaN) {
   SmallGraph g;
   g.exported("result");
   g.image("first");
   g.pass("fill", "test.fill", {}, {{"target", "first"}});
-  g.pass("blur", "test.sample", {{"a", "first"}}, {{"target", "result"}}); // a quarter of the next texel
+  // A quarter of the next texel.
+  g.pass("blur", "test.sample", {{"a", "first"}}, {{"target", "result"}});
   constexpr uint32_t inside = 8;
   const std::vector<float> texels = run(g, true, {0, 0, inside, inside});
   EXPECT_FALSE(std::isnan(texels[inside - 2]));
   EXPECT_TRUE(std::isnan(texels[inside - 1])) << "the next texel lies outside of the rectangle";
 }
 
-TEST_F(PoisonTest, NeedsAPlanThatIsMadeForIt) {
+TEST_F(PoisonTest, NeedsAPlanCompiledForIt) {
   SmallGraph g;
   g.exported("result");
   g.image("first");

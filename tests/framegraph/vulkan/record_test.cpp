@@ -1,5 +1,5 @@
-// Frames and environments that an executor refuses: each is told by what is wrong, and the next right frame
-// runs.
+// Tests that an executor refuses wrong frames and environments with the reason, and then runs the
+// next correct frame.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <functional>
@@ -12,7 +12,7 @@ using ::testing::Each;
 using ::testing::FloatEq;
 using ::testing::HasSubstr;
 
-// What a frame is made of, so that each part can be made wrong.
+// The inputs of a frame, each of which a test can make wrong.
 struct Frame {
   vulkan::FrameInput input;
   std::vector<vulkan::HostImage> images;
@@ -36,7 +36,7 @@ struct RejectedFrames : ExecutorTest {
     bind(graph, "light", std::vector<float>(side * side, 2.0f));
     result = bind(graph, "result", {});
   }
-  // A right one, of which `change` makes a wrong one.
+  // Records a correct frame after `change` has made it wrong.
   vulkan::RecordResult record(const std::function<void(Frame&)>& change) {
     Frame one;
     one.images = images;
@@ -55,7 +55,7 @@ struct RejectedFrames : ExecutorTest {
   }
 };
 
-TEST_F(RejectedFrames, SayWhatIsWrongAndLeaveTheExecutorAsItWas) {
+TEST_F(RejectedFrames, ReasonIsGiven_ExecutorIsUnchanged) {
   frame_index = 4;
   ASSERT_FALSE(frame());
   const auto light = static_cast<size_t>(graph.slot("light")),
@@ -93,8 +93,8 @@ TEST_F(RejectedFrames, SayWhatIsWrongAndLeaveTheExecutorAsItWas) {
   EXPECT_THAT(read(result), Each(FloatEq(3.0f)));
 }
 
-// One value for each setting of the graph, or none.
-TEST_F(RejectedFrames, OfFewerSettingsThanTheGraphHasAreRefused) {
+// The host passes one value for each setting of the graph, or none.
+TEST_F(RejectedFrames, TooFewSettings_AreRefused) {
   SmallGraph two;
   two.setting("bias", 1);
   two.setting("other", 2);
@@ -109,7 +109,7 @@ TEST_F(RejectedFrames, OfFewerSettingsThanTheGraphHasAreRefused) {
   EXPECT_THAT(refused.text, HasSubstr("settings has fewer values"));
 }
 
-TEST_F(RejectedFrames, BuffersOfTheHostAreRefusedBySizeAndPlace) {
+TEST_F(RejectedFrames, WrongHostBuffer_IsRefusedWithSizeAndPlace) {
   SmallGraph with;
   ResourceDeclaration& weights = with.buffer("weights", 1);
   weights.origin = Origin::imported;
@@ -128,7 +128,8 @@ TEST_F(RejectedFrames, BuffersOfTheHostAreRefusedBySizeAndPlace) {
   ASSERT_NE(planned, nullptr);
   const uint64_t bytes = planned->bytes;
   const VkPhysicalDeviceLimits& limits = dermis_device.properties.limits;
-  const auto some_buffer = reinterpret_cast<VkBuffer>(uintptr_t{8}); // refused before it is looked at
+  // Refused before the buffer is used.
+  const auto some_buffer = reinterpret_cast<VkBuffer>(uintptr_t{8});
   std::vector<vulkan::HostBuffer> buffers(slot + 1);
   const auto refused = [&](const vulkan::HostBuffer& binding) {
     buffers[slot] = binding;

@@ -1,5 +1,5 @@
-// Histories of another size: every texel is the nearest one of the size before, in each mip and layer and for
-// each format that a kernel can write.
+// Tests rescaled histories: every texel is the nearest texel of the previous size, in each mip and
+// layer and for each format that a kernel can write.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <fmt/core.h>
@@ -26,7 +26,8 @@ protected:
     return 1 + mip * image.layers + layer;
   }
 
-  // `kept` gets a pattern for each mip and layer; one result for each shows that of `frames` frames ago.
+  // `kept` gets a pattern in each mip and layer; one result per subresource shows it from `frames`
+  // frames ago.
   static SmallGraph make_graph(const RescaledImage& image) {
     SmallGraph g;
     ResourceDeclaration& kept = g.history("kept", image.frames);
@@ -66,7 +67,8 @@ protected:
       for (uint32_t x = 0; x < after.width; ++x) {
         const uint32_t old_x = (2 * x + 1) * before.width / (2 * after.width),
                        old_y = (2 * y + 1) * before.height / (2 * after.height);
-        // Half of the distance between two values of the pattern: formats of 8 bits round them.
+        // Half of the distance between two values of the pattern, because formats of 8 bits round
+        // the values.
         ASSERT_NEAR(shown[y * to.width + x], pattern(old_x, old_y, seed) / 32.0f, 0.5f / 32)
             << "texel " << x << ' ' << y << " of mip " << mip;
       }
@@ -96,7 +98,8 @@ TEST_F(RescaledHistory, HasTheNearestTexelsInEveryFormat) {
   uint32_t formats = 0;
   for (uint32_t f = 1; f < static_cast<uint32_t>(Format::count); ++f) {
     const auto format = static_cast<Format>(f);
-    if (format_info(format).depth || format == Format::rgba8_srgb) continue; // no kernel can write these
+    // No kernel can write these formats.
+    if (format_info(format).depth || format == Format::rgba8_srgb) continue;
     SCOPED_TRACE(format_info(format).name);
     resize({format, 1, 1, 1}, {13, 9}, {21, 5});
     ++formats;

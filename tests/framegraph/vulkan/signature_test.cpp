@@ -1,4 +1,5 @@
-// What reflection reads from a kernel, that no broken module harms it, and that every disagreement is named.
+// Tests reflection: it reads a kernel's interface, survives broken modules, and names every
+// mismatch.
 #include "framegraph/vulkan/shader/signature_check.hpp"
 #include "tests/framegraph/vulkan/small_graph.hpp"
 
@@ -67,21 +68,22 @@ TEST(Reflection, ReadsBindingsPushConstantsAndLocalSize) {
   EXPECT_THAT(reflected("test_classes").local_size, ElementsAre(64, 1, 1));
 }
 
-TEST(Reflection, AModuleCutOffAnywhereIsRefusedOrReadButNeverHarms) {
+TEST(Reflection, TruncatedModule_IsRefusedOrRead) {
   const auto whole = spirv("test_add");
   for (size_t length = 0; length < whole.size(); ++length) {
     const std::vector<uint32_t> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
     std::string error;
     const auto result = reflect(cut, error);
     EXPECT_EQ(result.has_value(), error.empty()) << length;
-    constexpr size_t before_entry_point = 20; // header, capabilities, import and memory model come first
+    // Header, capabilities, import and memory model come first.
+    constexpr size_t before_entry_point = 20;
     if (length < before_entry_point) {
       EXPECT_FALSE(result) << length;
     }
   }
 }
 
-TEST(Reflection, AModuleWithRandomWordsNeverHarms) {
+TEST(Reflection, RandomWords_AreRefusedOrRead) {
   const auto whole = spirv("test_mark");
   std::mt19937 random(1);
   for (int trial = 0; trial < 5000; ++trial) {
@@ -96,7 +98,7 @@ TEST(Reflection, AModuleWithRandomWordsNeverHarms) {
   }
 }
 
-TEST(Signature, EveryTestKernelFitsItsOwn) {
+TEST(Signature, EveryTestKernelMatchesItsPassType) {
   for (uint32_t i = 0; i < small_pass_types().size(); ++i) {
     const PassType& own = small_pass_types()[PassTypeId{i}];
     if (!own.shader.empty()) {
@@ -139,7 +141,7 @@ TEST(Signature, PushConstantsMustFollowTheSettings) {
   EXPECT_THAT(text, HasSubstr("the shader pushes 3 members, the signature has the port mask and 1 settings"));
 }
 
-TEST(Signature, TheEnvironmentMustHoldWhatTheShaderReads) {
+TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {
   const EnvironmentBinding small[] = {
       {EnvironmentType::uniform_buffer, 16, {}},
       {EnvironmentType::uniform_buffer, 8, {}},

@@ -1,4 +1,5 @@
-// Laws of parts on a device: each port sees the mips and layers that it names, under validation.
+// Tests subresource ranges on a device under validation: each port reads the mips and layers that
+// it names.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -13,8 +14,8 @@ constexpr uint32_t whole = 16, half = 8;
 
 class PartsTest : public ExecutorTest {};
 
-// Two layers of two mips, each filled with a number of its own; mip 1 has half the texels, and so has the
-// frame.
+// Builds two layers of two mips, each filled with a different number. The frame has the size of mip
+// 1, half the texels.
 SmallGraph filled() {
   SmallGraph g;
   g.exported("result");
@@ -27,7 +28,7 @@ SmallGraph filled() {
   return g;
 }
 
-TEST_F(PartsTest, APortSeesTheMipAndTheLayerThatItNames) {
+TEST_F(PartsTest, PortReadsTheNamedMipAndLayer) {
   const std::pair<std::pair<const char*, const char*>, float> cases[] = {
       {{"image#0[0]", "image#0[1]"}, 11.0f},
       {{"image#1[0]", "image#1[1]"}, 1100.0f},
@@ -50,7 +51,7 @@ TEST_F(PartsTest, APortSeesTheMipAndTheLayerThatItNames) {
 TEST_F(PartsTest, ClearingAPartLeavesTheOthers) {
   SmallGraph g = filled();
   g.pass("clear", "test.clear", {}, {{"target", "image#0[0]"}});
-  // What stood there is written over: the fill of that part is none that somebody reads, and is culled.
+  // The clear overwrites that part, so its fill would be culled; the test removes the fill pass.
   g.graph.passes.erase(g.graph.passes.begin());
   g.pass("add", "test.add", {{"a", "image#0[0]"}, {"b", "image#0[1]"}}, {{"target", "result"}});
   make_executor(g, whole, whole);
@@ -69,7 +70,7 @@ SmallGraph two_histories_in_one() {
   return g;
 }
 
-TEST_F(PartsTest, EachMipOfAHistoryIsThatOfTheFrameMeant) {
+TEST_F(PartsTest, HistoryMipsComeFromTheRequestedFrame) {
   SmallGraph g = two_histories_in_one();
   g.pass("show", "test.add", {{"a", "kept#1"}, {"b", "kept#0@-1"}}, {{"target", "result"}});
   make_executor(g, whole, whole);
@@ -80,9 +81,9 @@ TEST_F(PartsTest, EachMipOfAHistoryIsThatOfTheFrameMeant) {
   }
 }
 
-// Nothing reads mip 1 of this frame: it ends in the layout that it was written in, mip 0 in that it was read
-// in.
-TEST_F(PartsTest, EachMipOfAHistoryHasALayoutOfItsOwnBetweenFrames) {
+// Nothing reads mip 1 of this frame, so it keeps the layout of its write; mip 0 keeps the layout of
+// its read.
+TEST_F(PartsTest, HistoryMipsKeepSeparateLayouts) {
   SmallGraph g = two_histories_in_one();
   g.pass("show", "test.add", {{"a", "kept#1@-1"}}, {{"target", "result"}});
   make_executor(g, whole, whole);

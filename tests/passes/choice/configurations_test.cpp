@@ -80,44 +80,45 @@ struct Outcomes : ::testing::Test {
   }
 };
 
-TEST_F(Outcomes, AGraphWithoutChoicesHasOne) {
+TEST_F(Outcomes, GraphWithoutChoices_HasOneConfiguration) {
   const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
   ASSERT_TRUE(all) << format_as_json(diagnostics);
   ASSERT_EQ(all->outcomes.size(), 1u);
   EXPECT_EQ(all->plans.size(), 1u);
 }
 
-TEST_F(Outcomes, CombinationsThatRunTheSameWorkAreOne) {
+TEST_F(Outcomes, EqualWork_IsOneConfiguration) {
   const auto all =
       outcomes_of(R"("technique": { "choice": ["separable", "off"], "by": "budget", "default": "separable" },
     "taps": { "choice": ["11", "17", "25"], "by": "budget", "default": "25" })",
                   R"(, "taps": "$taps")");
   ASSERT_TRUE(all) << format_as_json(diagnostics);
-  ASSERT_EQ(all->outcomes.size(), 4u); // three with taps; without the technique they do not matter
+  // Three configurations have taps; without the technique, taps have no effect.
+  ASSERT_EQ(all->outcomes.size(), 4u);
   EXPECT_EQ(all->plans.size(), 2u);
   EXPECT_EQ(all->outcomes[0].name, "technique=separable, taps=25");
-  EXPECT_EQ(all->outcomes[0].technique, 1); // any taps
-  EXPECT_EQ(all->outcomes[1].technique, 2); // the row for 11 taps says more
+  EXPECT_EQ(all->outcomes[0].technique, 1); // This row holds for any number of taps.
+  EXPECT_EQ(all->outcomes[1].technique, 2); // The row for 11 taps is more specific.
   EXPECT_EQ(all->outcomes.back().technique, -1);
-  EXPECT_EQ(all->outcomes.back().name, "technique=off"); // no pass that runs has taps
+  EXPECT_EQ(all->outcomes.back().name, "technique=off"); // No pass that runs has taps.
 }
 
-TEST_F(Outcomes, ErrorsRunStraightOnLogarithmicAxes) {
+TEST_F(Outcomes, ErrorsAreLinearOnLogarithmicAxes) {
   EXPECT_NEAR(expected_rmse(errors, 0, 4), 0.008, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, 0, 0.1), 0.004, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, 0, 100), 0.016, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, -1, 2), std::sqrt(0.02 * 0.04), 1e-12);
 }
 
-TEST_F(Outcomes, LightThroughThinPartsIsMissedByTheShareThatTheTableSays) {
+TEST_F(Outcomes, MissedTransmission_MatchesTheTable) {
   EXPECT_NEAR(missed_rmse(errors, 2, 0.3), 0.15, 1e-12);
   EXPECT_NEAR(missed_rmse(errors, -1, 0.3), 0.45, 1e-12);
-  EXPECT_EQ(missed_rmse(errors, 0, 0.3), 0); // the table says nothing of it
+  EXPECT_EQ(missed_rmse(errors, 0, 0.3), 0); // The table has no number for this case.
   EXPECT_TRUE(errors.techniques[2].by_rays);
   EXPECT_FALSE(errors.techniques[0].by_rays);
 }
 
-TEST_F(Outcomes, SamplesThatAreGivenInPartTakeOffPartOfTheSquare) {
+TEST_F(Outcomes, PartialSamples_InterpolateTheSquaredError) {
   Outcome outcome;
   outcome.technique = 0;
   outcome.without_samples = -1;
@@ -127,13 +128,14 @@ TEST_F(Outcomes, SamplesThatAreGivenInPartTakeOffPartOfTheSquare) {
   EXPECT_NEAR(expected_rmse(errors, outcome, 4, 100, 100), all, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, outcome, 4, 25, 100), std::sqrt(0.75 * none * none + 0.25 * all * all),
               1e-12);
-  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 200, 100), all, 1e-12); // more than is wanted is not taken
-  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 5, 0), none, 1e-12);    // no tile is in doubt
+  // More samples than requested have no effect.
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 200, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 5, 0), none, 1e-12); // No tile requests samples.
   outcome.takes_samples = false;
   EXPECT_NEAR(expected_rmse(errors, outcome, 4, 0, 100), all, 1e-12);
 }
 
-TEST_F(Outcomes, CostsGrowWithTheTilesThatAreListed) {
+TEST_F(Outcomes, CostsGrowWithTheListedTiles) {
   const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
   ASSERT_TRUE(all);
   for (uint64_t groups = 200; groups <= 3600; groups += 200)
@@ -141,10 +143,10 @@ TEST_F(Outcomes, CostsGrowWithTheTilesThatAreListed) {
       costs.observe(pass.cost, groups, 0.01 + 1e-4 * static_cast<double>(groups));
   const double few = estimate(all->outcomes[0], costs, {3600, 100}).ms;
   const double many = estimate(all->outcomes[0], costs, {3600, 3600}).ms;
-  EXPECT_GT(many, few + 4 * 1e-4 * 3400); // setup, two passes and combine run over listed tiles
+  EXPECT_GT(many, few + 4 * 1e-4 * 3400); // Setup, two passes and combine run over listed tiles.
 }
 
-TEST_F(Outcomes, TooManyAreRefusedAtTheChoiceThatIsOneTooMuch) {
+TEST_F(Outcomes, TooManyConfigurations_AreRefusedAtTheChoice) {
   EXPECT_FALSE(outcomes_of("\"technique\": { \"choice\": [\"separable\", \"b\", \"c\", \"d\", \"e\", \"f\", "
                            "\"g\", \"h\"], \"by\": \"budget\", "
                            "\"default\": \"b\" },\n"
@@ -155,8 +157,9 @@ TEST_F(Outcomes, TooManyAreRefusedAtTheChoiceThatIsOneTooMuch) {
   EXPECT_EQ(diagnostics.list.back().where.line, 2u);
 }
 
-// 10 ms in any case, typically off by .1 of that; a unit of samples takes 1 us and is never off.
-TEST(Units, LeaveTwoTypicalDeviationsOfTheBudgetFree) {
+// Fixed work takes 10 ms with a typical deviation of 0.1 of it; a unit of samples takes 1 us
+// without deviation.
+TEST(Units, LeaveTwoDeviationsOfTheBudgetFree) {
   CostModel costs({{"fixed work", 10000, 0, 0.1}, {"samples", 0, 1, 0}});
   Outcome outcome;
   outcome.takes_samples = true;
@@ -172,15 +175,15 @@ TEST(Units, LeaveTwoTypicalDeviationsOfTheBudgetFree) {
   const Estimate filled = estimate(outcome, costs, load);
   EXPECT_NEAR(filled.ms + 2 * filled.spread_ms, budget_ms, 0.002) << "to a unit: as many as fit";
   EXPECT_NEAR(static_cast<double>(load.sample_units), 8000, 2);
-  // By the meter nothing deviates.
+  // In deterministic mode the deviation is zero.
   EXPECT_NEAR(units_within(outcome, costs, {}, budget_ms, true), 10000, 2);
-  // Where the rest takes all, none are given.
+  // No samples fit if the other work takes the whole budget.
   EXPECT_EQ(units_within(outcome, costs, {}, 11.9, false), 0u);
   outcome.takes_samples = false;
   EXPECT_EQ(units_within(outcome, costs, {}, budget_ms, false), UINT32_MAX);
 }
 
-TEST_F(Outcomes, CurvesThatDoNotGrowAreRefused) {
+TEST_F(Outcomes, CurvesThatDoNotIncreaseAreRefused) {
   Diagnostics other;
   const auto document = parse_document("errors.json",
                                        "{ \"dermis_errors\": 2, \"scenes\": \"s\", \"techniques\": "

@@ -1,4 +1,4 @@
-// Laws of who gets samples.
+// Properties of the distribution of samples to tiles.
 #include "framegraph/model/splitmix.hpp"
 #include "passes/choice/sample_allocation.hpp"
 
@@ -17,7 +17,7 @@ std::vector<uint32_t> some_tile_errors(size_t tiles, uint64_t seed) {
   return tile_errors;
 }
 
-TEST(SampleAllocation, NeverSpendsMoreThanItMay) {
+TEST(SampleAllocation, NeverExceedsTheBudget) {
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     const auto tile_errors = some_tile_errors(400, seed);
     const uint32_t wanted = allocate_samples(tile_errors, {}, UINT32_MAX).wanted;
@@ -30,12 +30,12 @@ TEST(SampleAllocation, NeverSpendsMoreThanItMay) {
       EXPECT_EQ(sum, given.units);
       EXPECT_LE(given.units, units);
       EXPECT_GE(given.units + 1,
-                std::min(units, wanted)); // a step of two units may not fit into the last one
+                std::min(units, wanted)); // A step of two units may not fit into the last unit.
     }
   }
 }
 
-TEST(SampleAllocation, EnoughGivesEveryDoubtfulTileAllAndNoneToTheSure) {
+TEST(SampleAllocation, AmpleBudget_AllRequestsAreMet) {
   const auto tile_errors = some_tile_errors(300, 5);
   const SampleAllocation given = allocate_samples(tile_errors, {}, UINT32_MAX);
   for (size_t i = 0; i < tile_errors.size(); ++i)
@@ -43,12 +43,13 @@ TEST(SampleAllocation, EnoughGivesEveryDoubtfulTileAllAndNoneToTheSure) {
   EXPECT_EQ(given.units, given.wanted);
 }
 
-TEST(SampleAllocation, ATileWithMoreDoubtNeverGetsLessByMoreThanABin) {
+TEST(SampleAllocation, LargerTileError_NeverGetsFewerSamples) {
   const auto tile_errors = some_tile_errors(500, 9);
   const SampleAllocation given = allocate_samples(tile_errors, {}, 300);
   for (size_t i = 0; i < tile_errors.size(); ++i)
     for (size_t j = 0; j < tile_errors.size(); ++j)
-      if (tile_errors[i] > 1.126 * tile_errors[j]) { // a bin spans an eighth of a power of two: up to 12.5 %
+      // A bin spans an eighth of a power of two: up to 12.5 %.
+      if (tile_errors[i] > 1.126 * tile_errors[j]) {
         EXPECT_GE(given.steps[i], given.steps[j]);
       }
 }
@@ -59,22 +60,22 @@ TEST(SampleAllocation, EqualTilesAreServedInRowOrder) {
   EXPECT_EQ(given.steps, (std::vector<uint32_t>{1, 1, 1, 1, 0, 0, 0, 0, 0, 0}));
 }
 
-TEST(SampleAllocation, WhoHadSamplesKeepsThemAgainstASlightlyBetterOther) {
+TEST(SampleAllocation, Hysteresis_KeepsTilesThatHadSamples) {
   const std::vector<uint32_t> tile_errors = {1000, 1100};
   EXPECT_EQ(allocate_samples(tile_errors, {}, 1).steps, (std::vector<uint32_t>{0, 1}));
   EXPECT_EQ(allocate_samples(tile_errors, std::vector<uint32_t>{1, 0}, 1).steps,
             (std::vector<uint32_t>{1, 0}));
 }
 
-TEST(SampleAllocation,
-     StepsOfATileComeInOrder) { // the hull is convex: a later step never stands before an earlier one
+// The hull is convex: a later step is never sorted before an earlier step.
+TEST(SampleAllocation, StepsOfATileComeInOrder) {
   for (const uint32_t tile_error : {1u, 17u, 4000u, 262144u})
     for (uint32_t before = 0; before <= 3; ++before)
       for (int k = 0; k + 1 < allocation_steps; ++k)
         EXPECT_GT(step_bin(tile_error, k, before), step_bin(tile_error, k + 1, before)) << tile_error;
 }
 
-TEST(SampleAllocation, StepsCostWhatTheirSamplesDo) {
+TEST(SampleAllocation, StepsCostTheirNumberOfSamples) {
   uint32_t units = 0;
   for (int k = 0; k < allocation_steps; ++k) {
     units += step_cost(k);

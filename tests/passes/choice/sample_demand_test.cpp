@@ -1,4 +1,4 @@
-// What tiles are expected to want of an outcome that gives samples by tile.
+// Predicts how many samples tiles will request from a configuration.
 #include "passes/choice/sample_demand.hpp"
 
 #include <gtest/gtest.h>
@@ -6,15 +6,15 @@
 namespace dermis::choice {
 namespace {
 
-TEST(Wanted, WhatNeverRanMayWantAllThatTilesCanHave) {
+TEST(SampleDemand, NeverMeasured_IsTheMaximum) {
   const SampleDemand wanted;
   for (const double d_px : {1e-6, 0.1, 1.0, 7.9, 1e4})
     EXPECT_EQ(expected_units(wanted, d_px), double(max_units)) << d_px;
 }
 
-// A camera that was far away, where nothing is in doubt, comes closer: that nothing was wanted there says
-// nothing here.
-TEST(Wanted, WhatWasFoundFarAwaySaysNothingOfAFaceCloseBy) {
+// A distant camera, for which no tile requests samples, moves close. The earlier demand of zero
+// must not be used here.
+TEST(SampleDemand, DistantCamera_DoesNotPredictACloseOne) {
   SampleDemand wanted;
   found_units(wanted, 0.13, 0);
   EXPECT_EQ(expected_units(wanted, 0.14), 0);
@@ -24,7 +24,7 @@ TEST(Wanted, WhatWasFoundFarAwaySaysNothingOfAFaceCloseBy) {
   EXPECT_EQ(expected_units(wanted, 0.14), 0);
 }
 
-TEST(Wanted, ValuesBeyondTheOctavesKeptAreThoseOfTheNearest) {
+TEST(SampleDemand, BeyondTheStoredOctaves_UsesTheNearest) {
   SampleDemand wanted;
   found_units(wanted, 1e-9, 1);
   found_units(wanted, 1e9, 2);

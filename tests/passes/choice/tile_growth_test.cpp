@@ -1,4 +1,4 @@
-// What is expected of frames whose tiles are not counted yet.
+// Predicts the number of tiles in frames that have not been counted yet.
 #include "passes/choice/tile_growth.hpp"
 
 #include <gtest/gtest.h>
@@ -8,24 +8,24 @@
 namespace dermis::choice {
 namespace {
 
-TEST(Trend, ACameraThatComesCloserIsExpectedToGoOn) {
+TEST(TileGrowth, ApproachingCamera_IsExtrapolated) {
   TileGrowth trend;
   constexpr double step = 1.1;
   for (uint64_t frame = 1; frame <= 20; ++frame)
     follow(trend, frame, static_cast<uint64_t>(1000 * std::pow(step, double(frame))));
-  EXPECT_NEAR(trend.growth, step, 1e-3); // whole tiles
+  EXPECT_NEAR(trend.growth, step, 1e-3); // Counts are whole tiles.
   EXPECT_NEAR(growth_until(trend, 22), step * step, 2e-3);
   EXPECT_EQ(growth_until(trend, 20), 1);
 }
 
-TEST(Trend, CountsThatSkipFramesGrowTheSame) {
+TEST(TileGrowth, SkippedFrames_GiveEqualGrowth) {
   TileGrowth trend;
   for (uint64_t frame = 3; frame <= 30; frame += 3)
     follow(trend, frame, static_cast<uint64_t>(1000 * std::pow(1.1, double(frame))));
   EXPECT_NEAR(trend.growth, 1.1, 1e-3);
 }
 
-TEST(Trend, ACutIsNotExpectedToGoOn) {
+TEST(TileGrowth, Cut_IsNotExtrapolated) {
   TileGrowth trend;
   for (uint64_t frame = 1; frame <= 30; ++frame) {
     follow(trend, frame, frame < 10 ? 100 : 900);
@@ -33,14 +33,14 @@ TEST(Trend, ACutIsNotExpectedToGoOn) {
   }
 }
 
-TEST(Trend, NothingIsExpectedToBecomeLess) {
+TEST(TileGrowth, Shrinking_IsNotExtrapolated) {
   TileGrowth trend;
   for (uint64_t frame = 1; frame <= 20; ++frame)
     follow(trend, frame, 2000 - 90 * frame);
   EXPECT_EQ(growth_until(trend, 25), 1);
 }
 
-TEST(Trend, AFewTilesAreNoTrendAndWhatIsExpectedHasABound) {
+TEST(TileGrowth, FewTiles_AreIgnoredAndGrowthIsBounded) {
   TileGrowth trend;
   for (uint64_t frame = 1; frame <= 4; ++frame)
     follow(trend, frame, 2 * frame);
@@ -51,7 +51,7 @@ TEST(Trend, AFewTilesAreNoTrendAndWhatIsExpectedHasABound) {
   EXPECT_EQ(growth_until(trend, 1000), max_growth * max_growth);
 }
 
-TEST(Trend, NothingIsKnownBeforeAnythingWasCounted) {
+TEST(TileGrowth, NoCounts_NoPrediction) {
   EXPECT_EQ(growth_until(TileGrowth{}, 7), 1);
 }
 

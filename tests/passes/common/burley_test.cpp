@@ -20,7 +20,7 @@ TEST(Burley, CdfHasTheValuesOfTheClosedForm) {
 }
 
 TEST(Burley, DensityIntegratesToTheCdf) {
-  // Simpson's rule on 2000 intervals: error (h/d)^4 / 180 * 10 < 1e-9.
+  // Simpson's rule on 2000 intervals: the error is (h/d)^4 / 180 * 10 < 1e-9.
   const double d = 0.7, end = 3.5;
   const int n = 2000;
   double sum = 0;
@@ -34,8 +34,8 @@ TEST(Burley, PdfIsTheProfileTimesTheCircle) {
     EXPECT_NEAR(burley_pdf(r, 1.3), 2 * 3.14159265358979323846 * r * burley_R(r, 1.3), 1e-14);
 }
 
-TEST(Burley, MomentsAreThoseOfTheLiterature) {
-  // E[r] = 2.5 d, E[r^2] = 14 d^2; midpoint rule in u with 1e6 points, the clamped tail is 6e-8.
+TEST(Burley, MomentsMatchTheLiterature) {
+  // E[r] = 2.5 d, E[r^2] = 14 d^2; midpoint rule in u with 1e6 points; the clamped tail is 6e-8.
   const int n = 1000000;
   double first = 0, second = 0;
   for (int i = 0; i < n; ++i) {
@@ -47,7 +47,7 @@ TEST(Burley, MomentsAreThoseOfTheLiterature) {
   EXPECT_NEAR(second, 56.0, 1e-2);
 }
 
-TEST(Burley, ExactInverseUndoesTheCdf) {
+TEST(Burley, ExactInverseInvertsTheCdf) {
   for (double u = 1e-7; u < 1; u = u * 1.07 + 1e-6)
     EXPECT_NEAR(1 - burley_cdf(burley_inverse_survival(u, 3.0), 3.0), u, 1e-12) << u;
 }
@@ -69,7 +69,8 @@ TEST(Burley, InverseIsFiniteAndNotNegativeForAnyInput) {
 }
 
 TEST(Burley, SamplerStaysWithinItsStatedErrors) {
-  // numerics T4: relative radius < .0052, distance to the cdf < .0016, |W - 1| < .0125, mean W = 1 +- 1e-5.
+  // Table T4: relative radius < 0.0052, distance to the cdf < 0.0016, |W - 1| < 0.0125, mean W = 1
+  // +- 1e-5.
   const int n = 200000;
   double mean = 0;
   for (int i = 0; i < n; ++i) {
@@ -85,7 +86,7 @@ TEST(Burley, SamplerStaysWithinItsStatedErrors) {
 }
 
 TEST(Burley, WeightedSamplerReproducesTheCdf) {
-  // E[W; r < R] = cdf(R): midpoint rule, the jump at R costs 1/n.
+  // E[W; r < R] = cdf(R): midpoint rule; the jump at R costs 1/n.
   const int n = 400000;
   for (const double radius : {0.5, 2.0, 6.0, 15.0}) {
     double sum = 0;
@@ -103,7 +104,7 @@ TEST(Burley, ScalingHasThePublishedValues) {
   EXPECT_NEAR(burley_scaling_dmfp(1), 23.6511, 5e-5);
 }
 
-TEST(Burley, ScalingOfABadAlbedoIsThatOfTheNearestGoodOne) {
+TEST(Burley, InvalidAlbedo_ScalesLikeTheNearestValidOne) {
   EXPECT_EQ(burley_scaling_dmfp(-1), burley_scaling_dmfp(0));
   EXPECT_EQ(burley_scaling_dmfp(2), burley_scaling_dmfp(1));
   EXPECT_EQ(burley_scaling_dmfp(nan), 3.5);
@@ -116,7 +117,7 @@ TEST(Burley, NoMeanFreePathMeansNoScattering) {
   EXPECT_NEAR(burley_d_from_dmfp(7, 0.33), 2, 1e-12);
 }
 
-TEST(Burley, ManyRadiiAtOnceGiveTheProfileOfEach) {
+TEST(Burley, ManyRadiiAtOnceGiveEqualProfiles) {
   std::vector<double> radii, values;
   for (double r = 1e-9; r < 240; r *= 1.013)
     radii.push_back(r);
@@ -132,7 +133,7 @@ TEST(Burley, ManyRadiiAtOnceGiveTheProfileOfEach) {
   radii = {260, 1e9};
   values.resize(2);
   burley_R(radii, 1, values);
-  EXPECT_LT(values[0], 1e-36); // as at 250 d
+  EXPECT_LT(values[0], 1e-36); // Equal to the value at 250 d.
   EXPECT_EQ(values[0], values[1]);
   burley_R(radii, 0, values);
   EXPECT_EQ(values[0], 0);

@@ -13,8 +13,8 @@ Matrix4 perspective(double scale_x, double scale_y, double centre_x, double near
   return {scale_x, 0, centre_x, 0, 0, -scale_y, 0, 0, 0, 0, 0, near, 0, 0, -1, 0};
 }
 
-// Where a view-space point lands: pixel coordinates (integers are centres) without jitter, and the depth
-// value.
+// Projects a view-space point: returns pixel coordinates (integers are centres) without jitter, and
+// the depth value.
 std::array<double, 3> project(const Matrix4& m, std::array<double, 3> p, double width, double height) {
   std::array<double, 4> clip{};
   for (size_t r = 0; r < 4; ++r)
@@ -23,7 +23,7 @@ std::array<double, 3> project(const Matrix4& m, std::array<double, 3> p, double 
           clip[2] / clip[3]};
 }
 
-TEST(Camera, PerspectiveRaysUndoTheProjection) {
+TEST(Camera, PerspectiveRaysInvertTheProjection) {
   const Matrix4 m = perspective(1.7, 2.3, 0.11, 0.1);
   const auto rays = pixel_rays(m, 64, 48, 0.01, {0, 0});
   ASSERT_TRUE(rays.has_value());
@@ -38,9 +38,9 @@ TEST(Camera, PerspectiveRaysUndoTheProjection) {
   EXPECT_NEAR((decode.a * seen[2] + decode.b) / (decode.c * seen[2] + decode.e), depth, 1e-12);
 }
 
-TEST(Camera, OrthographicRaysUndoTheProjectionInHostUnits) {
+TEST(Camera, OrthographicRaysInvertTheProjection) {
   const Matrix4 m = {0.2, 0, 0, 0.3, 0, -0.25, 0, 0.1, 0, 0, -0.02, 0.05, 0, 0, 0, 1};
-  const auto rays = pixel_rays(m, 10, 20, 0.01, {0, 0}); // host units are centimetres
+  const auto rays = pixel_rays(m, 10, 20, 0.01, {0, 0}); // Host units are centimetres.
   ASSERT_TRUE(rays.has_value());
   EXPECT_FALSE(rays->perspective);
   const double i = 3, j = 12, z = 7;
@@ -53,10 +53,10 @@ TEST(Camera, OrthographicRaysUndoTheProjectionInHostUnits) {
   EXPECT_NEAR((decode.a * seen[2] + decode.b) / (decode.c * seen[2] + decode.e), 0.01 * z, 1e-12);
 }
 
-TEST(Camera, JitterMovesWhatAPixelSees) {
+TEST(Camera, JitterMovesThePixelRays) {
   const Matrix4 m = perspective(1, 1, 0, 0.1);
   const auto still = pixel_rays(m, 32, 32, 1, {0, 0}), moved = pixel_rays(m, 32, 32, 1, {0.25, -0.5});
-  // The picture moved right by a quarter: pixel i now shows what was at i - 0.25.
+  // The picture moved right by a quarter, so pixel i shows the former position i - 0.25.
   EXPECT_NEAR(moved->offset_x, still->offset_x - 0.25 * still->scale_x, 1e-15);
   EXPECT_NEAR(moved->offset_y, still->offset_y + 0.5 * still->scale_y, 1e-15);
 }
@@ -77,11 +77,11 @@ Matrix4 transposed(const Matrix4& m) {
   return t;
 }
 
-// Half of all engines store matrices so, and a perspective on its side looks like one of another field of
-// view.
-TEST(Camera, MatricesThatAreStoredByColumnsAreRefused) {
+// Half of all engines store matrices by columns, and a perspective on its side looks like a
+// perspective with another field of view.
+TEST(Camera, ColumnMajorMatrix_IsRefused) {
   const Matrix4 forward{2, 0, 0.1, 0, 0, -2, 0, 0, 0, 0, -1, -0.1, 0, 0, -1, 0};
-  const Matrix4 reversed{2, 0, 0, 0, 0, -2, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0}; // near plane at 1 unit
+  const Matrix4 reversed{2, 0, 0, 0, 0, -2, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0}; // Near plane at 1 unit.
   const Matrix4 flat{2, 0, 0, 0.5, 0, -2, 0, 0, 0, 0, -0.1, -0.1, 0, 0, 0, 1};
   for (const Matrix4& right : {forward, reversed, flat})
     for (const bool left : {false, true}) {
@@ -99,8 +99,9 @@ TEST(Camera, MatricesThatAreStoredByColumnsAreRefused) {
     }
 }
 
-// The matrices of one camera in both view spaces become the same ones, and faults name what contradicts.
-TEST(Camera, TakesEitherHandednessOfViewSpace) {
+// The matrices of one camera in both view spaces give equal results, and errors name the
+// contradiction.
+TEST(Camera, AcceptsBothHandednesses) {
   const Matrix4 perspective_now = perspective(1.7, 2.3, 0.11, 0.1),
                 flat{2, 0, 0, 0.5, 0, -2, 0, 0, 0, 0, 0.1, 1, 0, 0, 0, 1};
   const Matrix4 view{0.8, 0, -0.6, 1, 0, 1, 0, 2, 0.6, 0, 0.8, -3, 0, 0, 0, 1};
@@ -144,16 +145,16 @@ TEST(Camera, TakesEitherHandednessOfViewSpace) {
     EXPECT_FALSE(text_of(static_cast<CameraFault>(i)).empty()) << i;
 }
 
-TEST(Camera, WhatIsNoAxisAlignedProjectionIsRefused) {
+TEST(Camera, NotAnAxisAlignedProjection_IsRefused) {
   const Matrix4 good = perspective(1, 1, 0, 0.1);
   Matrix4 m = good;
-  m[1] = 0.1; // sheared
+  m[1] = 0.1; // Sheared.
   EXPECT_FALSE(pixel_rays(m, 8, 8, 1, {0, 0}));
   m = good;
   m[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(pixel_rays(m, 8, 8, 1, {0, 0}));
   m = good;
-  m[14] = 1; // left-handed
+  m[14] = 1; // Left-handed.
   EXPECT_FALSE(pixel_rays(m, 8, 8, 1, {0, 0}));
   m = good;
   m[0] = 0;

@@ -15,11 +15,11 @@ protected:
   PassTypeRegistry pass_types = subsurface::make_pass_types();
 };
 
-TEST_F(PassTypes, EveryKindHasANameAShaderAndADescriptionOfEachPartOfItsSignature) {
+TEST_F(PassTypes, EveryTypeIsNamedAndDescribed) {
   ASSERT_GT(pass_types.size(), 0u);
   for (uint32_t i = 0; i < pass_types.size(); ++i) {
     const PassType& type = pass_types[PassTypeId{i}];
-    const bool clears = type.name == "clear"; // whatever image it is: no kernel
+    const bool clears = type.name == "clear"; // The clear works on any image and has no kernel.
     EXPECT_TRUE(clears || type.name.starts_with("subsurface.") || type.name.starts_with("restir."))
         << type.name;
     EXPECT_EQ(type.shader.empty(), clears) << type.name;
@@ -31,7 +31,7 @@ TEST_F(PassTypes, EveryKindHasANameAShaderAndADescriptionOfEachPartOfItsSignatur
   }
 }
 
-TEST_F(PassTypes, NoKindNamesAPortOrASettingTwice) {
+TEST_F(PassTypes, PortAndSettingNamesAreUnique) {
   for (uint32_t i = 0; i < pass_types.size(); ++i) {
     const PassType& type = pass_types[PassTypeId{i}];
     std::set<std::string_view> names;
@@ -43,7 +43,7 @@ TEST_F(PassTypes, NoKindNamesAPortOrASettingTwice) {
   }
 }
 
-TEST_F(PassTypes, SignaturesFitThePortMaskAndThe128BytesOfPushConstantsThatVulkanGuarantees) {
+TEST_F(PassTypes, SignaturesFitPortMaskAnd128BytesOfPushConstants) {
   for (uint32_t i = 0; i < pass_types.size(); ++i) {
     const PassType& type = pass_types[PassTypeId{i}];
     EXPECT_LE(type.ports.size(), 32u) << type.name;
@@ -51,7 +51,7 @@ TEST_F(PassTypes, SignaturesFitThePortMaskAndThe128BytesOfPushConstantsThatVulka
   }
 }
 
-TEST_F(PassTypes, DefaultsLieInsideTheirRangesAndOptions) {
+TEST_F(PassTypes, DefaultsAreWithinRangesAndOptions) {
   for (uint32_t i = 0; i < pass_types.size(); ++i)
     for (const PassTypeSetting& setting : pass_types[PassTypeId{i}].settings) {
       const SettingValue& value = setting.default_value;
@@ -66,7 +66,7 @@ TEST_F(PassTypes, DefaultsLieInsideTheirRangesAndOptions) {
     }
 }
 
-TEST_F(PassTypes, KindsThatRunOverTilesReadTheListAndItsArguments) {
+TEST_F(PassTypes, TileDispatches_ReadTheListAndItsArguments) {
   for (uint32_t i = 0; i < pass_types.size(); ++i) {
     const PassType& type = pass_types[PassTypeId{i}];
     if (type.dispatch == DispatchShape::over_tiles) {
@@ -78,8 +78,8 @@ TEST_F(PassTypes, KindsThatRunOverTilesReadTheListAndItsArguments) {
   }
 }
 
-// A kernel that wrote past the end of a buffer would write into what lies behind it.
-TEST_F(PassTypes, EveryBufferOfEveryKindHasASizeThatIsChecked) {
+// A kernel that writes past the end of a buffer would overwrite the memory after it.
+TEST_F(PassTypes, EveryBufferSizeIsChecked) {
   for (uint32_t i = 0; i < pass_types.size(); ++i) {
     const PassType& type = pass_types[PassTypeId{i}];
     for (const Port& port : type.ports) {

@@ -1,5 +1,5 @@
-// What the library's pass types ask of what stands at their ports, beside its size: channels, and one of
-// several ports.
+// Tests rules of the library's pass types for their ports, other than size: channels, and groups of
+// ports of which at least one has to be bound.
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/model/read_graph.hpp"
@@ -29,7 +29,7 @@ struct PortRules : ::testing::Test {
     ASSERT_FALSE(text.empty());
   }
 
-  // The only occurrence of `from`.
+  // Replaces the only occurrence of `from`.
   void replace(std::string_view from, std::string_view to) {
     const size_t at = text.find(from);
     ASSERT_NE(at, std::string::npos) << from;
@@ -56,7 +56,7 @@ struct PortRules : ::testing::Test {
     return compile(input, diagnostics).has_value();
   }
 
-  // The only diagnostic, at the beginning of the only occurrence of `at`.
+  // Expects exactly one diagnostic, at the only occurrence of `at`.
   void expect(Id id, std::string_view at, const std::vector<std::string>& words) const {
     const size_t found = text.find(at);
     ASSERT_NE(found, std::string::npos) << at;
@@ -67,7 +67,7 @@ struct PortRules : ::testing::Test {
   }
 };
 
-TEST_F(PortRules, LightWithoutAllOfItsChannelsIsRefused) {
+TEST_F(PortRules, LightWithMissingChannelsIsRefused) {
   replace(R"("light": { "format": "rgba16f")", R"("light": { "format": "r16f")");
   read();
   EXPECT_FALSE(graph);
@@ -86,15 +86,15 @@ TEST_F(PortRules, SlopesHaveTwoChannels) {
          {"port 'slope' of pass 'setup' works with 'rg16f'"});
 }
 
-// Of a list the first that every port can work with is taken.
-TEST_F(PortRules, AFormatWithTooFewChannelsIsPassedOver) {
+// The first format of the list that fits every port is taken.
+TEST_F(PortRules, FormatWithTooFewChannelsIsSkipped) {
   replace(R"("scattered": { "format": "rgba16f")", R"("scattered": { "format": ["r16f", "rgba16f"])");
   read();
   ASSERT_TRUE(graph) << all_messages(diagnostics);
   EXPECT_TRUE(compiles()) << all_messages(diagnostics);
 }
 
-// The host may bind any of them, the second as well as the first.
+// The host may bind any of the listed formats.
 TEST_F(PortRules, EachFormatOfAnImportFitsEveryPort) {
   for (const char* formats : {R"(["r8_unorm", "r8_uint"])", R"(["r8_uint", "r8_unorm"])"}) {
     SetUp();
@@ -111,7 +111,7 @@ TEST_F(PortRules, EachFormatOfAnImportFitsEveryPort) {
   }
 }
 
-// A port of one channel, or of an integer, takes any such format; every other one names what it takes.
+// A port of one channel or of an integer takes any such format; every other port lists its formats.
 TEST_F(PortRules, EveryPortOfSeveralChannelsNamesItsFormats) {
   const std::set<std::string_view> of_one_channel{"depth", "scatter_scale", "thickness"};
   for (uint32_t i = 0; i < pass_types.size(); ++i)
@@ -128,7 +128,8 @@ std::string shader_text(const std::string& name) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Number of places where a shader names the image; `own`: and reads there the invocation's texel.
+// Counts the places where a shader reads the image; with `own`, only reads of the invocation's own
+// texel.
 size_t count_reads(const std::string& shader, const std::string& image, bool own) {
   const std::string wanted = own ? "texelFetch(" + image + ", texel, 0)" : "(" + image + ",";
   size_t count = 0;
@@ -162,7 +163,7 @@ TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
   EXPECT_EQ(ports, 8u);
 }
 
-TEST_F(PortRules, LightGoesBackToTheHostFromSomewhere) {
+TEST_F(PortRules, CombineWithoutLight_IsRefused) {
   replace(R"("read": { "scattered": "scattered", "material": "material", "albedo": "albedo",
                 "tiles")",
           R"("read": { "material": "material", "albedo": "albedo",
@@ -173,7 +174,7 @@ TEST_F(PortRules, LightGoesBackToTheHostFromSomewhere) {
          {"pass 'combine'", "one of its ports 'scattered' or 'unscattered' under \"read\""});
 }
 
-TEST_F(PortRules, LightThatIsOnlyCopiedIsEnough) {
+TEST_F(PortRules, CopiedLightIsAccepted) {
   replace(R"("read": { "scattered": "scattered", "material": "material", "albedo": "albedo",
                 "tiles")",
           R"("read": { "unscattered": "lighting", "material": "material", "albedo": "albedo",
@@ -183,8 +184,8 @@ TEST_F(PortRules, LightThatIsOnlyCopiedIsEnough) {
   EXPECT_TRUE(compiles()) << all_messages(diagnostics);
 }
 
-// The file binds both ports, but with these settings nothing stands behind either: told once.
-TEST_F(PortRules, APlanWithNothingBehindAllOfSuchPortsIsRefused) {
+// The file binds both ports, but these settings disable both producers; expects one diagnostic.
+TEST_F(PortRules, NoProducerOfAnySuchPort_IsRefused) {
   replace(R"("samples": { "int": 32)", R"("on": { "bool": false }, "samples": { "int": 32)");
   replace(R"("type": "subsurface.burley",)", R"("type": "subsurface.burley", "when": "on",)");
   replace(R"("scattered": "scattered", "material": "material", "albedo": "albedo",

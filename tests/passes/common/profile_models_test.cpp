@@ -1,4 +1,5 @@
-// Laws of the radial profiles in fp64: totals, closed forms against quadrature, inverses, transfer functions.
+// Properties of the radial profiles in fp64: totals, closed forms against quadrature, inverses and
+// transfer functions.
 #include "passes/common/profiles/burley_profile.hpp"
 #include "passes/common/profiles/profile.hpp"
 #include "passes/common/profiles/shape.hpp"
@@ -36,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Profiles, EveryShape,
                                            Named{"artist", artist_shape(1.001, 0.48)}),
                          [](const auto& one) { return std::string(one.param.name); });
 
-// Integral of f over [a, b], Simpson with n intervals.
+// Integrates f over [a, b] by Simpson's rule with n intervals.
 template <class F> double simpson(F f, double a, double b, int n) {
   double sum = f(a) + f(b);
   for (int i = 1; i < n; ++i)
@@ -44,8 +45,9 @@ template <class F> double simpson(F f, double a, double b, int n) {
   return sum * (b - a) / (3 * n);
 }
 
-TEST_P(EveryShape, TheDistributionIsTheIntegralOfTheDensity) {
-  // Burley's density is finite at 0 as well; Simpson's error at 4000 intervals over 10 d is below 1e-10.
+TEST_P(EveryShape, CdfIsTheIntegralOfTheDensity) {
+  // Burley's radial density is finite at 0, too; Simpson's error at 4000 intervals over 10 d is
+  // below 1e-10.
   for (const double r : {0.1, 0.5, 1.0, 3.0, 10.0}) {
     const double end = r * shape.d;
     const double integral =
@@ -55,10 +57,10 @@ TEST_P(EveryShape, TheDistributionIsTheIntegralOfTheDensity) {
     EXPECT_NEAR(shape_pdf(shape, end), 2 * std::numbers::pi * end * shape_R(shape, end), 1e-14 / shape.d);
   }
   EXPECT_EQ(shape_cdf(shape, 0), 0);
-  EXPECT_NEAR(shape_cdf(shape, 400 * shape.d), 1, 1e-9); // total 1
+  EXPECT_NEAR(shape_cdf(shape, 400 * shape.d), 1, 1e-9); // The total is 1.
 }
 
-TEST_P(EveryShape, TheInverseReturnsTheSurvivalItWasGiven) {
+TEST_P(EveryShape, InverseInvertsTheSurvival) {
   for (const double u : {0.999999, 0.9, 0.5, 0.1, 0.01, 1e-4, 1e-6}) {
     const double r = shape_inverse_survival(shape, u);
     EXPECT_NEAR(shape_survival(shape, r) / u, 1, 1e-11) << u;
@@ -68,18 +70,20 @@ TEST_P(EveryShape, TheInverseReturnsTheSurvivalItWasGiven) {
   EXPECT_TRUE(std::isfinite(shape_inverse_survival(shape, std::nan(""))));
 }
 
-TEST_P(EveryShape, DIsMeasuredByTheRadiusOfNinetyNinePercent) {
+TEST_P(EveryShape, DFollowsTheRadiusOfNinetyNinePercent) {
   EXPECT_NEAR(shape_inverse_survival(shape, 0.01), 12.95264 * shape.d, 1e-4 * shape.d);
-  EXPECT_NEAR(shape_survival(shape, shape_reach(shape)), 9.54e-4, 1e-6); // what the truth leaves out
+  // The part that the reference cuts off.
+  EXPECT_NEAR(shape_survival(shape, shape_reach(shape)), 9.54e-4, 1e-6);
 }
 
-TEST_P(EveryShape, TheTransferFunctionIsTheHankelTransformOfTheDensity) {
-  // H(k) = integral of pdf(r) J0(k r); over the survival variable the integrand is bounded.
+TEST_P(EveryShape, TransferFunctionIsTheHankelTransform) {
+  // H(k) = integral of pdf(r) J0(k r). The integrand over the survival variable is bounded.
   for (const double k : {0.05, 0.3, 1.0}) {
     const double far = shape_inverse_survival(shape, 1e-7);
     const double numeric = simpson(
         [&](double x) {
-          const double r = std::max(far * x * x, 1e-12); // x^2 puts points where the density is steep
+          // x^2 concentrates points where the density is steep.
+          const double r = std::max(far * x * x, 1e-12);
           return shape_pdf(shape, r) * std::cyl_bessel_j(0, k / shape.d * r) * 2 * far * x;
         },
         0, 1, 200000);
@@ -88,7 +92,7 @@ TEST_P(EveryShape, TheTransferFunctionIsTheHankelTransformOfTheDensity) {
   EXPECT_NEAR(shape_transfer(shape, 0), 1, 1e-14);
 }
 
-TEST_P(EveryShape, ScalingLengthsScalesEverythingWithThem) {
+TEST_P(EveryShape, ScalesWithLengths) {
   const ChannelShape twice = scaled(shape, 2);
   EXPECT_NEAR(twice.d, 2 * shape.d, 1e-14);
   EXPECT_NEAR(shape_cdf(twice, 2 * shape.d), shape_cdf(shape, shape.d), 1e-13);
@@ -97,28 +101,29 @@ TEST_P(EveryShape, ScalingLengthsScalesEverythingWithThem) {
   EXPECT_EQ(shape_cdf(scaled(shape, 0), 1e-30), 1);
 }
 
-TEST(Dipole, HasTheConstantsOfItsPaperAndTheReflectanceOfItsTable) {
+TEST(Dipole, MatchesThePapersConstantsAndReflectance) {
   EXPECT_NEAR(dipole_fdr(1.3), 0.444763, 1e-6);
-  // Skin1 and wholemilk of figure 5: printed diffuse reflectances .44 .22 .13, .91 .88 .76.
+  // Skin1 and wholemilk of figure 5: printed diffuse reflectances 0.44 0.22 0.13 and 0.91 0.88
+  // 0.76.
   EXPECT_NEAR(dipole_albedo(0.032, 0.74), 0.44, 0.01);
   EXPECT_NEAR(dipole_albedo(0.17, 0.88), 0.22, 0.01);
   EXPECT_NEAR(dipole_albedo(0.48, 1.01), 0.13, 0.01);
   EXPECT_NEAR(dipole_albedo(0.0011, 2.55), 0.91, 0.01);
-  EXPECT_NEAR(1 / make_dipole(0.032, 0.74).sigma_tr, 3.673, 1e-3); // dmfp, mm
+  EXPECT_NEAR(1 / make_dipole(0.032, 0.74).sigma_tr, 3.673, 1e-3); // Diffuse mean free path in mm.
 }
 
-TEST(Artist, IsWhatIsLeftOfSkinWithoutItsNarrowestGaussian) {
+TEST(Artist, MatchesSkinWithoutItsNarrowestGaussian) {
   double sum = 0;
   for (const ArtistGaussian& one : artist_gaussians)
     sum += one.weight;
   EXPECT_NEAR(sum, artist_total, 1e-12);
   EXPECT_NEAR(artist_width(0.37), 0.371, 1e-12);
-  // gamma is the strength whatever the radius.
+  // gamma equals the strength for every radius.
   EXPECT_NEAR(shape_gamma(artist_shape(1, 0.48), 0.1), 0.48, 1e-12);
   EXPECT_NEAR(shape_gamma(artist_shape(1, 0.48), 5), 0.48, 1e-12);
 }
 
-TEST(Gamma, OfBurleyAndTheDipoleFallsWithTheDirectRadius) {
+TEST(Gamma, FallsWithTheDirectRadius) {
   for (const ChannelShape& shape : {burley_shape(1), dipole_shape(0.17, 0.88)}) {
     double before = 1;
     for (const double r0 : {0.01, 0.1, 0.5, 1.0, 4.0}) {
@@ -130,14 +135,14 @@ TEST(Gamma, OfBurleyAndTheDipoleFallsWithTheDirectRadius) {
   }
 }
 
-TEST(DirectRadius, OnlyTheInscribedOneNeverTakesLightOfAnotherPixel) {
+TEST(DirectRadius, OnlyInscribed_TakesNoLightOfOtherPixels) {
   EXPECT_EQ(direct_radius(DirectRadius::inscribed, 1, 2), 0.5);
   EXPECT_NEAR(direct_radius(DirectRadius::circumscribed, 1, 1), std::sqrt(0.5), 1e-15);
-  // Weight that lands in the centre pixel at d = 3 px: the direct part and the taps beyond r0 that still fall
-  // on the pixel. Inscribed: exactly the pixel's own integral, .0880; circumscribed: 24 % more.
+  // Weight in the centre pixel at d = 3 px: the direct part and the taps beyond r0 within the
+  // pixel. Inscribed: exactly the integral over the pixel, 0.0880; circumscribed: 24 % more.
   const double d = 3;
   const auto landing = [&](double r0) {
-    double outside = 0; // polar integral over the square beyond r0
+    double outside = 0; // Polar integral over the square beyond r0.
     constexpr int angles = 4000;
     for (int i = 0; i < angles; ++i) {
       const double theta = (i + 0.5) / angles * std::numbers::pi / 4;
@@ -167,7 +172,7 @@ std::optional<Profile> parse(const std::string& text, Diagnostics& diagnostics) 
   return document ? read_profile(*document, diagnostics) : std::nullopt;
 }
 
-TEST(ProfileModels, AMeanFreePathInsideGivesTheSameDAsItsScalingSays) {
+TEST(ProfileModels, MeanFreePathInside_MatchesTheScaling) {
   Diagnostics diagnostics;
   const auto searchlight = parse(R"({"dermis_profile": 1, "name": "p", "source": "t", "mfp_mm": [1, 2, 0],
                                      "albedo": [0.8, 0.33, 1]})",
@@ -183,7 +188,7 @@ TEST(ProfileModels, AMeanFreePathInsideGivesTheSameDAsItsScalingSays) {
   EXPECT_NEAR(diffuse->d_mm[0], 1 / 1.10, 1e-12);
 }
 
-TEST(ProfileModels, NumbersOfAnotherModelAreRefusedWithBothNames) {
+TEST(ProfileModels, NumbersOfAnotherModel_AreRefused) {
   Diagnostics diagnostics;
   EXPECT_FALSE(parse("{\"dermis_profile\": 1, \"name\": \"p\", \"source\": \"t\",\n"
                      " \"dmfp_mm\": [1, 2, 3], \"albedo\": [1, 1, 1],\n \"falloff\": [1, 1, 1]}",
@@ -211,7 +216,7 @@ TEST(ProfileModels, OneLengthGivenTwiceIsRefusedOnce) {
   }
 }
 
-TEST(ProfileModels, WhatIsWrittenReadsBackBitForBit) {
+TEST(ProfileModels, ReadsBackBitForBit) {
   for (const auto& entry : std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/profiles")) {
     Diagnostics diagnostics;
     const auto document = read_document(entry.path().string(), diagnostics);
@@ -244,7 +249,7 @@ TEST(BurleySamplers, TheApproximateInverseHasItsPublishedErrors) {
   EXPECT_NEAR(worst, 0.045, 0.001);
   EXPECT_NEAR(distance, 0.00987, 0.0002);
   EXPECT_NEAR(mean, 2.4286, 0.001);
-  EXPECT_NEAR(weight_mean, 1, 1e-4); // the tail beyond 1 - 1/n is not seen
+  EXPECT_NEAR(weight_mean, 1, 1e-4); // The samples miss the tail beyond 1 - 1/n.
   EXPECT_NEAR(minimum, 0.945, 0.001);
 }
 

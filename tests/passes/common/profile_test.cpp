@@ -15,18 +15,18 @@ std::optional<Profile> parsed(const std::string& text, Diagnostics& diagnostics)
   return document ? read_profile(*document, diagnostics) : std::nullopt;
 }
 
-TEST(Profile, ShapeParameterIsDmfpOverScalingOfTheProfilesAlbedo) {
+TEST(Profile, ShapeParameterIsDmfpOverAlbedoScaling) {
   Diagnostics diagnostics;
   const auto profile = parsed(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [3.67, 1.37, 0.68],
                                 "albedo": [0.33, 0.8, 1.0], "source": "test"})",
                               diagnostics);
   ASSERT_TRUE(profile) << format_as_json(diagnostics);
-  EXPECT_NEAR(profile->d_mm[0], 3.67 / 3.5, 1e-12);      // s(.33) = 3.5
-  EXPECT_NEAR(profile->d_mm[1], 1.37 / 8.3796841, 1e-6); // s(.8) = 3.5 + 100 * .47^4
-  EXPECT_NEAR(profile->d_mm[2], 0.68 / 23.651121, 1e-6); // s(1) = 3.5 + 100 * .67^4
+  EXPECT_NEAR(profile->d_mm[0], 3.67 / 3.5, 1e-12);      // s(0.33) = 3.5
+  EXPECT_NEAR(profile->d_mm[1], 1.37 / 8.3796841, 1e-6); // s(0.8) = 3.5 + 100 * 0.47^4
+  EXPECT_NEAR(profile->d_mm[2], 0.68 / 23.651121, 1e-6); // s(1) = 3.5 + 100 * 0.67^4
 }
 
-TEST(Profile, TheWidestChannelIsChosenByShapeParameterNotByMeanFreePath) {
+TEST(Profile, WidestChannelHasTheLargestShapeParameter) {
   Diagnostics diagnostics;
   const auto profile = parsed(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [5, 4, 1],
                                 "albedo": [1, 0.33, 0.33], "source": "test"})",
@@ -45,7 +45,7 @@ TEST(Profile, AMeanFreePathOfZeroMeansNoScattering) {
     EXPECT_EQ(d, 0.0);
 }
 
-TEST(Profile, NegativePathsAlbedosAboveOneAndMisspelledKeysAreRefusedWithTheirPlace) {
+TEST(Profile, InvalidValuesAndKeys_AreRefusedWithTheirPlace) {
   Diagnostics diagnostics;
   EXPECT_FALSE(
       parsed("{\"dermis_profile\": 1, \"name\": \"p\",\n \"dmfp_mm\": [-1, 0, 0],\n \"albedo\": [0, 2, 0],\n"
@@ -56,7 +56,7 @@ TEST(Profile, NegativePathsAlbedosAboveOneAndMisspelledKeysAreRefusedWithTheirPl
   EXPECT_EQ(diagnostics.list[0].where.line, 2u);
   EXPECT_EQ(diagnostics.list[0].where.pointer, "/dmfp_mm/0");
   EXPECT_EQ(diagnostics.list[1].where.pointer, "/albedo/1");
-  EXPECT_EQ(diagnostics.list[2].id, DiagnosticId::unknown_key); // stands for the missing key as well
+  EXPECT_EQ(diagnostics.list[2].id, DiagnosticId::unknown_key); // Also reports the missing key.
   EXPECT_NE(diagnostics.list[2].suggestion.find("source"), std::string::npos);
 }
 
@@ -85,7 +85,7 @@ TEST(Profile, HumanSkinHasTheShapeParametersOfItsMeasurement) {
   EXPECT_NEAR(profile->d_mm[2], 0.19, 0.005);
 }
 
-TEST(Environment, UndeclaredProfilesLetLightPass) {
+TEST(Environment, UndeclaredProfilesPassLightThrough) {
   NumberedProfile skin{7, {}};
   skin.profile.dmfp_mm = {3.5, 1, 1};
   skin.profile.albedo = {0.33, 0.33, 0.33};
@@ -97,7 +97,7 @@ TEST(Environment, UndeclaredProfilesLetLightPass) {
   EXPECT_EQ(table[8].d_max_mm, 0.0f);
 }
 
-TEST(Environment, FrameConstantsRebuildTheViewPositionOfAProjectedPoint) {
+TEST(Environment, FrameConstantsReconstructViewPositions) {
   // 90 degrees, 4:2 view, reversed infinite depth, units of 10 m.
   FrameInput input;
   input.rect_width = 4;
@@ -108,7 +108,8 @@ TEST(Environment, FrameConstantsRebuildTheViewPositionOfAProjectedPoint) {
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_EQ(constants.tiles[0], 1);
   EXPECT_EQ(constants.flags, 1u | 4u);
-  // View point (1, .5, -2) units: ndc = (.25, -.25), depth value .1 / 2; pixel = (ndc + 1) / 2 * size - 1/2.
+  // View point (1, 0.5, -2) units: ndc = (0.25, -0.25), depth value 0.1 / 2; pixel = (ndc + 1) / 2
+  // * size - 1/2.
   const float pixel[2] = {2.0f, 0.25f};
   const float value = 0.05f;
   const float depth = (constants.depth_decode[0] * value + constants.depth_decode[1]) /
@@ -118,7 +119,7 @@ TEST(Environment, FrameConstantsRebuildTheViewPositionOfAProjectedPoint) {
   EXPECT_NEAR((constants.ray_scale[1] * pixel[1] + constants.ray_offset[1]) * depth, 5000.0f, 0.1f);
 }
 
-TEST(Environment, AMatrixThatIsNoProjectionIsRefused) {
+TEST(Environment, NotAProjection_IsRefused) {
   FrameInput input;
   input.rect_width = input.rect_height = 8;
   FrameConstants constants{};

@@ -1,4 +1,4 @@
-// The table by which kernels sample profiles without closed forms: as good as what it was made of.
+// Tests the sampling table of profiles without closed forms against the profiles it was made of.
 #include "passes/common/profiles/burley_profile.hpp"
 #include "passes/common/profiles/radial_table.hpp"
 
@@ -14,14 +14,15 @@ using namespace dermis::subsurface;
 struct Tabled {
   const char* name;
   ProfileShape shape;
-  double mean_square; // of the radius of red, mm^2, closed form
+  double mean_square; // E[r^2] of red in mm^2, closed form.
 };
 
 void PrintTo(const Tabled& named, std::ostream* out) {
   *out << named.name;
 }
 
-// E[r^2] from the transfer function's curvature at 0: 2 sum z e^(-z sigma) / (sigma sum e^(-z sigma)).
+// Returns E[r^2] from the curvature of the transfer function at 0: 2 sum z e^(-z sigma) / (sigma
+// sum e^(-z sigma)).
 double mean_square(const Dipole& dipole) {
   double sum = 0, total = 0;
   for (const double z : {dipole.z_real, dipole.z_virtual}) {
@@ -62,22 +63,24 @@ TEST_P(RadialTable, ReturnsDensityAndSurvivalOfEveryChannel) {
     const auto survival = radial_survival(rows, d, static_cast<float>(r));
     for (size_t c = 0; c < 3; ++c) {
       const double reference = 2 * std::numbers::pi * shape_R(shape[c], r);
-      // Relative to the value or, far out, to what is left of the peak: linear steps of 1/24 octave in log R.
+      // Tolerance relative to the value or, far out, to the peak: linear steps of 1/24 octave in
+      // log R.
       EXPECT_NEAR(falloff[c], reference, 4e-3 * reference + 1e-9) << in_d << " d, channel " << c;
       EXPECT_NEAR(survival[c], shape_survival(shape[c], r), 2e-4) << in_d << " d, channel " << c;
     }
   }
 }
 
-TEST_P(RadialTable, InvertsTheDistributionWithinAThousandthOfD) {
+TEST_P(RadialTable, InverseIsWithinAThousandthOfD) {
   for (double u = 0.9999; u > 1e-6; u *= 0.83)
     EXPECT_NEAR(radial_sample(rows, static_cast<float>(u)).r, shape_inverse_survival(shape[0], u),
                 1e-3 * shape[0].d)
         << u;
 }
 
-TEST_P(RadialTable, WeightsByTheSamplersOwnDensityAreUnbiased) {
-  // The weight is pdf / density; its mean is 1 and that of r^2 the profile's own, within .1 %.
+TEST_P(RadialTable, WeightsByTheTableDensityAreUnbiased) {
+  // The weight is pdf / density. Its mean is 1 and the mean of r^2 is that of the profile, within
+  // 0.1 %.
   double total = 0, square = 0, minimum = 1e9, maximum = 0;
   constexpr int n = 400000;
   for (int i = 0; i < n; ++i) {
@@ -94,7 +97,7 @@ TEST_P(RadialTable, WeightsByTheSamplersOwnDensityAreUnbiased) {
   EXPECT_LT(maximum, 1.05);
 }
 
-TEST(SecondMoment, OfBurleysSamplersIsFourteenDSquared) {
+TEST(SecondMoment, BurleySamplers_HaveFourteenDSquared) {
   double polynomial = 0, exact = 0, approximate = 0, unweighted = 0;
   constexpr int n = 2000000;
   for (int i = 0; i < n; ++i) {
@@ -108,7 +111,7 @@ TEST(SecondMoment, OfBurleysSamplersIsFourteenDSquared) {
   EXPECT_NEAR(polynomial / 14, 1, 1e-3);
   EXPECT_NEAR(exact / 14, 1, 1e-3);
   EXPECT_NEAR(approximate / 14, 1, 1e-3);
-  EXPECT_NEAR(unweighted, 12.515, 0.01); // 10.6 % short, as published
+  EXPECT_NEAR(unweighted, 12.515, 0.01); // 10.6 % too low, as published.
 }
 
 } // namespace

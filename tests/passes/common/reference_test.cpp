@@ -12,7 +12,7 @@
 namespace dermis::subsurface {
 namespace {
 
-// A view of one plane with one profile; light, depth and profile are changed by each test.
+// A view of one plane with one profile; each test changes light, depth and profile.
 struct Seen {
   uint32_t width, height;
   PixelRays rays;
@@ -34,7 +34,7 @@ struct Seen {
   }
 };
 
-float noise(uint32_t x, uint32_t y) { // deterministic, in [0, 1)
+float noise(uint32_t x, uint32_t y) { // Deterministic, in [0, 1).
   uint32_t h = x * 0x9e3779b9u ^ (y + 0x7f4a7c15u) * 0x85ebca6bu;
   h ^= h >> 15;
   h *= 0x2c1b3c6du;
@@ -44,7 +44,7 @@ float noise(uint32_t x, uint32_t y) { // deterministic, in [0, 1)
 
 TEST(Reference, ConstantLightStaysConstant) {
   Seen view(48, 40, {2e-3, 1e-3, 0.2e-3});
-  view.profile[view.at(20, 20)] = 0; // holes do not matter
+  view.profile[view.at(20, 20)] = 0; // Holes have no effect.
   for (const bool planar : {true, false})
     for (const double value : reference_everywhere(view.input(), {.planar_shortcut = planar}))
       EXPECT_NEAR(value, 1, 1e-12);
@@ -77,7 +77,8 @@ TEST(Reference, ZeroDistanceReturnsTheLightBitForBit) {
 
 TEST(Reference, VanishingDistanceConvergesToTheLight) {
   Seen view(16, 16,
-            {1e-5, 1e-7, 1e-30}); // pixels are 1e-3: mass beyond .5 px is .75 e^-16 = 8e-8 for the first
+            // Pixels are 1e-3 m: the fraction beyond 0.5 px is 0.75 e^-16 = 8e-8 for the first.
+            {1e-5, 1e-7, 1e-30});
   view.paint(noise);
   const auto result = reference_everywhere(view.input(), {.planar_shortcut = false});
   for (size_t i = 0; i < result.size(); ++i)
@@ -85,9 +86,9 @@ TEST(Reference, VanishingDistanceConvergesToTheLight) {
 }
 
 TEST(Reference, HalfPlaneFollowsTheExactEdge) {
-  // d = 4 px. What the definition differs by from the plane's closed form: the cut at 20 d leaves .75
-  // e^(-20/3) = 9.5e-4 of the energy out (it would have been 1 on one side), pixels taken by their centre
-  // beyond 4 px a few 1e-5.
+  // d = 4 px. Difference to the closed form of the plane: the cut at 20 d omits 0.75 e^(-20/3) =
+  // 9.5e-4 of the energy, all of it on one side. Pixels beyond 4 px, sampled at their centre, add a
+  // few 1e-5.
   Seen view(340, 190, {4e-3, 2e-3, 1e-3});
   view.paint([](uint32_t x, uint32_t) { return x < 170 ? 0.0f : 1.0f; });
   std::vector<uint32_t> row;
@@ -100,16 +101,17 @@ TEST(Reference, HalfPlaneFollowsTheExactEdge) {
           << row[i] % 340 << " " << c;
 }
 
-TEST(Reference, SinusoidLosesContrastByTheTransferFunction) {
-  // d = 3 px, period 32 px: k d = .589. Light constant over pixels multiplies the contrast by sinc(1/32) =
-  // .99839.
+TEST(Reference, SinusoidContrastFollowsTheTransferFunction) {
+  // d = 3 px, period 32 px: k d = 0.589. Light that is constant over pixels multiplies the contrast
+  // by sinc(1/32) = 0.99839.
   Seen view(256, 128, {3e-3, 3e-3, 3e-3});
   const double pi = 3.14159265358979323846, k = 2 * pi / 32;
   view.paint([&](uint32_t x, uint32_t) { return float(0.5 + 0.5 * std::cos(k * x)); });
   const std::vector<uint32_t> peaks = {64 * 256 + 128, 64 * 256 + 112};
   const auto result = reference_at(view.input(), peaks);
   const double contrast = result[0] - result[3];
-  EXPECT_NEAR(contrast, burley_mtf(k, 3) * std::sin(k / 2) / (k / 2), 1.5e-3); // the cut at 20 d: 9.5e-4
+  // The cut at 20 d: 9.5e-4.
+  EXPECT_NEAR(contrast, burley_mtf(k, 3) * std::sin(k / 2) / (k / 2), 1.5e-3);
 }
 
 TEST(Reference, FastAndGeneralPathsAgree) {
@@ -144,7 +146,7 @@ TEST(Reference, FarStepsInDepthDoNotLeak) {
   Seen view(48, 24, {1e-3, 1e-3, 1e-3});
   for (uint32_t y = 0; y < 24; ++y)
     for (uint32_t x = 24; x < 48; ++x) {
-      view.depth[view.at(x, y)] = 0.6f; // 100 d behind
+      view.depth[view.at(x, y)] = 0.6f; // 100 d behind.
       for (size_t c = 0; c < 3; ++c)
         view.light[3 * view.at(x, y) + c] = 0;
     }
@@ -154,8 +156,8 @@ TEST(Reference, FarStepsInDepthDoNotLeak) {
 }
 
 TEST(Reference, TiltedPlaneScattersInSurfaceDistance) {
-  // Seen at 60 degrees the surface is stretched by 2 along x: an edge must follow the closed form in surface
-  // distance.
+  // Seen at 60 degrees, the surface is stretched by 2 along x; an edge must follow the closed form
+  // in surface distance.
   Seen view(220, 160, {4e-3, 4e-3, 4e-3});
   for (uint32_t y = 0; y < view.height; ++y)
     for (uint32_t x = 0; x < view.width; ++x)
@@ -166,14 +168,15 @@ TEST(Reference, TiltedPlaneScattersInSurfaceDistance) {
     row.push_back(80 * view.width + x);
   const auto result = reference_at(view.input(), row);
   for (size_t i = 0; i < row.size(); ++i)
-    // 1e-3 for the cut at 20 d, and 5e-4: outside the 4 px, patches 2 px long are taken by their centre.
+    // Tolerance: 1e-3 for the cut at 20 d, and 5e-4 because patches 2 px long beyond 4 px are
+    // sampled at their centre.
     EXPECT_NEAR(result[3 * i], burley_edge(2 * (double(row[i] % 220) + 0.5 - 110), 4), 1.5e-3)
         << row[i] % 220;
 }
 
 TEST(Reference, PerspectiveAndOrthographicViewsOfOnePlaneAgree) {
-  // A plane at 0.5 m with 1 mm pixels: rays of 2e-3 per pixel. Patches are cut by rays from one eye, yet lie
-  // the same.
+  // A plane at 0.5 m with 1 mm pixels: rays of 2e-3 per pixel. Patches come from rays of one eye,
+  // but their positions are equal.
   Seen ortho(40, 40, {2e-3, 1e-3, 0.5e-3});
   ortho.paint(noise);
   Seen eye = ortho;
@@ -213,7 +216,7 @@ TEST(Reference, PixelsWithoutSurfaceKeepTheirLight) {
   view.depth[6] = INFINITY;
   view.depth[7] = NAN;
   view.profile[8] = 0;
-  view.profile[9] = 77; // no such profile: d = 0
+  view.profile[9] = 77; // No such profile: d = 0.
   for (const bool planar : {true, false}) {
     const auto result = reference_everywhere(view.input(), {.planar_shortcut = planar});
     for (size_t i = 5; i < 10; ++i)
@@ -223,7 +226,7 @@ TEST(Reference, PixelsWithoutSurfaceKeepTheirLight) {
   }
 }
 
-TEST(Reference, GrazingPatchesCountForAtMostTheCap) {
+TEST(Reference, GrazingPatches_AreaIsCapped) {
   Seen view(8, 8, {2e-3, 2e-3, 2e-3});
   for (uint32_t y = 0; y < 8; ++y)
     for (uint32_t x = 0; x < 8; ++x)
@@ -233,9 +236,10 @@ TEST(Reference, GrazingPatchesCountForAtMostTheCap) {
     EXPECT_NEAR(patch.area, 1e-6 / min_patch_cosine, 1e-12);
 }
 
-// The cap's slope is 6.591 sides of a pixel: a patch below it keeps its normal, and one just above is tilted
-// back to the cap, so that its plane rises by no more. (cos = 0.15, so the slope is sqrt(1 / 0.15^2 - 1).)
-TEST(Reference, GrazingPatchesTiltByAtMostTheCap) {
+// The slope of the cap is 6.591 pixel sides. A patch below the cap keeps its normal; a patch just
+// above is tilted back to the cap, so its plane rises no further. (cos = 0.15, so the slope is
+// sqrt(1 / 0.15^2 - 1).)
+TEST(Reference, GrazingPatches_TiltIsCapped) {
   const double largest_slope = std::sqrt(1 / (min_patch_cosine * min_patch_cosine) - 1);
   for (const double slope : {6.0, 6.58, 6.6, 7.0, 100.0})
     for (const bool down : {false, true}) {
@@ -245,7 +249,8 @@ TEST(Reference, GrazingPatchesTiltByAtMostTheCap) {
           view.depth[view.at(x, y)] = static_cast<float>(0.5 + slope * 1e-3 * (down ? y : x));
       const Surface surface = build_surface(8, 8, view.rays, view.depth, view.profile, 1);
       const double expected = std::min(slope, largest_slope);
-      // Depths are floats: a step of 6e-3 m at 1.2 m is off by up to 6e-8 / 6e-3, 1e-5 of the slope.
+      // Depths are floats: the error of a step of 6e-3 m at 1.2 m is up to 6e-8 / 6e-3, 1e-5 of the
+      // slope.
       for (const Patch& patch : surface.patches) {
         const double tilt = std::hypot(patch.normal[0], patch.normal[1]) / patch.normal[2];
         EXPECT_NEAR(tilt, expected, 1e-4 * expected) << slope;
@@ -257,7 +262,7 @@ TEST(Reference, GrazingPatchesTiltByAtMostTheCap) {
     }
 }
 
-TEST(Reference, ResultDoesNotDependOnTheNumberOfThreads) {
+TEST(Reference, ResultIsIndependentOfTheThreadCount) {
   Seen view(40, 30, {2e-3, 1e-3, 0.5e-3});
   view.paint(noise);
   for (const bool planar : {true, false})
@@ -266,9 +271,9 @@ TEST(Reference, ResultDoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(Reference, KernelOfAPixelGridSumsToTheCdf) {
-  // Beyond 4 px a pixel counts by its centre, where 1/r is below its mean by 1/(24 r^2) of itself: with a
-  // density of at most 1/2d that loses up to 1/(48 d 4.5) of e^(-4.5/3d), 2.2e-3 at d = 2; 8x8 points lose
-  // 2e-4 beside the centre.
+  // A pixel beyond 4 px is sampled at its centre, where 1/r is below its mean by a fraction 1/(24
+  // r^2). With a density of at most 1/2d the loss is up to 1/(48 d 4.5) of e^(-4.5/3d), 2.2e-3 at d
+  // = 2. The 8x8 points of nearer pixels lose another 2e-4.
   for (const double d : {0.05, 0.3, 1.0, 2.0}) {
     double sum = 0;
     for (int64_t y = -40; y <= 40; ++y)
@@ -295,7 +300,7 @@ TEST(Reference, SubsetIsStratifiedSortedAndRepeatable) {
   for (const uint32_t i : subset)
     ++quarters[i / 1024];
   for (const int n : quarters)
-    EXPECT_NEAR(n, 25, 2); // strata follow rows of tiles
+    EXPECT_NEAR(n, 25, 2); // Strata follow rows of tiles.
   EXPECT_EQ(stratified_subset(64, 64, profile, 1u << 20).size(), 1366u);
 }
 

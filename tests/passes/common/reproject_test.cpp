@@ -1,5 +1,5 @@
-// Looking back one frame, against motions whose answer is known: a camera that turns, walks and zooms, things
-// that move, rectangles that change.
+// Tests reprojection to the previous frame against known motions: camera turns, walks and zooms,
+// moving objects, and changing rectangles.
 #include "passes/common/reproject.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using Point = std::array<double, 3>;
 Matrix4 lens(double scale, double aspect) {
   return {scale / aspect, 0, 0, 0, 0, -scale, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0};
 }
-// A camera at `place` (metres), turned by `angle` about y: view = R (world - place).
+// Builds a camera at `place` (metres), turned by `angle` about y: view = R (world - place).
 Matrix4 camera(const Point& place, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c,  0, s, -(c * place[0] + s * place[2]), 0, 1, 0, -place[1],
@@ -41,7 +41,7 @@ struct View {
     m[6] -= 2 * jitter[1] / height;
     return m;
   }
-  // Pixel of the rectangle (integers are centres) and view depth in mm.
+  // Returns the pixel of the rectangle (integers are centres) and the view depth in mm.
   PreviousPlace see(const Point& world, bool steady = false) const {
     const Point p = transform(view_from_world, world);
     const Matrix4 m = clip();
@@ -72,7 +72,7 @@ FrameConstants constants_of(const View& now, const View& before) {
   return constants;
 }
 
-// Points on a face-sized cap in front of the camera.
+// Returns points on a face-sized cap in front of the camera.
 const std::vector<Point>& points() {
   static const std::vector<Point> all = [] {
     std::vector<Point> made;
@@ -84,7 +84,7 @@ const std::vector<Point>& points() {
   return all;
 }
 
-// fp32 constants: a few ulp of 1000 mm over .3 mm a pixel.
+// fp32 constants: a few ulp of 1000 mm over 0.3 mm per pixel.
 constexpr double px_tolerance = 2e-3, depth_tolerance_mm = 1e-3;
 
 void expect_places(const View& now, const View& before, const char* what) {
@@ -99,7 +99,7 @@ void expect_places(const View& now, const View& before, const char* what) {
   }
 }
 
-TEST(Reproject, ACameraThatPansWalksTurnsOrZoomsIsUndone) {
+TEST(Reproject, CameraMotionIsInverted) {
   const View before;
   View now = before;
   now.view_from_world = camera({0.01, -0.004, 1}, 0);
@@ -115,14 +115,14 @@ TEST(Reproject, ACameraThatPansWalksTurnsOrZoomsIsUndone) {
   expect_places(now, before, "zoom");
 }
 
-TEST(Reproject, JitterOfBothFramesIsTakenIntoAccount) {
+TEST(Reproject, JitterOfBothFramesIsRemoved) {
   View before, now;
   before.jitter = {0.25, -0.5};
   now.jitter = {-0.125, 0.375};
   expect_places(now, before, "jitter");
 }
 
-TEST(Reproject, ARectangleOfAnotherSizeIsLookedUpInItsOwnPixels) {
+TEST(Reproject, OtherRectangleSize_UsesItsOwnPixels) {
   View before, now;
   before.width = 240;
   before.height = 135;
@@ -131,7 +131,7 @@ TEST(Reproject, ARectangleOfAnotherSizeIsLookedUpInItsOwnPixels) {
   expect_places(now, before, "dynamic resolution");
   const FrameConstants constants = constants_of(now, before);
   EXPECT_EQ(constants.previous_rect[0], 8);
-  // A velocity counts in pixels of the rectangle now.
+  // A velocity is in pixels of the current rectangle.
   for (const Point& point : points()) {
     const PreviousPlace here = now.see(point), there = before.see(point);
     const PreviousPlace found = place_before(constants, here.x, here.y, here.depth, {0, 0, 0});
@@ -140,19 +140,19 @@ TEST(Reproject, ARectangleOfAnotherSizeIsLookedUpInItsOwnPixels) {
   }
 }
 
-TEST(Reproject, AThingThatMovesIsFoundByItsVelocity) {
+TEST(Reproject, MovingObjectIsFoundByItsVelocity) {
   View before, now;
   now.view_from_world = camera({0.01, 0, 0.98}, 0.01);
   before.jitter = {0.25, 0.125};
   now.jitter = {-0.25, 0};
   const FrameConstants constants = constants_of(now, before);
-  const Point moved = {0.006, -0.003, 0.05}; // metres since the frame before
+  const Point moved = {0.006, -0.003, 0.05}; // Metres since the previous frame.
   for (const Point& point : points()) {
     const Point earlier = {point[0] - moved[0], point[1] - moved[1], point[2] - moved[2]};
     const PreviousPlace here = now.see(point), there = before.see(earlier);
     const PreviousPlace here_steady = now.see(point, true), there_steady = before.see(earlier, true);
     const PreviousPlace still = place_before(constants, here.x, here.y, here.depth);
-    const double own_z = (still.depth - there.depth) / 1000; // world units are metres
+    const double own_z = (still.depth - there.depth) / 1000; // World units are metres.
     const PreviousPlace found =
         place_before(constants, here.x, here.y, here.depth,
                      {here_steady.x - there_steady.x, here_steady.y - there_steady.y, own_z});
@@ -162,7 +162,7 @@ TEST(Reproject, AThingThatMovesIsFoundByItsVelocity) {
   }
 }
 
-TEST(Reproject, ACameraThatRestsFindsEachPixelExactly) {
+TEST(Reproject, CameraAtRest_FindsEachPixelExactly) {
   View view;
   view.view_from_world = camera({0.013, 0.21, 1.7}, 0.37);
   const FrameConstants constants = constants_of(view, view);
@@ -175,11 +175,11 @@ TEST(Reproject, ACameraThatRestsFindsEachPixelExactly) {
           find_history(constants, found, 1, depth_tolerance(700, 0), [&](int tx, int ty) {
             return SurfaceBefore{double(700 + tx + ty), 1};
           });
-      ASSERT_EQ(taps.weight[0], 1) << x << " " << y; // and no other pixel has a part in it
+      ASSERT_EQ(taps.weight[0], 1) << x << " " << y; // No other pixel contributes.
     }
 }
 
-TEST(Reproject, TapsOfAnotherSurfaceHaveNoPartAndTheRestIsRenormalised) {
+TEST(Reproject, TapsOfOtherSurfacesAreRejected) {
   const FrameConstants constants = constants_of({}, {});
   const PreviousPlace place{100.25, 50.5, 800};
   const auto taps_where = [&](const std::function<SurfaceBefore(int, int)>& at) {
@@ -199,7 +199,7 @@ TEST(Reproject, TapsOfAnotherSurfaceHaveNoPartAndTheRestIsRenormalised) {
   const HistoryTaps other = taps_where([](int x, int) { return SurfaceBefore{800, x == 100 ? 3u : 4u}; });
   EXPECT_EQ(other.weight[1], 0);
   EXPECT_NEAR(other.weight[2], 0.5, 1e-12);
-  // Only the column with a quarter of the weight is left, half of it: an eighth, too little.
+  // Only half of the column with a quarter of the weight is left: an eighth is too little.
   const HistoryTaps lost = taps_where([](int x, int y) {
     return SurfaceBefore{x == 101 && y == 50 ? 800.0 : 0.0, 3};
   });
@@ -207,28 +207,29 @@ TEST(Reproject, TapsOfAnotherSurfaceHaveNoPartAndTheRestIsRenormalised) {
     EXPECT_EQ(weight, 0);
 }
 
-TEST(Reproject, ASlopeWidensTheTolerance) {
+TEST(Reproject, SlopeWidensTheTolerance) {
   EXPECT_EQ(depth_tolerance(500, 0), 10);
   EXPECT_EQ(depth_tolerance(500, 20), 40);
 }
 
-TEST(Reproject, WhatWasOutsideOfTheRectangleOrBehindTheCameraIsNotLookedFor) {
+TEST(Reproject, OutsideOrBehindTheCamera_HasNoHistory) {
   const FrameConstants constants = constants_of({}, {});
   const auto never = [](int x, int y) {
     EXPECT_TRUE(x >= 0 && y >= 0 && x < 320 && y < 180) << x << " " << y;
     return SurfaceBefore{800, 1};
   };
-  EXPECT_EQ(find_history(constants, {-0.9, 10, 800}, 1, 16, never).weight[1], 0); // a tenth of a tap
+  // A tenth of a tap.
+  EXPECT_EQ(find_history(constants, {-0.9, 10, 800}, 1, 16, never).weight[1], 0);
   EXPECT_EQ(find_history(constants, {-0.5, 10, 800}, 1, 16, never).weight[1], 1);
   EXPECT_EQ(find_history(constants, {319.75, 10, 800}, 1, 16, never).weight[0], 1);
   View before;
-  before.view_from_world = camera({0, 0, -1}, 0); // everything lies behind it
+  before.view_from_world = camera({0, 0, -1}, 0); // All points are behind the camera.
   const FrameConstants behind = constants_of({}, before);
   EXPECT_EQ(place_before(behind, 160, 90, 900).depth, 0);
   EXPECT_EQ(find_history(behind, place_before(behind, 160, 90, 900), 1, 16, never).weight[0], 0);
 }
 
-TEST(Reproject, VelocitiesThatAreNoNumberOrHugeFindNothing) {
+TEST(Reproject, NaNOrHugeVelocity_HasNoHistory) {
   const FrameConstants constants = constants_of({}, {});
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const std::array<double, 3>& velocity :
@@ -242,7 +243,7 @@ TEST(Reproject, VelocitiesThatAreNoNumberOrHugeFindNothing) {
   }
 }
 
-TEST(Reproject, AFrameWithoutOneBeforeOrAfterACutHasNoHistory) {
+TEST(Reproject, FirstFrameAndCut_HaveNoHistory) {
   FrameInput input;
   input.rect_width = 320;
   input.rect_height = 180;
@@ -250,20 +251,20 @@ TEST(Reproject, AFrameWithoutOneBeforeOrAfterACutHasNoHistory) {
   input.camera.view_from_world = input.camera.previous_view_from_world = camera({0, 0, 1}, 0);
   FrameConstants constants{};
   ASSERT_TRUE(fill_frame_constants(input, constants));
-  EXPECT_FALSE(history_usable(constants)); // no rectangle before
+  EXPECT_FALSE(history_usable(constants)); // No previous rectangle.
   input.previous_width = 320;
   input.previous_height = 180;
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_TRUE(history_usable(constants));
-  input.history_invalid = true; // a cut
+  input.history_invalid = true; // A cut.
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_FALSE(history_usable(constants));
   input.history_invalid = false;
-  input.camera.previous_clip_from_view = {}; // a host that does not say
+  input.camera.previous_clip_from_view = {}; // The host gives no previous camera.
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_FALSE(history_usable(constants));
   input.camera.previous_clip_from_view = input.camera.clip_from_view;
-  input.camera.view_from_world = {}; // flat
+  input.camera.view_from_world = {}; // A degenerate matrix.
   ASSERT_TRUE(fill_frame_constants(input, constants));
   EXPECT_FALSE(history_usable(constants));
 }

@@ -12,7 +12,7 @@
 namespace dermis::subsurface {
 namespace {
 
-TEST(Sequence, StepsAreThePowersOfTheRootOfItsEquation) {
+TEST(Sequence, StepsArePowersOfThePlasticNumber) {
   double g = 1.3;
   for (int i = 0; i < 60; ++i)
     g = std::cbrt(g + 1);
@@ -20,8 +20,8 @@ TEST(Sequence, StepsAreThePowersOfTheRootOfItsEquation) {
   EXPECT_EQ(r2_step[1], static_cast<uint32_t>(std::llround(std::exp2(32) / (g * g))));
 }
 
-// Largest difference between the share of points in [0, x) x [0, y) and its area, on a grid of 32 x 32
-// corners.
+// Returns the largest difference between the fraction of points in [0, x) x [0, y) and its area, on
+// a grid of 32 x 32 corners.
 double discrepancy(uint32_t first, uint32_t count) {
   double largest = 0;
   for (uint32_t i = 1; i <= 32; ++i)
@@ -36,20 +36,22 @@ double discrepancy(uint32_t first, uint32_t count) {
   return largest;
 }
 
-TEST(Sequence, NoIndexLosesDigits) {
-  // 64 points of any stretch are as even as the first ones; independent ones would be off by about .1.
+TEST(Sequence, NoIndexLosesPrecision) {
+  // Any 64 consecutive points are as even as the first 64; independent points would deviate by
+  // about 0.1.
   for (const uint32_t first : {0u, 1u << 24, 1u << 31, 0xffffffc0u, 0xffffffffu})
     EXPECT_LT(discrepancy(first, 64), 0.07) << first;
 }
 
-TEST(Sequence, GoesOnWhereTheIndexWraps) {
+TEST(Sequence, ContinuesWhenTheIndexWraps) {
   const auto last = r2_point({5, 7}, 0xffffffffu), next = r2_point({5, 7}, 0);
   EXPECT_EQ(next[0], last[0] + r2_step[0]);
   EXPECT_EQ(next[1], last[1] + r2_step[1]);
 }
 
-TEST(Sequence, HashesOfNeighboursAndFramesAreEvenAndUnrelated) {
-  // Mean of uniform numbers: sd .289 / sqrt(65536) = .0011; correlation of independent ones: sd .0039.
+TEST(Sequence, HashesAreUniformAndUncorrelated) {
+  // The mean of uniform numbers has sd 0.289 / sqrt(65536) = 0.0011; the correlation of independent
+  // numbers has sd 0.0039.
   double mean[3] = {}, product = 0;
   for (uint32_t y = 0; y < 256; ++y)
     for (uint32_t x = 0; x < 256; ++x) {
@@ -66,7 +68,7 @@ TEST(Sequence, HashesOfNeighboursAndFramesAreEvenAndUnrelated) {
   EXPECT_NEAR(product, 0, 0.03);
 }
 
-TEST(Mixture, InverseUndoesTheSurvival) {
+TEST(Mixture, InverseInvertsTheSurvival) {
   for (const PerChannel& d :
        {PerChannel{1, 0.38, 0.19}, {16, 8, 4}, {16, 4, 2}, {2, 0, 1}, {3, 0, 0}, {1, 1, 1}})
     for (double u = 1e-6; u <= 1; u = std::min(u * 1.3, u < 1 ? 1.0 : 2.0))
@@ -74,7 +76,7 @@ TEST(Mixture, InverseUndoesTheSurvival) {
           << d[0] << " " << d[1] << " " << d[2] << " at " << u;
 }
 
-TEST(Mixture, OfOneChannelIsThatChannel) {
+TEST(Mixture, OneChannel_EqualsTheChannel) {
   for (const double u : {0.9, 0.5, 0.01}) {
     EXPECT_NEAR(burley_mixture_inverse(u, {2, 2, 2}), burley_inverse_survival(u, 2), 1e-9);
     EXPECT_NEAR(burley_mixture_inverse(u, {0, 2, 0}), burley_inverse_survival(u, 2), 1e-9);

@@ -1,7 +1,8 @@
-// Every shipped graph, with what a host may leave unbound: the plan is proven, no part of it can be taken
-// away, and it computes what the graph means. With DERMIS_TESTS_FULL every combination of optional slots is
-// bound, 2048 of restir; without it, of graphs with more than five such slots, all of up to two that are
-// bound and of up to two that are not.
+// Checks every shipped graph with combinations of optional slots: the plan is verified, nothing in
+// it can be removed, and it computes the graph's result.
+// DERMIS_TESTS_FULL tries every combination of optional slots, 2048 of restir. Without
+// DERMIS_TESTS_FULL, graphs with more than five such slots are tried with up to two bound and with
+// up to two unbound.
 
 #include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/hazard_oracle.hpp"
@@ -30,7 +31,7 @@ using namespace dermis::testing;
 constexpr uint32_t frames = 5;
 constexpr size_t few_slots = 5, few_bound = 2;
 
-// Is this combination, a bit for each of `slots` slots, one of those that this run tries?
+// Whether this run tries the combination; `unbound` has a bit for each of `slots` slots.
 bool tried(uint32_t unbound, size_t slots) {
   const auto missing = static_cast<size_t>(std::popcount(unbound));
   return slots <= few_slots || missing <= few_bound || slots - missing <= few_bound ||
@@ -48,7 +49,7 @@ struct ShippedPlans : ::testing::Test {
     return out;
   }
 
-  enum class Bound { all, some, none }; // of the optional slots
+  enum class Bound { all, some, none }; // State of the optional slots.
   using Visit = std::function<void(const Graph&, const CompiledPlan&, Bound)>;
 
   void for_each_plan(const Visit& visit) {
@@ -92,15 +93,15 @@ TEST_F(ShippedPlans, AreAcceptedByVerifierAndOracle) {
   });
 }
 
-// Buffers that take over the memory of one resource at once wait for it with a barrier each: any of them
-// does.
+// Whether the barrier acquires memory. Buffers that acquire the memory of one resource together
+// each have a barrier, and any of these barriers is enough.
 bool takes_over_memory(const Plan& plan, uint32_t barrier) {
   const PlanBarrier& one = plan.barriers[barrier];
   return one.why == PlanBarrier::ReasonKind::alias && one.source_access == 0 &&
          one.old_layout == one.new_layout;
 }
 
-// The plan without any of the barriers that take over memory in the batch of `barrier`.
+// Returns the plan without the barriers that acquire memory in the batch of `barrier`.
 Plan without_batch_mates(const Plan& plan, uint32_t barrier) {
   Plan out = plan;
   for (const PlanPass& pass : plan.passes)
@@ -111,7 +112,7 @@ Plan without_batch_mates(const Plan& plan, uint32_t barrier) {
   return out;
 }
 
-TEST_F(ShippedPlans, HaveNoBarrierThatCanBeDropped) {
+TEST_F(ShippedPlans, DroppedBarrier_IsRefused) {
   for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
     for (uint32_t b = 0; b < compiled.plan.barriers.size(); ++b) {
       if (!verify(without_barrier(compiled.plan, b)).violations.empty()) continue;
@@ -121,10 +122,11 @@ TEST_F(ShippedPlans, HaveNoBarrierThatCanBeDropped) {
   });
 }
 
-TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
+TEST_F(ShippedPlans, Mutants_AreRefusedIfHazardous) {
   Tally tally;
   for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
-    // The oracle is slow: the widest plan of each graph, and the narrowest in the full tier.
+    // The oracle is slow: it checks the widest plan of each graph, and in full mode the narrowest,
+    // too.
     if (bound != Bound::all && (bound == Bound::some || seeds_to_try(0, 1) == 0)) return;
     for (const auto for_each_mutant :
          {for_each_weaker_mask, for_each_shifted_placement, for_each_flipped_slot, for_each_swap,
@@ -136,7 +138,7 @@ TEST_F(ShippedPlans, AreRefusedExactlyWhereAChangeMatters) {
   EXPECT_GT(tally.refused * 10, tally.tried * 8);
 }
 
-TEST_F(ShippedPlans, ComputeWhatTheGraphMeansInAnyOrderThatTheBarriersAllow) {
+TEST_F(ShippedPlans, EveryLegalOrder_GivesTheReferencePixels) {
   for_each_plan([&](const Graph& graph, const CompiledPlan& compiled, Bound bound) {
     const Interpretation recorded = interpret(compiled.plan, {frames, 1, 1, 0});
     if (bound == Bound::all) {

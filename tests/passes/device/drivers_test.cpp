@@ -1,4 +1,5 @@
-// Random graphs of the real pass types on two drivers: both show the host the same light, but for rounding.
+// Runs random graphs of the real pass types on two drivers; the light for the host is equal except
+// for rounding.
 #include "tests/passes/device/fuzz_seeds.hpp"
 #include "tests/passes/device/kept_pictures.hpp"
 #include "tests/passes/device/player.hpp"
@@ -17,7 +18,7 @@ namespace dermis::testing {
 namespace {
 
 constexpr float half_max = 65504.0f;
-constexpr double max_parts = 3; // of a random graph
+constexpr double max_parts = 3; // Parts per random graph.
 
 float brightest(const std::vector<float>& light) {
   float maximum = 0;
@@ -28,7 +29,8 @@ float brightest(const std::vector<float>& light) {
 
 class BetweenDrivers : public DevicePlayer {
 protected:
-  // Light of all frames, rgb, slot by slot, in units of the brightest that histories may know of.
+  // Returns the light of all frames, rgb, slot by slot, in units of the brightest light that
+  // histories may contain.
   std::vector<float> light_of(const RealGraph& graph, const Show& show, const Played& played) {
     std::vector<float> out;
     float unit = 0;
@@ -41,7 +43,8 @@ protected:
         const auto* format = demo::find_pixel_format(vulkan::vk_format(show.formats[resource]));
         const std::vector<float> values = demo::decode_texels(*format, texels);
         for (size_t i = 0; i < values.size(); ++i)
-          if (i % 4 != 3) out.push_back(values[i] / (unit > 0 ? unit : 1.0f)); // a view may be dark
+          // A view may be dark.
+          if (i % 4 != 3) out.push_back(values[i] / (unit > 0 ? unit : 1.0f));
       }
     }
     return out;
@@ -67,10 +70,10 @@ protected:
   }
 };
 
-// Bounds in units of the brightest light. Roundings to a half are 2^-11 of it at most; a graph's parts store,
-// filter and take exponentials one behind the other, up to four of them each, as in Golden. Few pixels take a
-// sample in the texel beside: at most one of a hundred in any graph, and one of a thousand of all.
-TEST_F(BetweenDrivers, LightOfRandomGraphsIsThatOfAnotherDriverButForRoundingAndFewSamples) {
+// Bounds in units of the brightest light. Rounding to half floats is at most 2^-11 of it; each part
+// of a graph stores, filters and takes exponentials up to four times in sequence, as in Golden. Few
+// pixels sample a neighbouring texel: at most one of 100 in any graph, and one of 1000 overall.
+TEST_F(BetweenDrivers, RandomGraphs_MatchPicturesOfAnotherDriver) {
   const KeptPictures kept = kept_pictures();
   if (kept.folder.empty())
     GTEST_SKIP()
@@ -92,7 +95,7 @@ TEST_F(BetweenDrivers, LightOfRandomGraphsIsThatOfAnotherDriverButForRoundingAnd
     const std::vector<double> off = differences(here, there);
     std::printf("seed\t%llu\t%s\t%s\n", static_cast<unsigned long long>(seed), name.c_str(),
                 reported_percentiles(off).c_str());
-    std::fflush(stdout); // slow drivers may be stopped
+    std::fflush(stdout); // Slow drivers may be stopped, so the log is flushed.
     const auto parts = static_cast<double>(1 + std::count(name.begin(), name.end(), '+'));
     EXPECT_LE(percentile(off, 0.5), 4 * rounding);
     EXPECT_LE(percentile(off, 0.99), 4 * rounding * parts);

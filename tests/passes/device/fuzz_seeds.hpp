@@ -1,5 +1,6 @@
 #pragma once
-// Which random graphs a test tries: those from DERMIS_FUZZ_SEED on (0), as many as DERMIS_FUZZ_GRAPHS says.
+// The random graphs that a test tries: DERMIS_FUZZ_GRAPHS graphs from seed DERMIS_FUZZ_SEED
+// (default 0).
 
 #include <cstdint>
 #include <cstdlib>
@@ -7,7 +8,7 @@
 namespace dermis::testing {
 
 struct FuzzSeeds {
-  uint64_t begin = 0, end = 0; // end: the one behind the last
+  uint64_t begin = 0, end = 0; // `end` is one past the last seed.
 };
 
 inline FuzzSeeds fuzz_seeds(uint64_t default_graphs) {

@@ -1,5 +1,5 @@
-// Random graphs of the real pass types on a device: whatever the compiler decides about order and memory, the
-// host gets the same bits.
+// Runs random graphs of the real pass types on a device: the host gets equal bits for every order
+// and memory placement.
 #include "framegraph/model/expression.hpp"
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/verify/verify.hpp"
@@ -16,7 +16,7 @@
 namespace dermis::testing {
 namespace {
 
-// A decision of the compiler that must not show.
+// Compiler options that must not change the result.
 struct Decisions {
   std::string name;
   PassOrder order = PassOrder::memory;
@@ -43,8 +43,8 @@ bool is_aliased(const Plan& plan, uint32_t history) {
   return false;
 }
 
-// Everything is bound, and every pass on: what an optional port that nothing provides means, the truth does
-// not know.
+// Whether everything is bound and every pass is enabled. The reference does not define an optional
+// port without a producer.
 bool whole(const Graph& graph, const Show& show) {
   std::vector<SettingValue> settings;
   for (const SettingDeclaration& setting : graph.settings)
@@ -76,7 +76,7 @@ protected:
     return std::move(compiled->plan);
   }
 
-  // First what all others are held against: nothing shared, nothing moved.
+  // The first entry is the baseline: nothing is aliased or reordered.
   std::vector<Decisions> decisions_of(const RealGraph& graph, const Show& show, uint64_t seed) const {
     std::vector<Decisions> all = {
         {"nothing shared, order of the file", PassOrder::program, 0, PackingLevel::fast, false},
@@ -87,7 +87,7 @@ protected:
         {"another order, nothing culled", PassOrder::random, 2 * seed + 1, PackingLevel::tight, true, false},
         {"another order, nothing shared, nothing culled", PassOrder::random, 2 * seed + 1,
          PackingLevel::tight, false, false}};
-    // Packing as well as can be searches for seconds, up to half a minute.
+    // The best packing level searches for up to half a minute.
     if (std::getenv("DERMIS_TESTS_FULL") != nullptr && seed % 10 == 0)
       all.push_back({"packed as well as can be", PassOrder::memory, 0, PackingLevel::optimize});
     const auto shipped = plan_of(graph, show, all[1]);
@@ -147,7 +147,7 @@ protected:
       totals.cuts += frame.cut;
   }
 
-  // What tools are told of samples means nothing where nothing scatters.
+  // Sample statistics for tools are undefined where nothing scatters.
   static bool same(const std::string& slot, const std::vector<std::byte>& texels,
                    const std::map<std::string, std::vector<std::byte>>& others) {
     const auto other = others.find(slot);
@@ -157,7 +157,7 @@ protected:
   static constexpr uint32_t random_frames = 4;
 };
 
-TEST_F(DeviceFuzz, WhatTheCompilerDecidesShowsInNoBitOfAnyRandomGraph) {
+TEST_F(DeviceFuzz, CompilerOptions_GiveEqualBits) {
   const FuzzSeeds seeds = fuzz_seeds(4);
   Totals totals;
   for (uint64_t seed = seeds.begin; seed < seeds.end && !HasFailure(); ++seed)
@@ -171,12 +171,12 @@ TEST_F(DeviceFuzz, WhatTheCompilerDecidesShowsInNoBitOfAnyRandomGraph) {
   RecordProperty("totals", reported);
   std::printf("%s\n", reported.c_str());
   EXPECT_EQ(totals.graphs, seeds.end - seeds.begin);
-  EXPECT_GT(totals.shared, totals.graphs); // the law sees what sharing does
+  EXPECT_GT(totals.shared, totals.graphs); // Aliasing has to occur in the tested graphs.
 }
 
-// Its `sampling` is read by nobody and lies where first other passes' light does, then small mips: what it
-// wrote was made available by no barrier of theirs that the validation layer could see.
-TEST_F(DeviceFuzz, MemoryOfWhatNobodyReadIsTakenOverTwice) {
+// Nothing reads its `sampling`. Light of other passes used the memory before, and small mips use it
+// after. No barrier that the validation layer can see makes the write available.
+TEST_F(DeviceFuzz, UnreadMemory_IsReusedTwice) {
   Totals totals;
   try_graph(51, totals);
   EXPECT_EQ(totals.graphs, 1u);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr const char* table = DERMIS_SOURCE_DIR "/tests/passes/device/golden_frames.txt";
 
-using Table = std::map<std::string, std::map<std::string, std::string>>; // by driver, then by graph
+// By driver, then by graph.
+using Table = std::map<std::string, std::map<std::string, std::string>>;
 
 Table read_table() {
   Table out;

@@ -1,5 +1,6 @@
 #pragma once
-// Hashes of golden frames, kept by driver: golden_frames.txt has lines "driver <tab> graph <tab> SHA-256".
+// Hashes of golden frames by driver. golden_frames.txt has lines "driver <tab> graph <tab>
+// SHA-256".
 
 #include "tests/passes/device/player.hpp"
 
@@ -8,17 +9,18 @@
 
 namespace dermis::testing {
 
-// Of all that the host got, frame by frame, slot by slot.
+// Returns the hash of all texels that the host got, frame by frame, slot by slot.
 std::string hash_of(const Played& played);
 
-// Light of all frames as floats, rgb, slot by slot: of golden_show's formats, halves and floats.
+// Returns the light of all frames as floats, rgb, slot by slot; golden_show uses half and float
+// formats.
 std::vector<float> light_of(const Played& played);
 
-// That of frames of `graph`; "" where it is not in the table.
+// Returns the hash for frames of `graph`, or "" if the table has none.
 std::string golden_hash(const std::string& driver, const std::string& graph);
-// The drivers that are in the table, one a line.
+// Returns the drivers in the table, one per line.
 std::string golden_drivers();
-// Writes it into the table; the rest stays as it is.
+// Writes the hash into the table and keeps the other lines.
 void keep_golden_hash(const std::string& driver, const std::string& graph, const std::string& hash);
 
 } // namespace dermis::testing

@@ -1,5 +1,5 @@
-// The same inputs give the same bits: run after run, however many threads the driver has, in whatever order
-// passes are recorded; and, of a driver and version that is in the table, the bits that are kept there.
+// Equal inputs give equal bits: in every run, for any thread count of the driver, and for any pass
+// order. For a driver and version in the table, the bits match the stored hash.
 #include "tests/passes/device/golden.hpp"
 #include "tests/passes/device/kept_pictures.hpp"
 
@@ -32,13 +32,13 @@ protected:
   }
 };
 
-// Each way to scatter once, and histories.
+// One graph per technique, and histories.
 INSTANTIATE_TEST_SUITE_P(Graphs, Golden,
                          ::testing::Values("burley", "separable", "afis", "afis_guided", "sap",
                                            "sap_residual", "hybrid"),
                          [](const auto& graph) { return graph.param; });
 
-TEST_P(Golden, FramesAreThoseThatAreKeptForThisDriver) {
+TEST_P(Golden, FramesMatchTheStoredHashOfThisDriver) {
   const std::string here = driver(), found = hash_of(frames());
   if (std::getenv("DERMIS_GOLDEN_UPDATE") != nullptr) keep_golden_hash(here, GetParam(), found);
   std::printf("%s", line(found).c_str());
@@ -48,7 +48,7 @@ TEST_P(Golden, FramesAreThoseThatAreKeptForThisDriver) {
   EXPECT_EQ(found, kept);
 }
 
-TEST_P(Golden, FramesAreTheSameInEveryRunAndEveryOrder) {
+TEST_P(Golden, EveryRunAndOrder_GivesEqualBits) {
   const Played first = frames();
   EXPECT_EQ(frames(), first);
   EXPECT_EQ(frames(PassOrder::program), first);
@@ -56,8 +56,8 @@ TEST_P(Golden, FramesAreTheSameInEveryRunAndEveryOrder) {
     EXPECT_EQ(frames(PassOrder::random, seed), first) << "order " << seed;
 }
 
-// In a process of its own: lavapipe reads the number of its threads once.
-TEST_P(Golden, FramesAreTheSameHoweverManyThreadsTheDriverHas) {
+// Runs in a separate process, because lavapipe reads its thread count only once.
+TEST_P(Golden, AnyThreadCount_GivesEqualBits) {
   if (!driver().starts_with("llvmpipe")) GTEST_SKIP() << "of lavapipe alone is known how to set its threads";
   const std::string expected = line(hash_of(frames()));
   for (const int threads : {1, 2}) {
@@ -75,12 +75,13 @@ TEST_P(Golden, FramesAreTheSameHoweverManyThreadsTheDriverHas) {
   }
 }
 
-// Drivers round otherwise, and where a sample falls on the border of a texel they take another one: most
-// pixels differ by some roundings, few by a sample. Bounds: medians within 4 roundings to a half (2^-11) of
-// light that is about 1, one of those that stores, filters, exponentials and roots add up to; .1 % of the
-// pixels may be further off than 1 of the 16 or more samples that a pixel has, times the contrast of the
-// light, which is .625.
-TEST_P(Golden, FramesAreThoseOfAnotherDriverButForRoundingAndFewSamples) {
+// Drivers round differently, and a sample on the border of a texel may read the neighbour. Most
+// pixels differ by a few roundings, few by a sample. Bounds:
+// - The median is within 4 roundings to half floats (2^-11) of light of about 1: store, filter,
+//   exponential and root.
+// - 0.1 % of the pixels may differ by more than 1 of at least 16 samples times the contrast of the
+//   light, 0.625.
+TEST_P(Golden, FramesMatchPicturesOfAnotherDriver) {
   const KeptPictures kept = kept_pictures();
   if (kept.folder.empty())
     GTEST_SKIP()

@@ -10,9 +10,9 @@
 namespace dermis::testing {
 namespace {
 
-constexpr double pitch_m = 0.0005; // half a millimetre a pixel: skin's red d is about two
+constexpr double pitch_m = 0.0005; // 0.5 mm per pixel; skin's red d is about 2 px.
 constexpr uint32_t frames_in_flight = 2;
-constexpr const char* profile_files[] = {"skin", "jade"}; // profiles 1 and 2
+constexpr const char* profile_files[] = {"skin", "jade"}; // Profiles 1 and 2.
 constexpr vulkan::HostState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
                                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
@@ -52,7 +52,7 @@ bool writes(const Plan& plan, uint32_t resource) {
   return false;
 }
 
-// Rows of the rectangle.
+// Returns the rows of the rectangle.
 std::vector<std::byte> inside(const std::vector<std::byte>& texels, const TestImage& image,
                               const ShownFrame& frame) {
   std::vector<std::byte> out;
@@ -63,7 +63,8 @@ std::vector<std::byte> inside(const std::vector<std::byte>& texels, const TestIm
   return out;
 }
 
-// What compiled kernels and the C library's functions depend on beside the driver.
+// Returns the processor features that compiled kernels and the C library depend on, in addition to
+// the driver.
 std::string processor() {
   std::string out;
 #if defined(__x86_64__)
@@ -80,7 +81,7 @@ void DevicePlayer::SetUp() {
   VulkanTest::SetUp();
   if (IsSkipped() || HasFatalFailure()) return;
   auto input = device_input<vulkan::DeviceInput>();
-  input.labels = true; // names in messages of the validation layer
+  input.labels = true; // Names in messages of the validation layer.
   const vulkan::Error error = vulkan::make_device(input, dermis_device);
   ASSERT_FALSE(error) << error.text;
   profile = vulkan::device_profile(dermis_device);
@@ -175,7 +176,8 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
                                            resource.vk_usage, show.width, show.height)];
     if (image.image == VK_NULL_HANDLE) {
       image = make_image(vulkan::vk_format(resource.format), resource.width, resource.height,
-                         resource.vk_usage | VK_IMAGE_USAGE_SAMPLED_BIT); // for a view, where nothing uses it
+                         // Sampled usage allows a view of an otherwise unused image.
+                         resource.vk_usage | VK_IMAGE_USAGE_SAMPLED_BIT);
       transition(image, VK_IMAGE_LAYOUT_GENERAL);
     }
     slot.image = image;

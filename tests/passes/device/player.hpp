@@ -1,6 +1,6 @@
 #pragma once
-// Plays a plan of the real pass types on a device, frame by frame, and hands out what the host gets. Under
-// validation, as every device test.
+// Runs a plan of the real pass types on a device, frame by frame, under validation, and returns the
+// host's images.
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/vulkan/device_profile.hpp"
@@ -18,8 +18,8 @@
 
 namespace dermis::testing {
 
-// Of one frame, by slot that the plan writes: the texels that are defined, `lighting` whole, others inside of
-// the rectangle.
+// Per frame, by slot that the plan writes: the defined texels. `lighting` is complete, others
+// contain the rectangle.
 using Played = std::vector<std::map<std::string, std::vector<std::byte>>>;
 
 class DevicePlayer : public VulkanTest {
@@ -30,7 +30,7 @@ protected:
   CompileInput compile_input(const RealGraph& graph, const Show& show) const;
   // Fails the test on errors.
   Played play(const RealGraph& graph, const Show& show, const Plan& plan, bool poison);
-  // The device as golden tables call it: name, driver, version, what the processor has.
+  // Returns the device's key in golden tables: name, driver, version, processor features.
   std::string driver() const;
 
   vulkan::Device dermis_device;
@@ -42,8 +42,8 @@ private:
 
   std::vector<subsurface::NumberedProfile> profiles_;
   std::vector<std::unique_ptr<subsurface::KernelTables>> tables_;
-  std::unique_ptr<vulkan::KernelStore> kernels_; // of all that was played
-  std::map<std::string, TestImage> images_;      // by format, size and slot: used again
+  std::unique_ptr<vulkan::KernelStore> kernels_; // Kernels of all plans that ran.
+  std::map<std::string, TestImage> images_;      // By format, size and slot, for reuse.
 };
 
 } // namespace dermis::testing

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int64_t max_steps = 6; // of an integer setting above its least value
+constexpr int64_t max_steps = 6; // An integer setting is at most this much above its minimum.
 
 Json read_shipped(const std::string& name) {
   std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
@@ -49,11 +49,12 @@ struct Draft {
                 {"resources", Json::object()},
                 {"passes", Json::array()},
                 {"exports", Json::array()}};
-  std::vector<std::string> lights = {"lighting"}; // that a part may scatter
+  std::vector<std::string> lights = {"lighting"}; // Light that a part may scatter.
 
   bool chance(uint32_t percent) { return random.below(100) < percent; }
 
-  // Its default becomes a value that it may have: defaults are what is compiled.
+  // Replaces the default by a random allowed value, because graphs are compiled with their
+  // defaults.
   void draw_value(Json& setting) {
     if (setting.contains("int")) {
       const int64_t minimum = setting["min"], maximum = setting["max"];
@@ -77,8 +78,8 @@ struct Draft {
     return found == names.end() ? name : found->second;
   }
 
-  // "ratio#1@-1?other": every word that is the name of a resource; "technique == 'sap'": of a setting,
-  // outside of quotes; "$samples".
+  // Renames resources and settings in a text: every resource name in "ratio#1@-1?other", settings
+  // outside of quotes in "technique == 'sap'", and "$samples".
   static std::string renamed_words(const Names& names, const std::string& text) {
     std::string out, word;
     bool quoted = false;
@@ -133,11 +134,11 @@ struct Draft {
     const std::string light = lights[random.below(lights.size())];
     Names redirected = resources;
     redirected["lighting"] = light;
-    const bool puts_back = chance(80); // what it scatters into the host's light
+    const bool puts_back = chance(80); // Whether the part scatters into the host's light.
     for (Json& pass : part["passes"]) {
       const std::string type = pass["type"];
       if (type == "subsurface.combine" && !puts_back) continue;
-      // Where it comes back, light is what the host bound.
+      // Where the part writes light back, light is the host's image.
       rename_pass(pass, prefix, type == "subsurface.combine" ? resources : redirected, settings);
       if (!graph["passes"].empty() && chance(10)) {
         const Json& earlier = graph["passes"][random.below(graph["passes"].size())];

@@ -1,6 +1,6 @@
 #pragma once
-// Graphs of the real pass types drawn from a seed: one to three shipped graphs in one file, each with
-// settings, orders and light of its own.
+// Random graphs of the real pass types: one to three shipped graphs in one file, each with its own
+// settings, order and light.
 
 #include "framegraph/model/graph.hpp"
 
@@ -12,19 +12,20 @@
 namespace dermis::testing {
 
 struct RealGraph {
-  std::string name; // of the shipped graphs that it was made of: "sap+burley"
-  std::string text; // JSON, for whoever wants to run it by hand
+  std::string name; // Names of the shipped graphs it was made of: "sap+burley".
+  std::string text; // JSON, to run the graph by hand.
   Graph graph;
 };
 
-// Names of configs/graphs without ".json", sorted, but for graphs that import buffers or a scene: no picture
-// stands for those.
+// Returns the sorted names of configs/graphs without ".json", except graphs that import buffers or
+// a scene, which pictures cannot provide.
 std::vector<std::string> graphs_of_images();
-// As it ships, with the defaults of its settings. nullopt: the test has failed.
+// Returns the shipped graph with its default settings. On nullopt the test has failed.
 std::optional<RealGraph> shipped_graph(const std::string& name, const PassTypeRegistry& pass_types);
-// The first part keeps its names, those of the others begin with "p1_", "p2_". They share imports, and the
-// host's light: what one part leaves there the next one scatters again; some take light that an earlier one
-// hands out. Samples are few, for slow drivers. nullopt: the test has failed.
+// Returns a random graph. The first part keeps its names; names of the others begin with "p1_" and
+// "p2_". Parts share imports and the host's light, so a part scatters the result of the part
+// before. Some parts take the output light of an earlier part. Sample counts are low for slow
+// drivers. On nullopt the test has failed.
 std::optional<RealGraph> random_real_graph(uint64_t seed, const PassTypeRegistry& pass_types);
 
 } // namespace dermis::testing

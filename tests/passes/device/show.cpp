@@ -15,7 +15,7 @@ using abi_test::unit;
 constexpr uint32_t min_side = 16, random_frames = 4, golden_frames = 6;
 constexpr uint32_t golden_width = 64, golden_height = 48;
 
-// Those that the tests can fill.
+// Whether the tests can fill the format.
 bool usable(Format format) {
   constexpr std::array known = {Format::r8_uint,    Format::r16f,    Format::r32f,
                                 Format::d32f,       Format::rg16f,   Format::rgba8_unorm,
@@ -34,7 +34,7 @@ std::vector<Format> usable_formats(const ResourceDeclaration& resource) {
   return formats;
 }
 
-// The upper left of the soak's square pictures.
+// Returns the upper left part of the soak's square pictures.
 std::vector<float> cropped(const std::vector<float>& square, uint32_t channels, const Show& show) {
   std::vector<float> out;
   for (uint32_t y = 0; y < show.height; ++y) {
@@ -51,8 +51,8 @@ std::vector<float> noise(SplitMix64& random, const Show& show, uint32_t channels
   return out;
 }
 
-// What the soak does not draw. Ways through the material are centimetres, factors on d up to 2, the rest up
-// to 1.
+// Fills pictures that the soak does not generate. Thickness is up to 0.02 m, factors on d up to 2,
+// all others up to 1.
 std::vector<float> other_picture(SplitMix64& random, const Show& show, const std::string& name) {
   const double maximum = name == "thickness" ? 0.02 : name == "scatter_scale" ? 2.0 : 1.0;
   return noise(random, show, shown_channels(name), maximum);
@@ -82,7 +82,8 @@ Show random_show(uint64_t seed, const Graph& graph) {
   show.height = static_cast<uint32_t>(min_side + random.below(soak_side - min_side + 1));
   const bool all = random.below(3) == 0;
   for (const ResourceDeclaration& resource : graph.resources) {
-    const bool transmission = resource.name == "thickness" || resource.name == "back_lighting"; // needs them
+    // Transmission needs both.
+    const bool transmission = resource.name == "thickness" || resource.name == "back_lighting";
     const bool left_out =
         is_bound_by_host(resource) && resource.optional && !all && !transmission && random.below(100) < 30;
     show.bound.push_back(!left_out);
@@ -128,7 +129,7 @@ Show golden_show(const Graph& graph) {
                                                                           : Format::undefined);
   }
   SplitMix64 random{1};
-  std::map<std::string, std::vector<float>> others; // the same in all frames
+  std::map<std::string, std::vector<float>> others; // Equal in all frames.
   for (const ResourceDeclaration& resource : graph.resources)
     if (resource.origin == Origin::imported)
       others[resource.name] = other_picture(random, show, resource.name);
@@ -146,7 +147,7 @@ Show golden_show(const Graph& graph) {
         frame.pictures["depth"][i] = inside > 0 ? 0.5f - 0.01f * inside : x < 44 ? 0.52f : 0.54f;
         frame.pictures["material"][i] = y < 4 ? 0.0f : x < 44 ? 1.0f : 2.0f;
         const bool lit = (x + 2 * f) / 8 % 2 == 0;
-        for (size_t c = 0; c < 3; ++c) // multiples of 1/64: halves hold them
+        for (size_t c = 0; c < 3; ++c) // Multiples of 1/64, which half floats represent exactly.
           frame.pictures["lighting"][4 * i + c] =
               (lit ? 0.75f : 0.125f) + static_cast<float>((x * 7 + y * 5 + f * 3 + c) % 8) / 64.0f;
         if (frame.pictures.contains("velocity"))

@@ -1,5 +1,5 @@
-// docs/papers.md: each line of the papers has its row, and what rows name is there: files, functions in
-// them, tests.
+// Checks docs/papers.md: each statement of the papers has a row, and the files, functions and tests
+// in the rows exist.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-// Of the tables with an id in front.
+// Returns the rows of the tables whose first column is an id.
 std::vector<Row> rows() {
   std::vector<Row> all;
   std::istringstream page(read(root / "docs/papers.md"));
@@ -50,7 +50,7 @@ std::vector<Row> rows() {
   return all;
 }
 
-// "A1 - A3", "E4, E5".
+// Parses "A1 - A3" and "E4, E5".
 std::vector<std::string> ids_of(const std::string& text) {
   std::vector<std::string> ids;
   const std::regex range("([A-Z])([0-9]+) - [A-Z]([0-9]+)"), one("[A-Z][0-9]+");
@@ -73,7 +73,7 @@ std::vector<std::string> quoted(const std::string& text) {
   return all;
 }
 
-// "..." and "*" stand for anything.
+// "..." and "*" match anything.
 std::regex with_gaps(const std::string& text) {
   std::string pattern;
   const std::string dots = "\u2026";
@@ -103,7 +103,7 @@ TEST(PapersPage, HasARowForEachLineOfThePapers) {
   EXPECT_EQ(there.size(), all);
 }
 
-TEST(PapersPage, NamesFilesAndFunctionsThatAreThere) {
+TEST(PapersPage, NamedFilesAndFunctionsExist) {
   const std::regex path("([\\w./*]+/[\\w.*]*)(: (\\w+\\*?))?");
   size_t files = 0, functions = 0;
   for (const Row& row : rows())
@@ -128,7 +128,7 @@ TEST(PapersPage, NamesFilesAndFunctionsThatAreThere) {
   EXPECT_GE(functions, 8u);
 }
 
-TEST(PapersPage, NamesFunctionsAndSettingsOfTheCode) {
+TEST(PapersPage, NamedFunctionsAndSettingsExist) {
   std::string code;
   for (const char* folder :
        {"passes", "shaders", "configs/graphs", "integration/tools/references", "tests/passes"})
@@ -145,7 +145,7 @@ TEST(PapersPage, NamesFunctionsAndSettingsOfTheCode) {
   EXPECT_GT(names, 15u);
 }
 
-TEST(PapersPage, NamesTestsThatAreThere) {
+TEST(PapersPage, NamedTestsExist) {
   std::vector<std::string> tests; // "Suite.Name"
   const std::regex declared("\\bTEST(?:_F|_P)?\\(\\s*(\\w+),\\s*(\\w+)\\)");
   for (const auto& entry : fs::recursive_directory_iterator(root / "tests"))
@@ -159,9 +159,10 @@ TEST(PapersPage, NamesTestsThatAreThere) {
   for (const Row& row : rows()) {
     std::string suite;
     for (const std::string& name : quoted(row.test)) {
-      if (name.starts_with("dermis ")) continue; // a command
+      if (name.starts_with("dermis ")) continue; // A command.
       const size_t dot = name.find('.');
-      if (dot != std::string::npos) suite = name.substr(0, dot); // the next may leave it out
+      // The next name may omit the suite.
+      if (dot != std::string::npos) suite = name.substr(0, dot);
       const std::regex wanted =
           with_gaps(suite + "\\." + (dot == std::string::npos ? name : name.substr(dot + 1)));
       EXPECT_TRUE(std::any_of(tests.begin(), tests.end(),

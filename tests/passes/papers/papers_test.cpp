@@ -1,5 +1,5 @@
-// Statements of the papers that no kernel needs (docs/papers.md names them by their ids): what they say holds
-// here, or is measured.
+// Tests or measures statements of the papers that no kernel needs; docs/papers.md names the
+// statements by their ids.
 #include "integration/tools/references/guidance.hpp"
 #include "passes/common/profiles/burley_profile.hpp"
 #include "passes/common/profiles/shape.hpp"
@@ -20,8 +20,8 @@
 namespace dermis::subsurface {
 namespace {
 
-// A5: the numbers of the last k frames in a ring. Their sum follows the variance of the mean over them:
-// sum_i = sum_(i - 1) variance / target, and n_i is what is new in it.
+// A5: a ring of the sample counts of the last k frames. The sum follows the variance of the mean
+// over these frames: sum_i = sum_(i - 1) variance / target, and n_i is the newly added count.
 class RingOfSamples {
 public:
   RingOfSamples(size_t k, double first) : counts_(k, first), sum_(first * double(k)) {}
@@ -41,13 +41,13 @@ private:
   double sum_;
 };
 
-// Not clamped: both forms may ask for less than nothing while they settle.
-TEST(SampleRing, TheShortFormAsksForTheSameInTheFirstFrameAndForTheSameInTheMean) {
+// Not clamped: both forms may request negative counts while they settle.
+TEST(SampleRing, ShortForm_MatchesInFirstFrameAndMean) {
   constexpr double eta = 0.2, target = 1e-4,
-                   one_sample = 2.4e-3; // variance of a single sample: 24 are needed
+                   one_sample = 2.4e-3; // Variance of a single sample: 24 samples are needed.
   constexpr size_t k = 9;               // 2 / eta - 1 (slide 24)
   GuidanceSettings settings;
-  settings.kappa = 1; // the short form of the slides
+  settings.kappa = 1; // The short form of the slides.
   settings.eta = eta;
   settings.sigma2_target = target;
   for (const double first : {8.0, 24.0, 40.0}) {
@@ -65,14 +65,14 @@ TEST(SampleRing, TheShortFormAsksForTheSameInTheFirstFrameAndForTheSameInTheMean
       ring_sum += by_ring / frames;
       short_sum += by_mean / frames;
     }
-    // The ring repeats its first frames for ever, the short form forgets them.
+    // The ring repeats its first frames forever; the short form forgets them.
     EXPECT_NEAR(ring_sum, 24, 1e-6) << first;
     EXPECT_NEAR(short_sum, 24, 1e-6) << first;
   }
 }
 
-// C7: all weights before are made smaller by one factor, whatever it is, and the new one is w.
-TEST(MovingMoments, WithWeightsThatVaryTheCovarianceIsTheExplicitlyWeightedOne) {
+// C7: one factor of any value scales all earlier weights; the new weight is w.
+TEST(MovingMoments, VaryingWeights_MatchTheWeightedCovariance) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(0.05, 1);
   std::normal_distribution<double> normal;
@@ -91,7 +91,8 @@ TEST(MovingMoments, WithWeightsThatVaryTheCovarianceIsTheExplicitlyWeightedOne) 
     const double old_mean_x = mean_x;
     mean_x += w / total * (x - mean_x);
     mean_y += w / total * (y - mean_y);
-    if (n > 0) sum = (total - w) / before * sum + w * (y - mean_y) * (x - old_mean_x); // supplement, 17
+    // Supplement, equation 17.
+    if (n > 0) sum = (total - w) / before * sum + w * (y - mean_y) * (x - old_mean_x);
     double expected = 0;
     for (size_t i = 0; i < weights.size(); ++i)
       expected += weights[i] * (xs[i] - mean_x) * (ys[i] - mean_y);
@@ -99,8 +100,9 @@ TEST(MovingMoments, WithWeightsThatVaryTheCovarianceIsTheExplicitlyWeightedOne) 
   }
 }
 
-// C8: Cov(mean X, mean Y) = Cov(X, Y) / n, so that the control's weight may be found from frames' means.
-TEST(BatchMeans, TheirCovarianceIsThatOfOneSampleOverTheirNumber) {
+// C8: Cov(mean X, mean Y) = Cov(X, Y) / n, so the control's weight can be computed from frame
+// means.
+TEST(BatchMeans, CovarianceIsOneSamplesOverTheirNumber) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   for (const int n : {1, 4, 16}) {
@@ -109,7 +111,8 @@ TEST(BatchMeans, TheirCovarianceIsThatOfOneSampleOverTheirNumber) {
     for (int b = 0; b < batches; ++b) {
       double mean_x = 0, mean_y = 0;
       for (int i = 0; i < n; ++i) {
-        const double x = normal(random), y = 0.6 * x + 0.8 * normal(random); // covariance .6, variances 1
+        // Covariance 0.6, variances 1.
+        const double x = normal(random), y = 0.6 * x + 0.8 * normal(random);
         mean_x += x / n;
         mean_y += y / n;
       }
@@ -117,12 +120,13 @@ TEST(BatchMeans, TheirCovarianceIsThatOfOneSampleOverTheirNumber) {
       sum_y += mean_y / batches;
       sum_xy += mean_x * mean_y / batches;
     }
-    // The product of two such normals has variance (1 + .6^2) / n^2; four standard errors.
+    // The product of two such normals has variance (1 + 0.6^2) / n^2; the bound is four standard
+    // errors.
     EXPECT_NEAR((sum_xy - sum_x * sum_y) * n, 0.6, 4 * std::sqrt(1.36 / batches)) << n;
   }
 }
 
-// C9: A_t = diag(Sigma_t)^-1 Sigma_t; its element of the control's row is the control's weight.
+// C9: A_t = diag(Sigma_t)^-1 Sigma_t; its element in the control's row is the control's weight.
 TEST(MovingMoments, TheMatrixFormHoldsTheControlsWeight) {
   std::mt19937_64 random(23);
   std::normal_distribution<double> normal;
@@ -134,7 +138,7 @@ TEST(MovingMoments, TheMatrixFormHoldsTheControlsWeight) {
     const double g = 1 + 0.3 * normal(random), f = 0.7 * g + 0.1 * normal(random) + 1;
     const std::array<double, 2> z = {f, g};
     if (t == 0) mean = z;
-    for (size_t r = 0; r < 2; ++r) // equation 33, with the means of the frame before
+    for (size_t r = 0; r < 2; ++r) // Equation 33, with the means of the previous frame.
       for (size_t c = 0; c < 2; ++c)
         sigma[r][c] = (1 - eta) * sigma[r][c] + eta * (1 - eta) * (z[r] - mean[r]) * (z[c] - mean[c]);
     for (size_t r = 0; r < 2; ++r)
@@ -148,7 +152,7 @@ TEST(MovingMoments, TheMatrixFormHoldsTheControlsWeight) {
   }
 }
 
-// Light scattered to a point at x from the edge of a lit half plane (x < 0), of what comes from beyond r0.
+// Returns light scattered from beyond r0 to a point at x from the edge of a lit half plane (x < 0).
 double scattered_at(const ChannelShape& shape, double x, double r0) {
   constexpr int steps = 20000;
   const double from = std::log(std::max(r0, 1e-6)), to = std::log(400 * shape.d);
@@ -164,9 +168,10 @@ double scattered_at(const ChannelShape& shape, double x, double r0) {
   return sum / total;
 }
 
-// T14, equation 17: the artist's share that makes his form agree with the dipole's. It depends on the light,
-// so that no number of a profile can be it: at an edge it is another one at each distance.
-TEST(ArtistFraction, TheOneThatAgreesWithTheDipoleIsAnotherAtEachPlace) {
+// T14, equation 17: the artist's fraction that makes his form agree with the dipole's form. The
+// fraction depends on the light and so cannot be a constant of a profile: at an edge it differs at
+// each distance.
+TEST(ArtistFraction, MatchingTheDipoleDependsOnThePlace) {
   const ChannelShape dipole = dipole_shape(0.032, 0.74), artist = artist_shape(1.001, 1);
   constexpr double r0 = 0.25; // mm
   const double gamma = shape_gamma(dipole, r0);
@@ -186,15 +191,16 @@ TEST(ArtistFraction, TheOneThatAgreesWithTheDipoleIsAnotherAtEachPlace) {
   EXPECT_GT(maximum, 2 * minimum);
 }
 
-// F7: lines of 128 bytes, 16 texels of 8, that an 8x8 tile of a plane reads, each once: the least traffic
-// that a cache can have. Samples beyond the inscribed radius, two levels of the chain as afis reads them.
+// F7: counts lines of 128 bytes (16 texels of 8 bytes) that an 8x8 tile of a plane reads, each
+// once: the minimum traffic of any cache. Samples lie beyond the inscribed radius and read two
+// levels of the chain as afis does.
 size_t lines_of_a_tile(int samples, double d, double bias) {
-  std::set<std::tuple<int, int, int>> lines; // level, row, group of 16
+  std::set<std::tuple<int, int, int>> lines; // Level, row, group of 16.
   constexpr double r0 = 0.5;
   const double beyond = 1 - burley_cdf(r0, d);
   const auto touch = [&](int level, double x, double y) {
     const double scale = std::exp2(-level), u = (x + 0.5) * scale - 0.5, v = (y + 0.5) * scale - 0.5;
-    const int taps = level == 0 ? 1 : 2; // bilinear above the picture itself
+    const int taps = level == 0 ? 1 : 2; // Bilinear above level 0.
     for (int j = 0; j < taps; ++j)
       for (int i = 0; i < taps; ++i) {
         const int column = int(level == 0 ? std::lround(x) : std::floor(u)) + i;
@@ -219,13 +225,14 @@ size_t lines_of_a_tile(int samples, double d, double bias) {
   return lines.size();
 }
 
-TEST(CacheLines, FewerSamplesReadFewerLinesBecauseTheyReadCoarserLevels) {
+TEST(CacheLines, FewerSamplesReadFewerLines) {
   constexpr double d = 4;
   const size_t adaptive = lines_of_a_tile(16, d, -1), fixed = lines_of_a_tile(64, d, -1);
   RecordProperty("n_16", std::to_string(adaptive));
   RecordProperty("n_64", std::to_string(fixed));
   RecordProperty("n_64_without_mips", std::to_string(lines_of_a_tile(64, d, -20)));
-  // Slides 29 to 31, in a simulator: 39.5 % fewer misses of the finest level, adaptive against fixed.
+  // Slides 29 to 31 report 39.5 % fewer misses at the finest level in a simulator, adaptive against
+  // fixed.
   EXPECT_LT(double(adaptive), 0.8 * double(fixed));
 }
 

@@ -11,10 +11,10 @@ namespace dermis::restir::testing {
 namespace {
 
 struct LitPoint {
-  Vector3 position{}, light{}; // irradiance over the density of the draw
+  Vector3 position{}, light{}; // `light` is irradiance over the density of the sample.
 };
 
-// Triangles by area, lights each as often; not what restir::pick_light does.
+// Samples triangles by area and all lights equally often, unlike restir::pick_light.
 std::vector<LitPoint> draw_points(const TriangleScene& scene, uint32_t medium, uint32_t points,
                                   Random& random) {
   std::vector<double> until;
@@ -41,7 +41,8 @@ std::vector<LitPoint> draw_points(const TriangleScene& scene, uint32_t medium, u
     double factor = dot(direction, t.normal) / dot(way, way);
     if (light.type == LightType::parallelogram)
       factor *=
-          std::max(0.0, -dot(direction, cross(light.edge_u, light.edge_v))); // the area is in the product
+          // The product contains the area.
+          std::max(0.0, -dot(direction, cross(light.edge_u, light.edge_v)));
     if (!(factor > 0) || !access.visible(access.of, x2, x3)) continue;
     result.push_back({x2.position, factor * area * double(scene.lights.size()) / points * light.emission});
   }

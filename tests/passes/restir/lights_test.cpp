@@ -1,4 +1,4 @@
-// Light sampling: shares, places, irradiance.
+// Tests light sampling: fractions, places and irradiance.
 #include "tests/passes/restir/cpu/lights.hpp"
 #include "tests/passes/restir/cpu/random.hpp"
 #include "tests/passes/restir/statistics.hpp"
@@ -17,7 +17,7 @@ std::vector<Light> some_lights() {
   lights[1].type = LightType::parallelogram;
   lights[1].position = {-1, -1, 2};
   lights[1].edge_u = {0, 2, 0};
-  lights[1].edge_v = {2, 0, 0}; // shines down
+  lights[1].edge_v = {2, 0, 0}; // Shines down.
   lights[1].emission = {3, 3, 3};
   lights[2] = lights[1];
   lights[2].type = LightType::triangle;
@@ -29,12 +29,12 @@ std::vector<Light> some_lights() {
   return lights;
 }
 
-TEST(Lights, ArePickedAsOftenAsTheirSharesSay) {
+TEST(Lights, PickFrequencyMatchesTheFractions) {
   const std::vector<Light> lights = some_lights();
   EXPECT_NEAR(lights.back().until, 1, 1e-12);
-  EXPECT_DOUBLE_EQ(lights[1].fraction, 2 * lights[2].fraction); // twice the area
+  EXPECT_DOUBLE_EQ(lights[1].fraction, 2 * lights[2].fraction); // Twice the area.
   std::vector<double> found(lights.size());
-  constexpr int draws = 100000; // sd of a share below .0016
+  constexpr int draws = 100000; // The sd of a fraction is below 0.0016.
   Random random{1, 0, 0};
   for (int i = 0; i < draws; ++i)
     found[pick_light(lights, random_unit(random))] += 1.0 / draws;
@@ -43,7 +43,7 @@ TEST(Lights, ArePickedAsOftenAsTheirSharesSay) {
   EXPECT_EQ(pick_light(lights, 1.5), lights.size() - 1);
 }
 
-TEST(Lights, InTheDarkAreSharedEvenly) {
+TEST(Lights, DarkLights_AreUniform) {
   std::vector<Light> dark(3);
   share_lights(dark);
   for (const Light& light : dark)
@@ -51,9 +51,9 @@ TEST(Lights, InTheDarkAreSharedEvenly) {
   share_lights({});
 }
 
-TEST(Lights, OfAnAreaShineAsItsIntegralSays) {
-  // Below the middle of a square of half side 1 at height 2 with radiance 3: E = 3 times four times the form
-  // factor of a corner, a = b = 1/2: F = (x atan(y / x') + ...) / 2 pi (Howell, C-11).
+TEST(Lights, AreaLight_MatchesItsIntegral) {
+  // Below the middle of a square of half side 1 at height 2 with radiance 3: E = 3 times four times
+  // the form factor of a corner, a = b = 1/2: F = (x atan(y / x') + ...) / 2 pi (Howell, C-11).
   const std::vector<Light> lights = some_lights();
   const double a = 0.5, s = std::sqrt(1 + a * a);
   const double corner = (a / s * std::atan(a / s) * 2) / (2 * std::numbers::pi);
@@ -72,22 +72,26 @@ TEST(Lights, OfAnAreaShineAsItsIntegralSays) {
   const testing::Mean mean = testing::mean_of(values), half = testing::mean_of(triangle);
   const double limit = testing::three_sigma_limit(19999, 2);
   EXPECT_NEAR(mean.mean, reference, limit * mean.sigma);
-  EXPECT_NEAR(half.mean, reference / 2, limit * half.sigma); // the square's half by symmetry
+  EXPECT_NEAR(half.mean, reference / 2, limit * half.sigma); // Half of the square, by symmetry.
   EXPECT_LT(mean.sigma, 0.005 * reference);
 }
 
-TEST(Lights, FallInFromTheFrontAlone) {
+TEST(Lights, IrradianceComesOnlyFromTheFront) {
   const std::vector<Light> lights = some_lights();
   const uint32_t middle = light_place(0.5, 0.5);
   const Vector3 up = {0, 0, 1}, down = {0, 0, -1};
-  EXPECT_NEAR(light_irradiance(lights[0], middle, {1, 2, 1}, up, up)[1], 2.0 / 4, 1e-12); // inverse square
+  // Inverse square.
+  EXPECT_NEAR(light_irradiance(lights[0], middle, {1, 2, 1}, up, up)[1], 2.0 / 4, 1e-12);
   EXPECT_NEAR(light_irradiance(lights[3], middle, {1, 2, 1}, up, up)[1], 0.8, 1e-12);
   for (const Light& light : lights) {
-    EXPECT_EQ(light_irradiance(light, middle, {0, 0, 0}, down, up), Vector3{}); // the surface is turned away
+    // The surface faces away.
+    EXPECT_EQ(light_irradiance(light, middle, {0, 0, 0}, down, up), Vector3{});
     EXPECT_EQ(light_irradiance(light, middle, {0, 0, 0}, up, down), Vector3{});
   }
-  EXPECT_EQ(light_irradiance(lights[1], middle, {0, 0, 4}, down, down), Vector3{});      // above it
-  EXPECT_EQ(light_irradiance(lights[0], middle, lights[0].position, up, up), Vector3{}); // in it
+  // Above the light.
+  EXPECT_EQ(light_irradiance(lights[1], middle, {0, 0, 4}, down, down), Vector3{});
+  // At the light.
+  EXPECT_EQ(light_irradiance(lights[0], middle, lights[0].position, up, up), Vector3{});
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// What merging keeps, whatever is merged.
+// Tests invariants of merging.
 #include "tests/passes/restir/cpu/reuse.hpp"
 #include "tests/passes/restir/triangle_scene.hpp"
 
@@ -13,7 +13,7 @@ struct Merge : ::testing::Test {
   std::vector<testing::Pixel> pixels = testing::look_at(ear, 16, 16);
   Random random{23, 0, 0};
 
-  // A sample of the pixel that says the pixel's light is `light`; any confidence.
+  // Returns a sample of the pixel whose estimate is `light`, with any confidence.
   Reservoir that_says(const Domain& domain, double light) {
     while (true) {
       Reservoir r = draw_initial(scene, domain, random);
@@ -25,8 +25,8 @@ struct Merge : ::testing::Test {
   }
 };
 
-TEST_F(Merge, OfSamplesThatAgreeSaysTheSame) {
-  // MIS weights of one pixel's domain sum to 1, so that the estimate is kept but for rounding.
+TEST_F(Merge, EqualEstimates_AreKept) {
+  // The MIS weights of one pixel's domain sum to 1, so the estimate is kept except for rounding.
   constexpr double light = 5;
   int judged = 0;
   for (size_t i = 0; i < pixels.size(); ++i) {
@@ -56,8 +56,8 @@ TEST_F(Merge, OfSamplesThatAgreeSaysTheSame) {
   EXPECT_GT(judged, 200);
 }
 
-// A path of a pixel and its image in a neighbour: what merging makes of the one alone and of the other alone
-// is the path's whole target, once with each weight: MIS weights sum to 1 at every path.
+// For a path of a pixel and its image in a neighbour: merging each of them with nothing gives two
+// parts that sum to the path's target, because MIS weights sum to 1 for every path.
 TEST_F(Merge, CountsEachPathOnce) {
   Reservoir nothing;
   int judged = 0, with_jacobian = 0;
@@ -76,7 +76,7 @@ TEST_F(Merge, CountsEachPathOnce) {
       other.confidence = 5;
       if (other.hits == 0 && shift != Shift::reconnection)
         prepare(scene, shift, Index::traced, beside, other, random);
-      other.weight = image.jacobian; // 1 over that of the way back
+      other.weight = image.jacobian; // 1 over the Jacobian of the inverse shift.
       Reservoir no_own = nothing, no_other = nothing;
       no_own.confidence = own.confidence;
       no_other.confidence = other.confidence;

@@ -1,4 +1,4 @@
-// Probes, their density, and the inversion that finds their random numbers again.
+// Tests probes, their density, and the inversion that recovers their random numbers.
 #include "passes/common/profiles/burley_profile.hpp"
 #include "tests/passes/restir/cpu/reuse.hpp"
 #include "tests/passes/restir/statistics.hpp"
@@ -21,7 +21,8 @@ std::array<double, 4> four_units(Random& random) {
   return u;
 }
 
-// One large plane z = 0 and a pixel whose probes all stand aslant to it, so that each of them meets it once.
+// Builds one large plane z = 0 and a pixel whose probe axes are all oblique to the plane, so that
+// each probe hits it once.
 testing::TriangleScene slanted_plane() {
   testing::TriangleScene scene;
   constexpr double far = 1000;
@@ -34,16 +35,16 @@ Domain slanted_domain() {
   return {{0.2, 0.1, 0}, normalize(Vector3{1, 1, 1}), {1, 0.5, 0.3}, 1};
 }
 
-TEST(Probe, ReachesAsFarAsItsShareSays) {
+TEST(Probe, ReachMatchesTheEnergyFraction) {
   EXPECT_NEAR(reach_in_d(), 19.86022, 1e-5); // subsurface.md T5
   EXPECT_NEAR(subsurface::burley_cdf(reach_in_d(), 1), probe_fraction, 1e-12);
 }
 
-TEST(Profile, OfAWholePlaneOfLightIsOne) {
+TEST(Profile, WholePlaneOfLight_IsOne) {
   const Vector3 d = {2, 0.7, 0.1};
   const double reach = scattering_reach(d);
   Vector3 sum{};
-  constexpr int steps = 200000; // midpoints in sqrt(r), where 2 pi r R dr is smooth
+  constexpr int steps = 200000; // Midpoints in sqrt(r), in which 2 pi r R dr is smooth.
   for (int i = 0; i < steps; ++i) {
     const double q = (i + 0.5) / steps * std::sqrt(reach), r = q * q;
     sum = sum + 2 * std::numbers::pi * r * 2 * q * std::sqrt(reach) / steps * scattering_profile(d, r);
@@ -54,7 +55,7 @@ TEST(Profile, OfAWholePlaneOfLightIsOne) {
   EXPECT_EQ(scattering_profile({1, 0, 2}, 0.5)[1], 0);
 }
 
-TEST(Probe, AxesStandAtRightAngles) {
+TEST(Probe, AxesAreOrthogonal) {
   Random random{1, 0, 0};
   for (int i = 0; i < 1000; ++i) {
     Vector3 n = {random_unit(random) - 0.5, random_unit(random) - 0.5, random_unit(random) - 0.5};
@@ -65,8 +66,8 @@ TEST(Probe, AxesStandAtRightAngles) {
   }
 }
 
-TEST(Probe, ChoicesComeAsOftenAsTheirSharesSay) {
-  // 2e5 draws: a share's sd is below .0012; five of them.
+TEST(Probe, ChoiceFrequencyMatchesTheFractions) {
+  // With 2e5 samples the sd of a fraction is below 0.0012; the bound is five sd.
   constexpr int draws = 200000;
   for (const Vector3& d : {Vector3{1, 2, 3}, {1, 0, 3}, {0, 0, 3}}) {
     double axes[3] = {}, channels[3] = {};
@@ -84,8 +85,8 @@ TEST(Probe, ChoicesComeAsOftenAsTheirSharesSay) {
   }
 }
 
-// Of draws by probes the weights hits / density estimate areas: of a disc on the slanted plane, and of the
-// scene's surfaces within a ball.
+// The weights hits / density of probe samples estimate areas: of a disc on the oblique plane, and
+// of the scene's surfaces within a ball.
 TEST(Probe, WeightsMeasureAreas) {
   const testing::TriangleScene plane = slanted_plane();
   const Scene scene = plane.access();
@@ -112,7 +113,7 @@ TEST(Probe, WeightsMeasureAreas) {
   EXPECT_LT(mean.sigma, 0.02 * mean.mean);
 }
 
-TEST(Inversion, LeadsBackToThePointItCameFrom) {
+TEST(Inversion, RecoversThePoint) {
   const testing::TriangleScene ear = testing::ear_scene();
   const Scene scene = ear.access();
   const std::vector<testing::Pixel> pixels = testing::look_at(ear, 24, 24);
@@ -131,7 +132,8 @@ TEST(Inversion, LeadsBackToThePointItCameFrom) {
     ASSERT_TRUE(invert_point(domain, x2.position, x2.normal, random_unit(random), again));
     ProbeHits seen;
     scene.trace_probe(scene.of, probe_of(domain, again), domain.medium, seen);
-    // A probe that grazes an edge or a face may miss by rounding: cosines below 1e-6 do not count.
+    // A probe that grazes an edge or a face may miss by rounding, so cosines below 1e-6 are
+    // skipped.
     if (std::abs(dot(x2.normal, probe_axis(domain.normal, again.axis))) < 1e-6) continue;
     const double edge =
         std::min({hit.barycentrics[0], hit.barycentrics[1], 1 - hit.barycentrics[0] - hit.barycentrics[1]});
@@ -141,7 +143,8 @@ TEST(Inversion, LeadsBackToThePointItCameFrom) {
     const SurfacePoint y2 = scene.surface_at(scene.of, back.instance, back.primitive, back.barycentrics);
     EXPECT_EQ(back.instance, hit.instance);
     EXPECT_EQ(back.primitive, hit.primitive);
-    EXPECT_LT(length(y2.position - x2.position), 1e-6); // 1e-15 of the scene over the least cosine
+    // 1e-15 of the scene over the minimum cosine.
+    EXPECT_LT(length(y2.position - x2.position), 1e-6);
     ++found;
     several += seen.count > 1;
   }
@@ -149,8 +152,8 @@ TEST(Inversion, LeadsBackToThePointItCameFrom) {
   EXPECT_GT(several, found / 4);
 }
 
-// Numbers found again are as uniform as those that were drawn. Discs up to .57 of the reach, where a slanted
-// plane is met by every probe: cos 54.7 degrees = 1 / sqrt(3).
+// Recovered numbers are as uniform as generated numbers. Discs reach up to 0.57 of the reach, where
+// every probe hits an oblique plane: cos 54.7 degrees = 1 / sqrt(3).
 TEST(Inversion, FindsUniformNumbers) {
   const testing::TriangleScene plane = slanted_plane();
   const Scene scene = plane.access();
@@ -170,7 +173,7 @@ TEST(Inversion, FindsUniformNumbers) {
     ASSERT_TRUE(invert_point(domain, x2.position, x2.normal, random_unit(random), found));
     ASSERT_TRUE(invert_pick(hits, hit.instance, hit.primitive, random_unit(random), found.pick));
     if (found.survival < min_survival) continue;
-    // The third number of the supplement: of the choice's interval, a uniform place.
+    // The third number of the supplement: a uniform place in the interval of the choice.
     double below = 0;
     for (uint32_t a = 0; a < found.axis; ++a)
       below += probe_axis_fraction[a];
@@ -185,12 +188,13 @@ TEST(Inversion, FindsUniformNumbers) {
   EXPECT_LT(kolmogorov_smirnov(picks), kolmogorov_smirnov_limit);
 }
 
-TEST(Inversion, OfWhatNoProbeReachesFails) {
+TEST(Inversion, UnreachablePoint_Fails) {
   const Domain domain = {{0, 0, 0}, {0, 0, 1}, {1, 0.5, 0.2}, 1};
   ProbeNumbers numbers;
-  EXPECT_FALSE(invert_point(domain, {0, 0, 30}, {0, 0, 1}, 0.5, numbers)); // beyond the reach
+  EXPECT_FALSE(invert_point(domain, {0, 0, 30}, {0, 0, 1}, 0.5, numbers)); // Beyond the reach.
   EXPECT_FALSE(invert_point(domain, {0, 0, std::nan("")}, {0, 0, 1}, 0.5, numbers));
-  EXPECT_FALSE(invert_point(domain, {0, 0, 1}, {0, 0, 0}, 0.5, numbers)); // a triangle without area
+  // A triangle without area.
+  EXPECT_FALSE(invert_point(domain, {0, 0, 1}, {0, 0, 0}, 0.5, numbers));
   Domain opaque = domain;
   opaque.d = {0, 0, 0};
   EXPECT_FALSE(invert_point(opaque, {0, 0, 0.1}, {0, 0, 1}, 0.5, numbers));
@@ -198,7 +202,7 @@ TEST(Inversion, OfWhatNoProbeReachesFails) {
   EXPECT_FALSE(invert_pick({}, 1, 2, 0.5, pick));
 }
 
-TEST(Inversion, AtThePointItselfIsFinite) {
+TEST(Inversion, AtTheOriginIsFinite) {
   const Domain domain = {{0, 0, 0}, {0, 0, 1}, {1, 0.5, 0.2}, 1};
   ProbeNumbers numbers;
   ASSERT_TRUE(invert_point(domain, {0, 0, 0}, {0, 0, 1}, 0.5, numbers));
@@ -208,7 +212,7 @@ TEST(Inversion, AtThePointItselfIsFinite) {
   EXPECT_TRUE(std::isfinite(luminance(scattering_profile(domain.d, 0))));
 }
 
-TEST(Neighbours, AreLookedForWithinTwoOfTheWidestD) {
+TEST(Neighbours, SearchRadiusIsTwiceTheWidestD) {
   EXPECT_EQ(search_radius({1, 3, 2}, 0.5), 12);
   EXPECT_EQ(search_radius({1, 3, 2}, 0.01), 30);
   EXPECT_EQ(search_radius({1, 3, 2}, 100), 5);

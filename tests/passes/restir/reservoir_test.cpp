@@ -13,7 +13,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
 
 Reservoir some_reservoir() {
   Reservoir r;
-  r.instance = (1u << 24) + 1; // the first integer that no float holds
+  r.instance = (1u << 24) + 1; // The first integer that no float can hold.
   r.primitive = 0xfffffffe;
   r.barycentrics = {0.25, 0.375};
   r.light = 0xfedcba98;
@@ -32,8 +32,8 @@ bool is_clean(const Reservoir& r) {
          r.confidence <= max_confidence && std::isfinite(r.density) && std::isfinite(luminance(r.irradiance));
 }
 
-TEST(Reservoir, TravelsThroughSixtyFourBytesUnchanged) {
-  // All numbers above are exact in a float: the words must give them back as they were.
+TEST(Reservoir, PackingRoundTripIsExact) {
+  // All numbers above are exact in a float, so the words must return them unchanged.
   const Reservoir r = some_reservoir(), s = unpack_reservoir(pack_reservoir(r));
   EXPECT_EQ(s.instance, r.instance);
   EXPECT_EQ(s.primitive, r.primitive);
@@ -63,7 +63,7 @@ TEST(Reservoir, IdsOfEveryBitSurvive) {
   }
 }
 
-TEST(Reservoir, NothingThatComesInIsNaNOrInfiniteWhenItLeaves) {
+TEST(Reservoir, Sanitised_HasNoNaNOrInfinity) {
   for (const double bad : {nan, infinite, -infinite, -1.0, 1e300}) {
     for (int member = 0; member < 9; ++member) {
       Reservoir r = some_reservoir();
@@ -82,7 +82,7 @@ TEST(Reservoir, NothingThatComesInIsNaNOrInfiniteWhenItLeaves) {
   }
 }
 
-TEST(Reservoir, AnyWordsMakeACleanReservoir) {
+TEST(Reservoir, AnyWords_UnpackToAValidReservoir) {
   Random random{1, 2, 0};
   for (int i = 0; i < 100000; ++i) {
     PackedReservoir words;
@@ -92,7 +92,7 @@ TEST(Reservoir, AnyWordsMakeACleanReservoir) {
   }
 }
 
-TEST(Reservoir, CandidatesWithoutAWeightChangeNothingButTheConfidence) {
+TEST(Reservoir, CandidateWithoutWeight_AddsOnlyConfidence) {
   for (const double weight : {nan, infinite, -1.0, 0.0})
     for (const double target : {nan, infinite, 0.0, 2.0}) {
       Stream stream;
@@ -107,7 +107,7 @@ TEST(Reservoir, CandidatesWithoutAWeightChangeNothingButTheConfidence) {
     }
 }
 
-TEST(Reservoir, OfNothingIsEmptyAndKeepsItsConfidence) {
+TEST(Reservoir, NoCandidates_EmptyWithConfidence) {
   Stream stream;
   stream_add(stream, some_reservoir(), 0, 0, 5, 0.5);
   const Reservoir r = stream_end(stream);
@@ -116,8 +116,9 @@ TEST(Reservoir, OfNothingIsEmptyAndKeepsItsConfidence) {
   EXPECT_EQ(r.confidence, 5);
 }
 
-TEST(Reservoir, HoldsEachCandidateAsOftenAsItsWeightSays) {
-  // Three candidates of weights 1, 2, 5; shares of 1e5 runs have sd below .0016: five of them.
+TEST(Reservoir, SelectionFrequencyMatchesTheWeights) {
+  // Three candidates of weights 1, 2 and 5. Fractions of 1e5 runs have an sd below 0.0016; the
+  // bound is five sd.
   constexpr int runs = 100000;
   const double weights[] = {1, 2, 5};
   double fraction[3] = {};

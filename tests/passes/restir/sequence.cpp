@@ -12,7 +12,7 @@ struct Frame {
   std::vector<Reservoir> reservoirs;
 };
 
-// `pixel` moved by (x, y), or none outside of the picture and where another medium is.
+// Returns `pixel` moved by (x, y), or no_pixel outside of the picture or on another medium.
 const uint32_t no_pixel = 0xffffffff;
 uint32_t moved(const SequenceSettings& s, const Frame& frame, uint32_t medium, uint32_t pixel, int x, int y) {
   const int u = static_cast<int>(pixel % s.width) + x, v = static_cast<int>(pixel / s.width) + y;
@@ -83,8 +83,7 @@ SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettin
         frame.reservoirs[i] = merge_temporal(scene, settings(Stage::temporal), domain, frame.reservoirs[i],
                                              before.pixels[past].domain, before.reservoirs[past], random);
     }
-    // Kept for the next frame is what history gave, without the neighbours. What lies between frames is the
-    // packed form.
+    // The next frame keeps the temporal result without neighbours, in packed form.
     Frame kept = frame;
     for (Reservoir& reservoir : kept.reservoirs)
       reservoir = unpack_reservoir(pack_reservoir(reservoir));

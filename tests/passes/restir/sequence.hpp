@@ -1,5 +1,6 @@
 #pragma once
-// Frames of the whole pipeline on the CPU: own samples, history, neighbours twice, light.
+// Runs frames of the whole pipeline on the CPU: own samples, history, two passes of neighbours,
+// light.
 
 #include "tests/passes/restir/area_reference.hpp"
 #include "tests/passes/restir/cpu/reuse.hpp"
@@ -13,18 +14,21 @@ struct SequenceSettings {
   Reuse reuse = Reuse::spatiotemporal;
   Index index = Index::traced;
   uint32_t width = 16, height = 16, frames = 8;
-  uint32_t judged_from = 0; // frames before it are not judged
-  double jitter = 0;        // pixels that the camera stands to the right in odd frames, which are not judged
-  std::array<uint32_t, 2> neighbours{4, 2}; // of the two spatial passes (R11)
+  uint32_t judged_from = 0; // Earlier frames are not checked.
+  // The camera is this many pixels further right in odd frames, which are not checked.
+  double jitter = 0;
+  std::array<uint32_t, 2> neighbours{4, 2}; // Neighbours of the two spatial passes (R11).
 };
 
 struct SequenceResult {
-  std::vector<double> region_mean; // luminance over the judged frames
-  double last_square = 0; // mean over pixels of (estimate - truth)^2 in the last frame that is judged
+  std::vector<double> region_mean; // Luminance over the checked frames.
+  // Mean over pixels of (estimate - reference)^2 in the last checked frame.
+  double last_square = 0;
 };
 
-// One sequence with an empty history. From frame judged_from on `lights` take the place of the scene's, where
-// there are any. Regions and `truth` (luminance a pixel, or empty) are those of even frames.
+// Runs one sequence from an empty history. From frame judged_from on, `lights` replaces the scene's
+// lights unless it is empty. Regions and `reference` (luminance per pixel, or empty) belong to even
+// frames.
 SequenceResult run_sequence(const TriangleScene& scene, const SequenceSettings& settings,
                             const Regions& regions, const std::vector<double>& reference, uint32_t seed,
                             const std::vector<Light>& lights = {});

@@ -1,4 +1,4 @@
-// Shifts and their Jacobians against finite differences, and back again.
+// Tests shifts against their inverses, and Jacobians against finite differences.
 #include "tests/passes/restir/cpu/reuse.hpp"
 #include "tests/passes/restir/triangle_scene.hpp"
 
@@ -11,7 +11,8 @@ namespace {
 
 using testing::TriangleScene;
 
-constexpr double h = 1e-6; // step of differences: error h^2 of the map, 1e-10 of rounding
+// Step of the differences: the error is h^2 of the map, and 1e-10 by rounding.
+constexpr double h = 1e-6;
 
 double determinant(std::array<std::array<double, 4>, 4> m, size_t n) {
   double result = 1;
@@ -28,14 +29,14 @@ double determinant(std::array<std::array<double, 4>, 4> m, size_t n) {
   return std::abs(result);
 }
 
-// Directions on a surface at right angles.
+// Returns two orthogonal directions on a surface.
 std::array<Vector3, 2> along(const Vector3& normal) {
   return {probe_axis(normal, 1), probe_axis(normal, 2)};
 }
 
-// What random replay maps in the space in which sampling is one to one: x2 on its surface (two coordinates),
-// gamma_1 that holds axis and channel together with their unused number, gamma_2 that holds the rest of the
-// choice among hits (supplement, eq. 8 to 16).
+// The space in which random replay is one to one: x2 on its surface (two coordinates), gamma_1 with
+// axis, channel and their unused fraction, and gamma_2 with the rest of the choice among hits
+// (supplement, eq. 8 to 16).
 struct Extended {
   double a = 0, b = 0, gamma_1 = 0, gamma_2 = 0;
 };
@@ -44,7 +45,8 @@ struct Place {
   Vector3 position{}, normal{};
 };
 
-// `at`: x2 in `from`, moved by e; null where the image leaves the faces and choices of `image`.
+// Maps x2 of `at` in `from`, moved by e; returns null if the image leaves the faces and choices of
+// `image`.
 std::optional<Extended> replayed(const Scene& scene, const Domain& from, const Domain& to, const Place& at,
                                  const Extended& e, uint32_t hits, std::optional<Place>& image) {
   const auto axes = along(at.normal);
@@ -57,9 +59,9 @@ std::optional<Extended> replayed(const Scene& scene, const Domain& from, const D
   for (uint32_t t = 0; t < at.technique; ++t)
     below += technique_pdf(from, t, x2, at.normal);
   const double own = technique_pdf(from, at.technique, x2, at.normal), sum = probe_pdf(from, x2, at.normal);
-  const double u = (e.gamma_1 * sum - below) / own; // within the choice's interval
+  const double u = (e.gamma_1 * sum - below) / own; // Within the interval of the choice.
   if (u < 0 || u >= 1) return {};
-  // invert_point picks the technique that gamma_1 lies in.
+  // invert_point picks the technique whose interval contains gamma_1.
   if (!invert_point(from, x2, at.normal, e.gamma_1, numbers)) return {};
   if (numbers.axis * 3 + numbers.channel != at.technique) return {};
   const double pick = (at.hit + e.gamma_2) / hits;
@@ -88,7 +90,7 @@ struct Pairs {
   std::vector<testing::Pixel> pixels = testing::look_at(ear, 40, 40);
   Random random{17, 0, 0};
 
-  // Two pixels of the same medium, up to 3 apart.
+  // Samples two pixels of one medium, up to 3 apart.
   bool next(Domain& from, Domain& to) {
     const auto below = [&](int n) { return static_cast<int>(random_unit(random) * n); };
     const int x = below(40), y = below(40), u = x + below(7) - 3, v = y + below(7) - 3;
@@ -99,7 +101,7 @@ struct Pairs {
   }
 };
 
-TEST(Jacobian, OfRandomReplayIsThatOfFiniteDifferences) {
+TEST(Jacobian, RandomReplay_MatchesFiniteDifferences) {
   Pairs pairs;
   const Scene& scene = pairs.scene;
   int judged = 0, other_hits = 0;
@@ -117,7 +119,7 @@ TEST(Jacobian, OfRandomReplayIsThatOfFiniteDifferences) {
     const ProbeHit& hit = hits.hit[at.hit];
     const SurfacePoint x2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
     at = {hit.instance, hit.primitive, numbers.axis * 3 + numbers.channel, at.hit, x2.position, x2.normal};
-    // Close to x1 the profile changes within a step; faces at a grazing angle magnify it.
+    // Close to x1 the profile changes within a step, and grazing faces magnify the change.
     if (length(x2.position - from.position) < 0.05) continue;
     double below = 0;
     for (uint32_t t = 0; t < at.technique; ++t)
@@ -145,7 +147,7 @@ TEST(Jacobian, OfRandomReplayIsThatOfFiniteDifferences) {
       rows[k] = {(up->a - down->a) / (2 * h), (up->b - down->b) / (2 * h),
                  (up->gamma_1 - down->gamma_1) / (2 * h), (up->gamma_2 - down->gamma_2) / (2 * h)};
     }
-    if (!good) continue; // a step left the face or the choice
+    if (!good) continue; // A step left the face or the choice.
 
     Reservoir path;
     path.instance = hit.instance;
@@ -165,7 +167,7 @@ TEST(Jacobian, OfRandomReplayIsThatOfFiniteDifferences) {
   EXPECT_GT(other_hits, 10);
 }
 
-TEST(Jacobian, OfReconnectionPerSolidAngleIsThatOfFiniteDifferences) {
+TEST(Jacobian, Reconnection_MatchesFiniteDifferences) {
   Random random{19, 0, 0};
   const auto number = [&] { return 4 * random_unit(random) - 2; };
   for (int i = 0; i < 1000; ++i) {
@@ -178,7 +180,8 @@ TEST(Jacobian, OfReconnectionPerSolidAngleIsThatOfFiniteDifferences) {
       std::array<Vector3, 2> ends;
       for (const double sign : {-1.0, 1.0}) {
         const Vector3 direction = normalize(from + sign * h * along(from)[k]);
-        const double way = dot(v - x, normal) / dot(direction, normal); // where it meets the plane of v
+        // Distance to the plane of v.
+        const double way = dot(v - x, normal) / dot(direction, normal);
         ends[sign > 0] = normalize(x + way * direction - y);
       }
       for (size_t j = 0; j < 2; ++j)
@@ -188,7 +191,7 @@ TEST(Jacobian, OfReconnectionPerSolidAngleIsThatOfFiniteDifferences) {
   }
 }
 
-// Any sample of a pixel, with its random numbers and without them.
+// Returns samples of a pixel, with and without random numbers.
 std::vector<Reservoir> samples_of(const Scene& scene, const Domain& domain, Random& random) {
   std::vector<Reservoir> samples;
   for (int i = 0; i < 4; ++i) {
@@ -202,7 +205,7 @@ std::vector<Reservoir> samples_of(const Scene& scene, const Domain& domain, Rand
   return samples;
 }
 
-TEST(Shift, AndBackIsTheIdentity) {
+TEST(Shift, InverseIsTheIdentity) {
   Pairs pairs;
   const Scene& scene = pairs.scene;
   for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
@@ -217,7 +220,7 @@ TEST(Shift, AndBackIsTheIdentity) {
         Reservoir image = there.path;
         if (shift != Shift::delayed) prepare(scene, shift, Index::traced, to, image, pairs.random);
         const Shifted back = shift_path(scene, shift, to, from, image);
-        // Within 1e-9 of an edge rounding decides which of two faces is hit.
+        // Within 1e-9 of an edge, rounding decides which of two faces is hit.
         const Barycentrics& b = path.barycentrics;
         if (std::min({b[0], b[1], 1 - b[0] - b[1]}) < 1e-9) continue;
         ASSERT_GT(back.jacobian, 0) << static_cast<int>(shift);
@@ -233,14 +236,14 @@ TEST(Shift, AndBackIsTheIdentity) {
       }
     }
     EXPECT_GT(judged, 500) << static_cast<int>(shift);
-    if (shift == Shift::hybrid) { // both of its ways were gone
+    if (shift == Shift::hybrid) { // The hybrid shift used both replay and reconnection.
       EXPECT_GT(replayed_paths, judged / 20);
       EXPECT_LT(replayed_paths, judged - judged / 20);
     }
   }
 }
 
-TEST(Shift, WhereThereIsNoImageTheJacobianIsZeroAndNeverNaN) {
+TEST(Shift, NoImage_JacobianIsZeroAndNeverNaN) {
   Pairs pairs;
   const Scene& scene = pairs.scene;
   Domain from, to;
@@ -261,7 +264,7 @@ TEST(Shift, WhereThereIsNoImageTheJacobianIsZeroAndNeverNaN) {
       const Shifted shifted = shift_path(scene, shift, from, bad, good);
       EXPECT_FALSE(shifted.target * shifted.jacobian > 0) << static_cast<int>(shift);
       EXPECT_TRUE(std::isfinite(shifted.jacobian));
-      // And a merge with such a pixel keeps its own sample with a finite weight.
+      // A merge with such a pixel keeps its own sample with a finite weight.
       const ReuseSettings settings{shift, Index::traced, confidence_cap};
       const Reservoir merged = merge_temporal(scene, settings, from, good, bad, good, pairs.random);
       EXPECT_TRUE(std::isfinite(merged.weight));

@@ -30,7 +30,7 @@ double three_sigma_limit(int degrees_of_freedom, int tests) {
   const double n = degrees_of_freedom, wanted = 0.0026998 / tests / 2;
   const double scale =
       std::exp(std::lgamma((n + 1) / 2) - std::lgamma(n / 2)) / std::sqrt(n * 3.14159265358979);
-  const auto tail = [&](double from) { // over [from, inf), with t = from / s
+  const auto tail = [&](double from) { // Integral over [from, inf), with t = from / s.
     constexpr int steps = 2000;
     double sum = 0;
     for (int i = 0; i < steps; ++i) {

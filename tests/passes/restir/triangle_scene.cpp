@@ -7,8 +7,8 @@ namespace dermis::restir::testing {
 
 namespace {
 
-constexpr double lift = 1e-6;      // off surfaces, in a scene of size 8
-constexpr uint32_t max_in_box = 4; // triangles
+constexpr double lift = 1e-6;      // Offset of ray origins from surfaces, in a scene of size 8.
+constexpr uint32_t max_in_box = 4; // Triangles per leaf.
 constexpr double view_half = 4;
 
 const TriangleScene& scene_of(const void* of) {
@@ -33,13 +33,14 @@ bool meets(const BoxNode& box, const Vector3& origin, const Vector3& inverse, do
   double near = 0, far = maximum;
   for (size_t i = 0; i < 3; ++i) {
     const double a = (box.low[i] - origin[i]) * inverse[i], b = (box.high[i] - origin[i]) * inverse[i];
-    near = std::max(near, std::min(a, b)); // 0 * inf is NaN, which min and max pass over here
+    near = std::max(near, std::min(a, b)); // 0 * inf is NaN, which min and max skip here.
     far = std::min(far, std::max(a, b));
   }
   return near <= far;
 }
 
-// Calls found(hit) for each hit within `most`, which it may shorten; stops where it returns false.
+// Calls found(hit) for each hit within `maximum`, which `found` may reduce; stops if it returns
+// false.
 template <class Found>
 void for_hits(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double& maximum,
               Found&& found) {
@@ -69,7 +70,8 @@ void trace_probe(const void* of, const ProbeRay& ray, uint32_t medium, ProbeHits
   for_hits(scene, ray.origin, ray.direction, maximum, [&](const Hit& hit) {
     const Triangle& t = scene.triangles[hit.triangle];
     if (t.medium != medium) return true;
-    uint32_t at = std::min(hits.count, max_probe_hits - 1); // sorted in; the furthest falls out
+    // Inserts in order and drops the furthest hit.
+    uint32_t at = std::min(hits.count, max_probe_hits - 1);
     if (hits.count == max_probe_hits && hits.hit[at].distance <= hit.distance) return true;
     for (; at > 0 && hits.hit[at - 1].distance > hit.distance; --at)
       hits.hit[at] = hits.hit[at - 1];
@@ -128,7 +130,7 @@ void split(TriangleScene& scene, uint32_t node, uint32_t first, uint32_t count) 
 
 using Corners = std::vector<Vector3>;
 
-// Four corners against the clock from outside.
+// Adds four corners, counterclockwise from outside.
 void add_quad(Corners& corners, const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
   for (const Vector3& p : {a, b, c, a, c, d})
     corners.push_back(p);
@@ -152,7 +154,7 @@ Corners sphere(const Vector3& centre, double radius, int rings) {
   return corners;
 }
 
-// A map of the unit cube's surface: all six sides in n x n pieces.
+// Maps the surface of the unit cube: all six sides in n x n pieces.
 template <class Map> Corners cube(int n, Map&& map) {
   Corners corners;
   for (size_t axis = 0; axis < 3; ++axis)
@@ -265,7 +267,7 @@ std::vector<Pixel> look_at(const TriangleScene& scene, uint32_t width, uint32_t 
       Pixel& pixel = pixels[size_t{y} * width + x];
       pixel.domain = {x1.position, x1.normal, scene.d[t.medium], t.medium};
       pixel.instance = t.instance - first_instance;
-      constexpr uint32_t middle = 0x80008000u; // of a light
+      constexpr uint32_t middle = 0x80008000u; // The middle of a light.
       for (const Light& light : scene.lights)
         pixel.lit = pixel.lit ||
                     (luminance(light_irradiance(light, middle, x1.position, x1.normal, x1.shading)) > 0 &&

@@ -1,5 +1,6 @@
-// Every shift that claims it converges to the reference that shares no sampler. Means of regions over
-// independent restarts, 3 sigma over all of them (Bonferroni, Student's t). DERMIS_TESTS_FULL: 64x64 pixels.
+// Every unbiased shift converges to a reference with an independent sampler. Region means over
+// independent restarts are within 3 sigma over all comparisons (Bonferroni, Student's t).
+// DERMIS_TESTS_FULL uses 64x64 pixels.
 #include "passes/common/reference/parallel.hpp"
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/passes/restir/sequence.hpp"
@@ -34,10 +35,11 @@ SequenceSettings settings_of(Shift shift, Reuse reuse) {
   settings.shift = shift;
   settings.reuse = reuse;
   settings.width = settings.height = quality(16, 64);
-  settings.frames = quality(12, 8); // each stands alone
+  settings.frames = quality(12, 8); // Frames are independent.
   if ((static_cast<uint32_t>(reuse) & 1u) != 0) {
-    settings.frames = quality(12, 32); // more than the confidence cap lets a history count for
-    settings.jitter = 0.4;             // else the history's path is the pixel's own
+    // More frames than the confidence cap lets a history count for.
+    settings.frames = quality(12, 32);
+    settings.jitter = 0.4; // Without jitter the history's path is the pixel's own path.
   }
   return settings;
 }
@@ -54,9 +56,9 @@ std::vector<Mean> restarted(const TriangleScene& scene, const SequenceSettings& 
 }
 
 struct Judged {
-  double worst = 0;   // deviation in sigma
-  double largest = 0; // relative difference
-  double spread = 0;  // relative sigma of the whole picture's difference
+  double worst = 0;   // Deviation in sigma.
+  double largest = 0; // Relative difference.
+  double spread = 0;  // Relative sigma of the difference of the whole picture.
 };
 Judged judge(const std::vector<Mean>& found, const std::vector<Mean>& reference) {
   Judged judged;
@@ -85,7 +87,7 @@ protected:
     std::printf("%-40s %.2f sigma, %.2f %% off, 1 sigma is %.2f %%\n", name, judged.worst,
                 100 * judged.largest, 100 * judged.spread);
     EXPECT_LT(judged.worst, testing::three_sigma_limit(restarts - 1, tests)) << name;
-    EXPECT_LT(judged.spread, 0.06) << name; // what is seen must be worth seeing
+    EXPECT_LT(judged.spread, 0.06) << name; // The test has to be sensitive enough.
   }
 
   TriangleScene scene = testing::ear_scene();
@@ -94,7 +96,7 @@ protected:
   std::vector<Mean> reference;
 };
 
-TEST_F(Unbiased, SamplesAlone) {
+TEST_F(Unbiased, SamplesWithoutReuse) {
   expect_no_bias(settings_of(Shift::reconnection, Reuse::none), static_cast<int>(regions.pixels.size()),
                  "none");
 }
@@ -105,15 +107,16 @@ TEST_F(Unbiased, EveryShiftWithEveryReuse) {
   constexpr const char* reuses[] = {"none", "temporal", "spatial", "spatiotemporal"};
   for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid, Shift::sequential})
     for (const Reuse reuse : {Reuse::temporal, Reuse::spatial, Reuse::spatiotemporal}) {
-      if (shift == Shift::sequential && reuse == Reuse::temporal) continue; // that is reconnection
+      // Equal to reconnection.
+      if (shift == Shift::sequential && reuse == Reuse::temporal) continue;
       const std::string name =
           std::string(shifts[static_cast<size_t>(shift)]) + " " + reuses[static_cast<size_t>(reuse)];
       expect_no_bias(settings_of(shift, reuse), tests, name.c_str());
     }
 }
 
-// The first frame after lights moved, one of them away to the other side: nothing of the old light is left,
-// none of the new is missing.
+// In the first frame after lights moved, one of them to the other side, the result has only the
+// light of the new positions.
 TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
   TriangleScene after = scene;
   after.lights[0].position = {2.6, 1, 4};
@@ -126,7 +129,7 @@ TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
     SequenceSettings settings = settings_of(shift, Reuse::spatiotemporal);
     settings.judged_from = 8;
     settings.frames = 9;
-    constexpr uint32_t changes = 96; // one judged frame each
+    constexpr uint32_t changes = 96; // Each has one checked frame.
     std::vector<std::vector<double>> values(regions.pixels.size(), std::vector<double>(changes));
     subsurface::parallel_for(changes, 1, 0, [&](size_t i) {
       const auto result =
@@ -141,9 +144,9 @@ TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
   }
 }
 
-// With drawn indices the sequence of shifts has a bias (supplement, section 6). It is printed; that it stays
-// small is what is asked of it.
-TEST_F(Unbiased, AlmostWhereIndicesAreDrawn) {
+// With sampled indices the sequential shift has a bias (supplement, section 6). The test prints the
+// bias and bounds it.
+TEST_F(Unbiased, SampledIndices_BiasIsSmall) {
   SequenceSettings settings = settings_of(Shift::sequential, Reuse::spatiotemporal);
   settings.index = Index::drawn;
   const std::vector<Mean> found = restarted(scene, settings, regions);
@@ -155,7 +158,7 @@ TEST_F(Unbiased, AlmostWhereIndicesAreDrawn) {
 }
 
 // Mean square error of a frame late in the sequence, over pixels and restarts.
-TEST_F(Unbiased, AndNearerToTheTruthWithReuse) {
+TEST_F(Unbiased, Reuse_ReducesTheError) {
   testing::Regions each;
   std::vector<double> reference(pixels.size());
   for (uint32_t i = 0; i < pixels.size(); ++i)
@@ -184,7 +187,8 @@ TEST_F(Unbiased, AndNearerToTheTruthWithReuse) {
     parts[static_cast<size_t>(shift)] = both;
   }
   EXPECT_LT(parts[3],
-            1.1 * std::max(parts[0], parts[1])); // the sequence: at least as good as the worse of its parts
+            // The sequential shift must be at least as good as the worse of its parts.
+            1.1 * std::max(parts[0], parts[1]));
 }
 
 } // namespace

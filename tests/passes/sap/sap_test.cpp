@@ -1,4 +1,4 @@
-// Laws of the surface-aware pyramid, on its CPU twin.
+// Properties of the surface-aware pyramid, tested on its CPU implementation.
 #include "tests/passes/sap/cpu/sap_cpu.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace dermis::subsurface {
 namespace {
 
-float hashed(uint32_t x, uint32_t y) { // deterministic, in [0, 1)
+float hashed(uint32_t x, uint32_t y) { // Deterministic, in [0, 1).
   uint32_t h = x * 0x9e3779b9u ^ (y + 0x7f4a7c15u) * 0x85ebca6bu;
   h ^= h >> 15;
   h *= 0x2c1b3c6du;
@@ -18,7 +18,8 @@ float hashed(uint32_t x, uint32_t y) { // deterministic, in [0, 1)
   return float(h >> 8) / 16777216.0f;
 }
 
-// A view of millimetre pixels, orthographic, with light, depth, profile and scale that each test paints.
+// An orthographic view of millimetre pixels with light, depth, profile and scale that each test
+// sets.
 struct Scene {
   uint32_t width, height;
   PixelRays rays;
@@ -65,7 +66,7 @@ struct Error {
 Error error_of(const std::vector<float>& light, const std::vector<double>& reference) {
   Error error;
   for (size_t i = 0; i < reference.size(); i += 3) {
-    double e = 0; // Rec. 709 luminance
+    double e = 0; // Rec. 709 luminance.
     for (size_t c = 0; c < 3; ++c)
       e += std::array{.2126, .7152, .0722}[c] * (double(light[i + c]) - reference[i + c]);
     error.rmse += e * e;
@@ -75,7 +76,7 @@ Error error_of(const std::vector<float>& light, const std::vector<double>& refer
   return error;
 }
 
-TEST(Sap, OnAPlaneASecondLayerIsEmptyAndChangesNothing) {
+TEST(Sap, Plane_SecondLayerIsEmpty) {
   Scene scene(128, 96, {6, 3, 1});
   scene.paint(texture);
   const auto one = sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = sap_level_count});
@@ -86,8 +87,8 @@ TEST(Sap, OnAPlaneASecondLayerIsEmptyAndChangesNothing) {
   }
 }
 
-TEST(Sap, ASecondLayerKeepsLightApartThatOneLayerMixesAcrossAFence) {
-  // Slats 10 pixels wide, lit, 20 mm before a wall in the dark: coarse texels hold both.
+TEST(Sap, SecondLayer_SeparatesFenceAndWall) {
+  // Lit slats 10 pixels wide, 20 mm in front of a dark wall: coarse texels contain both.
   Scene scene(110, 70, {6, 6, 6});
   for (uint32_t i = 0; i < scene.depth.size(); ++i)
     scene.depth[i] = i % scene.width / 10 % 2 == 0 ? 0.48f : 0.5f;
@@ -101,31 +102,32 @@ TEST(Sap, ASecondLayerKeepsLightApartThatOneLayerMixesAcrossAFence) {
   RecordProperty("one", std::to_string(one));
   RecordProperty("few", std::to_string(few));
   RecordProperty("two", std::to_string(two));
-  // Regression bound: it follows the product.
+  // Regression bound of the present implementation.
   EXPECT_LE(few, 0.8 * one);
-  EXPECT_LE(
-      two,
-      0.3 * one); // regression bound: measured .25; .74 where a child with half of its weight left is a seed
+  EXPECT_LE(two,
+            // Regression bound: measured 0.25, and 0.74 if a child with half of its weight left is a
+            // seed.
+            0.3 * one);
   for (const float value : {0.0123f, 0.7f}) {
     scene.paint([&](uint32_t, uint32_t) { return value; });
     for (const uint32_t first : {1u, 2u})
       for (const float light : scattered(first))
-        ASSERT_NEAR(light / value, 1, 2e-6); // as of one layer
+        ASSERT_NEAR(light / value, 1, 2e-6); // Equal to the result with one layer.
   }
 }
 
-TEST(Sap, TexturedPlaneFollowsTheTruthUpToTheBorder) {
+TEST(Sap, TexturedPlaneMatchesTheReference) {
   for (const double d : {1.0, 2.0, 4.0, 8.0, 16.0}) {
     Scene scene(256, 192, {d, d, d});
     scene.paint(texture);
     const auto reference = reference_everywhere(scene.input());
     const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
-    EXPECT_LT(error.rmse, 2.0e-3) << d; // the product's promise for this variant
+    EXPECT_LT(error.rmse, 2.0e-3) << d; // The documented error bound of this variant.
     EXPECT_LT(error.max, 1.5e-2) << d;
   }
 }
 
-TEST(Sap, UnequalChannelsFollowTheTruthEachWithItsOwnD) {
+TEST(Sap, UnequalChannelsMatchTheReference) {
   Scene scene(256, 192, {8, 3, 1.5});
   scene.paint(texture);
   const auto reference = reference_everywhere(scene.input());
@@ -138,7 +140,7 @@ TEST(Sap, UnequalChannelsFollowTheTruthEachWithItsOwnD) {
   }
 }
 
-TEST(Sap, HolesCountAsLittleAsInTheTruth) {
+TEST(Sap, HolesMatchTheReference) {
   Scene scene(256, 192, {6, 6, 6});
   scene.paint(texture);
   for (uint32_t y = 0; y < 192; ++y)
@@ -147,7 +149,7 @@ TEST(Sap, HolesCountAsLittleAsInTheTruth) {
         scene.profile[y * 256 + x] = 0;
   const auto reference = reference_everywhere(scene.input());
   const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
-  // Regression bounds: they follow the product.
+  // Regression bounds of the present implementation.
   EXPECT_LT(error.rmse, 3.0e-3);
   EXPECT_LT(error.max, 2.5e-2);
 }
@@ -173,7 +175,7 @@ TEST(Sap, ResultStaysWithinTheLightOfItsProfile) {
   Scene scene(120, 90, {7, 3, 1});
   scene.paint([](uint32_t x, uint32_t y) { return 0.25f + 0.5f * hashed(x, y); });
   for (uint32_t i = 0; i < scene.depth.size(); ++i)
-    scene.depth[i] = 0.5f + 0.2f * hashed(i / 7, 11); // torn to pieces
+    scene.depth[i] = 0.5f + 0.2f * hashed(i / 7, 11); // Random depths.
   for (const float value : sap_scatter<float>(scene.input(), smooth_table(), {}).light)
     ASSERT_TRUE(value >= 0.25f - 1e-6f && value <= 0.75f + 1e-6f) << value;
 }
@@ -182,7 +184,8 @@ TEST(Sap, OtherProfilesDoNotLeakIn) {
   Scene scene(96, 64, {6, 6, 6});
   scene.d.push_back(scene.d[1]);
   for (uint32_t i = 0; i < scene.profile.size(); ++i)
-    scene.profile[i] = hashed(i % 96 / 5, i / 96 / 5) < 0.5f ? 1 : 2; // patches, each smaller than the kernel
+    // Patches, each smaller than the kernel.
+    scene.profile[i] = hashed(i % 96 / 5, i / 96 / 5) < 0.5f ? 1 : 2;
   scene.paint([&](uint32_t x, uint32_t y) { return scene.profile[y * 96 + x] == 1 ? 1.0f : 0.0f; });
   const auto result = sap_scatter<float>(scene.input(), smooth_table(), {}).light;
   for (size_t i = 0; i < scene.profile.size(); ++i)
@@ -194,14 +197,14 @@ TEST(Sap, FarStepsInDepthDoNotLeak) {
   scene.paint([](uint32_t x, uint32_t) { return x < 48 ? 1.0f : 0.0f; });
   for (uint32_t y = 0; y < 64; ++y)
     for (uint32_t x = 48; x < 96; ++x)
-      scene.depth[y * 96 + x] = 1.5f; // 500 d behind: no weight of any level spans it
+      scene.depth[y * 96 + x] = 1.5f; // 500 d behind: no weight of any level spans the step.
   const auto result = sap_scatter<float>(scene.input(), smooth_table(), {}).light;
   for (size_t i = 0; i < scene.profile.size(); ++i)
     ASSERT_NEAR(result[3 * i], i % 96 < 48 ? 1 : 0, 1e-4);
 }
 
-TEST(Sap, LightCrossesAFoldAsInTheTruth) {
-  // A valley between two slopes of 60 degrees: what lies on the other side is near, though far from the
+TEST(Sap, LightAcrossAFoldMatchesTheReference) {
+  // A valley between two slopes of 60 degrees: the other side is near, but far from the tangent
   // plane.
   Scene scene(128, 64, {6, 6, 6});
   scene.paint([](uint32_t x, uint32_t) { return x < 64 ? 1.0f : 0.0f; });
@@ -209,9 +212,9 @@ TEST(Sap, LightCrossesAFoldAsInTheTruth) {
     scene.depth[i] = 0.5f - 1.7e-3f * std::abs(float(i % 128) - 63.5f);
   const auto reference = reference_everywhere(scene.input());
   const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
-  EXPECT_LT(
-      error.rmse,
-      0.035); // regression bound: measured .031; .050 where distance from the tangent plane alone counts
+  EXPECT_LT(error.rmse,
+            // Regression bound: measured 0.031, and 0.050 with only the distance from the tangent plane.
+            0.035);
 }
 
 TEST(Sap, ScatterScaleActsAsAnotherD) {
@@ -225,7 +228,7 @@ TEST(Sap, ScatterScaleActsAsAnotherD) {
     ASSERT_NEAR(a[i], b[i], 1e-6);
 }
 
-TEST(Sap, WithoutScatteringTheLightComesBackBitForBit) {
+TEST(Sap, NoScattering_ReturnsTheLightBitForBit) {
   Scene scene(33, 21, {0, 3, 0});
   scene.paint(hashed);
   scene.scale.assign(scene.profile.size(), 1.0f);
@@ -241,17 +244,17 @@ TEST(Sap, WithoutScatteringTheLightComesBackBitForBit) {
   }
 }
 
-TEST(Sap, OneAndManyThreadsAgreeAndSoDoBothPrecisions) {
+TEST(Sap, ThreadCountsAndPrecisionsAgree) {
   Scene scene(90, 70, {5, 2, 1});
   scene.paint(texture);
   const auto one = sap_scatter<float>(scene.input(), smooth_table(), {.threads = 1}).light;
   EXPECT_EQ(one, sap_scatter<float>(scene.input(), smooth_table(), {.threads = 3}).light);
   const auto exact = sap_scatter<double>(scene.input(), smooth_table(), {}).light;
   for (size_t i = 0; i < one.size(); ++i)
-    ASSERT_NEAR(one[i], exact[i], 1e-5); // nine levels of fp32 means
+    ASSERT_NEAR(one[i], exact[i], 1e-5); // Nine levels of fp32 means.
 }
 
-TEST(Sap, ConfidenceFallsWhereTheKernelLosesItsSurface) {
+TEST(Sap, ConfidenceFallsAtSurfaceBoundaries) {
   Scene scene(128, 96, {6, 6, 6});
   for (uint32_t y = 0; y < 96; ++y)
     for (uint32_t x = 64; x < 128; ++x)

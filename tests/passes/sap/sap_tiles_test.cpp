@@ -1,4 +1,4 @@
-// Laws of the lists of tiles that the surface-aware pyramid runs over.
+// Properties of the tile lists that the surface-aware pyramid runs over.
 #include "passes/sap/sap_tiles.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ uint32_t all_groups(uint32_t width, uint32_t height, const std::vector<uint32_t>
 
 std::vector<uint32_t> disc(uint32_t width, uint32_t height, double fraction) {
   std::vector<uint32_t> classes(size_t{along(width)} * along(height), 0);
-  const double radius = std::sqrt(fraction * width * height / 3.14159265) / 8; // tiles
+  const double radius = std::sqrt(fraction * width * height / 3.14159265) / 8; // Tiles.
   for (uint32_t y = 0; y < along(height); ++y)
     for (uint32_t x = 0; x < along(width); ++x)
       if (std::hypot(double(x) + 0.5 - width / 16.0, double(y) + 0.5 - height / 16.0) < radius)
@@ -30,36 +30,37 @@ std::vector<uint32_t> disc(uint32_t width, uint32_t height, double fraction) {
   return classes;
 }
 
-TEST(SapTiles, FivePercentOfThePictureLaunchLessThanAFifthOfTheGroups) {
+TEST(SapTiles, FivePercentCoverage_LaunchesAFifthOfTheGroups) {
   for (const auto& [width, height] : {std::pair{640u, 360u}, {1280u, 720u}, {3840u, 2160u}}) {
     const double full = all_groups(width, height, disc(width, height, 10));
-    // Regression bound: it follows the product.
+    // Regression bound of the present implementation.
     EXPECT_LE(all_groups(width, height, disc(width, height, 0.05)), 0.2 * full) << width;
     EXPECT_EQ(all_groups(width, height, disc(width, height, 0)), 0u);
   }
 }
 
-TEST(SapTiles, EveryTileThatReducesAListedOneIsListedItself) {
+TEST(SapTiles, ParentsOfListedTilesAreListed) {
   const uint32_t width = 301, height = 203;
   std::vector<uint32_t> classes(size_t{along(width)} * along(height));
   for (uint32_t i = 0; i < classes.size(); ++i)
-    classes[i] = i * 2654435761u >> 28 == 0; // one in sixteen
+    classes[i] = i * 2654435761u >> 28 == 0; // Every sixteenth.
   const auto lists = list_sap_tiles(width, height, classes);
   for (size_t level = 0; level + 1 < lists.size(); ++level) {
     std::vector<bool> parent(size_t{lists[level + 1].across} * lists[level + 1].down);
     for (const SapTile& tile : lists[level + 1].tiles) {
       parent[size_t{tile.y} * lists[level + 1].across + tile.x] = true;
       EXPECT_NE(tile.children, 0u);
-      EXPECT_NE(tile.around & 1u << 4, 0u); // itself
+      EXPECT_NE(tile.around & 1u << 4, 0u); // The tile itself.
     }
-    // Parent texel p lies on texels 2p - 1 to 2p + 2; addresses are one more from level 1 on.
+    // Parent texel p covers texels 2p - 1 to 2p + 2; addresses are one higher from level 1 on.
     const int border = level > 0 ? 1 : 0;
     for (const SapTile& tile : lists[level].tiles)
       for (int y = 8 * int(tile.y); y < 8 * int(tile.y) + 8; ++y)
         for (int x = 8 * int(tile.x); x < 8 * int(tile.x) + 8; ++x)
           for (int k = 0; k < 4; ++k) {
             const int at_x = x - border, at_y = y - border;
-            const int px = ((at_x - 1) >> 1) + k % 2 + 1, py = ((at_y - 1) >> 1) + k / 2 + 1; // addresses
+            // Addresses.
+            const int px = ((at_x - 1) >> 1) + k % 2 + 1, py = ((at_y - 1) >> 1) + k / 2 + 1;
             if (px / 8 >= int(lists[level + 1].across) || py / 8 >= int(lists[level + 1].down)) continue;
             ASSERT_TRUE(parent[size_t(py / 8) * lists[level + 1].across + size_t(px / 8)])
                 << level << ": " << x << " " << y;
@@ -67,8 +68,9 @@ TEST(SapTiles, EveryTileThatReducesAListedOneIsListedItself) {
   }
 }
 
-TEST(SapTiles, ListsFitIntoTheBufferThatGraphsDeclare) {
-  // configs/graphs/sap.json: (view/8 + 64) elements of two entries; the first nine are the lists' heads.
+TEST(SapTiles, ListsFitTheDeclaredBuffer) {
+  // configs/graphs/sap.json: (view/8 + 64) elements of two entries; the first nine are the heads of
+  // the lists.
   for (const auto& [width, height] : {std::pair{1u, 1u},
                                       {1u, 7u},
                                       {16u, 16u},

@@ -29,10 +29,13 @@ TEST_P(SapWeightsOf, AreNonNegativeAndSumToOne) {
   }
 }
 
-TEST_P(SapWeightsOf, FollowTheTruthUpToTheWidestLevel) {
-  // Regression bounds: measured base at most 1.8e-3 up to d = 32 px, smooth 1.9e-3 (at d = .3 px, where their
-  // tents are widest) up to 45 px; the last level, 256 px wide, is too narrow for more. half has nothing
-  // between a pixel and level 1: 14.5e-3 at d = .3 px, below the others' worst from 4 px on.
+TEST_P(SapWeightsOf, MatchTheReferenceUpToTheWidestLevel) {
+  // Regression bounds:
+  // - base: measured at most 1.8e-3 up to d = 32 px.
+  // - smooth: measured 1.9e-3 (at d = 0.3 px, where its tents are widest) up to 45 px; the last
+  //   level, 256 px wide, is too narrow for more.
+  // - half has no level between a pixel and level 1: 14.5e-3 at d = 0.3 px, and below the others'
+  //   worst from 4 px on.
   const bool half = GetParam() == SapVariant::half;
   const double last = GetParam() == SapVariant::smooth ? 45.3 : 32.1;
   const auto floor = [&](double d_px) { return !half || d_px > 4.1 ? 1.9e-3 : d_px > 0.9 ? 9e-3 : 15e-3; };
@@ -42,11 +45,11 @@ TEST_P(SapWeightsOf, FollowTheTruthUpToTheWidestLevel) {
     }
 }
 
-TEST_P(SapWeightsOf, AreTheSameEachTime) {
+TEST_P(SapWeightsOf, AreDeterministic) {
   EXPECT_EQ(make_sap_table(fit_sap_weights(GetParam())), make_sap_table(fit_sap_weights(GetParam())));
 }
 
-TEST_P(SapWeightsOf, SharesAndWeightsSayTheSame) {
+TEST_P(SapWeightsOf, FractionsAndWeightsAgree) {
   for (const SapNode& node : fit_sap_weights(GetParam()).nodes) {
     const SapFractions fractions = sap_fractions(node.weights);
     double left = 1 - fractions.centre - fractions.tent;
@@ -59,14 +62,14 @@ TEST_P(SapWeightsOf, SharesAndWeightsSayTheSame) {
   }
 }
 
-TEST_P(SapWeightsOf, FadeToTheCentreAsScatteringVanishes) {
+TEST_P(SapWeightsOf, ConvergeToTheCentreAsScatteringVanishes) {
   const std::vector<float> table = make_sap_table(fit_sap_weights(GetParam()));
   EXPECT_EQ(sap_lookup<double>(table, 0, 0.0), 1);
   EXPECT_EQ(sap_lookup<double>(table, 1, 0.0), 0);
   double before = 1;
   for (double d = 0.001; d < 200; d *= 1.1) {
     const double centre = sap_lookup<double>(table, 0, d), tent = sap_lookup<double>(table, 1, d);
-    EXPECT_LE(centre, before + 1e-3) << d; // the fit is not exactly monotone at the last nodes
+    EXPECT_LE(centre, before + 1e-3) << d; // The fit is not exactly monotone at the last nodes.
     EXPECT_TRUE(tent >= 0 && centre + tent <= 1 + 1e-6) << d;
     before = std::min(before, centre);
   }

@@ -9,7 +9,7 @@ namespace {
 
 using namespace dermis::subsurface;
 
-// The same arithmetic as the shader's two passes, on a plane without borders (wrapping).
+// The arithmetic of the shader's two passes, on a plane without borders (wrapping).
 std::vector<double> run(const std::vector<double>& image, int size, std::span<const SeparableRow> rows,
                         uint32_t choice, double d_px, int channel) {
   const uint32_t side = (separable_taps[choice] - 1) / 2;
@@ -61,13 +61,13 @@ TEST(SeparableKernel, WeightsAreNotNegativeAndSumToOneAtEveryNode) {
     }
 }
 
-TEST(SeparableKernel, WithoutScatteringItIsTheDelta) {
+TEST(SeparableKernel, NoScattering_IsTheDelta) {
   const SeparableFit fit = fit_separable(0.0, separable_offsets(4.0, 25));
   EXPECT_EQ(fit.centre, 1.0);
   EXPECT_EQ(fit.weights[0], 1.0);
 }
 
-TEST(SeparableKernel, MoreTapsNeverFitWorse) {
+TEST(SeparableKernel, MoreTapsNeverIncreaseTheResidual) {
   for (const double d : {1.0, 4.0, 16.0}) {
     const double coarse = fit_separable(d, separable_offsets(d, 11)).residual;
     const double middle = fit_separable(d, separable_offsets(d, 17)).residual;
@@ -77,16 +77,17 @@ TEST(SeparableKernel, MoreTapsNeverFitWorse) {
   }
 }
 
-TEST(SeparableKernel, TheFitsResidualStaysBelowItsDocumentedFloor) {
+TEST(SeparableKernel, ResidualIsBelowItsDocumentedBound) {
   // Documented in docs/techniques.md: relative to the change that scattering makes; 25 taps.
   for (const double d : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0})
-    // Regression bound: it follows the product.
+    // Regression bound of the present implementation.
     EXPECT_LT(fit_separable(d, separable_offsets(d, 25)).residual, 0.05) << d;
 }
 
-TEST(SeparableKernel, TheTransferOfTheTruthIsOneAtZeroAndTheSecondMomentIsThatOfTheProfile) {
-  // Var per axis = E[r^2] / 2 + pixel box = 7 d^2 + 1/12 (E[r^2] = 14 d^2); transfer = 1 - 2 pi^2 f^2 Var +
-  // O(f^4 d^4). Sampling at whole pixels adds aliases, which are below 1e-3 of the moment from d = 2 px on.
+TEST(SeparableKernel, ReferenceTransferHasTheProfilesMoments) {
+  // Var per axis = E[r^2] / 2 + pixel box = 7 d^2 + 1/12 (E[r^2] = 14 d^2); transfer = 1 - 2 pi^2
+  // f^2 Var + O(f^4 d^4). Sampling at whole pixels adds aliases below 1e-3 of the moment from d = 2
+  // px on.
   for (const double d : {2.0, 8.0}) {
     EXPECT_NEAR(pixel_kernel_transfer(d, 0, 0), 1.0, 1e-12);
     const double f = 1e-4 / d;
@@ -95,14 +96,14 @@ TEST(SeparableKernel, TheTransferOfTheTruthIsOneAtZeroAndTheSecondMomentIsThatOf
   }
 }
 
-TEST(SeparableKernel, TheTableGivesTheFitAtItsNodesAndABoundedErrorBetween) {
+TEST(SeparableKernel, TableMatchesTheFitAtNodesAndBetween) {
   const std::vector<SeparableRow> rows = make_separable_rows({1.0, 0.4, 0.0});
   ASSERT_EQ(rows.size(), separable_rows_per_profile);
   const double node_d = 4.0;
   const SeparableFit fit = fit_separable(node_d, separable_offsets(node_d, 17));
   for (uint32_t i = 0; i <= 8; ++i)
     EXPECT_NEAR(separable_row(rows, 1, node_d, i)[0], fit.weights[i], 1e-6);
-  for (uint32_t i = 0; i <= 8; ++i) // a channel without scattering
+  for (uint32_t i = 0; i <= 8; ++i) // A channel without scattering.
     EXPECT_EQ(separable_row(rows, 1, node_d, i)[2], i == 0 ? 1.0f : 0.0f);
   EXPECT_EQ(separable_row(rows, 1, node_d, 9)[2], 1.0f);
 }

@@ -10,8 +10,8 @@
 namespace dermis::subsurface {
 namespace {
 
-// Occluding discs with radii spread by a power law: edges and flat parts at all sizes, as in natural pictures
-// (Lee, Mumford, Huang 2001); over a step between its halves.
+// Occluding discs with power-law radii give edges and flat parts at all sizes, as in natural
+// pictures (Lee, Mumford, Huang 2001). A step between the two halves is added.
 std::vector<float> picture(uint32_t side, uint32_t seed) {
   std::vector<float> values(size_t{side} * side, -1.0f);
   uint32_t state = seed;
@@ -32,7 +32,7 @@ std::vector<float> picture(uint32_t side, uint32_t seed) {
   return values;
 }
 
-// What a pixel uses of the table, per channel: a at 0 and at the offsets, the delta.
+// The table values of a pixel, per channel: a at 0 and at the offsets, and the delta.
 struct Taps {
   std::vector<SeparableRow> rows;
   PerChannel delta{};
@@ -48,7 +48,7 @@ Taps look_up(const std::vector<SeparableRow>& table, uint32_t choice, double d_p
   return taps;
 }
 
-// Both passes on a square picture; beyond it its border continues.
+// Runs both passes on a square picture whose border values continue outside.
 std::vector<double> blur(const std::vector<float>& light, int side, const Taps& taps, size_t c) {
   auto pass = [&](const auto& source, int dx, int dy) {
     std::vector<double> out(source.size());
@@ -76,7 +76,8 @@ std::vector<double> blur(const std::vector<float>& light, int side, const Taps& 
   return result;
 }
 
-// RMSE of each channel and tap count against the truth, inside the picture by `margin`.
+// Returns the RMSE of each channel and tap count against the reference, excluding a border of
+// `margin`.
 std::array<PerChannel, 3> floors(const PerChannel& d, int side, int margin) {
   const auto grey = picture(uint32_t(side), 7);
   std::vector<float> light(grey.size() * 3), depth(grey.size(), 1.0f);
@@ -110,9 +111,9 @@ std::array<PerChannel, 3> floors(const PerChannel& d, int side, int margin) {
 }
 
 TEST(SeparableFloor, StaysWithinTheDocumentedErrors) {
-  // Regression bounds: measured on this picture, 1e-3, for 11, 17 and 25 taps; each may be exceeded by 5 %.
-  // Many taps at every texel (nothing between the offsets) reach 95 % of the 25-tap figures at 1 px and 88 %
-  // at 2 to 8 px: the rest is the rank.
+  // Regression bounds: measured on this picture, in 1e-3, for 11, 17 and 25 taps; each may be
+  // exceeded by 5 %. With a tap at every texel, errors are 95 % of the 25-tap numbers at 1 px and
+  // 88 % at 2 to 8 px: the rest is due to the rank.
   struct Case {
     double d;
     PerChannel floor;
@@ -129,8 +130,8 @@ TEST(SeparableFloor, StaysWithinTheDocumentedErrors) {
 }
 
 TEST(SeparableFloor, KeepsAnEdgeWithinTheDocumentedErrors) {
-  // An edge along an axis sees one of the passes alone. Largest error and RMSE over +-10 d, 1e-3; 5 % to
-  // spare.
+  // Only one of the passes affects an edge along an axis. Largest error and RMSE over +-10 d, in
+  // 1e-3, with a margin of 5 %.
   const std::vector<SeparableRow> table = make_separable_rows({1, 1, 1});
   struct Case {
     double d;

@@ -1,5 +1,6 @@
 #version 460
-// out = a + b + bias where b is bound, else a + bias - 1000 * (what the stand-in holds: nothing).
+// Computes out = a + b + bias if b is bound, else a + bias - 1000 * (value of the placeholder,
+// which must be 0).
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "frame.glsl"

@@ -1,5 +1,6 @@
 #version 460
-// One invocation per tile of the rectangle, 64 a group: class = 1 for tiles whose number is a multiple of 3.
+// Classifies one tile of the rectangle per invocation, 64 per group: class = 1 for every third
+// tile.
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 layout(local_size_x = 64) in;

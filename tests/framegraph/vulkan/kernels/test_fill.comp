@@ -1,5 +1,5 @@
 #version 460
-// out = value + slope * x + frame.time inside the rectangle.
+// Computes out = value + slope * x + frame.time inside the rectangle.
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,5 +1,5 @@
 #version 460
-// Lists the tiles of class 1; one invocation does it.
+// Lists the tiles of class 1 in a single invocation.
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 layout(local_size_x = 1) in;

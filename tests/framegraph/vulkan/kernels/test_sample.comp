@@ -1,5 +1,5 @@
 #version 460
-// out = a filtered at a quarter of a texel to the right, times the table's second entry.
+// Samples `a` a quarter of a texel to the right and multiplies it by the table's second entry.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "frame.glsl"

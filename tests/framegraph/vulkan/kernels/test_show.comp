@@ -1,5 +1,5 @@
 #version 460
-// Copies the first component of the bound image, float or unsigned; -1 outside of the image.
+// Copies the first component of the bound image, float or unsigned; writes -1 outside of the image.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "frame.glsl"

@@ -1,5 +1,6 @@
 #version 460
-// Writes a pattern of 32 values that differs between neighbours: value / 32 to `target`, the value to `ids`.
+// Writes a pattern of 32 values that differs between neighbours: value / 32 to `target`, the value
+// to `ids`.
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

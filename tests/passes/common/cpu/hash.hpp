@@ -1,6 +1,6 @@
 #pragma once
-// Random numbers by pixel and frame (Jarzynski & Olano 2020, "Hash functions for GPU rendering"). Mirrors
-// shaders/common/hash.glsl and, of pcg3d16, sequence.glsl under the same names. Thread: any.
+// Random numbers by pixel and frame (Jarzynski & Olano 2020, "Hash functions for GPU rendering").
+// Mirrors shaders/common/hash.glsl; pcg3d16 mirrors sequence.glsl. Names are equal. Thread: any.
 
 #include <array>
 #include <cstdint>
@@ -21,7 +21,7 @@ constexpr Hash pcg3d_mix(Hash v) {
   return v;
 }
 
-// Three hashes of 32 bits.
+// Returns three hashes of 32 bits.
 constexpr Hash pcg3d(Hash v) {
   v = pcg3d_mix(pcg3d_step(v));
   for (uint32_t& one : v)
@@ -29,7 +29,7 @@ constexpr Hash pcg3d(Hash v) {
   return pcg3d_mix(v);
 }
 
-// Three hashes of 16 bits.
+// Returns three hashes of 16 bits.
 constexpr Hash pcg3d16(Hash v) {
   v = pcg3d_mix(pcg3d_mix(pcg3d_step(v)));
   return {v[0] >> 16, v[1] >> 16, v[2] >> 16};

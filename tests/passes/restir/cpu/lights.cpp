@@ -20,7 +20,8 @@ void share_lights(std::span<Light> lights) {
     if (has_area(light)) {
       light.area =
           length(cross(light.edge_u, light.edge_v)) * (light.type == LightType::triangle ? 0.5 : 1.0);
-      light.fraction = std::numbers::pi * light.area * luminance(light.emission); // diffuse, one side
+      // A diffuse light with one side.
+      light.fraction = std::numbers::pi * light.area * luminance(light.emission);
     } else if (light.type == LightType::point) {
       light.area = 1;
       light.fraction = 4 * std::numbers::pi * luminance(light.emission);
@@ -62,7 +63,8 @@ Vector3 light_target(const Light& light, uint32_t place, const Vector3& from) {
   if (light.type == LightType::point) return light.position;
   if (light.type == LightType::directional) return from + light.area * light.position;
   double u = ((place & 0xffffu) + 0.5) / 65536, v = ((place >> 16) + 0.5) / 65536;
-  if (light.type == LightType::triangle && u + v > 1) { // the other half of the parallelogram, turned onto it
+  // Mirrors the other half of the parallelogram onto the triangle.
+  if (light.type == LightType::triangle && u + v > 1) {
     u = 1 - u;
     v = 1 - v;
   }

@@ -13,7 +13,7 @@ uint32_t scattering_channels(const Vector3& d) {
   return (d[0] > 0) + (d[1] > 0) + (d[2] > 0);
 }
 
-// Coordinates of `offset` on the disc across an axis.
+// Returns the coordinates of `offset` on the disc perpendicular to an axis.
 std::array<double, 2> on_disc(const Domain& domain, uint32_t axis, const Vector3& offset) {
   return {dot(offset, probe_axis(domain.normal, (axis + 1) % 3)),
           dot(offset, probe_axis(domain.normal, (axis + 2) % 3))};
@@ -83,7 +83,8 @@ bool invert_point(const Domain& domain, const Vector3& position, const Vector3& 
   for (uint32_t technique = 0; technique < 9; ++technique) {
     const double pdf = probe_technique_pdf(domain, technique / 3, technique % 3, position, normal);
     if (!(pdf > 0)) continue;
-    numbers.axis = technique / 3; // rounding may leave a rest behind the last: that one then
+    // Rounding may leave a rest after the last technique, which is then used.
+    numbers.axis = technique / 3;
     numbers.channel = technique % 3;
     found = true;
     if (left < pdf) break;

@@ -9,7 +9,7 @@ namespace dermis::restir {
 namespace {
 
 bool usable(double x) {
-  return x >= 0 && std::isfinite(x); // NaN compares false
+  return x >= 0 && std::isfinite(x); // NaN compares false.
 }
 
 } // namespace

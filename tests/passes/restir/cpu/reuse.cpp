@@ -9,12 +9,12 @@ namespace {
 
 constexpr double min_search_px = 5, max_search_px = 30, search_in_d = 2;
 
-// x / (x + y) for densities, 0 where both are.
+// Returns x / (x + y) for densities, or 0 if both are 0.
 double part(double x, double y) {
   return x > 0 ? x / (x + y) : 0;
 }
 
-// A path as these lights light it in the pixel that it was shifted to.
+// Updates a shifted path to these lights.
 void relight(const Scene& scene, std::span<const Light> lights, const Domain& domain, Shifted& shifted) {
   Reservoir& path = shifted.path;
   if (!(shifted.jacobian > 0)) return;
@@ -129,7 +129,8 @@ Vector3 resolve(const Scene& scene, const Domain& domain, const Reservoir& reser
 
 double search_radius(const Vector3& d, double footprint) {
   const double px = search_in_d * std::max({d[0], d[1], d[2]}) / footprint;
-  return px >= min_search_px ? std::min(px, max_search_px) : min_search_px; // NaN: the least
+  // NaN gives the minimum.
+  return px >= min_search_px ? std::min(px, max_search_px) : min_search_px;
 }
 
 std::array<int, 2> neighbour_offset(double radius, Random& random) {

@@ -1,55 +1,58 @@
 #pragma once
-// Passes over reservoirs: a pixel's own sample, its history, its neighbours, its light.
-// shaders/restir/reuse.glsl mirrors these functions under the same names. Pure but for what the scene
-// is asked; thread: any.
+// Passes over reservoirs: a pixel's own sample, its history, its neighbours and its light.
+// shaders/restir/reuse.glsl mirrors these functions under the same names. Pure except for scene
+// queries; thread: any.
 
 #include "tests/passes/restir/cpu/shift.hpp"
 
 namespace dermis::restir {
 
-// One x2 by a probe, one place on one light, one shadow ray; confidence 1, without a sample too.
+// Samples one x2 by a probe and one place on one light, with one shadow ray. The confidence is 1
+// even without a sample.
 Reservoir draw_initial(const Scene& scene, const Domain& domain, Random& random);
 
 struct ReuseSettings {
-  Shift shift = Shift::reconnection; // of this stage
+  Shift shift = Shift::reconnection; // Shift of this stage.
   Index index = Index::traced;
   double cap = confidence_cap;
 };
 
-// Generalised balance heuristic over both (Lin et al. 2022, "Generalized resampled importance sampling", eq.
-// 35 with confidences): m_i(y) = c_i p_i(T_i^-1 y) |dT_i^-1/dy| / sum_j. `previous_domain` is the pixel of
-// the history. The history's confidence is capped at cap times the frame's. Where the scene had other lights
-// before, each path is lit by those of the frame it is looked at in: no light that went out lives on, none
-// that came is held back.
+// Merges both by the generalised balance heuristic (Lin et al. 2022, "Generalized resampled
+// importance sampling", eq. 35 with confidences): m_i(y) = c_i p_i(T_i^-1 y) |dT_i^-1/dy| / sum_j.
+// `previous_domain` is the pixel of the history. The history's confidence is capped at cap times
+// the frame's confidence. If the lights changed, each path is evaluated with the lights of the
+// frame in question: removed lights disappear at once and new lights appear at once.
 Reservoir merge_temporal(const Scene& scene, const ReuseSettings& settings, const Domain& domain,
                          const Reservoir& current, const Domain& previous_domain, const Reservoir& previous,
                          Random& random);
 
-// Defensive pairwise MIS (Lin et al. 2022, section 7.1.3, with confidences; Bitterli 2022): each neighbour
-// against the own sample alone. With c_c and C_n the confidences of own and of all neighbours, C = c_c + C_n:
+// Defensive pairwise MIS (Lin et al. 2022, section 7.1.3, with confidences; Bitterli 2022): each
+// neighbour is only weighted against the own sample. With the confidences c_c of the own sample and
+// C_n of all neighbours, and C = c_c + C_n:
 //   m_i(y) = c_i / C * C_n p_i / (C_n p_i + c_c p_c)
 //   m_c(y) = c_c / C + sum_i c_i / C * c_c p_c / (C_n p_i + c_c p_c)
 struct Spatial {
   Stream stream;
-  Reservoir own; // with its random numbers, where the shift replays
+  Reservoir own; // Includes its random numbers if the shift replays.
   double own_target = 0, own_mis = 0;
   double neighbours = 0; // C_n
 };
-// `neighbours`: the sum of the confidences of all neighbours that will be added; it decides their weights.
+// `neighbours` is the sum of the confidences of all neighbours that will be added; their weights
+// depend on it.
 Spatial spatial_begin(const Scene& scene, const ReuseSettings& settings, const Domain& domain,
                       const Reservoir& own, double neighbours, Random& random);
 void spatial_add(const Scene& scene, const ReuseSettings& settings, const Domain& domain, Spatial& spatial,
                  const Domain& neighbour_domain, const Reservoir& neighbour, Random& random);
 Reservoir spatial_end(Spatial& spatial, Random& random);
 
-// The pixel's estimate: scattered diffuse light before albedo.
+// Returns the pixel's estimate: scattered diffuse light before albedo.
 Vector3 resolve(const Scene& scene, const Domain& domain, const Reservoir& reservoir);
 
-// How far neighbours are looked for, pixels: 2 max d as the pixel's footprint (its width across the view at
-// x1, in d's unit) shows it, in [5, 30] (supplement, section 5).
+// Returns the search radius for neighbours in pixels: 2 max d over the pixel's footprint (its width
+// across the view at x1, in the unit of d), in [5, 30] (supplement, section 5).
 double search_radius(const Vector3& d, double footprint);
 
-// From a pixel to a neighbour, x and y, uniform over the disc.
+// Returns the x and y offset from a pixel to a neighbour, uniform over the disc.
 std::array<int, 2> neighbour_offset(double radius, Random& random);
 
 } // namespace dermis::restir

@@ -1,6 +1,6 @@
 #pragma once
-// What is asked of a scene: probes, surfaces, visibility, lights. On a device the kernel that includes
-// shaders/restir/scene.glsl defines the same functions over its acceleration structure.
+// Queries of a scene: probes, surfaces, visibility, lights. On a device the kernel that includes
+// shaders/restir/scene.glsl defines equal functions over its acceleration structure.
 
 #include "tests/passes/restir/cpu/lights.hpp"
 #include "tests/passes/restir/cpu/probe.hpp"
@@ -11,23 +11,27 @@ namespace dermis::restir {
 
 struct SurfacePoint {
   Vector3 position{};
-  Vector3 normal{};  // geometric, unit length, outwards: densities are per area of it
-  Vector3 shading{}; // unit length: light falls in by it
+  // Geometric, unit length, outwards; densities are per area perpendicular to it.
+  Vector3 normal{};
+  Vector3 shading{}; // Unit length; used for incoming light.
   uint32_t medium = 0;
 };
 
-// `of` is handed to each function. Functions answer the same for the same question within a frame.
+// `of` is passed to each function. Within a frame a function returns equal results for equal
+// arguments.
 struct Scene {
   const void* of = nullptr;
-  // All hits with surfaces of the medium, front and back, in order of distance; the nearest max_probe_hits.
+  // Finds all hits with surfaces of the medium, front and back, in order of distance; at most the
+  // nearest max_probe_hits.
   void (*trace_probe)(const void* of, const ProbeRay& ray, uint32_t medium, ProbeHits& hits) = nullptr;
   SurfacePoint (*surface_at)(const void* of, uint32_t instance, uint32_t primitive,
                              const Barycentrics& barycentrics) = nullptr;
-  // Is the way from the surface (off which rays are lifted) to the target free?
+  // Whether the segment from the surface to the target is free; ray origins are lifted off the
+  // surface.
   bool (*visible)(const void* of, const SurfacePoint& from, const Vector3& target) = nullptr;
-  std::span<const Light> lights; // shares of all sum to 1
-  // Of the frame before, one for one, where they were others; empty where they were the same. Only
-  // merge_temporal asks; surfaces stand where they stand now.
+  std::span<const Light> lights; // Their fractions sum to 1.
+  // Lights of the previous frame, one for one, if they changed; else empty. Only merge_temporal
+  // reads them; surfaces keep their current positions.
   std::span<const Light> previous_lights{};
 };
 

@@ -6,8 +6,8 @@ namespace dermis::restir {
 
 namespace {
 
-// Surfaces whose normals are this close by cosine may lie in one sheet; this many d apart they count as
-// reached through the body (KIT's implementation; R4).
+// Surfaces whose normals have at least this cosine may belong to one sheet. Points this many d
+// apart count as connected through the body (KIT's implementation; R4).
 constexpr double connectable_cosine = 0.5, connectable_distance_in_d = 2;
 
 SurfacePoint surface_of(const Scene& scene, const Reservoir& path) {
@@ -34,7 +34,7 @@ Shifted replay(const Scene& scene, Shift shift, const Domain& to, const Reservoi
   const ProbeHit& hit = hits.hit[picked_hit(path.numbers.pick, hits.count)];
   const SurfacePoint y2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
   if (shift == Shift::hybrid && connectable(to, y2.position, y2.normal))
-    return result; // would not come back so
+    return result; // The inverse shift would not return the path.
   Reservoir& y = result.path;
   y.density = probe_pdf(to, y2.position, y2.normal);
   result.jacobian = replay_jacobian(path.density, path.hits, y.density, hits.count);

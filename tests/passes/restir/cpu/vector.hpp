@@ -1,5 +1,5 @@
 #pragma once
-// Vectors of three, as the truth has them, with what tracing needs beside. Names as in GLSL.
+// Vectors of three as in the reference, with additional functions for tracing. Names as in GLSL.
 
 #include "passes/common/reference/surface.hpp"
 
@@ -30,7 +30,7 @@ inline Vector3 cross(const Vector3& a, const Vector3& b) {
 inline Vector3 normalize(const Vector3& a) {
   return 1 / length(a) * a;
 }
-// Linear Rec.709 luminance, what all errors are measured in.
+// Linear Rec. 709 luminance, in which all errors are measured.
 inline double luminance(const Vector3& rgb) {
   return dot(rgb, Vector3{0.2126, 0.7152, 0.0722});
 }

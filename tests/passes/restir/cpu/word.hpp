@@ -1,5 +1,5 @@
 #pragma once
-// Numbers as the words of buffers hold them: the bits of a float.
+// Converts numbers to words of buffers: the bits of a float.
 
 #include <bit>
 #include <cstdint>

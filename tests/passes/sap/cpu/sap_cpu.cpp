@@ -11,13 +11,13 @@ namespace dermis::subsurface {
 
 namespace {
 
-// Under these shares the tent is not worth its reads (level 0, coarser levels).
+// Below these fractions the tent is not worth its reads (level 0, coarser levels).
 constexpr double min_fraction_fine = 0.002, min_fraction_coarse = 0.004;
 
 template <class Real> using Color = std::array<Real, 3>;
 
-// Scattered light of a level and the coarser ones, the share of the kernel that met the surface, and
-// confidence.
+// Scattered light of a level and all coarser levels, the fraction of the kernel that met the
+// surface, and the confidence.
 template <class Real> struct Scattered {
   Color<Real> light{}, mass{};
   Real confidence = 0;
@@ -28,18 +28,18 @@ template <class Real> struct SapClimb {
   std::span<const float> table;
   SapVariant variant;
   SapPyramid<Real> pyramid;
-  std::array<std::vector<std::vector<Scattered<Real>>>, 2> scattered{}; // by layer and level
+  std::array<std::vector<std::vector<Scattered<Real>>>, 2> scattered{}; // By layer and level.
 
-  // Off a surface by the nearer of its distances from the tangent plane and in depth, metres.
+  // Returns the smaller of the distances from the tangent plane and in depth, in metres.
   Real off_plane(const SapTexel<Real>& own, const SapTexel<Real>& tap, Real x, Real y) const {
     const Real step = tap.depth - own.depth;
     return sap_nearer(step - pyramid.rise(own, x, y), step);
   }
-  // The same of two planes.
+  // Returns the same distance between two tangent planes.
   Real off_planes(const SapTexel<Real>& own, const SapTexel<Real>& tap, Real x, Real y) const {
     return sap_nearer(off_plane(own, tap, x, y), tap.depth - own.depth - pyramid.rise(tap, x, y));
   }
-  // Of a texel's layers the one that is less off; the first of equals. 2: none is of the profile.
+  // Returns the layer of a texel that is nearer, the first if equal, or 2 if none has the profile.
   template <class Off>
   static size_t nearer_layer(const SapLevel<Real>& level, int x, int y, uint8_t id, Off off) {
     const SapTexel<Real>*first = level.find(0, x, y, id), *second = level.find(1, x, y, id);
@@ -136,7 +136,7 @@ template <class Real> struct SapClimb {
       const Real total = near + mid + far, scale = 1 / std::max(total, Real(sap_negligible));
       const Real mean = rest.light[c] + near * scale * (own.light[c] - rest.light[c]) +
                         mid * scale * (here.light[c] - rest.light[c]);
-      result.light[c] = std::max(mean, Real(0)); // what differences leave by rounding is no light
+      result.light[c] = std::max(mean, Real(0)); // Differences may round below zero.
       result.mass[c] = total;
     }
     result.confidence = centre[widest] * own.mass + fraction[widest] * here.mass[widest] +

@@ -9,11 +9,14 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr double hysteresis = 1.02;       // the first of equals stays the seed
-constexpr double nearest_fraction = 0.25; // a plane is not extrapolated nearer than this share of its depth
+constexpr double hysteresis = 1.02; // The first of equal children stays the seed.
+// A plane is never extrapolated nearer than this fraction of its depth.
+constexpr double nearest_fraction = 0.25;
 constexpr size_t children_a_layer = 16, no_child = 2 * children_a_layer;
-constexpr size_t central[8] = {5, 6, 9, 10, 21, 22, 25, 26}; // of the first layer, of the second
-// What has less left is no seed of the second layer: it lies on the first one's surface, bent.
+// Indices of the central children in the first and the second layer.
+constexpr size_t central[8] = {5, 6, 9, 10, 21, 22, 25, 26};
+// A child with a smaller rest cannot seed the second layer: it belongs to the bent surface of the
+// first layer.
 constexpr double min_seed_part = 0.9;
 
 template <class Real> Real binomial(size_t child) {
@@ -21,10 +24,11 @@ template <class Real> Real binomial(size_t child) {
   return Real(child % 4 % 3 == 0 ? .125 : .375) * Real(child / 4 % 3 == 0 ? .125 : .375);
 }
 
-// The 4x4 children of a parent, of both layers, and where they lie.
+// The 4x4 children of a parent, of both layers, and their positions.
 template <class Real> struct Children {
-  std::array<const SapTexel<Real>*, no_child> texels{}; // null: nothing there
-  std::array<Real, no_child> left{};                    // what no layer of the parent has taken yet
+  std::array<const SapTexel<Real>*, no_child> texels{}; // Null: no surface.
+  // The part that no layer of the parent has taken yet.
+  std::array<Real, no_child> left{};
   Real spacing = 1;
 
   bool may_seed(size_t child) const { return texels[child] && left[child] >= Real(min_seed_part); }
@@ -41,8 +45,8 @@ SapTexel<Real> plane_at_parent(const SapPyramid<Real>& pyramid, const Children<R
   return plane;
 }
 
-// The child whose plane most of the central ones support; without a central one, the weightiest outer one;
-// no_child: none at all.
+// Returns the child whose plane most of the central children support; without a central child, the
+// outer child with the largest weight; no_child if no child is left.
 template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children) {
   size_t best = no_child;
   Real maximum = 0;
@@ -74,7 +78,7 @@ template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Ch
   return best;
 }
 
-// One layer of a parent; what it takes of the children is gone from what they have left.
+// Builds one layer of a parent, and subtracts the used part from what the children have left.
 template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children) {
   const size_t seed = find_seed(pyramid, children);
   if (seed == no_child) return {};
