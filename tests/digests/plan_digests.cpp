@@ -1,5 +1,5 @@
-// Prints a SHA-256 of each plan: all graph files below a folder in every combination of bound slots, then
-// drawn graphs at every packing level and order. usage: plan_digests FOLDER DRAWN
+// Prints a SHA-256 of each plan: all graph files below a folder in every combination of bound
+// slots, then random graphs at every packing level and order. usage: plan_digests FOLDER COUNT
 
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/serial/plan_file.hpp"

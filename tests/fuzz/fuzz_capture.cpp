@@ -1,4 +1,4 @@
-// Any bytes as a frame.json: the profiles that it names are looked for where there are none.
+// Reads any bytes as a frame.json; the profiles that it names do not exist.
 
 #include "framegraph/text/document.hpp"
 #include "integration/tools/files/capture.hpp"

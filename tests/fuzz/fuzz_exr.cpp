@@ -1,4 +1,4 @@
-// Any bytes as a picture of a capture.
+// Reads any bytes as a picture of a capture.
 
 #include "integration/tools/files/exr.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

@@ -1,5 +1,5 @@
-// Any bytes as a graph file: diagnostics or a graph; a graph that compiles passes the verifier
-// and can be written.
+// Reads any bytes as a graph file. The result is diagnostics or a graph; a graph that compiles
+// passes the verifier and can be written.
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/explain/plan_dot.hpp"

@@ -1,6 +1,6 @@
 #pragma once
-// What the fuzz targets share. Each is a law over any bytes: it ends, it stays inside its memory, and what it
-// refuses it explains.
+// Shared by the fuzz targets. For any bytes a target has to terminate, stay within its memory, and
+// explain what it refuses.
 
 #include "framegraph/text/diagnostic.hpp"
 
@@ -15,14 +15,15 @@ inline std::string text_of(const uint8_t* data, size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-// Ends the run as a finding.
+// Aborts the run, which reports the input.
 inline void demand(bool holds, const char* property) {
   if (holds) return;
   std::fprintf(stderr, "broken: %s\n", property);
   std::abort();
 }
 
-// What was refused has an error, and its messages can be written. Always 0, which keeps the input.
+// Checks that refused input has an error, and that its messages can be written. Returns 0, which
+// keeps the input.
 inline int demand_error(const Diagnostics& diagnostics) {
   demand(diagnostics.has_errors(), "refused without an error");
   demand(!format_for_people(diagnostics, diagnostics.list.front()).empty(), "an error without a text");

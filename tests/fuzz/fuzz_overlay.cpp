@@ -1,4 +1,5 @@
-// Any bytes as an overlay on a small graph: diagnostics, or a graph with every change located.
+// Reads any bytes as an overlay on a small graph. The result is diagnostics, or a graph in which
+// every change has a place.
 
 #include "framegraph/compose/compose.hpp"
 #include "framegraph/model/read_graph.hpp"

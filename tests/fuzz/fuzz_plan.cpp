@@ -1,5 +1,5 @@
-// Any bytes as a saved plan: a refusal with an error, or a plan that is written as the same bytes, verified
-// and compared without a step outside of its memory.
+// Reads any bytes as a saved plan. The result is an error, or a plan that is written as equal
+// bytes, and that can be verified and compared within its memory.
 
 #include "framegraph/explain/plan_diff.hpp"
 #include "framegraph/serial/plan_file.hpp"

@@ -1,4 +1,4 @@
-// Any bytes as a profile file.
+// Reads any bytes as a profile file.
 
 #include "framegraph/text/document.hpp"
 #include "passes/common/profiles/profile.hpp"

@@ -1,4 +1,4 @@
-// Any bytes as a scene file.
+// Reads any bytes as a scene file.
 
 #include "integration/examples/demo_engine/scene/read_scene.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

@@ -1,5 +1,6 @@
-// Light over frames (subsurface.accumulate, configs/overlays/accumulate.json): it converges where nothing
-// changes, and starts anew where the camera cuts or a surface comes into sight.
+// Tests accumulation of light over frames (subsurface.accumulate,
+// configs/overlays/accumulate.json). It converges in static scenes, and restarts at camera cuts and
+// disocclusions.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/sequences.hpp"
 
@@ -14,7 +15,7 @@ using properties::SequenceRun;
 
 class Accumulate : public properties::SequenceTest {
 protected:
-  // `clip` "0": history is believed however far it lies from what is around it now.
+  // `clip` "0" accepts the history however far it is from its neighbours.
   static TechniqueRequest over_frames(const std::string& graph, const std::string& clip,
                                       std::vector<NamedValue> set = {}) {
     set.emplace_back("accumulate_clip", clip);
@@ -26,11 +27,11 @@ protected:
   }
 };
 
-TEST_F(Accumulate, NoiseOfAStillSceneFallsAsAMovingMeanOfItsFramesSays) {
+TEST_F(Accumulate, StaticScene_NoiseFallsLikeAMovingMean) {
   const Sequence sequence = properties::standing_still(frames_of("pan", 40, 1), 32);
   Judge judge{sequence};
-  // Frames that begin anew are independent: their moving mean of weight .1 has .1 / 1.9 of the variance, 12.8
-  // dB; .9^30 of the first frame is left.
+  // Hashed frames are independent: a moving mean of weight 0.1 has 0.1 / 1.9 of the variance, a
+  // gain of 12.8 dB. The first frame's weight is 0.9^30.
   const std::vector<NamedValue> independent = {{"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}};
   const SequenceRun single = run(judge, properties::request_of("afis", independent), {28, 29, 30, 31});
   const SequenceRun mean = run(judge, over_frames("afis", "0", independent), {28, 29, 30, 31});
@@ -38,36 +39,38 @@ TEST_F(Accumulate, NoiseOfAStillSceneFallsAsAMovingMeanOfItsFramesSays) {
   RecordProperty("single", std::to_string(single.mean_psnr_db));
   RecordProperty("mean", std::to_string(mean.mean_psnr_db));
   RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
-  // What does not average out is the bias of few samples divided by their own sum.
-  // Regression bound: it follows the product.
+  // The bias of dividing few samples by their own sum does not average out. Regression bound of the
+  // present implementation.
   EXPECT_GT(mean.mean_psnr_db, single.mean_psnr_db + 8);
   EXPECT_LT(mean.mean_psnr_db, single.mean_psnr_db + 12.8 + 0.5);
-  // Regression bound: it follows the product.
-  EXPECT_GT(clipped.mean_psnr_db, mean.mean_psnr_db - 1); // clipping leaves noise around the truth alone
+  // Regression bound of the present implementation.
+  // Clipping leaves noise only around the reference.
+  EXPECT_GT(clipped.mean_psnr_db, mean.mean_psnr_db - 1);
 }
 
-TEST_F(Accumulate, LightThatIsTheSameInEachFrameComesOutAsItWentIn) {
+TEST_F(Accumulate, ConstantLight_IsUnchanged) {
   const Sequence sequence = properties::standing_still(frames_of("pan", 40, 1), 12);
   Judge judge{sequence};
   const SequenceRun now = run(judge, properties::request_of("sap"), {11});
   const SequenceRun mean = run(judge, over_frames("sap", "1.5"), {11});
-  EXPECT_NEAR(mean.mean_psnr_db, now.mean_psnr_db, 0.02); // half floats
+  EXPECT_NEAR(mean.mean_psnr_db, now.mean_psnr_db, 0.02); // Half floats.
 }
 
-TEST_F(Accumulate, AFrameAfterACutShowsNothingOfWhatWasBefore) {
-  const Sequence sequence = frames_of("cut", 54, 10); // the camera jumps at frame 60
+TEST_F(Accumulate, FrameAfterACut_HasNoGhosts) {
+  const Sequence sequence = frames_of("cut", 54, 10); // The camera jumps at frame 60.
   ASSERT_TRUE(sequence.frames[6].cut);
   Judge judge{sequence};
   const SequenceRun now = run(judge, properties::request_of("sap"), {6});
-  const SequenceRun mean = run(judge, over_frames("sap", "0"), {6}); // nothing but validity keeps ghosts away
+  // Only the validity prevents ghosts here.
+  const SequenceRun mean = run(judge, over_frames("sap", "0"), {6});
   EXPECT_EQ(mean.pictures.at(6), now.pictures.at(6));
 }
 
-// Light over frames loses at most half a decibel to the scattered light of the same frames while the camera
-// pans, and still gains at rest what a moving mean gained that kept the light itself.
+// Accumulation loses at most 0.5 dB to the scattered light of equal frames while the camera pans.
+// At rest it gains at least as much as a moving mean of the light itself.
 class AccumulateInAPan : public Accumulate {
 protected:
-  static constexpr uint32_t width = 320, height = 180; // natural framing: d of one pixel
+  static constexpr uint32_t width = 320, height = 180; // Natural framing: d is one pixel.
 
   // Averages frames 25 and later.
   std::pair<double, double> psnr_db(const Sequence& sequence, const std::string& graph,
@@ -91,7 +94,7 @@ protected:
   struct Row {
     std::string graph;
     std::vector<NamedValue> set;
-    // Regression bounds, dB: measured when the mean was of the light itself.
+    // Regression bounds in dB: measured with a mean of the light itself.
     double gain_at_rest_natural, gain_at_rest_close;
   };
   static std::vector<Row> rows() {
@@ -116,7 +119,7 @@ TEST_F(AccumulateInAPan, LosesAtMostHalfADecibelAtCloseFraming) {
   expect_no_loss_in_a_pan(properties::close_d_px);
 }
 
-TEST_F(AccumulateInAPan, GainsAtRestWhatAMeanOfTheLightGains) {
+TEST_F(AccumulateInAPan, AtRest_GainsLikeAMeanOfTheLight) {
   // Both are rendered before anything runs on the device.
   const Sequence natural = properties::standing_still(panning(0, 40, 1), 32);
   const Sequence close = properties::standing_still(panning(properties::close_d_px, 40, 1), 32);
@@ -128,7 +131,7 @@ TEST_F(AccumulateInAPan, GainsAtRestWhatAMeanOfTheLightGains) {
   }
 }
 
-TEST_F(Accumulate, WhatComesIntoSightStartsAnewAndWhatStaysInSightDoesNot) {
+TEST_F(Accumulate, Disocclusion_RestartsOnlyNewPixels) {
   const Sequence sequence = frames_of("pan", 20, 24);
   Judge judge{sequence};
   const SequenceRun now = run(judge, properties::request_of("sap"), {20, 23});
@@ -137,12 +140,12 @@ TEST_F(Accumulate, WhatComesIntoSightStartsAnewAndWhatStaysInSightDoesNot) {
   RecordProperty("now", std::to_string(now.mean_psnr_db));
   RecordProperty("mean", std::to_string(mean.mean_psnr_db));
   RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
-  // The truth is that of each frame's own light, whose edges fall between pixels anew in each frame. Without
-  // clipping the remainder lags behind them.
-  // Regression bounds: they follow the product.
+  // The reference follows each frame's own light, whose edges fall between other pixels in each
+  // frame. Without clipping the remainder lags. Regression bounds of the present implementation.
   EXPECT_GT(mean.mean_psnr_db, now.mean_psnr_db - 2);
   EXPECT_GT(clipped.mean_psnr_db, now.mean_psnr_db - 1);
-  // At the edge that the camera moves towards no past is there: those pixels are this frame's, bit by bit.
+  // At the edge that the camera moves towards no history exists: those pixels equal this frame's
+  // light bit by bit.
   const auto same = [&](uint32_t x0, uint32_t x1) {
     size_t equal = 0, pixels = 0;
     const SequenceFrame& frame = sequence.frames[23];
@@ -161,25 +164,26 @@ TEST_F(Accumulate, WhatComesIntoSightStartsAnewAndWhatStaysInSightDoesNot) {
   RecordProperty("left", std::to_string(left));
   RecordProperty("right", std::to_string(right));
   EXPECT_EQ(std::max(left, right), 1);
-  // Regression bound: it follows the product.
+  // Regression bound of the present implementation.
   EXPECT_LT(middle, 0.2);
 }
 
-TEST_F(Accumulate, LightThatFlashesIsFollowedAndMeantAllTheSame) {
+TEST_F(Accumulate, FlashingLight_IsFollowedAndAveraged) {
   DERMIS_FULL_TESTS_ONLY();
   const Sequence sequence = frames_of("flashing", 0, 32);
   Judge judge{sequence};
-  const std::vector<uint32_t> judged = {20, 22, 23, 26, 29, 31}; // all is dark at 21
+  const std::vector<uint32_t> judged = {20, 22, 23, 26, 29, 31}; // All is dark in frame 21.
   const SequenceRun now = run(judge, properties::request_of("sap_residual"), judged);
   const SequenceRun believing = run(judge, over_frames("sap_residual", "0"), judged),
                     clipped = run(judge, over_frames("sap_residual", "1.5"), judged);
   RecordProperty("now", std::to_string(now.mean_psnr_db));
   RecordProperty("believing", std::to_string(believing.mean_psnr_db));
   RecordProperty("clipped", std::to_string(clipped.mean_psnr_db));
-  // Measured 62.5 dB without history, 63.5 and 63.6 with it.
+  // Measured 62.5 dB without history, and 63.5 and 63.6 dB with history.
   EXPECT_GT(believing.mean_psnr_db, now.mean_psnr_db);
   EXPECT_GT(clipped.mean_psnr_db, now.mean_psnr_db);
-  // Noise of few samples is meant over frames as where light rests, though it is as often dark as bright.
+  // Noise of few samples averages over frames as in static light, because flashing light is dark as
+  // often as bright.
   const std::vector<NamedValue> independent = {{"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}};
   const SequenceRun noisy = run(judge, properties::request_of("afis", independent), judged);
   const SequenceRun mean = run(judge, over_frames("afis", "1.5", independent), judged);

@@ -1,5 +1,5 @@
-// What holds of filtered importance sampling: means, what mips cost and bring, borders, sequences over
-// frames.
+// Properties of filtered importance sampling: means, cost and benefit of mips, borders, and
+// sequences over frames.
 #include "tests/properties/noise.hpp"
 
 #include <cmath>
@@ -16,7 +16,7 @@ Settings quoted(std::vector<std::pair<std::string, std::string>> settings) {
 
 class Afis : public DeviceTest {};
 
-TEST_F(Afis, TheMeanOfManyFramesIsTheTruthAtEveryPixelWithoutMips) {
+TEST_F(Afis, WithoutMips_MeanIsTheReferenceAtEveryPixel) {
   for (const char* channels : {"widest", "mixture"}) {
     const auto run_with = [&](const char* sequence, const char* direct) {
       return expect_the_reference_in_the_mean("afis", quoted({{"samples", "4"},
@@ -26,14 +26,13 @@ TEST_F(Afis, TheMeanOfManyFramesIsTheTruthAtEveryPixelWithoutMips) {
                                                               {"direct", direct},
                                                               {"sequence", sequence}}));
     };
-    EXPECT_NEAR(run_with("hashed", "none"), 1, 0.36) << channels; // three sd
-    // 256 points of one sequence are closer than chance.
-    // Regression bounds: they follow the product.
+    EXPECT_NEAR(run_with("hashed", "none"), 1, 0.36) << channels; // Three sd.
+    // 256 points of one sequence are closer than random points. Regression bounds of the present
+    // implementation.
     EXPECT_LT(run_with("continued", "none"), 0.85) << channels;
     EXPECT_LT(run_with("stratified", "none"), 0.85) << channels;
-    // With the pixel's own light taken exactly there is less noise, and the truth's sub-points (8 x 8 a
-    // pixel) begin to show.
-    // Regression bound: it follows the product.
+    // With the pixel's own light taken exactly, noise is lower, and the reference's sub-points (8 x
+    // 8 per pixel) begin to show. Regression bound of the present implementation.
     EXPECT_LT(run_with("hashed", "inscribed"), 1.6) << channels;
   }
 }
@@ -42,7 +41,7 @@ Settings noise_settings(const char* mips) {
   return quoted({{"samples", "8"}, {"sequence", "hashed"}, {"estimator", "centred"}, {"mips", mips}});
 }
 
-TEST_F(Afis, MipsAreBiasedAndHaveLessError) {
+TEST_F(Afis, Mips_AddBiasAndReduceTheError) {
   const Plane plane = noisy_plane(96, 3);
   const std::vector<double> reference = normalised_reference(plane);
   const Bias without = bias_of("afis", plane, reference, noise_settings("none"), 32);
@@ -51,13 +50,13 @@ TEST_F(Afis, MipsAreBiasedAndHaveLessError) {
     RecordProperty(std::string("rms_") + mips, std::to_string(with.rms));
     RecordProperty(std::string("share_") + mips, std::to_string(with.fraction));
     EXPECT_GT(std::abs(with.sigmas), 10) << mips << ": " << with.fraction;
-    // Regression bound: it follows the product.
+    // Regression bound of the present implementation.
     EXPECT_LT(with.rms, 0.7 * without.rms) << mips;
   }
   RecordProperty("rms_none", std::to_string(without.rms));
 }
 
-// A step and a disc on it.
+// A step with a disc on it.
 Plane step_and_disc() {
   Plane plane;
   plane.width = plane.height = 144;
@@ -75,7 +74,7 @@ double rms_difference(const std::vector<float>& a, const std::vector<float>& b) 
   return std::sqrt(squares / double(a.size() / 3));
 }
 
-TEST_F(Afis, TheErrorFallsWithTheNumberOfSamplesFasterThanThatOfIndependentOnes) {
+TEST_F(Afis, ErrorFallsFasterThanForIndependentSamples) {
   const Plane plane = step_and_disc();
   const std::vector<float> reference = run("fixed", plane, {{"samples", "2048"}}).rgb;
   for (const char* sequence : {"continued", "stratified"}) {
@@ -88,13 +87,13 @@ TEST_F(Afis, TheErrorFallsWithTheNumberOfSamplesFasterThanThatOfIndependentOnes)
     const double slope = (3 * (logs[3] - logs[0]) + (logs[2] - logs[1])) / 10;
     RecordProperty(std::string("slope_") + sequence, std::to_string(slope));
     RecordProperty(std::string("rms_16_") + sequence, std::to_string(std::exp2(logs[1])));
-    // Regression bounds: they follow the product.
+    // Regression bounds of the present implementation.
     EXPECT_LT(slope, -0.55) << sequence;
     EXPECT_GT(slope, -1.2) << sequence;
   }
 }
 
-TEST_F(Afis, AverageFramesComeCloserWhereTheSequenceGoesOn) {
+TEST_F(Afis, ContinuedSequence_AveragesBetter) {
   const Plane plane = step_and_disc();
   const std::vector<float> reference = run("fixed", plane, {{"samples", "2048"}}).rgb;
   const auto error = [&](const char* sequence) {
@@ -111,7 +110,7 @@ TEST_F(Afis, AverageFramesComeCloserWhereTheSequenceGoesOn) {
   RecordProperty("hashed", std::to_string(hashed));
   RecordProperty("continued", std::to_string(continued));
   RecordProperty("stratified", std::to_string(stratified));
-  // Regression bounds: they follow the product.
+  // Regression bounds of the present implementation.
   EXPECT_LT(continued, 0.85 * hashed);
   EXPECT_LT(stratified, 0.85 * hashed);
 }
@@ -134,7 +133,7 @@ TEST_F(Afis, WhiteLightStaysWhiteWithEverySetting) {
   expect_white("afis_seed", {{"samples", "16"}});
 }
 
-TEST_F(Afis, LightStaysInItsProfileThroughEveryLevel) {
+TEST_F(Afis, NoLevelLeaksIntoOtherProfiles) {
   Plane plane;
   plane.width = plane.height = 128;
   plane.d_px = {8, 4, 2};
@@ -149,7 +148,7 @@ TEST_F(Afis, LightStaysInItsProfileThroughEveryLevel) {
   }
 }
 
-TEST_F(Afis, NoScatteringLeavesLightExactlyAsItWas) {
+TEST_F(Afis, NoScattering_ReturnsTheLightExactly) {
   Plane plane = noisy_plane(64, 4);
   plane.d_px = {4, 0, 0};
   for (const char* channels : {"widest", "mixture"}) {

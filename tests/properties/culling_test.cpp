@@ -1,4 +1,5 @@
-// The surface-aware pyramid skips tiles without subsurface: what it leaves unwritten must not show.
+// The surface-aware pyramid skips tiles without subsurface; the skipped contents must not affect
+// the picture.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/plane.hpp"
 
@@ -14,7 +15,7 @@ class Culling : public DeviceTest, public ::testing::WithParamInterface<const ch
 INSTANTIATE_TEST_SUITE_P(Properties, Culling, ::testing::Values("base", "smooth", "half"),
                          [](const auto& one) { return std::string(one.param); });
 
-// An island with ragged borders, in a picture of its own.
+// An island with ragged borders, in a picture of its own size.
 Plane island() {
   Plane plane;
   plane.width = 160;
@@ -31,7 +32,8 @@ Plane island() {
   return plane;
 }
 
-// The same among empty tiles, where every level's grid lies on it as in its own picture (256 px).
+// The same island among empty tiles, aligned to the grids of all levels as in its own picture (256
+// px).
 Plane among_empty_tiles(const Plane& alone) {
   Plane plane = alone;
   plane.width = 512;
@@ -44,7 +46,7 @@ Plane among_empty_tiles(const Plane& alone) {
   return plane;
 }
 
-TEST_P(Culling, WhatAnEarlierFrameLeftInTilesThatAreNowEmptyChangesNoBit) {
+TEST_P(Culling, StaleContentsOfEmptyTiles_ChangeNoBit) {
   if (std::string_view(GetParam()) == "base") DERMIS_FULL_TESTS_ONLY();
   const char* const graph = std::string_view(GetParam()) == "half" ? "skin" : "sap";
   const Settings settings = {{"variant", std::string("\"") + GetParam() + "\""}};

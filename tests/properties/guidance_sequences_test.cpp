@@ -1,5 +1,5 @@
-// How many samples guidance takes over frames: as many as the light's own size asks for, whatever units it
-// comes in.
+// Tests the number of samples that guidance takes over frames: the number follows the light's
+// relative variation in any unit.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/noise.hpp"
 #include "tests/properties/sequences.hpp"
@@ -22,15 +22,15 @@ protected:
   }
 };
 
-TEST_F(GuidedSequence, LightInOtherUnitsUnderAnotherExposureTakesAsManySamples) {
-  // From frame 6 on the host's light has a sixteenth of its size and the exposure is sixteen times as large.
+TEST_F(GuidedSequence, UnitsAndExposure_DoNotChangeSampleCounts) {
+  // From frame 6 on the host's light is 16 times smaller and the exposure 16 times larger.
   constexpr uint32_t frames = 12, changed = 6;
   const Sequence same = properties::standing_still(frames_of("pan", 40, 1), frames);
   Sequence other = same;
   for (uint32_t t = changed; t < frames; ++t) {
     CapturedFrame& frame = other.frames[t].captured;
     for (float& value : frame.lighting.values)
-      value /= 16; // exact in half floats
+      value /= 16; // Exact in half floats.
     frame.description.exposure *= 16;
   }
   Judge judge{same}, other_judge{other};
@@ -45,9 +45,9 @@ TEST_F(GuidedSequence, LightInOtherUnitsUnderAnotherExposureTakesAsManySamples) 
   }
 }
 
-TEST_F(GuidedSequence, AControlAsksForNoMoreSamplesThanNoneWhereAllLightTrembles) {
+TEST_F(GuidedSequence, GlobalFlicker_ControlNeedsNoMoreSamples) {
   DERMIS_FULL_TESTS_ONLY();
-  // All light times 1 +- .02, drawn anew in each frame: what candles and compressed textures do.
+  // All light times 1 +- 0.02, random in each frame, like candles and compressed textures.
   constexpr uint32_t frames = 36, counted = 18;
   Sequence sequence = properties::standing_still(frames_of("pan", 40, 1), frames);
   for (uint32_t t = 0; t < frames; ++t)
@@ -63,10 +63,10 @@ TEST_F(GuidedSequence, AControlAsksForNoMoreSamplesThanNoneWhereAllLightTrembles
     return sum;
   };
   const double none = mean("spvg");
-  EXPECT_LE(mean("ocv"), 1.005 * none); // C16; half a percent for the rounding of whole samples
+  EXPECT_LE(mean("ocv"), 1.005 * none); // C16; 0.5 % for the rounding of whole samples.
 }
 
-// Noise on a plane, alike everywhere.
+// Noise on a plane with uniform statistics.
 Sequence plane_of_noise(uint32_t frames) {
   constexpr uint32_t side = 128;
   CapturedFrame frame;
@@ -81,7 +81,7 @@ Sequence plane_of_noise(uint32_t frames) {
   subsurface::Profile profile;
   profile.name = "plane";
   profile.albedo = {0.33, 0.33, 0.33};
-  profile.dmfp_mm = {14, 14, 14}; // 3.5 d at this albedo; d is 4 pixels
+  profile.dmfp_mm = {14, 14, 14}; // 3.5 d at this albedo; d is 4 pixels.
   profile.d_mm = {4, 4, 4};
   description.profiles.push_back({1, profile});
   frame.lighting = Image::sized(side, side, 3);
@@ -95,11 +95,11 @@ Sequence plane_of_noise(uint32_t frames) {
   return properties::standing_still(std::move(sequence), frames);
 }
 
-TEST_F(GuidedSequence, HalfSequencesTakeAsManyMoreSamplesUnderLightThatFlashesAsItsVarianceAsksFor) {
+TEST_F(GuidedSequence, FlashingLight_SamplesFollowTheVariance) {
   DERMIS_FULL_TESTS_ONLY();
-  // All light times 1 + sin: its square, and with it the variance, is 1.5 times as large in the mean. Without
-  // mips the variance of n samples of noise is that of one over n; where mips average over what n samples
-  // leave between them, noise of single pixels spreads as much however many they are.
+  // All light times 1 + sin: its square, and so the variance, is 1.5 times as large on average.
+  // Without mips the variance of n samples of noise is 1/n of one sample's. With mips, which
+  // average between n samples, pixel noise stays equal for any n.
   constexpr uint32_t frames = 61, counted = 25, period = 12;
   const Sequence still = plane_of_noise(frames);
   Sequence flashing = still;
@@ -116,7 +116,7 @@ TEST_F(GuidedSequence, HalfSequencesTakeAsManyMoreSamplesUnderLightThatFlashesAs
       sum += run.samples[t] / (3 * period);
     return sum;
   };
-  const auto clamped = [](const SequenceRun& run) { // share of pixels
+  const auto clamped = [](const SequenceRun& run) { // Fraction of pixels.
     const std::vector<float>& sampling = run.sampling.at(60);
     double count = 0;
     for (size_t i = 0; i < sampling.size(); i += 3)
@@ -127,7 +127,7 @@ TEST_F(GuidedSequence, HalfSequencesTakeAsManyMoreSamplesUnderLightThatFlashesAs
   RecordProperty("flashing", std::to_string(mean(two)));
   RecordProperty("still_clamped", std::to_string(clamped(one)));
   RecordProperty("flashing_clamped", std::to_string(clamped(two)));
-  // Regression bounds: they follow the product.
+  // Regression bounds of the present implementation.
   EXPECT_GE(mean(one), 16);
   EXPECT_LE(mean(one), 24);
   EXPECT_LT(clamped(one), 0.02);

@@ -1,4 +1,4 @@
-// What guidance must and must not change: the number of samples, and nothing else.
+// Guidance changes only the number of samples.
 #include "tests/properties/noise.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ Plane step() {
   return plane;
 }
 
-TEST_F(Guided, ShadingIsBitIdenticalForEqualNumbersWhateverIsWatched) {
+TEST_F(Guided, EqualSampleCounts_GiveEqualBits) {
   const Settings forced = {{"min_samples", "16"}, {"max_samples", "16"}};
   std::vector<Picture> first;
   run_frames("afis_guided", step(), with("spvg", forced), 3,

@@ -16,12 +16,12 @@ using namespace dermis::tools;
 
 namespace {
 
-constexpr double scan_height_m = 0.426;      // .24 m from chin to crown
-constexpr double step_m = 1e-3, step_px = 4; // a depth step is further than both
+constexpr double scan_height_m = 0.426;      // 0.24 m from chin to crown.
+constexpr double step_m = 1e-3, step_px = 4; // A depth step is larger than both.
 constexpr double edge_min_px = 2, edge_max_px = 12;
 constexpr float sure_from = 0.9f;
 
-// Pixels within d (2 to 12 pixels) of a depth step or of another material.
+// Returns the pixels within d (2 to 12 pixels) of a depth step or of another material.
 std::vector<bool> near_edges(const ReferenceFrame& frame) {
   const int width = static_cast<int>(frame.width), height = static_cast<int>(frame.height);
   const double pixel = std::sqrt(std::abs(frame.rays.scale_x * frame.rays.scale_y));
@@ -70,7 +70,8 @@ std::vector<HeadFraming> head_framings() {
 }
 
 void HeadTest::show(const HeadFraming& framing, uint32_t width, uint32_t height, uint32_t maximum) {
-  close_host(); // rendering makes one of its own, and Vulkan's functions are loaded for one at a time
+  // Rendering creates another device, and Vulkan functions are loaded for one device at a time.
+  close_host();
   SubjectOptions options{width, height, {}};
   if (framing.scan) {
     const char* named = std::getenv("DERMIS_HEAD");

@@ -108,8 +108,8 @@ Bias bias_of(const std::string& graph, const Plane& plane, const std::vector<dou
 }
 
 double expect_the_reference_in_the_mean(const std::string& graph, const Settings& settings) {
-  // 8 x 8 copies of one small picture, 50 d apart in depth and each with hashes of its own, over 64 frames:
-  // 4096 independent frames of it.
+  // 8 x 8 copies of a small picture, 50 d apart in depth with separate hashes, over 64 frames: 4096
+  // independent frames.
   constexpr uint32_t side = 12, copies = 8, frames = 64;
   constexpr double n = copies * copies * frames;
   const Plane small = noisy_plane(side, 1.0);
@@ -133,10 +133,10 @@ double expect_the_reference_in_the_mean(const std::string& graph, const Settings
   double z_square = 0;
   for (size_t i = 0; i < reference.size(); ++i) {
     const double z = (sum[i] - reference[i]) / std::sqrt((square[i] - sum[i] * sum[i]) / (n - 1));
-    EXPECT_LT(std::abs(z), 4) << "value " << i; // of 432 values .03 beyond 4 sigma are expected
+    EXPECT_LT(std::abs(z), 4) << "value " << i; // Of 432 values, 0.03 are expected beyond 4 sigma.
     z_square += z * z / double(reference.size());
   }
-  return z_square; // 144 independent pixels, three alike channels: sd .12
+  return z_square; // 144 independent pixels with three equal channels: sd 0.12.
 }
 
 } // namespace properties

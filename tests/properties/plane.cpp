@@ -21,7 +21,7 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
-// A profile whose shape parameters are the given ones, in metres: at albedo .33 the scaling is 3.5.
+// Returns a profile with the given shape parameters in metres: at albedo 0.33 the scaling is 3.5.
 std::string profile_text(const Plane& plane) {
   if (!plane.profile_file.empty()) return plane.profile_file;
   auto dmfp = [&](size_t c) {
@@ -32,8 +32,8 @@ std::string profile_text(const Plane& plane) {
                      dmfp(0), dmfp(1), dmfp(2));
 }
 
-// Looking down -z, pixels of one pitch, clip space y down; depth range is of no account: the frame gives view
-// depth.
+// Looks down -z with one pixel pitch and clip space y down. The depth range has no effect, because
+// the frame contains view depth.
 std::array<float, 16> orthographic(double width_m, double height_m) {
   std::array<float, 16> m{};
   m[0] = static_cast<float>(2 / width_m);
@@ -145,7 +145,8 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
     frame.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
     for (uint32_t i = 0; i < frames; ++i) {
       if (plane.earlier_profile) upload("material", i + 1 < frames ? uploads.earlier_id : uploads.id, 1);
-      if (i > 0) upload("lighting", uploads.light, 3); // the graph has put scattered light there
+      // The graph has written scattered light there.
+      if (i > 0) upload("lighting", uploads.light, 3);
       const auto ran = (*device)->run(frame);
       EXPECT_TRUE(ran) << ran.error().text;
       auto pixels = (*device)->read_rgb("scattered_light");

@@ -1,6 +1,6 @@
 #pragma once
-// A plane that faces an orthographic camera, run through a shipped graph on the device: where the closed
-// forms hold.
+// Runs a shipped graph on the device, on a plane that faces an orthographic camera, for which
+// closed forms exist.
 
 #include <gtest/gtest.h>
 
@@ -18,18 +18,22 @@ using Rgb = std::array<double, 3>;
 struct Plane {
   uint32_t width = 256, height = 256;
   double pixel_pitch_m = 1e-3;
-  std::array<double, 3> d_px = {4, 4, 4}; // of profile 1, in pixels; profile 2 has the same
+  std::array<double, 3> d_px = {4, 4, 4}; // d of profile 1 in pixels; profile 2 has the same d.
   std::function<float(double x, double y)> light = [](double, double) {
     return 1.0f;
-  }; // pixel centres: integers
+  }; // Pixel centres are integers.
   std::function<uint8_t(int x, int y)> profile = [](int, int) { return uint8_t{1}; };
-  std::function<uint8_t(int x, int y)> earlier_profile; // of all frames but the last; empty: as `profile`
+  // Profile of all frames except the last; empty: equal to `profile`.
+  std::function<uint8_t(int x, int y)> earlier_profile;
   std::function<float(int x, int y)> depth_m = [](int, int) { return 1.0f; };
-  std::function<float(int x, int y)> scatter_scale; // empty: not bound
-  std::array<uint32_t, 4> rectangle = {0, 0, 0, 0}; // of the allocated size; width 0: all of it
-  std::function<float(int x, int y)> thickness_m;   // empty: not bound, nor light from behind, which is 1
-  std::string overlay;                              // of configs/overlays/, without .json; "": none
-  std::string profile_file; // text of a profile for both ids, in place of d_px; "": Burley with d_px
+  std::function<float(int x, int y)> scatter_scale; // Empty: not bound.
+  // Rectangle of the allocated size; width 0: all of it.
+  std::array<uint32_t, 4> rectangle = {0, 0, 0, 0};
+  // Empty: neither thickness nor back lighting is bound. Back lighting is 1.
+  std::function<float(int x, int y)> thickness_m;
+  std::string overlay; // Name in configs/overlays/ without .json; "": none.
+  // Text of a profile for both ids, in place of d_px; "": Burley with d_px.
+  std::string profile_file;
 };
 
 struct Picture {
@@ -39,16 +43,16 @@ struct Picture {
   double at(uint32_t x, uint32_t y, uint32_t c) const { return rgb[3 * (size_t{y} * width + x) + c]; }
 };
 
-using Settings = std::vector<std::pair<std::string, std::string>>; // name, JSON text
+using Settings = std::vector<std::pair<std::string, std::string>>; // Name, JSON text.
 
-// Runs configs/graphs/<graph>.json under the validation layer and returns `scattered_light`. Fails the test
-// on any error and on any validation message.
+// Runs configs/graphs/<graph>.json under the validation layer and returns `scattered_light`. Fails
+// the test on any error and on any validation message.
 Picture run(const std::string& graph, const Plane& plane, const Settings& settings);
-// The same for many frames, whose indices begin at 1; `each` sees every picture.
+// Runs many frames, whose indices begin at 1; calls `each` with every picture.
 void run_frames(const std::string& graph, const Plane& plane, const Settings& settings, uint32_t frames,
                 const std::function<void(const Picture&)>& each);
 
-// Why tests of this room cannot run here; "" when they can. The answer is found once.
+// Returns why tests of this folder cannot run here, or "" if they can. The result is cached.
 const std::string& missing();
 
 class DeviceTest : public ::testing::Test {

@@ -1,4 +1,5 @@
-// What must hold on a plane that faces the viewer, for every technique (closed forms of truth/analytic.hpp).
+// Properties of every technique on a plane that faces the viewer (closed forms of
+// truth/analytic.hpp).
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/plane.hpp"
 
@@ -19,7 +20,8 @@ struct Technique {
   const char* name;
   const char* graph;
   Settings settings;
-  double placement = 0; // by how much a result may depend on where in an image it stands (1 = range of light)
+  // The allowed change of a result with its position in the image (1 = range of light).
+  double placement = 0;
 };
 
 void PrintTo(const Technique& technique, std::ostream* out) {
@@ -36,7 +38,7 @@ const Technique sap_smooth{"sap_smooth", "sap", {{"variant", "\"smooth\""}}};
 const Technique sap_half{"sap_half", "skin", {{"variant", "\"half\""}}};
 const Technique sap_layered{"sap_layered", "sap_layered", {}};
 
-// Filtered reads take their weights from coordinates over the image's size, which round.
+// Filtered reads compute their weights from coordinates over the image's size, which round.
 const Technique pyramid{"pyramid", "pyramid", {}, 1e-3};
 const Technique fixed_16{"fixed_16", "fixed", {{"samples", "16"}}};
 const Technique fixed_published{
@@ -45,7 +47,7 @@ const Technique fixed_published{
     {{"inverse", "\"approximate\""}, {"weighting", "\"profile\""}, {"direct", "\"circumscribed\""}}};
 const Technique jimenez_17{"jimenez_17", "separable_jimenez", {{"taps", "\"17\""}}};
 
-// Those of which another with the same kernels is there, too.
+// Techniques that share their kernels with another technique here.
 constexpr std::array<std::string_view, 4> in_full_tests = {"separable_11", "separable_17", "sap_base",
                                                            "fixed_published"};
 
@@ -65,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Properties, EveryTechnique,
                                            fixed_published, jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
-// All but the plain pyramid know other profiles and depth.
+// All except the plain pyramid use profiles and depth.
 class SurfaceTechnique : public EveryTechnique {};
 
 INSTANTIATE_TEST_SUITE_P(Properties, SurfaceTechnique,
@@ -80,11 +82,11 @@ TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {
     plane.d_px = {d, 0.38 * d, 0.19 * d};
     const Picture picture = scatter(plane);
     for (const float value : picture.rgb)
-      ASSERT_NEAR(value, 1.0f, 1e-3) << "d = " << d << " px"; // fp16 storage: 2^-11 at 1
+      ASSERT_NEAR(value, 1.0f, 1e-3) << "d = " << d << " px"; // fp16 storage: 2^-11 at 1.
   }
 }
 
-TEST_P(EveryTechnique, FlatLightOfAnyBrightnessStaysFlatOnAnySurface) {
+TEST_P(EveryTechnique, FlatLightStaysFlatOnAnySurface) {
   for (const float value : {0.0123f, 0.7f, 37.3f}) {
     Plane plane;
     plane.width = 75;
@@ -96,13 +98,13 @@ TEST_P(EveryTechnique, FlatLightOfAnyBrightnessStaysFlatOnAnySurface) {
     for (uint32_t y = 0; y < plane.height; ++y)
       for (uint32_t x = 0; x < plane.width; ++x)
         ASSERT_NEAR(picture.at(x, y, 1) / double(value), 1, 2e-3)
-            << x << " " << y; // fp16 storage: 5e-4 a step
+            << x << " " << y; // fp16 storage: 5e-4 per step.
   }
 }
 
-TEST_P(EveryTechnique, WithoutScatteringTheInputComesBackBitForBit) {
+TEST_P(EveryTechnique, NoScattering_ReturnsTheInputBitForBit) {
   Plane plane;
-  plane.width = 67; // odd on purpose
+  plane.width = 67; // Deliberately odd.
   plane.height = 43;
   plane.d_px = {0, 0, 0};
   plane.light = [](double x, double y) {
@@ -115,7 +117,7 @@ TEST_P(EveryTechnique, WithoutScatteringTheInputComesBackBitForBit) {
         ASSERT_EQ(static_cast<float>(picture.at(x, y, c)), plane.light(x, y));
 }
 
-TEST_P(EveryTechnique, ANarrowChannelWithoutScatteringComesBackBitForBitBesideAWideOne) {
+TEST_P(EveryTechnique, ChannelWithoutScattering_IsUnchangedBitForBit) {
   Plane plane;
   plane.width = plane.height = 64;
   plane.d_px = {5, 2, 0};
@@ -126,7 +128,7 @@ TEST_P(EveryTechnique, ANarrowChannelWithoutScatteringComesBackBitForBitBesideAW
   EXPECT_GT(picture.at(31, 9, 0), 0.2);
 }
 
-TEST_P(SurfaceTechnique, TwoMaterialsSideBySideDoNotLeakIntoEachOther) {
+TEST_P(SurfaceTechnique, AdjacentMaterialsDoNotLeak) {
   Plane plane;
   plane.width = plane.height = 64;
   plane.light = [](double x, double) { return x < 32 ? 1.0f : 0.0f; };
@@ -137,28 +139,28 @@ TEST_P(SurfaceTechnique, TwoMaterialsSideBySideDoNotLeakIntoEachOther) {
       ASSERT_NEAR(picture.at(x, y, 0), x < 32 ? 1.0 : 0.0, 1e-3);
 }
 
-TEST_P(SurfaceTechnique, ADepthStepFarBeyondTheRadiusDoesNotLeak) {
+TEST_P(SurfaceTechnique, LargeDepthStepDoesNotLeak) {
   Plane plane;
   plane.width = plane.height = 64;
   plane.light = [](double x, double) { return x < 32 ? 1.0f : 0.0f; };
-  plane.depth_m = [](int x, int) { return x < 32 ? 1.0f : 1.4f; }; // 100 d of 4 mm
+  plane.depth_m = [](int x, int) { return x < 32 ? 1.0f : 1.4f; }; // 100 d of 4 mm.
   const Picture picture = scatter(plane);
   for (uint32_t y = 0; y < plane.height; ++y)
     for (uint32_t x = 0; x < plane.width; ++x)
       ASSERT_NEAR(picture.at(x, y, 0), x < 32 ? 1.0 : 0.0, 1e-3);
 }
 
-TEST_P(EveryTechnique, ALonePixelOfSubsurfaceKeepsItsLight) {
+TEST_P(EveryTechnique, SinglePixelKeepsItsLight) {
   Plane plane;
   plane.width = plane.height = 32;
   plane.light = [](double x, double y) { return x == 13 && y == 17 ? 0.75f : 0.25f; };
   plane.profile = [](int x, int y) { return static_cast<uint8_t>(x == 13 && y == 17 ? 1 : 0); };
   const Picture picture = scatter(plane);
   EXPECT_EQ(picture.at(13, 17, 0), 0.75);
-  EXPECT_EQ(picture.at(12, 17, 0), 0.25); // no subsurface: untouched
+  EXPECT_EQ(picture.at(12, 17, 0), 0.25); // No subsurface: unchanged.
 }
 
-TEST_P(EveryTechnique, ScatterScaleZeroIsDiffuseAndTwoIsTwiceTheRadius) {
+TEST_P(EveryTechnique, ScatterScale_ZeroIsDiffuseTwoDoublesTheRadius) {
   Plane plane;
   plane.width = plane.height = 96;
   plane.light = [](double x, double) { return x < 47.5 ? 0.0f : 1.0f; };
@@ -173,10 +175,10 @@ TEST_P(EveryTechnique, ScatterScaleZeroIsDiffuseAndTwoIsTwiceTheRadius) {
   plane.d_px = {8, 8, 8};
   const Picture wide = scatter(plane);
   for (size_t i = 0; i < wide.rgb.size(); ++i)
-    ASSERT_NEAR(doubled.rgb[i], wide.rgb[i], 2e-3); // the same kernel but for fp32 rounding of d
+    ASSERT_NEAR(doubled.rgb[i], wide.rgb[i], 2e-3); // Equal kernels except for fp32 rounding of d.
 }
 
-TEST_P(EveryTechnique, LightThatIsNotANumberHasNoFootprint) {
+TEST_P(EveryTechnique, NaNLight_DoesNotSpread) {
   Plane plane, clean;
   plane.width = plane.height = clean.width = clean.height = 64;
   const auto base = [](double x, double y) {
@@ -195,7 +197,7 @@ TEST_P(EveryTechnique, LightThatIsNotANumberHasNoFootprint) {
     ASSERT_EQ(poisoned.rgb[i], expected.rgb[i]);
 }
 
-TEST_P(EveryTechnique, ARectangleInsideTheImagesGivesThePictureOfItsOwnSize) {
+TEST_P(EveryTechnique, RectangleInsideImages_MatchesItsOwnSize) {
   Plane whole;
   whole.width = 72;
   whole.height = 56;
@@ -226,14 +228,16 @@ TEST_P(EveryTechnique, OddAndTinySizesWork) {
   }
 }
 
-// The edge of a half plane of light, over columns: mean error, and the root mean square over pixels.
+// The error at the edge of a half plane of light: the worst mean of a column, and the RMS over
+// pixels.
 struct EdgeError {
   double worst_column_mean = 0, rms = 0;
 };
 
 EdgeError edge_error(const Technique& technique, double d_px, uint32_t channel_of_ratio = 0) {
   constexpr uint32_t width = 192, height = 256;
-  constexpr uint32_t margin = 40; // columns near the border see less light than the infinite half plane
+  // Columns near the border receive less light than the infinite half plane.
+  constexpr uint32_t margin = 40;
   const std::array<double, 3> ratio = {1, 0.38, 0.19};
   Plane plane;
   plane.width = width;
@@ -265,22 +269,23 @@ TEST_F(Edge, BurleyAt256SamplesFollowsTheClosedForm) {
     for (uint32_t channel = 0; channel < 3; ++channel) {
       const EdgeError error = edge_error(burley_256, d, channel);
       RecordProperty("rms", std::to_string(error.rms));
-      // Regression bounds: they follow the product.
+      // Regression bounds of the present implementation.
       EXPECT_LE(error.worst_column_mean, 0.005) << d << " px, channel " << channel;
       EXPECT_LE(error.rms, 0.006) << d << " px, channel " << channel;
     }
 }
 
-TEST_F(Edge, SeparableStaysWithinItsDocumentedFloor) {
-  // docs/techniques.md, "Floors": rms over 112 columns around an edge, widest channel, 25 taps.
-  // Regression bounds: they follow the product.
+TEST_F(Edge, SeparableIsWithinItsDocumentedError) {
+  // docs/techniques.md, "Floors": RMS over 112 columns around an edge, widest channel, 25 taps.
+  // Regression bounds of the present implementation.
   EXPECT_LE(edge_error(separable_25, 2.0).rms, 0.008);
   EXPECT_LE(edge_error(separable_25, 4.0).rms, 0.0135);
 }
 
-TEST_F(Edge, ThePyramidFollowsTheTruthUpToTheBorder) {
-  // Against the truth, not the closed form: near the picture's border, 24 d from the edge, the truth itself
-  // departs from an infinite plane by 3.7e-3 rms. The technique promises 2e-3; fp16 storage adds below 5e-4.
+TEST_F(Edge, PyramidMatchesTheReferenceUpToTheBorder) {
+  // Compared with the reference instead of the closed form: near the picture's border, 24 d from
+  // the edge, the reference itself differs from an infinite plane by 3.7e-3 RMS. The technique's
+  // bound is 2e-3; fp16 storage adds less than 5e-4.
   namespace sss = dermis::subsurface;
   for (const double d : {2.0, 4.0}) {
     Plane plane;
@@ -314,9 +319,9 @@ TEST_F(Edge, ThePyramidFollowsTheTruthUpToTheBorder) {
   }
 }
 
-TEST_F(Edge, ASinusoidKeepsTheContrastOfTheModulationTransfer) {
-  // B = 1/2 + 1/2 cos(k x) is constant over a pixel, which takes sinc(f) of the contrast. Whole periods
-  // across the picture, projected on cos(k x) in its inner part.
+TEST_F(Edge, SinusoidContrastMatchesTheTransferFunction) {
+  // B = 1/2 + 1/2 cos(k x) is constant over a pixel, which reduces the contrast by sinc(f). Whole
+  // periods across the picture, projected on cos(k x) in its inner part.
   constexpr double d = 6.0;
   for (const double kd : {0.5, 1.0, 2.0}) {
     constexpr uint32_t width = 512, height = 160, margin = 120;
@@ -336,7 +341,7 @@ TEST_F(Edge, ASinusoidKeepsTheContrastOfTheModulationTransfer) {
       }
     const double contrast = 2 * (n * syc - sc * sy) / (n * scc - sc * sc);
     const double expected = dermis::subsurface::burley_mtf(k, d) * std::sin(k / 2) / (k / 2);
-    EXPECT_NEAR(contrast, expected, 0.01) << "k d = " << kd; // 10 d to the next border
+    EXPECT_NEAR(contrast, expected, 0.01) << "k d = " << kd; // 10 d to the next border.
   }
 }
 

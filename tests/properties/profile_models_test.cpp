@@ -1,4 +1,4 @@
-// Every technique reproduces the profile it is given, whatever its model, on a plane against the truth.
+// Every technique reproduces any profile model, compared with the reference on a plane.
 #include "tests/properties/plane.hpp"
 
 #include "passes/common/profiles/profile.hpp"
@@ -15,8 +15,8 @@ struct Case {
   const char* name;
   const char* graph;
   Settings settings;
-  const char* profile; // in configs/profiles
-  double rmse;         // at most, of any channel, on light in 0..1
+  const char* profile; // In configs/profiles.
+  double rmse;         // Maximum over the channels, for light in 0..1.
 };
 
 void PrintTo(const Case& one, std::ostream* out) {
@@ -40,7 +40,7 @@ float discs(double x, double y) {
 
 class EveryModel : public DeviceTest, public ::testing::WithParamInterface<Case> {};
 
-TEST_P(EveryModel, IsReproducedWithinTheTechniquesOwnError) {
+TEST_P(EveryModel, IsReproducedWithinTheTechniquesError) {
   const Case& one = GetParam();
   const sss::Profile profile =
       read(std::string(DERMIS_SOURCE_DIR "/configs/profiles/") + one.profile + ".json");
@@ -89,7 +89,7 @@ TEST_P(EveryModel, IsReproducedWithinTheTechniquesOwnError) {
     RecordProperty(c == 0 ? "rmse_red" : c == 1 ? "rmse_green" : "rmse_blue", std::to_string(rmse));
     EXPECT_LE(rmse, one.rmse) << "channel " << c;
   }
-  EXPECT_GT(std::sqrt(moved), 0.05); // or the test says nothing
+  EXPECT_GT(std::sqrt(moved), 0.05); // Scattering has to change the picture enough.
 }
 
 const Settings many = {{"samples", "256"}};

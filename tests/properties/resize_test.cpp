@@ -1,6 +1,5 @@
-// What was learned before the view was resized is of use afterwards: histories are rescaled and found again
-// along surfaces. On the sculpted bust, to a smaller size, with DERMIS_TESTS_FULL to a larger and an odd one
-// as well.
+// Histories stay useful after a resize: they are rescaled and reprojected along surfaces. The tests
+// use the sculpted bust and a smaller size; DERMIS_TESTS_FULL adds a larger and an odd size.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/sequences.hpp"
 
@@ -21,9 +20,10 @@ struct Size {
 };
 constexpr Size before{properties::sequence_width, properties::sequence_height};
 constexpr Size larger{361, 203}, smaller{163, 91}, odd{241, 135};
-constexpr uint32_t learned = 24, after = 3; // frames before the view is resized, and from then on
+// Frames before the view is resized, and frames from then on.
+constexpr uint32_t learned = 24, after = 3;
 
-// First one, then the other; the camera may stand a little nearer.
+// Concatenates two sequences; the camera may be a little nearer in the second.
 Sequence one_after_the_other(Sequence first, const Sequence& second) {
   const subsurface::Matrix4 last = first.frames.back().captured.description.clip_from_view;
   const size_t at = first.frames.size();
@@ -50,7 +50,7 @@ protected:
   // All are rendered before anything runs on the device.
   struct Case {
     std::string name;
-    Sequence resized, always; // in the other size from the first frame on
+    Sequence resized, always; // `always` has the other size from the first frame on.
   };
   static std::vector<Case> cases() {
     std::vector<std::pair<std::string, Size>> sizes = {{"smaller", smaller}};
@@ -64,7 +64,7 @@ protected:
   }
 };
 
-TEST_F(Resize, TheRatioMendsTheFirstFrameOfAnotherSizeAsIfItHadAlwaysBeenThat) {
+TEST_F(Resize, Ratio_RefinesTheFirstFrameOfTheNewSize) {
   const Frames judged = {learned, learned + 2};
   for (const Case& one : cases()) {
     Judge judge{one.resized}, judge_always{one.always};
@@ -75,8 +75,8 @@ TEST_F(Resize, TheRatioMendsTheFirstFrameOfAnotherSizeAsIfItHadAlwaysBeenThat) {
     RecordProperty(one.name + "_kept", std::to_string(kept.psnr_db.at(learned)));
     RecordProperty(one.name + "_anew", std::to_string(anew.psnr_db.at(learned)));
     RecordProperty(one.name + "_always", std::to_string(always.psnr_db.at(learned)));
-    // Regression bounds. Measured: larger 56.5, 53.6 and 56.7 dB; smaller 57.2, 52.4 and 55.4; odd 57.4,
-    // 53.7 and 57.3.
+    // Regression bounds. Measured: larger 56.5, 53.6 and 56.7 dB; smaller 57.2, 52.4 and 55.4 dB;
+    // odd 57.4, 53.7 and 57.3 dB.
     for (const uint32_t t : judged)
       EXPECT_GT(kept.psnr_db.at(t), always.psnr_db.at(t) - 1) << one.name << ", frame " << t;
     EXPECT_GT(kept.psnr_db.at(learned), anew.psnr_db.at(learned) + 2) << one.name;
@@ -85,7 +85,7 @@ TEST_F(Resize, TheRatioMendsTheFirstFrameOfAnotherSizeAsIfItHadAlwaysBeenThat) {
   }
 }
 
-TEST_F(Resize, GuidanceGoesOnWithTheNumberOfSamplesItHadFound) {
+TEST_F(Resize, Guidance_KeepsItsSampleCounts) {
   DERMIS_FULL_TESTS_ONLY();
   for (const Case& one : cases())
     for (const char* guidance : {"split_half", "ccv"}) {
@@ -98,12 +98,12 @@ TEST_F(Resize, GuidanceGoesOnWithTheNumberOfSamplesItHadFound) {
       RecordProperty(name + "_kept", std::to_string(kept.samples[learned]));
       RecordProperty(name + "_always", std::to_string(always.samples[learned]));
       EXPECT_NEAR(kept.samples[learned], always.samples[learned], 0.05 * always.samples[learned]) << name;
-      EXPECT_EQ(anew.samples[learned], 16) << name; // what a pixel without history takes
+      EXPECT_EQ(anew.samples[learned], 16) << name; // The sample count of a pixel without history.
     }
 }
 
-TEST_F(Resize, LightOverFramesGoesOn) {
-  // Independent frames without mips: a single one is 12 dB noisier than their moving mean.
+TEST_F(Resize, Accumulation_Continues) {
+  // Independent frames without mips: a single frame is 12 dB noisier than their moving mean.
   TechniqueRequest request = properties::request_of(
       "afis", {{"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}, {"accumulate_clip", "0"}});
   request.overlays = {properties::root() + "/configs/overlays/accumulate.json"};
@@ -120,9 +120,9 @@ TEST_F(Resize, LightOverFramesGoesOn) {
   }
 }
 
-TEST_F(Resize, AViewThatChangesItsSizeAgainAndAgainWhileTheCameraPansLeavesNoTrail) {
+TEST_F(Resize, RepeatedResizesInAPan_LeaveNoTrail) {
   DERMIS_FULL_TESTS_ONLY();
-  // Four frames in each size, as a host does that keeps to a time.
+  // Four frames in each size, like a host that follows a time budget.
   constexpr uint32_t first = 20, count = 24, each = 4;
   Sequence sequence = frames(before, first, count);
   const Sequence other = frames(odd, first, count), small = frames(smaller, first, count);
@@ -130,7 +130,8 @@ TEST_F(Resize, AViewThatChangesItsSizeAgainAndAgainWhileTheCameraPansLeavesNoTra
     if (t / each % 3 == 1) sequence.frames[t] = other.frames[t];
     if (t / each % 3 == 2) sequence.frames[t] = small.frames[t];
     FrameDescription& now = sequence.frames[t].captured.description;
-    sequence.frames[t].captured.velocity = {}; // made for a camera of its own; the matrices say it as well
+    // Computed for another camera; the matrices contain the motion, too.
+    sequence.frames[t].captured.velocity = {};
     if (t > 0) now.previous_clip_from_view = sequence.frames[t - 1].captured.description.clip_from_view;
   }
   Judge judge{sequence};
@@ -147,7 +148,7 @@ TEST_F(Resize, AViewThatChangesItsSizeAgainAndAgainWhileTheCameraPansLeavesNoTra
     RecordProperty("residual_" + std::to_string(t), std::to_string(residual.psnr_db.at(t)));
     RecordProperty("samples_" + std::to_string(t), std::to_string(residual.samples[t]));
     EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t)) << t;
-    // Regression bound: it follows the product.
+    // Regression bound of the present implementation.
     EXPECT_LT(residual.samples[t], 0.6 * never.samples[t]) << t;
   }
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1);

@@ -1,4 +1,4 @@
-// What holds of samples: means, their bias and how errors fall with their number.
+// Properties of sampling: means, their bias, and the decrease of errors with the number of samples.
 #include "tests/properties/noise.hpp"
 
 #include <cmath>
@@ -9,13 +9,13 @@ using namespace properties;
 
 class Sampler : public DeviceTest {};
 
-TEST_F(Sampler, TheMeanOfManyFramesIsTheTruthAtEveryPixel) {
+TEST_F(Sampler, MeanIsTheReferenceAtEveryPixel) {
   const double z_square = expect_the_reference_in_the_mean(
       "fixed", {{"samples", "4"}, {"normalise", "\"none\""}, {"inverse", "\"exact\""}});
-  EXPECT_NEAR(z_square, 1, 0.36); // three sd
+  EXPECT_NEAR(z_square, 1, 0.36); // Three sd.
 }
 
-TEST_F(Sampler, EveryInverseWithItsOwnDensityIsUnbiasedAndThePublishedChoicesAreNot) {
+TEST_F(Sampler, OwnDensityIsUnbiased_PublishedChoicesAreNot) {
   const Plane plane = noisy_plane(40, 0.5);
   const std::vector<double> reference = unnormalised_reference(plane);
   const auto bias = [&](const char* inverse, const char* weighting, const char* direct) {
@@ -33,13 +33,14 @@ TEST_F(Sampler, EveryInverseWithItsOwnDensityIsUnbiasedAndThePublishedChoicesAre
       EXPECT_LT(std::abs(one.sigmas), 3.5) << inverse << " " << direct << ": " << one.fraction;
     }
   const Bias radius = bias("\"exact\"", "\"sampler\"", "\"circumscribed\"");
-  EXPECT_GT(radius.sigmas, 10)
-      << radius.fraction; // the neighbours' share of the corners becomes the own light
+  // The neighbours' part of the corners becomes own light.
+  EXPECT_GT(radius.sigmas, 10) << radius.fraction;
   EXPECT_GT(radius.fraction, 0.01);
 }
 
-TEST_F(Sampler, SelfNormalisationHasABiasThatFallsWithTheNumberOfSamples) {
-  // In a narrow channel weights vary, so that the ratio of two means is off by about their covariance over n.
+TEST_F(Sampler, SelfNormalisationBiasFallsWithTheSamples) {
+  // In a narrow channel weights vary, so the ratio of two means is biased by about their covariance
+  // over n.
   const Plane plane = noisy_plane(48, 4.0);
   const std::vector<double> reference = normalised_reference(plane);
   double before = 1, first = 0;
@@ -52,11 +53,11 @@ TEST_F(Sampler, SelfNormalisationHasABiasThatFallsWithTheNumberOfSamples) {
     before = std::abs(one.fraction);
     if (first == 0) first = before;
   }
-  EXPECT_LT(before, 0.15 * first); // 1/16 is expected
+  EXPECT_LT(before, 0.15 * first); // 1/16 is expected.
 }
 
-TEST_F(Sampler, TheErrorFallsFasterThanThatOfIndependentSamples) {
-  // Independent samples: n^-.5. R2 on light with edges: about n^-.7 over 8 to 64.
+TEST_F(Sampler, ErrorFallsFasterThanForIndependentSamples) {
+  // Independent samples: n^-0.5. R2 on light with edges: about n^-0.7 over 8 to 64.
   Plane plane;
   plane.width = plane.height = 192;
   plane.d_px = {3, 3, 3};
@@ -79,7 +80,7 @@ TEST_F(Sampler, TheErrorFallsFasterThanThatOfIndependentSamples) {
   // Least squares over four points one octave apart.
   const double slope = (3 * (logs[3] - logs[0]) + (logs[2] - logs[1])) / 10;
   RecordProperty("slope", std::to_string(slope));
-  // Regression bounds: they follow the product.
+  // Regression bounds of the present implementation.
   EXPECT_LT(slope, -0.6);
   EXPECT_GT(slope, -0.9);
 }

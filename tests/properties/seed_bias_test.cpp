@@ -1,6 +1,6 @@
-// What the published choices cost: the part of their error that no number of frames averages out, each for
-// itself and all together (docs/papers.md, "As published"). On light without order, which shows the least
-// displacement of a kernel.
+// Measures the bias of the published choices, each alone and all together (docs/papers.md, "As
+// published"): the error that remains in the mean of any number of frames. Random light shows even
+// the smallest displacement of a kernel.
 #include "tests/properties/noise.hpp"
 
 #include <cmath>
@@ -13,8 +13,8 @@ constexpr double pi = 3.14159265358979;
 
 class SeedBias : public DeviceTest {
 protected:
-  // As a share of the way from the scattered to the own light; positive where too much of the own light is
-  // kept.
+  // Returns the bias as a fraction of the difference between scattered and own light; positive if
+  // too much of the own light is kept.
   Bias of(const std::string& name, const std::string& graph, double d, const Settings& settings) {
     const Plane plane = noisy_plane(64, d);
     const Bias bias = bias_of(graph, plane, normalised_reference(plane), settings, 64);
@@ -33,9 +33,10 @@ Settings with(const char* name, const char* value) {
   return settings;
 }
 
-// How much of a wave's height is left, of what the profile takes away; 0: as much as it says.
+// Returns the excess of a wave's height over the height predicted by the profile, as a fraction of
+// the predicted loss; 0 means equal.
 double height_kept(const Settings& settings) {
-  constexpr uint32_t side = 160, first = 48, last = 112; // two periods, far from the borders
+  constexpr uint32_t side = 160, first = 48, last = 112; // Two periods, far from the borders.
   constexpr double d = 2, period = 32, k = 2 * pi / period;
   Plane plane;
   plane.width = plane.height = side;
@@ -52,29 +53,30 @@ double height_kept(const Settings& settings) {
   return (height / frames - transfer) / (1 - transfer);
 }
 
-TEST_F(SeedBias, TheApproximateInverseDividedByTheProfileDrawsLightTooClose) {
+TEST_F(SeedBias, ApproximateInverse_SamplesTooClose) {
   Settings published = with("inverse", "\"approximate\"");
   published.emplace_back("weighting", "\"profile\"");
   const double ours = height_kept(exact), theirs = height_kept(published);
   RecordProperty("exact", std::to_string(ours));
   RecordProperty("approximate", std::to_string(theirs));
-  EXPECT_NEAR(ours, 0, 0.01);      // light is constant over a pixel, d is two of them
-  EXPECT_GT(theirs, ours + 0.012); // regression bound: .020: the mean square of its radii is 10.6 % short
+  EXPECT_NEAR(ours, 0, 0.01); // Light is constant over a pixel; d is two pixels.
+  // Regression bound: 0.020, because the mean square of its radii is 10.6 % too low.
+  EXPECT_GT(theirs, ours + 0.012);
   EXPECT_LT(theirs, ours + 0.12);
 }
 
-TEST_F(SeedBias, TheCircumscribedRadiusKeepsTooMuchOfTheOwnLight) {
+TEST_F(SeedBias, CircumscribedRadius_KeepsTooMuchOwnLight) {
   for (const auto& [name, d] : {std::pair{"half_pixel", 0.5}, std::pair{"two_pixels", 2.0}}) {
     const Bias ours = of(std::string(name) + "_inscribed", "fixed", d, exact),
                theirs =
                    of(std::string(name) + "_circumscribed", "fixed", d, with("direct", "\"circumscribed\""));
-    // Regression bound: it follows the product.
+    // Regression bound of the present implementation.
     EXPECT_GT(theirs.fraction, ours.fraction + 0.005) << name;
     EXPECT_GT(theirs.sigmas, 10) << name;
   }
 }
 
-TEST_F(SeedBias, MipsOfTheSamplesAreaBlurTheMoreTheFewerSamplesThereAre) {
+TEST_F(SeedBias, MipsOfSampleArea_BlurMoreWithFewerSamples) {
   const Bias many = of("seed_64", "afis_seed", 2, {{"samples", "64"}}),
              some = of("seed_16", "afis_seed", 2, {{"samples", "16"}}),
              few = of("seed_8", "afis_seed", 2, {{"samples", "8"}});

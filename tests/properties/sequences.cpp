@@ -15,13 +15,13 @@ namespace {
 
 constexpr uint32_t reference_pixels = 1024;
 
-// The truth counts pixels of the rendered rectangle.
+// The reference counts pixels of the rendered rectangle.
 size_t in_picture(const FrameDescription& frame, uint32_t pixel) {
   const uint32_t x = pixel % frame.render.width, y = pixel / frame.render.width;
   return size_t{y + frame.render.y} * frame.width + x + frame.render.x;
 }
 
-// Of the red channel, over pixels with a profile.
+// Returns the mean of the red channel over pixels with a profile.
 double mean_where_scattering(const std::vector<float>& values, const std::vector<uint8_t>& profile) {
   double sum = 0, pixels = 0;
   for (size_t i = 0; i < profile.size() && !values.empty(); ++i)
@@ -86,7 +86,8 @@ Sequence SequenceTest::frames_of(const std::string& scene, uint32_t first, uint3
 SequenceRun SequenceTest::run(Judge& judge, const TechniqueRequest& request, const Frames& judged,
                               const Follows& follows) {
   SequenceRun result;
-  if (host_ == nullptr) { // after the frames were rendered: the engine has a device of its own
+  // Created after the frames were rendered, because the engine has its own device.
+  if (host_ == nullptr) {
     auto made = demo::create_vulkan_host({.validation = true, .device = ""});
     EXPECT_TRUE(made) << made.error().text;
     if (!made) return result;
@@ -100,12 +101,12 @@ SequenceRun SequenceTest::run(Judge& judge, const TechniqueRequest& request, con
   for (uint32_t t = 0; t < judge.sequence.frames.size(); ++t) {
     const SequenceFrame& frame = judge.sequence.frames[t];
     const bool is_judged = std::find(judged.begin(), judged.end(), t) != judged.end();
-    // Without histories a frame is what it is whatever came before it.
+    // Without histories a frame does not depend on the earlier frames.
     if (t > 0 && !judged.empty() && !is_judged && (*made)->history_bytes() == 0) {
       result.samples.push_back(std::numeric_limits<double>::quiet_NaN());
       continue;
     }
-    (*made)->skip_to(t + 1); // the first frame has number 1
+    (*made)->skip_to(t + 1); // The first frame has number 1.
     auto found = (*made)->scatter(frame.captured, follows ? follows(t) : t > 0 && !frame.cut);
     EXPECT_TRUE(found) << found.error().text;
     auto sampling = (*made)->sampling();

@@ -1,6 +1,6 @@
 #pragma once
-// Frames of shipped scenes through shipped graphs, one after the other, on the device, and how far their
-// light is from the truth. For tests of what goes on from frame to frame.
+// Runs frames of shipped scenes through shipped graphs in order, on the device, and measures the
+// error of their light. For tests of behaviour across frames.
 
 #include "tests/properties/plane.hpp"
 
@@ -13,11 +13,11 @@
 
 namespace properties {
 
-inline constexpr uint32_t sequence_width = 240, sequence_height = 136; // pixels
+inline constexpr uint32_t sequence_width = 240, sequence_height = 136; // Pixels.
 inline constexpr double close_d_px = 4;
 
-std::string root(); // of the source tree
-// A shipped graph by its name.
+std::string root(); // Returns the root of the source tree.
+// Returns the request for a shipped graph by name.
 dermis::tools::TechniqueRequest request_of(const std::string& graph,
                                            const std::vector<dermis::tools::NamedValue>& set = {});
 
@@ -25,29 +25,30 @@ using Frames = std::vector<uint32_t>;
 Frames range(uint32_t first, uint32_t end);
 
 struct SequenceRun {
-  std::map<uint32_t, double> psnr_db;              // of the frames asked for
-  double mean_psnr_db = 0;                         // of their mean square error
-  std::map<uint32_t, std::vector<float>> pictures; // of the frames asked for, 3 values a pixel
-  std::map<uint32_t, std::vector<float>> sampling; // likewise: samples, those behind history, confidence
-  std::vector<double> samples; // a subsurface pixel, each frame; NaN of frames that were left out
+  std::map<uint32_t, double> psnr_db;              // For the requested frames.
+  double mean_psnr_db = 0;                         // PSNR of the frames' mean square error.
+  std::map<uint32_t, std::vector<float>> pictures; // For the requested frames, 3 values per pixel.
+  // For the requested frames: samples, samples behind the history, confidence.
+  std::map<uint32_t, std::vector<float>> sampling;
+  std::vector<double> samples; // Samples per subsurface pixel and frame; NaN for skipped frames.
   uint64_t history_bytes = 0;
 };
 
-// Truths are shared by the techniques of a test.
+// The techniques of a test share the references.
 struct Judge {
   const dermis::tools::Sequence& sequence;
   std::map<uint32_t, dermis::tools::Reference> references = {};
   const dermis::tools::Reference& at(uint32_t frame);
 };
 
-// Whether a frame goes on where the one before ended; none: as the scene says.
+// Whether a frame continues the previous frame; empty: as the scene states.
 using Follows = std::function<bool(uint32_t frame)>;
 
-// Repeats one frame, as a host does whose scene stands still.
+// Repeats one frame, like a host with a static scene.
 dermis::tools::Sequence standing_still(dermis::tools::Sequence sequence, uint32_t count);
 
-// Validation messages fail the test. Of a graph without histories frames run that are judged, and the first;
-// all of them where none is judged.
+// Validation messages fail the test. A graph without histories only runs the first frame and the
+// compared frames, or all frames if none is compared.
 class SequenceTest : public DeviceTest {
 protected:
   void TearDown() override;

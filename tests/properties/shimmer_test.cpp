@@ -1,5 +1,6 @@
-// How steady light is where the camera goes by whole pixels: the picture is the same, its place on the grid
-// of levels is not. The frame is one large picture, of which each frame renders another rectangle.
+// Measures how steady light is while the camera moves by whole pixels: the picture is equal, but
+// its position on the grid of levels differs. Each frame renders another rectangle of one large
+// picture.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/sequences.hpp"
 
@@ -17,11 +18,12 @@ using namespace dermis::tools;
 
 constexpr uint32_t moves = 16, panned_width = 320, panned_height = 180, large_width = panned_width + moves,
                    large_height = panned_height + moves;
-constexpr uint32_t margin = 32; // pixels along the borders whose light changes with what is in the picture
+// Pixels along the borders whose light changes with the contents of the picture.
+constexpr uint32_t margin = 32;
 
 class Shimmer : public properties::SequenceTest {
 protected:
-  // The large picture, whose rectangle begins at x, y.
+  // Returns the large picture with a rectangle that begins at x, y.
   static CapturedFrame rectangle_at(const CapturedFrame& large, uint32_t x, uint32_t y) {
     CapturedFrame frame = large;
     FrameDescription& description = frame.description;
@@ -54,8 +56,8 @@ protected:
     return still;
   }
 
-  // Luminance at the pixels of the large picture that all rectangles show, far from their borders; 0
-  // elsewhere.
+  // Returns the luminance at the pixels of the large picture that all rectangles contain, far from
+  // their borders; 0 elsewhere.
   static std::vector<double> seen(const CapturedFrame& large, const std::vector<float>& light,
                                   double exposure) {
     std::vector<double> values(large.profile.size());
@@ -75,7 +77,7 @@ protected:
     host_ = made.take();
   }
 
-  // RMS over pixels of the deviation over eight places of the rectangle.
+  // Returns the RMS over pixels of the deviation over eight positions of the rectangle.
   double deviation(const Still& still, const TechniqueRequest& request) {
     constexpr std::array<std::array<uint32_t, 2>, 8> places = {
         {{0, 0}, {1, 0}, {2, 1}, {3, 3}, {5, 2}, {6, 6}, {7, 4}, {12, 9}}};
@@ -103,7 +105,8 @@ protected:
     return std::sqrt(variance / std::max(pixels, 1.0));
   }
 
-  // RMS of the change from frame to frame on the surface, while the camera goes a pixel a frame.
+  // Returns the RMS of the change between frames on the surface, while the camera moves one pixel
+  // per frame.
   double change_in_pan(const Still& still, const TechniqueRequest& request) {
     if (host_ == nullptr) make_host();
     auto run = TechniqueRun::create(*host_, request, still.large.description.profiles, {});
@@ -114,7 +117,7 @@ protected:
     double square = 0, pixels = 0;
     constexpr uint32_t frames = 48, counted = 24;
     for (uint32_t t = 0; t < frames; ++t) {
-      const uint32_t x = t % (2 * moves) < moves ? t % moves : moves - t % moves; // there and back
+      const uint32_t x = t % (2 * moves) < moves ? t % moves : moves - t % moves; // There and back.
       CapturedFrame frame = rectangle_at(still.large, x, 0);
       if (t > 0) frame.description.previous_clip_from_view = camera;
       frame.description.previous_view_from_world = frame.description.view_from_world;
@@ -135,7 +138,7 @@ protected:
   }
 };
 
-TEST_F(Shimmer, ThePyramidIsSteadyUnderPansByWholePixels) {
+TEST_F(Shimmer, PyramidIsSteadyInWholePixelPans) {
   const Still still = picture();
   const double smooth = deviation(still, properties::request_of("sap")),
                base = deviation(still, properties::request_of("sap", {{"variant", "base"}})),
@@ -143,12 +146,12 @@ TEST_F(Shimmer, ThePyramidIsSteadyUnderPansByWholePixels) {
   RecordProperty("smooth", std::to_string(smooth));
   RecordProperty("base", std::to_string(base));
   RecordProperty("afis_16", std::to_string(afis));
-  // Regression bounds: they follow the product.
-  EXPECT_LE(smooth, 2.4e-3); // H9 of the project's notes, measured there on a scanned head
+  // Regression bounds of the present implementation.
+  EXPECT_LE(smooth, 2.4e-3); // H9 of the project's notes, measured on a scanned head.
   EXPECT_LE(base, 4.5e-3);
 }
 
-TEST_F(Shimmer, MendingThePyramidMakesItNoLessSteadyThanSamplesAre) {
+TEST_F(Shimmer, RefinedPyramidIsAsSteadyAsSamples) {
   DERMIS_FULL_TESTS_ONLY();
   const Still still = picture();
   const double sap = change_in_pan(still, properties::request_of("sap")),
@@ -157,7 +160,7 @@ TEST_F(Shimmer, MendingThePyramidMakesItNoLessSteadyThanSamplesAre) {
   RecordProperty("sap", std::to_string(sap));
   RecordProperty("residual", std::to_string(residual));
   RecordProperty("afis_16", std::to_string(afis));
-  // Regression bound: it follows the product.
+  // Regression bound of the present implementation.
   EXPECT_LT(residual, 0.5 * afis);
 }
 

@@ -1,6 +1,6 @@
-// The surface-aware pyramid with its light in floats from level to level, as
-// configs/overlays/sap_full_precision.json makes it: flat light stays flat, and the kernels differ from their
-// CPU twin by little else than rounding.
+// Tests the surface-aware pyramid with float storage between levels
+// (configs/overlays/sap_full_precision.json): flat light stays flat, and kernels differ from their
+// CPU implementation by little more than rounding.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/head_frames.hpp"
 
@@ -15,7 +15,7 @@ using namespace properties;
 using dermis::subsurface::SapVariant;
 
 constexpr const char* in_floats = "sap_full_precision";
-constexpr double flatness = 2e-6; // stated; 17 roundings to 2^-24 one after the other make 1e-6
+constexpr double flatness = 2e-6; // Stated bound; 17 sequential roundings to 2^-24 give 1e-6.
 
 double furthest_from(const std::vector<float>& light, float value) {
   double maximum = 0;
@@ -27,10 +27,10 @@ double furthest_from(const std::vector<float>& light, float value) {
 class FullStorage : public DeviceTest, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Variants, FullStorage, ::testing::Values("base", "smooth"));
 
-TEST_P(FullStorage, FlatLightOfAnyBrightnessStaysFlatToTwoMillionths) {
+TEST_P(FullStorage, FlatLightStaysFlatToTwoMillionths) {
   if (std::string_view(GetParam()) == "base") DERMIS_FULL_TESTS_ONLY();
   const Settings variant = {{"variant", std::string("\"") + GetParam() + "\""}};
-  // Each brightness with each d; in the quick tier every one of either once.
+  // Every brightness with every d; the quick run uses each value once.
   constexpr std::array<float, 3> values = {0.0123f, 0.7f, 37.3f};
   constexpr std::array<double, 3> distances = {32.0, 0.5, 4.0};
   for (size_t v = 0; v < values.size(); ++v)
@@ -39,7 +39,7 @@ TEST_P(FullStorage, FlatLightOfAnyBrightnessStaysFlatToTwoMillionths) {
       const float value = values[v];
       const double d = distances[i];
       Plane plane;
-      plane.width = 131; // odd on purpose
+      plane.width = 131; // Deliberately odd.
       plane.height = 75;
       plane.d_px = {d, 0.4 * d, 0.2 * d};
       plane.light = [&](double, double) { return value; };
@@ -48,16 +48,16 @@ TEST_P(FullStorage, FlatLightOfAnyBrightnessStaysFlatToTwoMillionths) {
       plane.overlay = in_floats;
       EXPECT_LE(furthest_from(run("sap", plane, variant).rgb, value), flatness) << value << ", d = " << d;
       plane.overlay = "";
-      // None of these values is a half: this law sees what halves do.
+      // None of these values is a half float, so the test detects rounding to half floats.
       EXPECT_GT(furthest_from(run("sap", plane, variant).rgb, value), 20 * flatness);
     }
 }
 
 class FullStorageOnAHead : public HeadTest {};
 
-TEST_F(FullStorageOnAHead, FlatLightStaysFlatToTwoMillionthsAndLightIsThatOfTheTwin) {
+TEST_F(FullStorageOnAHead, FlatLightStaysFlat_LightMatchesTheCpu) {
   DERMIS_FULL_TESTS_ONLY();
-  show(head_framings()[3], 640, 360, 1); // the bust from near; no truth is asked for
+  show(head_framings()[3], 640, 360, 1); // The bust from near; the test needs no reference.
   if (IsSkipped() || HasFatalFailure()) return;
   const std::vector<float> expected = cpu_kernel(frame_, SapVariant::smooth).light;
   const auto difference = [&] {

@@ -1,5 +1,5 @@
-// Techniques through the demo engine's temporal anti-aliasing, against the same with so many samples that
-// what is left is their own error.
+// Compares techniques through the demo engine's temporal anti-aliasing with the same techniques at
+// so many samples that only their own error is left.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/sequences.hpp"
 
@@ -20,7 +20,8 @@ struct Taa : properties::DeviceTest {
                            std::vector<std::pair<std::string, std::string>> settings, bool resting,
                            uint32_t frames) {
     demo::RenderOptions options;
-    options.scene = properties::root() + "/configs/scenes/pan.json"; // less than a pixel a frame at this size
+    // Less than a pixel per frame at this size.
+    options.scene = properties::root() + "/configs/scenes/pan.json";
     options.graph = properties::root() + "/" + dermis::shipped::graph_file(graph);
     options.settings = std::move(settings);
     options.width = 160;
@@ -65,8 +66,7 @@ struct Taa : properties::DeviceTest {
     return {psnr_from_mse(squares / values), std::sqrt(changes / values)};
   }
 
-  // What is recorded is what docs/papers.md quotes.
-  // `min_gain_db`: of sap_residual over sap.
+  // docs/papers.md quotes the recorded numbers. `min_gain_db` is the gain of sap_residual over sap.
   void judge(bool resting, double min_gain_db) {
     constexpr uint32_t frames = 32, counted = 24;
     const Pictures reference = resolved("burley", {{"samples", "192"}}, resting, frames);
@@ -86,13 +86,13 @@ struct Taa : properties::DeviceTest {
   }
 };
 
-TEST_F(Taa, MendedLightDoesNotLoseToEightSamplesWhereTheCameraRests) {
-  judge(true, 3.2); // regression bound: measured 3.6
+TEST_F(Taa, CameraAtRest_RefinedBeatsEightSamples) {
+  judge(true, 3.2); // Regression bound: measured 3.6 dB.
 }
 
-TEST_F(Taa, MendedLightDoesNotLoseToEightSamplesUnderAPanOfPartsOfPixels) {
+TEST_F(Taa, SubpixelPan_RefinedBeatsEightSamples) {
   DERMIS_FULL_TESTS_ONLY();
-  judge(false, 3.6); // regression bound: measured 4.1
+  judge(false, 3.6); // Regression bound: measured 4.1 dB.
 }
 
 } // namespace

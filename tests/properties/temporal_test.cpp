@@ -1,6 +1,6 @@
-// What history must and must not do: the running ratio mends the pyramid where nothing changes, does not lag
-// behind light, keeps out of light of another pattern, follows cameras and things, and leaves no ghost. On
-// the sculpted bust.
+// Tests the running ratio on the sculpted bust. It refines the pyramid in static scenes, does not
+// lag behind light, adapts to other light patterns, follows cameras and objects, and leaves no
+// ghosts.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/sequences.hpp"
 
@@ -28,7 +28,7 @@ protected:
     return run(judge, properties::request_of(graph, set), judged, follows);
   }
 
-  // Frames of `regular` around a switch, 25 after `first`.
+  // Runs frames of `regular` around a switch, 25 frames after `first`.
   void switches(uint32_t first) {
     const Sequence sequence = frames_of("regular", first, 40);
     Judge judge{sequence};
@@ -37,12 +37,13 @@ protected:
     for (const uint32_t t : judged) {
       const double gain = residual.psnr_db.at(t) - sap.psnr_db.at(t);
       RecordProperty("gain_" + std::to_string(first + t), std::to_string(gain));
-      EXPECT_GT(gain, t < 25 ? 3.8 : -0.2) << first + t; // regression bound: measured 4.3 and more, .0
+      // Regression bound: measured at least 4.3 dB and 0.0 dB.
+      EXPECT_GT(gain, t < 25 ? 3.8 : -0.2) << first + t;
     }
   }
 };
 
-TEST_F(Temporal, TheRatioMendsThePyramidOnASceneThatStandsStill) {
+TEST_F(Temporal, StaticScene_RatioRefinesThePyramid) {
   const Sequence sequence = standing_still(frames_of("pan", 40, 1), 41);
   Judge judge{sequence};
   const SequenceRun sap = run(judge, "sap", {40}), blend = run(judge, "sap_blend", {40}),
@@ -51,29 +52,29 @@ TEST_F(Temporal, TheRatioMendsThePyramidOnASceneThatStandsStill) {
   RecordProperty("blend", std::to_string(blend.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("samples", std::to_string(residual.samples.back()));
-  // Regression bounds, here and for the samples: they follow the product.
+  // Regression bounds of the present implementation, also for the samples.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.5);
   EXPECT_GT(blend.mean_psnr_db, sap.mean_psnr_db);
-  EXPECT_LE(residual.samples.back(), 4.1); // 16 every fourth frame, where it is unsure
+  EXPECT_LE(residual.samples.back(), 4.1); // 16 every fourth frame in unsure pixels.
   EXPECT_EQ(sap.history_bytes, 0u);
   EXPECT_EQ(blend.history_bytes, 0u);
-  // One RGBA16F for the ratio, one to know surfaces and patterns of light again, two frames of each, and the
-  // allocations' rounding.
+  // One RGBA16F for the ratio and one to recognise surfaces and light patterns, two frames of each,
+  // and the rounding of the allocations.
   EXPECT_LE(residual.history_bytes, 2 * (8 + 8) * size_t{width} * height + (1 << 16));
 }
 
-TEST_F(Temporal, TheRatioDoesNotLagBehindLightThatFlashes) {
+TEST_F(Temporal, FlashingLight_RatioDoesNotLag) {
   const Sequence sequence = frames_of("flashing", 0, 48);
   Judge judge{sequence};
   const Frames period = range(36, 48);
   const SequenceRun sap = run(judge, "sap", period), residual = run(judge, "sap_residual", period);
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
-  // Regression bound: it follows the product.
+  // Regression bound of the present implementation.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.0);
 }
 
-TEST_F(Temporal, ACameraThatPansLeavesNoTrail) {
+TEST_F(Temporal, PanningCamera_LeavesNoTrail) {
   const Sequence sequence = frames_of("pan", 20, 40);
   Judge judge{sequence};
   const Frames judged = {32, 35, 38, 39};
@@ -82,14 +83,16 @@ TEST_F(Temporal, ACameraThatPansLeavesNoTrail) {
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("without_history", std::to_string(never.mean_psnr_db));
-  // Regression bounds: they follow the product.
+  // Regression bounds of the present implementation.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1.0);
   EXPECT_GT(residual.mean_psnr_db, never.mean_psnr_db);
-  EXPECT_LT(residual.samples.back(), 0.6 * never.samples.back()); // it does find its history again
+  // The history is found by reprojection.
+  EXPECT_LT(residual.samples.back(), 0.6 * never.samples.back());
 }
 
-TEST_F(Temporal, AThingThatMovesBeforeACameraThatRestsKeepsItsHistory) {
-  // What a camera sees that pans is what one that rests sees of things that move, but for what it is told.
+TEST_F(Temporal, MovingObject_KeepsItsHistory) {
+  // A panning camera sees the picture of a resting camera with moving objects; only the given
+  // motion differs.
   Sequence sequence = frames_of("pan", 20, 40);
   for (SequenceFrame& frame : sequence.frames) {
     FrameDescription& reported = frame.captured.description;
@@ -102,21 +105,23 @@ TEST_F(Temporal, AThingThatMovesBeforeACameraThatRestsKeepsItsHistory) {
   const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged);
   for (SequenceFrame& frame : sequence.frames)
     frame.captured.velocity = {};
-  const SequenceRun untold = run(judge, "sap_residual", judged); // looks where the thing no longer is
+  // Looks for the object at its old position.
+  const SequenceRun untold = run(judge, "sap_residual", judged);
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("untold", std::to_string(untold.mean_psnr_db));
-  // Regression bounds: they follow the product.
+  // Regression bounds of the present implementation.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1.0);
   EXPECT_GT(residual.mean_psnr_db, untold.mean_psnr_db + 0.5);
 }
 
-// The same graph with all patterns taken for the same: the ratio is trusted whatever light came.
+// Treats all light patterns as equal, so the ratio is trusted under any light.
 constexpr const char* trusting = "100";
 
-TEST_F(Temporal, ShadowsThatMoveAcrossSkinAreGainedUponInEachFrame) {
+TEST_F(Temporal, MovingShadows_AreRefinedInEachFrame) {
   DERMIS_FULL_TESTS_ONLY();
-  const Sequence sequence = frames_of("dynamic", 88, 36); // boids cross the face from 88 to 140
+  // Boids cross the face from frame 88 to 140.
+  const Sequence sequence = frames_of("dynamic", 88, 36);
   Judge judge{sequence};
   const Frames judged = range(24, 36);
   const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),
@@ -124,16 +129,16 @@ TEST_F(Temporal, ShadowsThatMoveAcrossSkinAreGainedUponInEachFrame) {
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("blind", std::to_string(blind.mean_psnr_db));
-  // Regression bounds: measured 3.2 dB better in the mean, 1.7 in the worst frame.
+  // Regression bounds: measured 3.2 dB better on average, 1.7 dB in the worst frame.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.7);
   EXPECT_GT(residual.mean_psnr_db, blind.mean_psnr_db + 1);
   for (const uint32_t t : judged)
     EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 1.2) << t;
 }
 
-TEST_F(Temporal, AFlashFromAnotherSideCostsNothingAndLeavesTheRatioAsItWas) {
+TEST_F(Temporal, FlashFromAnotherSide_KeepsTheRatio) {
   DERMIS_FULL_TESTS_ONLY();
-  const Sequence sequence = frames_of("strobe", 10, 34); // shots at 30 .. 32 and 38 .. 39
+  const Sequence sequence = frames_of("strobe", 10, 34); // Shots at frames 30 .. 32 and 38 .. 39.
   Judge judge{sequence};
   const Frames judged = range(18, 34), lit = {20, 21, 22, 28, 29};
   const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),
@@ -142,31 +147,33 @@ TEST_F(Temporal, AFlashFromAnotherSideCostsNothingAndLeavesTheRatioAsItWas) {
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("blind", std::to_string(blind.mean_psnr_db));
   EXPECT_GT(residual.mean_psnr_db,
-            sap.mean_psnr_db - 0.1); // frames that are lit have nearly all of the error
+            sap.mean_psnr_db - 0.1); // Lit frames have nearly all of the error.
   for (const uint32_t t : judged)
     RecordProperty("gain_" + std::to_string(t), std::to_string(residual.psnr_db.at(t) - sap.psnr_db.at(t)));
   for (const uint32_t t : lit) {
-    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 0.2) << t; // regression bound: measured .0
+    // Regression bound: measured 0.0 dB.
+    EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 0.2) << t;
     EXPECT_LT(blind.psnr_db.at(t), sap.psnr_db.at(t) - 3) << t;
   }
   for (const uint32_t t : judged)
     if (std::find(lit.begin(), lit.end(), t) == lit.end()) {
-      EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 4.3) << t; // regression bound: 5.0 to 6.6
+      // Regression bound: measured 5.0 to 6.6 dB.
+      EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 4.3) << t;
     }
 }
 
-TEST_F(Temporal, ALightThatIsSwitchedOffCostsNothing) {
-  switches(155); // off from 180 on, a candle stays
+TEST_F(Temporal, LightSwitchedOff_CostsNothing) {
+  switches(155); // Off from frame 180 on; a candle stays lit.
 }
 
-TEST_F(Temporal, ALightThatIsSwitchedOnCostsNothing) {
+TEST_F(Temporal, LightSwitchedOn_CostsNothing) {
   DERMIS_FULL_TESTS_ONLY();
-  switches(335); // on from 360 on
+  switches(335); // On from frame 360 on.
 }
 
-TEST_F(Temporal, LightThatStaysIsLearnedInTheEnd) {
+TEST_F(Temporal, NewConstantLight_IsLearned) {
   DERMIS_FULL_TESTS_ONLY();
-  const Sequence sequence = frames_of("regular", 155, 106); // off from 180 on
+  const Sequence sequence = frames_of("regular", 155, 106); // Off from frame 180 on.
   Judge judge{sequence};
   const Frames judged = {55, 65, 75, 85, 95, 105};
   const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged);
@@ -176,11 +183,11 @@ TEST_F(Temporal, LightThatStaysIsLearnedInTheEnd) {
     EXPECT_GT(gain, -0.2) << t;
   }
   EXPECT_GT(residual.psnr_db.at(105),
-            sap.psnr_db.at(105) + 1.3); // regression bound: measured 1.8, 80 frames after
+            sap.psnr_db.at(105) + 1.3); // Regression bound: measured 1.8 dB, 80 frames later.
 }
 
-TEST_F(Temporal, AfterACutTheErrorIsBackWithinThreeFrames) {
-  Sequence sequence = frames_of("cut", 54, 46); // the camera jumps at frame 60
+TEST_F(Temporal, Cut_ErrorRecoversWithinThreeFrames) {
+  Sequence sequence = frames_of("cut", 54, 46); // The camera jumps at frame 60.
   ASSERT_TRUE(sequence.frames[6].cut);
   Judge judge{sequence};
   const Frames judged = {6, 7, 8, 9, 40, 42, 44};
@@ -190,19 +197,19 @@ TEST_F(Temporal, AfterACutTheErrorIsBackWithinThreeFrames) {
     RecordProperty("db_" + std::to_string(t - 6), std::to_string(signalled.psnr_db.at(t)));
   RecordProperty("steady", std::to_string(steady));
   EXPECT_GT(signalled.psnr_db.at(9), steady - 1);
-  // A host that gives both cameras and says nothing: what is found again is the same surface.
+  // A host that gives both cameras without signalling a cut: only equal surfaces are found.
   CapturedFrame& jumped = sequence.frames[6].captured;
   jumped.description.previous_clip_from_view = sequence.frames[5].captured.description.clip_from_view;
   jumped.description.previous_view_from_world = sequence.frames[5].captured.description.view_from_world;
   jumped.velocity = {};
   const SequenceRun silent = run(judge, "sap_residual", {9}, {}, [](uint32_t t) { return t > 0; });
   RecordProperty("silent_3", std::to_string(silent.psnr_db.at(9)));
-  // Ratios come along that were learned from the other side: no more than a frame behind the cut that was
-  // signalled.
+  // Ratios learned from the other side are kept, which costs at most one frame compared with the
+  // signalled cut.
   EXPECT_GT(silent.psnr_db.at(9), signalled.psnr_db.at(8));
 }
 
-// The picture inside of a larger one, as a host has it that renders fewer pixels for a while.
+// Embeds the picture in a larger one, like a host that temporarily renders fewer pixels.
 CapturedFrame embedded(const CapturedFrame& small, uint32_t x0, uint32_t y0) {
   CapturedFrame large = small;
   large.description.width = width;
@@ -226,8 +233,8 @@ CapturedFrame embedded(const CapturedFrame& small, uint32_t x0, uint32_t y0) {
   return large;
 }
 
-TEST_F(Temporal, HistoryIsFoundAgainWhereTheRenderedRectangleChanges) {
-  // Every fifth frame is rendered at four fifths of the size, somewhere else.
+TEST_F(Temporal, ChangedRectangle_HistoryIsFound) {
+  // Every fifth frame is rendered at 0.8 of the size, at another position.
   Sequence sequence = standing_still(frames_of("pan", 40, 1), 30);
   SequenceRequest request = sequence.request;
   constexpr uint32_t small_width = width * 4 / 5, small_height = 108;
@@ -244,21 +251,21 @@ TEST_F(Temporal, HistoryIsFoundAgainWhereTheRenderedRectangleChanges) {
     now.previous_clip_from_view = sequence.frames[t - 1].captured.description.clip_from_view;
   }
   Judge judge{sequence};
-  const Frames judged = {27, 28, 29}; // small at 28
+  const Frames judged = {27, 28, 29}; // Frame 28 is small.
   const SequenceRun sap = run(judge, "sap", {27, 29}), residual = run(judge, "sap_residual", {27, 29}),
                     small_sap = run(judge, "sap", {28}), small_residual = run(judge, "sap_residual", {28});
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("small_sap", std::to_string(small_sap.mean_psnr_db));
   RecordProperty("small_residual", std::to_string(small_residual.mean_psnr_db));
-  // Regression bounds: they follow the product.
+  // Regression bounds of the present implementation.
   EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 1.5);
   EXPECT_GT(small_residual.mean_psnr_db, small_sap.mean_psnr_db + 1.0);
   EXPECT_LT(residual.samples[28], 5);
   EXPECT_LT(residual.samples[29], 5);
 }
 
-TEST_F(Temporal, AVelocityThatIsNoNumberCostsHistoryAndNothingElse) {
+TEST_F(Temporal, NaNVelocity_OnlyDropsTheHistory) {
   Sequence sequence = standing_still(frames_of("pan", 40, 1), 4);
   for (SequenceFrame& frame : sequence.frames) {
     frame.captured.velocity = Image::sized(width, height, 2);
@@ -267,7 +274,7 @@ TEST_F(Temporal, AVelocityThatIsNoNumberCostsHistoryAndNothingElse) {
   }
   Judge judge{sequence};
   const SequenceRun lost = run(judge, "sap_residual", {3});
-  EXPECT_GT(lost.mean_psnr_db, 30); // NaN would have counted as an infinite error
+  EXPECT_GT(lost.mean_psnr_db, 30); // NaN counts as an infinite error.
   EXPECT_GT(lost.samples[3], 1.5 * 4 / 16);
 }
 

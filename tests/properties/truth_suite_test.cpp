@@ -1,4 +1,5 @@
-// Laws that need many runs or large pictures: convergence of sampling, bias, d that varies, odd sizes.
+// Properties that need many runs or large pictures: convergence of sampling, bias, varying d and
+// odd sizes.
 #include "tests/properties/plane.hpp"
 
 #include "integration/tools/command/bench/reference.hpp"
@@ -30,7 +31,7 @@ protected:
       ADD_FAILURE() << message;
   }
 
-  // Mean of `frames` frames of a technique.
+  // Returns the mean of `frames` frames of a technique.
   std::vector<float> scatter(const CapturedFrame& frame, const std::string& graph,
                              std::vector<NamedValue> set, uint32_t frames = 1) {
     const TechniqueRequest request{graph, "", DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph),
@@ -68,21 +69,21 @@ protected:
   std::unique_ptr<demo::VulkanHost> host_;
 };
 
-TEST_F(ReferenceSuite, StratifiedSamplesConvergeFasterThanTheRootOfTheirNumber) {
-  // Independent samples have the slope -1/2; regular radii at the golden angle measure -.70 over 8 to 64 on
-  // an image of edges, discs and texture. A thousand pixels leave either error uncertain by some 4 %, the
-  // slope by .03.
+TEST_F(ReferenceSuite, StratifiedSamples_ConvergeFasterThanRootN) {
+  // Independent samples have the slope -1/2. Regular radii at the golden angle measure -0.70 over 8
+  // to 64 samples on an image of edges, discs and texture. With 1000 pixels each error is uncertain
+  // by about 4 %, and the slope by 0.03.
   const CapturedFrame frame = textured(192, 128, 4);
   const Reference reference = reference_of(frame);
   const double few = error_of(reference, scatter(frame, "burley", {{"samples", "8"}})).rmse;
   const double many = error_of(reference, scatter(frame, "burley", {{"samples", "64"}})).rmse;
-  // Regression bound: it follows the product.
+  // Regression bound of the present implementation.
   EXPECT_NEAR(std::log(many / few) / std::log(8.0), -0.70, 0.06) << few << " " << many;
 }
 
-TEST_F(ReferenceSuite, FramesOfSamplesAverageOutUntilTheBiasOfTheirNormalisationIsLeft) {
-  // 32 independent frames lower the noise to .18 of one frame's; what normalising by the sum of weights adds
-  // is below another .07 of it.
+TEST_F(ReferenceSuite, FrameAverages_ConvergeToTheNormalisationBias) {
+  // 32 independent frames lower the noise to 0.18 of one frame's noise; normalising by the sum of
+  // weights adds less than 0.07.
   const CapturedFrame frame = textured(128, 96, 4);
   const Reference reference = reference_of(frame);
   const double one = error_of(reference, scatter(frame, "burley", {{"samples", "16"}})).rmse;
@@ -91,7 +92,7 @@ TEST_F(ReferenceSuite, FramesOfSamplesAverageOutUntilTheBiasOfTheirNormalisation
   EXPECT_GE(mean / one, 0.10) << "frames that repeat or cancel each other are not independent";
 }
 
-TEST_F(ReferenceSuite, BiasOfNormalisingByTheSumShrinksWithTheNumberOfSamples) {
+TEST_F(ReferenceSuite, NormalisationBias_FallsWithTheSamples) {
   const CapturedFrame frame = textured(96, 64, 4);
   const Reference reference = reference_of(frame);
   const double few = error_of(reference, scatter(frame, "burley", {{"samples", "8"}}, 64)).rmse;
@@ -99,16 +100,16 @@ TEST_F(ReferenceSuite, BiasOfNormalisingByTheSumShrinksWithTheNumberOfSamples) {
   EXPECT_LT(many, few / 2) << few << " " << many;
 }
 
-TEST_F(ReferenceSuite, ThePyramidFollowsTheTruthWhereDVariesEightfold) {
+TEST_F(ReferenceSuite, Pyramid_MatchesWhereDVariesEightfold) {
   const CapturedFrame frame = textured(256, 96, 16, "varying");
   const Reference reference = reference_of(frame);
   const ErrorFigures error = error_of(reference, scatter(frame, "sap", {{"variant", "smooth"}}));
-  // Regression bounds: they follow the product.
+  // Regression bounds of the present implementation.
   EXPECT_LE(error.rmse, 3e-3);
   EXPECT_LE(error.max_error, 1.5e-2);
 }
 
-TEST_F(ReferenceSuite, ThePyramidFollowsTheTruthAtEveryD) {
+TEST_F(ReferenceSuite, Pyramid_MatchesAtEveryD) {
   for (const double d_px : {2.0, 4.0, 8.0, 16.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
     const Reference reference = reference_of(frame);
@@ -116,14 +117,15 @@ TEST_F(ReferenceSuite, ThePyramidFollowsTheTruthAtEveryD) {
     const ErrorFigures separable = error_of(reference, scatter(frame, "separable", {{"taps", "25"}}));
     EXPECT_LE(sap.rmse, 2e-3) << d_px;
     EXPECT_LE(sap.max_error, 1.5e-2) << d_px;
-    // Regression bound: it follows the product.
+    // Regression bound of the present implementation.
     EXPECT_LE(sap.rmse, 0.35 * separable.rmse) << d_px;
   }
 }
 
-TEST_F(ReferenceSuite, AtHalfResolutionThePyramidStillFollowsTheTruthBetterThanAFewTaps) {
+TEST_F(ReferenceSuite, HalfResolutionPyramid_BeatsFewTaps) {
   DERMIS_FULL_TESTS_ONLY();
-  // Regression bounds: measured at 640x360: 3.5, 2.7, 2.2 and 1.8e-3; separable with 11 taps 7 to 17e-3.
+  // Regression bounds: measured 3.5, 2.7, 2.2 and 1.8e-3 at 640x360; separable with 11 taps has 7
+  // to 17e-3.
   for (const double d_px : {2.0, 4.0, 8.0, 16.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
     const Reference reference = reference_of(frame);
@@ -135,26 +137,26 @@ TEST_F(ReferenceSuite, AtHalfResolutionThePyramidStillFollowsTheTruthBetterThanA
   }
 }
 
-TEST_F(ReferenceSuite, ThePublishedSeparableKernelStaysWithinItsDocumentedFloor) {
-  // docs/techniques.md, "Floors": .0127 to .0174 at 640x360; another part of the texture is .8 to 1.2 of
-  // that.
+TEST_F(ReferenceSuite, PublishedSeparable_IsWithinItsDocumentedError) {
+  // docs/techniques.md, "Floors": 0.0127 to 0.0174 at 640x360; other parts of the texture give 0.8
+  // to 1.2 times that.
   for (const double d_px : {1.0, 2.0, 4.0, 8.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
     const Reference reference = reference_of(frame);
     const double published = error_of(reference, scatter(frame, "separable_jimenez", {{"taps", "25"}})).rmse;
     const double fitted = error_of(reference, scatter(frame, "separable", {{"taps", "25"}})).rmse;
-    // Regression bounds: they follow the product.
+    // Regression bounds of the present implementation.
     EXPECT_LE(published, 0.0174 * 1.2) << d_px;
     EXPECT_GT(published, 1.2 * fitted) << d_px << " px: what the fit is for";
   }
 }
 
-TEST_F(ReferenceSuite, OddSizesFollowTheTruthUpToTheLastPixel) {
+TEST_F(ReferenceSuite, OddSizes_MatchUpToTheLastPixel) {
   const bool full = dermis::testing::seeds_to_try(0, 1) != 0;
   const uint32_t width = full ? 1919 : 239, height = full ? 1079 : 135;
   const CapturedFrame frame = textured(width, height, 4);
   const Reference reference = reference_of(frame);
-  // Regression bounds except that of sap, which its document promises.
+  // Regression bounds, except the bound of sap, which its documentation states.
   for (const auto& [graph, maximum] : {std::pair{"sap", 2e-3}, {"separable", 1.2e-2}, {"burley", 1.5e-2}}) {
     const std::vector<float> light = scatter(frame, graph, {});
     EXPECT_LE(error_of(reference, light).rmse, maximum) << graph;

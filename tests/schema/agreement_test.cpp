@@ -1,6 +1,6 @@
-// Schema and parser judge the same of the structure of a file: types, keys, ranges, words. What needs more
-// than one place of the file (names that refer to each other, expressions, sizes in strings) is the parser's
-// alone.
+// Schema and parser agree on the structure of a file: types, keys, ranges, words. Only the parser
+// checks what needs several places of the file (names that refer to each other, expressions, sizes
+// in strings).
 
 #include "framegraph/compose/compose.hpp"
 #include "framegraph/model/host_pass_type.hpp"
@@ -39,7 +39,7 @@ constexpr DiagnosticId structural[] = {
 
 using Reader = void (*)(const std::string& text, Diagnostics& diagnostics);
 
-// Whatever is included is there and empty.
+// Every included file exists and is empty.
 FileText open_nothing(std::string_view name) {
   return {std::string(name), R"({ "dermis_fragment": 2 })", ""};
 }
@@ -128,7 +128,7 @@ void collect(json& value, std::vector<json*>& out) {
     collect(child, out);
 }
 
-// One change anywhere; deterministic for every seed and library (no distributions of <random>).
+// Makes one random change; deterministic for every seed and library (no distributions of <random>).
 json mutate(json document, uint32_t seed) {
   std::mt19937 random(seed);
   const auto below = [&](size_t count) { return static_cast<size_t>(random() % count); };
@@ -231,7 +231,7 @@ std::vector<json> read_all(const char* folder, bool expectations = false) {
   return out;
 }
 
-// Every feature of the language once, with the shipped kinds.
+// Every feature of the language once, with the shipped pass types.
 constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 2, "name": "whole", "note": "all of it",
   "settings": {
     "quality": { "choice": ["low", "high"], "by": "budget", "default": "high" },
@@ -351,7 +351,7 @@ TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
   expect_agreement("configs/schema/calibration.schema.json", read_calibration_text, files, 3000);
 }
 
-TEST(Schema, OfPassKindsAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, OfPassTypesAgreesWithTheParserOnMutatedFiles) {
   const std::vector<json> files = {
       parse(R"({ "$schema": "x", "dermis_pass_types": 2, "note": "n", "pass_types": [
         { "name": "studio.bloom", "doc": "d", "side_effects": true, "serves_scattering": true, "note": "n",
@@ -364,7 +364,7 @@ TEST(Schema, OfPassKindsAgreesWithTheParserOnMutatedFiles) {
   expect_agreement("configs/schema/pass_types.schema.json", read_pass_types_text, files, 3000);
 }
 
-TEST(Schema, OfGraphsIsTheOneThatTheKindsGive) {
+TEST(Schema, OfGraphsMatchesThePassTypes) {
   EXPECT_EQ(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/schema/graph.schema.json"),
             graph_schema(subsurface::make_pass_types()))
       << "write it again: dermis schema --out configs/schema";
@@ -373,7 +373,7 @@ TEST(Schema, OfGraphsIsTheOneThatTheKindsGive) {
       << "write it again: dermis schema --out configs/schema";
 }
 
-TEST(Schema, NoneHasAPattern) {
+TEST(Schema, NoSchemaHasAPattern) {
   for (const fs::path& path : files_in("configs/schema")) {
     json text = parse(text_of(path));
     std::vector<json*> all;

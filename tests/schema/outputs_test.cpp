@@ -1,4 +1,4 @@
-// What the command writes for other programs is what those programs' formats ask for.
+// Tests that the command's output for other programs follows the formats of these programs.
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/tools/command/expect/junit.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// The messages of a graph under this file name, as SARIF.
+// Returns the messages of a graph with this file name as SARIF.
 json sarif_of(const std::string& name, const std::string& text) {
   Diagnostics diagnostics;
   const PassTypeRegistry pass_types = subsurface::make_pass_types();
@@ -26,7 +26,7 @@ json sarif_of(const std::string& name, const std::string& text) {
   return json::parse(format_as_sarif(diagnostics, "1.2.3"));
 }
 
-TEST(Outputs, SarifIsWhatTheStandardAsksFor) {
+TEST(Outputs, SarifFollowsTheStandard) {
   const SchemaFile schema("tests/schema/sarif.schema.json");
   const std::pair<const char*, const char*> cases[] = {
       {"good.json", R"({ "dermis": 2, "name": "good", "passes": [], "exports": [] })"},
@@ -40,14 +40,14 @@ TEST(Outputs, SarifIsWhatTheStandardAsksFor) {
   for (const auto& [name, text] : cases) {
     const json log = sarif_of(name, text);
     EXPECT_TRUE(schema.accepts(log)) << name << "\n" << schema.first_problem(log) << log.dump(1);
-    for (const json& result : log["runs"][0]["results"]) // 3.27.6: the index is that of the rule
+    for (const json& result : log["runs"][0]["results"]) // 3.27.6: the index is that of the rule.
       EXPECT_EQ(log["runs"][0]["tool"]["driver"]["rules"][result["ruleIndex"].get<size_t>()]["id"],
                 result["ruleId"]);
   }
   EXPECT_GE(sarif_of(cases[4].first, cases[4].second)["runs"][0]["results"].size(), 3u);
 }
 
-TEST(Outputs, TheSarifSchemaRefusesWhatIsNone) {
+TEST(Outputs, SarifSchemaRefusesInvalidFiles) {
   const SchemaFile schema("tests/schema/sarif.schema.json");
   json log = sarif_of("broken.json", "{");
   ASSERT_TRUE(schema.accepts(log));
@@ -62,7 +62,8 @@ TEST(Outputs, TheSarifSchemaRefusesWhatIsNone) {
   EXPECT_FALSE(schema.accepts(damaged));
 }
 
-// Does xmllint (libxml2-utils) take the text by junit.xsd? -1: it is not installed.
+// Returns whether xmllint (libxml2-utils) accepts the text by junit.xsd; -1 if xmllint is not
+// installed.
 int xmllint_says(const std::string& text) {
   if (std::system("command -v xmllint > /dev/null 2>&1") != 0) return -1;
   const auto file =
@@ -75,7 +76,7 @@ int xmllint_says(const std::string& text) {
   return code == 0 ? 1 : 0;
 }
 
-TEST(Outputs, JUnitIsWhatBuildServersRead) {
+TEST(Outputs, JUnitFollowsTheFormatOfBuildServers) {
   const std::string results = tools::junit_xml(
       {{"configs/\"a\" & <b>.expect.json",
         {{"good", true, "", ""}, {"bad \x01 case", false, "why: <x> & \"y\"", "- a\n+ b]]>\n"}}},

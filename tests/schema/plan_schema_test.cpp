@@ -1,4 +1,4 @@
-// The schema of plans accepts what the compiler writes, and tells where something else stands there.
+// The schema of plans accepts the compiler's output, and reports the place of any difference.
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/explain/plan_json.hpp"
@@ -21,7 +21,7 @@ struct PlanSchema : ::testing::Test {
   PassTypeRegistry pass_types = subsurface::make_pass_types();
   DeviceProfile device = generic_profile();
 
-  // The plan as JSON, with every optional slot bound or with none.
+  // Returns the plan as JSON, with every optional slot bound or with none.
   json plan_of(const std::string& path, bool bound) {
     Diagnostics diagnostics;
     const auto document = read_document(path, diagnostics);
@@ -53,7 +53,8 @@ TEST_F(PlanSchema, AcceptsThePlanOfEveryShippedGraph) {
   EXPECT_GE(plans, 4u);
 }
 
-// Every object of a plan is closed and complete: without any one of its keys, or with one more, it is none.
+// Every object of a plan is closed and complete: the schema refuses a missing key and an additional
+// key.
 void expect_closed(const SchemaFile& schema, const json& whole, json& part, const json& copy,
                    const std::string& where, uint32_t& tried) {
   if (part.is_array()) {
@@ -63,7 +64,8 @@ void expect_closed(const SchemaFile& schema, const json& whole, json& part, cons
   if (!part.is_object()) return;
   for (auto it = copy.begin(); it != copy.end(); ++it) {
     expect_closed(schema, whole, part[it.key()], it.value(), where + "/" + it.key(), tried);
-    if (it.key() == "name" && where.starts_with("/reasons")) continue; // not every reason has one
+    // Not every reason has a name.
+    if (it.key() == "name" && where.starts_with("/reasons")) continue;
     part.erase(it.key());
     EXPECT_FALSE(schema.accepts(whole)) << "without " << where << "/" << it.key();
     part[it.key() + "x"] = it.value();
@@ -106,7 +108,7 @@ TEST_F(PlanSchema, AcceptsThePlanOfTwoQueues) {
   EXPECT_EQ(plan["passes"][1]["queue"], "async");
 }
 
-TEST_F(PlanSchema, RefusesAPlanThatLacksAnythingOrHasMore) {
+TEST_F(PlanSchema, RefusesMissingAndAdditionalKeys) {
   json whole = plan_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json", true);
   const json copy = whole;
   uint32_t tried = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// An independent judge: draft-07 validation by another's code.
+// Independent validation against draft-07 by a third-party library.
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,10 +9,11 @@ namespace dermis::testing {
 
 class SchemaFile {
 public:
-  explicit SchemaFile(const std::string& path); // from the repository's root
+  explicit SchemaFile(const std::string& path); // Path from the repository's root.
   ~SchemaFile();
   bool accepts(const nlohmann::json& document) const;
-  std::string first_problem(const nlohmann::json& document) const; // "" when it accepts
+  // Returns "" if the schema accepts the document.
+  std::string first_problem(const nlohmann::json& document) const;
 
 private:
   struct Parsed;

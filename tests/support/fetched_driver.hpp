@@ -1,12 +1,12 @@
 #pragma once
-// The driver with ray queries that tests/scripts/fetch_driver.sh leaves in build/drivers.
+// The driver with ray queries that tests/scripts/fetch_driver.sh stores in build/drivers.
 
 #include <filesystem>
 #include <string>
 
 namespace dermis::testing {
 
-// Path of the manifest; "" where none was fetched.
+// Returns the path of the manifest, or "" if no driver was fetched.
 inline std::string driver_with_ray_queries() {
   std::error_code none;
   for (const auto& file :

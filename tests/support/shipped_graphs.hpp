@@ -1,6 +1,6 @@
 #pragma once
-// The graphs that ship: configs/graphs has those of the product, its folder papers baselines and
-// reproductions.
+// The shipped graphs: configs/graphs has the graphs of the product, its folder `papers` baselines
+// and reproductions.
 
 #include <algorithm>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace dermis::shipped {
 
-// Paths from the root of the sources, sorted by the graph's name.
+// Returns paths from the root of the sources, sorted by the graph's name.
 inline std::vector<std::string> graph_files() {
   namespace fs = std::filesystem;
   const fs::path root = DERMIS_SOURCE_DIR;
@@ -26,7 +26,8 @@ inline std::vector<std::string> graph_files() {
   return paths;
 }
 
-// The path of "sap" from the root of the sources; of a graph that does not ship, where the product's are.
+// Returns the path of a graph such as "sap" from the root of the sources. For an unknown graph it
+// is a path in the product's folder.
 inline std::string graph_file(const std::string& name) {
   for (const std::string& path : graph_files())
     if (std::filesystem::path(path).stem() == name) return path;

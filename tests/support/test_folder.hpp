@@ -1,5 +1,5 @@
 #pragma once
-// A folder of a test's own, gone afterwards.
+// A temporary folder of a test, removed afterwards.
 
 #include <cstdlib>
 #include <filesystem>
@@ -17,7 +17,7 @@ public:
     place = name;
   }
   ~TestFolder() {
-    std::error_code ignored; // a test that fails here says so itself
+    std::error_code ignored; // A failing test reports the error itself.
     std::filesystem::remove_all(place, ignored);
   }
   TestFolder(const TestFolder&) = delete;

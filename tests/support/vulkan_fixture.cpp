@@ -105,7 +105,7 @@ void VulkanTest::SetUp() {
     layer_there |= std::strcmp(layer.layerName, validation_layer) == 0;
   if (!layer_there) GTEST_SKIP() << "the layer " << validation_layer << " is not installed";
 
-  // Synchronization across submissions can only be asked for by the environment (layer 1.3.239).
+  // Only the environment can request synchronization validation across submissions (layer 1.3.239).
   setenv("VK_LAYER_ENABLES",
          "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT:"
          "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
@@ -142,8 +142,7 @@ void VulkanTest::SetUp() {
     instance = VK_NULL_HANDLE;
     GTEST_SKIP() << "no Vulkan driver: vkCreateInstance gave " << made;
   }
-  // A driver that stays loaded keeps its name in reports of sanitizers, so that its own leaks can be told
-  // apart.
+  // A driver that stays loaded keeps its name in sanitizer reports, which identifies its own leaks.
   dlopen("libvulkan_lvp.so", RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
 #define TEST_LOAD(name) p.name = reinterpret_cast<PFN_##name>(get_instance_proc_addr(instance, #name));
   TEST_INSTANCE_FUNCTIONS(TEST_LOAD)
@@ -210,13 +209,13 @@ void VulkanTest::TearDown() {
       p.vkFreeMemory(device, image.memory, nullptr);
     }
     p.vkDestroyCommandPool(device, p.pool, nullptr);
-    p.vkDestroyDevice(device, nullptr); // complains about everything that still lives
+    p.vkDestroyDevice(device, nullptr); // Validation reports everything that still exists.
   }
   if (instance != VK_NULL_HANDLE) {
     p.vkDestroyDebugUtilsMessengerEXT(instance, p.messenger, nullptr);
     p.vkDestroyInstance(instance, nullptr);
   }
-  // The loader stays loaded: drivers start threads that outlive an unload.
+  // The loader stays loaded, because drivers start threads that outlive an unload.
   for (const std::string& message : take_messages())
     ADD_FAILURE() << message;
 }

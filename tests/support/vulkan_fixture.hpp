@@ -1,7 +1,7 @@
 #pragma once
-// A headless Vulkan device for tests, always under Khronos validation with core and synchronization checks,
-// also across submissions. Every message fails the test. Skips, saying why, where there is no driver or no
-// layer.
+// A headless Vulkan device for tests, always under Khronos validation with core and synchronization
+// checks, also across submissions. Every message fails the test. Without a driver or layer the test
+// is skipped with the reason.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace dermis::testing {
 
 struct TestImage {
   VkImage image = VK_NULL_HANDLE;
-  VkImageView view = VK_NULL_HANDLE; // of mip 0; of the depth aspect for depth formats
+  VkImageView view = VK_NULL_HANDLE; // Of mip 0; of the depth aspect for depth formats.
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VkFormat format = VK_FORMAT_UNDEFINED;
   uint32_t width = 0, height = 0;
@@ -30,25 +30,26 @@ public:
 
 protected:
   void SetUp() override;
-  void TearDown() override; // waits, frees, and expects that validation had nothing to say
+  void TearDown() override; // Waits, frees, and expects no validation messages.
 
-  // With transfer usage added; freed in TearDown. Contents and layout undefined.
+  // Adds transfer usage; TearDown frees the image. Contents and layout are undefined.
   TestImage make_image(VkFormat format, uint32_t width, uint32_t height, VkImageUsageFlags usage);
-  // Fills mip 0 with texels, row by row, and leaves it in `layout`. Waits.
+  // Fills mip 0 with texels, row by row, and leaves the image in `layout`. Waits.
   void upload(const TestImage& image, std::span<const std::byte> texels, VkImageLayout layout);
-  // Brings it to `layout`, contents undefined. Waits.
+  // Moves the image to `layout`; the contents are undefined. Waits.
   void transition(const TestImage& image, VkImageLayout layout);
-  // Texels of mip 0; the image is in `layout` before and after. Waits for the device.
+  // Returns the texels of mip 0; the image is in `layout` before and after. Waits for the device.
   std::vector<std::byte> download(const TestImage& image, VkImageLayout layout);
 
-  VkCommandBuffer begin_commands();      // a fresh one, recording
-  void submit(VkCommandBuffer commands); // ends and submits without waiting
-  void wait();                           // for the device to be idle
+  VkCommandBuffer begin_commands();      // Returns a new command buffer in the recording state.
+  void submit(VkCommandBuffer commands); // Ends and submits without waiting.
+  void wait();                           // Waits for the device to be idle.
 
-  // What validation said since the last call, and forgets it: for tests that provoke.
+  // Returns and clears the validation messages since the last call, for tests that cause them.
   std::vector<std::string> take_messages();
 
-  // What the library is told of a host's device; Input: vulkan::DeviceInput, which this file does not know.
+  // Returns the device input of the library; Input is vulkan::DeviceInput, which this file does not
+  // include.
   template <typename Input> Input device_input() const {
     Input input;
     input.get_instance_proc_addr = get_instance_proc_addr;

@@ -1,7 +1,7 @@
-// The guidance functions of the kernels on a device, against their CPU reference in fp64. Bounds follow from
-// the precision that Vulkan requires: one ulp for sums and products, two and a half for quotients.
-// `magnitude` is the formula with absolute values in place of its terms, so that a bound holds where terms
-// cancel, too.
+// Compares the kernels' guidance functions on a device with their CPU reference in fp64. Bounds
+// follow from the precision that Vulkan requires: one ulp for sums and products, 2.5 ulp for
+// quotients. `magnitude` is the formula with absolute values of its terms, so that a bound also
+// holds if terms cancel.
 #include "integration/tools/references/guidance.hpp"
 #include "tests/shaders/common/kernel_fixture.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 constexpr uint32_t cases = 512, rows = 3;
 constexpr double ulp = std::numeric_limits<float>::epsilon();
 
-struct Case { // as test_guidance.comp reads it
+struct Case { // The layout that test_guidance.comp reads.
   float sigma2_target, kappa, eta, eps_alpha;
   float minimum, maximum, variance, mean_count;
   float mean_f, mean_g, covariance, variance_g;
@@ -48,8 +48,8 @@ std::vector<Case> make_cases() {
   for (uint32_t i = 0; i < cases; ++i) {
     const float minimum = std::floor(between(1, 16)), maximum = minimum + std::floor(between(0, 100));
     const float variance_g = i % 5 == 0 ? 0 : octaves(-24, 4);
-    // Of asked numbers some are outside of the range; none is the middle between two whole ones, which GLSL
-    // lets a driver round either way.
+    // Some requested numbers are outside of the range; none is halfway between two integers, which
+    // GLSL lets a driver round either way.
     const float requested = std::round(between(-20, 140)) + (i % 3 == 0   ? 0.499f
                                                              : i % 3 == 1 ? -0.499f
                                                                           : 0.0f);
@@ -59,7 +59,7 @@ std::vector<Case> make_cases() {
                     between(-1, 1) * octaves(-16, 4), variance_g, octaves(-8, 8), octaves(-8, 8),
                     between(0.001, 1), requested});
   }
-  made[0].mean_f = made[0].mean_g = made[0].covariance = made[0].variance_g = 0; // all is dark
+  made[0].mean_f = made[0].mean_g = made[0].covariance = made[0].variance_g = 0; // All is dark.
   return made;
 }
 
@@ -93,7 +93,7 @@ TEST_F(GuidanceKernel, SampleNumbersEqualTheReference) {
     const double bound = (2 * 2.5 + 7) * ulp * magnitude;
     EXPECT_NEAR(at(i, 0, 0), wanted, bound) << i;
     EXPECT_EQ(at(i, 0, 2), clamped_samples(one.requested, settings)) << i << ": " << one.requested;
-    // Where the bound does not reach the middle between two whole numbers, both decide alike.
+    // Both results are equal unless the bound contains a value halfway between two integers.
     const int low = clamped_samples(wanted - bound, settings),
               high = clamped_samples(wanted + bound, settings);
     EXPECT_THAT(at(i, 0, 1), ::testing::AllOf(::testing::Ge(low), ::testing::Le(high)))
@@ -107,7 +107,7 @@ TEST_F(GuidanceKernel, ControlWeightsEqualTheReference) {
   for (size_t i = 0; i < requested.size(); ++i) {
     const Case& one = requested[i];
     const double eps = one.eps_alpha;
-    // Two sums and a quotient; the upper limit is a sum and a quotient of what is not negative.
+    // Two sums and a quotient; the upper limit is a sum and a quotient of non-negative values.
     double magnitude = (std::abs(double(one.covariance)) + eps) / (double(one.variance_g) + eps);
     if (one.mean_g > 0) magnitude += (double(one.mean_f) + one.mean_g) / one.mean_g;
     EXPECT_NEAR(at(i, 0, 3), control_weight(one.moments(), eps), (2 + 2.5) * ulp * magnitude) << i;
@@ -124,8 +124,8 @@ TEST_F(GuidanceKernel, MovingMomentsEqualTheReference) {
     variance.add(one.f, eta);
     MovingCovariance moments = one.moments();
     moments.add(one.f, one.g, eta);
-    // A mean: difference, product, sum. A variance: two differences, one of them squared, three products, a
-    // sum.
+    // A mean: difference, product, sum. A variance: two differences, one of them squared, three
+    // products, a sum.
     const double mean_f = 3 * ulp * (double(one.mean_f) + eta * f),
                  mean_g = 3 * ulp * (double(one.mean_g) + eta * g);
     const double spread = 8 * ulp;

@@ -1,9 +1,10 @@
 #version 460
-// Answers case x with the functions of guidance.glsl, one row a question:
-//   row 0  wanted_samples, clamped_samples of that, clamped_samples of the number asked, control_weight
+// Evaluates the functions of guidance.glsl for case x, one row per question:
+//   row 0  wanted_samples, clamped_samples of the result, clamped_samples of the request,
+// control_weight
 //   row 1  add_value: mean, variance
 //   row 2  add_values: means of f and g, covariance, variance of g
-// A case is four rows of the table of questions; see guidance_kernel_test.cpp.
+// A case is four rows of the table of questions; see guidance_test.cpp.
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
 struct guidance_settings {

@@ -1,4 +1,4 @@
-// How kernels read directions that a host stores in its own view space.
+// Tests how kernels read directions that a host stores in its own view space.
 #include "passes/common/environment.hpp"
 #include "tests/shaders/common/kernel_fixture.hpp"
 
@@ -7,7 +7,7 @@
 namespace dermis {
 namespace {
 
-// As fill_frame_constants states it.
+// Computed by fill_frame_constants.
 uint32_t flags_of(subsurface::Handedness handedness) {
   subsurface::FrameInput input;
   input.rect_width = input.rect_height = 8;

@@ -1,4 +1,5 @@
-// What kernels round to halves before they store it, whatever the driver's own stores do.
+// Tests the rounding to half floats that kernels do before they store, independent of the driver's
+// stores.
 #include "tests/shaders/common/kernel_fixture.hpp"
 
 #include "test_half.spv.h"
@@ -9,10 +10,10 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t width = 512, height = 1024; // 2^19 heads of floats
+constexpr uint32_t width = 512, height = 1024; // The 2^19 upper bits of floats.
 constexpr uint32_t tails[] = {0, 0xfff, 0x1000, 0x1001};
 
-// Nearest half, ties to even, in fp64: no step of it rounds but the one that has to.
+// Returns the nearest half float, ties to even, computed in fp64 with a single rounding step.
 double nearest_half(float x) {
   const double bounded = std::fmin(std::fmax(double(x), -65504.0), 65504.0);
   const double step = std::ldexp(1.0, std::max(std::ilogb(bounded), -14) - 10);
@@ -21,7 +22,7 @@ double nearest_half(float x) {
 
 class HalfKernel : public testing::KernelTest {};
 
-TEST_F(HalfKernel, RoundsEveryFloatToTheNearestHalfAndTiesToEven) {
+TEST_F(HalfKernel, RoundsToTheNearestHalfAndTiesToEven) {
   const std::vector<float> answers = answers_of({"test_half", test_half_spirv}, width, height);
   ASSERT_EQ(answers.size(), size_t{4} * width * height);
   size_t judged = 0, wrong = 0;

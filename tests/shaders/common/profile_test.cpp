@@ -1,4 +1,4 @@
-// The profiles as kernels evaluate them on a device, against the fp64 shapes that truths are made of.
+// Compares the profiles that kernels evaluate on a device with the fp64 shapes of the references.
 #include "passes/common/environment.hpp"
 #include "passes/common/profiles/profile.hpp"
 #include "tests/shaders/common/kernel_fixture.hpp"
@@ -11,11 +11,12 @@
 namespace dermis::subsurface {
 namespace {
 
-constexpr uint32_t width = 208, rows = 3;                               // of each profile
-constexpr const char* files[] = {"skin", "skin_dipole", "skin_artist"}; // in configs/profiles
+// `rows` is the number per profile.
+constexpr uint32_t width = 208, rows = 3;
+constexpr const char* files[] = {"skin", "skin_dipole", "skin_artist"}; // In configs/profiles.
 constexpr uint32_t height = rows * uint32_t(std::size(files));
 
-// Where test_profile.comp looks.
+// Returns the radius that test_profile.comp uses.
 double radius_in_d(uint32_t x) {
   return std::exp2(x / 16.0 - 8);
 }
@@ -51,7 +52,7 @@ protected:
   std::vector<float> values;
 };
 
-TEST_F(ProfileKernel, DensityAndDistributionAreThoseOfTheShapes) {
+TEST_F(ProfileKernel, DensityAndCdfMatchTheShapes) {
   ASSERT_FALSE(values.empty());
   for (size_t i = 0; i < profiles.size(); ++i) {
     const Profile& profile = profiles[i].profile;
@@ -61,7 +62,8 @@ TEST_F(ProfileKernel, DensityAndDistributionAreThoseOfTheShapes) {
         const double r = radius_in_d(x) * d, R = at(i, 0, x, c) / (2 * std::numbers::pi);
         const double reference = shape_R(profile.shape_mm[c], r),
                      maximum = shape_R(profile.shape_mm[c], d / 256);
-        // Tables are linear in log R over 1/24 octave; far out what is left of the largest value counts.
+        // Tables are linear in log R over 1/24 octave; far out the error is relative to the largest
+        // value.
         EXPECT_NEAR(R, reference, 4e-3 * reference + 1e-9 * maximum)
             << files[i] << " R at " << r << " mm, channel " << c;
         EXPECT_NEAR(2 * std::numbers::pi * r * R, shape_pdf(profile.shape_mm[c], r),
@@ -73,18 +75,19 @@ TEST_F(ProfileKernel, DensityAndDistributionAreThoseOfTheShapes) {
   }
 }
 
-TEST_F(ProfileKernel, InversesUndoTheDistribution) {
+TEST_F(ProfileKernel, InversesInvertTheCdf) {
   ASSERT_FALSE(values.empty());
   for (size_t i = 0; i < profiles.size(); ++i) {
     const Profile& profile = profiles[i].profile;
     const ChannelShape& shape = profile.shape_mm[static_cast<size_t>(profile.widest)];
     const bool burley =
-        i == 0; // a polynomial within .52 %, and exact weights; tables within a thousandth of d
+        // Burley: a polynomial within 0.52 %, and exact weights. Tables: within a thousandth of d.
+        i == 0;
     for (uint32_t x = 1; x < width; ++x) {
       const double r = at(i, 2, x, 0), reference = shape_inverse_survival(shape, requested_survival(x));
       EXPECT_NEAR(r, reference, (burley ? 5.2e-3 * reference : 0) + 1e-3 * shape.d)
           << files[i] << " " << requested_survival(x);
-      // The density is the sampler's own: within some percent of the profile's.
+      // The density is the sampler's own density, within a few percent of the profile.
       EXPECT_NEAR(at(i, 2, x, 1) / shape_pdf(shape, r), 1, 0.05) << files[i] << " " << requested_survival(x);
     }
   }

@@ -1,6 +1,6 @@
-// Looking back one frame as kernels do it on a device, against its CPU reference in fp64. Decisions are asked
-// with numbers that fp32 holds exactly, so that they are equal even where a value lies on its limit. Bounds
-// of places follow from the precision that Vulkan requires: one ulp for sums and products, two and a half for
+// Compares reprojection in kernels on a device with its CPU reference in fp64. Decisions use
+// numbers that fp32 holds exactly, so that results are equal even on a limit. Bounds of positions
+// follow from the precision that Vulkan requires: one ulp for sums and products, 2.5 ulp for
 // quotients.
 #include "passes/common/reproject.hpp"
 #include "tests/shaders/common/kernel_fixture.hpp"
@@ -18,15 +18,15 @@ namespace {
 constexpr uint32_t cases = 768, rows = 4;
 constexpr double ulp = std::numeric_limits<float>::epsilon();
 
-struct Case { // as test_reproject.comp reads it
+struct Case { // The layout that test_reproject.comp reads.
   float x, y, depth, rise;
   float velocity[3], id;
   float place_x, place_y, place_depth, tolerance;
 };
 static_assert(sizeof(Case) == 3 * 4 * sizeof(float));
 
-// The images of the frame before, 16x16 texels. All of them show a surface, those outside of its rectangle,
-// too: whoever reads there is found out.
+// The images of the previous frame, 16x16 texels. All texels show a surface, also outside of the
+// rectangle, so that reads there are detected.
 struct Texel {
   float depth, id, unused[2];
 };
@@ -35,7 +35,7 @@ std::vector<Texel> make_texels() {
   std::vector<Texel> made;
   for (uint32_t i = 0; i < texels * texels; ++i) {
     const uint32_t hash = (i + 1) * 2654435761u >> 16;
-    // Two profiles at the same depths, side by side; depths a tolerance apart and a little more.
+    // Two adjacent profiles at equal depths; depths differ by a tolerance or a little more.
     made.push_back(
         {512.0f + 8 * float(hash % 3) + (hash / 4 % 8 == 0 ? 0.125f : 0), 1 + float(hash / 32 % 8 == 0), {}});
   }
@@ -58,8 +58,9 @@ std::vector<Case> make_cases(const FrameConstants& frame) {
     one.rise = i % 3 == 0 ? 0 : between(0, 60);
     for (float& v : one.velocity)
       v = i % 5 == 0 ? 0 : between(-6, 6);
-    one.velocity[2] *= 0.01f;                                               // metres
-    if (i % 97 == 1) one.velocity[i / 97 % 3] = i % 2 == 0 ? 1e6f : -65536; // too fast to be a motion
+    one.velocity[2] *= 0.01f; // Metres.
+    // Too fast for a motion.
+    if (i % 97 == 1) one.velocity[i / 97 % 3] = i % 2 == 0 ? 1e6f : -65536;
     one.id = i % 8 == 0 ? 2 : 1;
     one.place_x = i % 4 == 0 ? std::floor(between(-2, width + 1)) : steps(-2, width + 1);
     one.place_y = i % 6 == 0 ? std::floor(between(-2, height + 1)) : steps(-2, height + 1);
@@ -67,7 +68,7 @@ std::vector<Case> make_cases(const FrameConstants& frame) {
     one.tolerance = 8 * std::floor(between(1, 4));
     made.push_back(one);
   }
-  made[0].place_x = 65536; // the least that is too far
+  made[0].place_x = 65536; // The smallest value that is too far.
   made[1].place_y = -65536;
   made[2].place_depth = -512;
   return made;
@@ -77,7 +78,7 @@ Matrix4 lens(bool perspective, double scale) {
   if (perspective) return {scale, 0, 0, 0, 0, -1.5 * scale, 0, 0, 0, 0, 0, 0.1, 0, 0, -1, 0};
   return {scale, 0, 0, 0, 0, -1.5 * scale, 0, 0, 0, 0, -0.1, 0, 0, 0, 0, 1};
 }
-// At `x` metres, turned by `angle` about the vertical axis.
+// Builds a camera at `x` metres, turned by `angle` about the vertical axis.
 Matrix4 camera(double x, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c, 0, s, -c * x, 0, 1, 0, 0.01, -s, 0, c, s * x, 0, 0, 0, 1};
@@ -125,7 +126,7 @@ struct Bounded {
   double value = 0, bound = 0;
 };
 
-// place_before once more with what rounding may change, before places next to whole pixels snap to them.
+// Computes place_before with rounding bounds, before positions next to whole pixels snap to them.
 struct PlaceBounds {
   std::array<Bounded, 2> pixel;
   Bounded depth;
@@ -209,7 +210,8 @@ protected:
   const std::vector<Texel> before = make_texels();
 };
 
-// Whether the place on the device is the reference's. Next to the limit of snapping either decision is right.
+// Checks that the position on the device matches the reference. Next to the snapping limit both
+// decisions are allowed.
 void expect_place(const Bounded& place, double reference, double device, const std::string& where) {
   const double whole = std::round(place.value);
   const bool either = std::abs(std::abs(place.value - whole) - reproject_snap_px) <= place.bound;
@@ -232,7 +234,8 @@ TEST_F(ReprojectKernel, PlacesEqualTheReference) {
       const PreviousPlace moving = place_before(answers.frame, one.x, one.y, one.depth,
                                                 {one.velocity[0], one.velocity[1], one.velocity[2]});
       const double steep = std::max(reproject_depth_fraction * one.depth, reproject_slope_pixels * one.rise);
-      EXPECT_NEAR(answers.at(i, 1, 3), steep, 2 * ulp * steep) << where; // a constant and a product
+      // A constant and a product.
+      EXPECT_NEAR(answers.at(i, 1, 3), steep, 2 * ulp * steep) << where;
       EXPECT_EQ(answers.at(i, 0, 2) > 0, still.depth > 0) << where;
       EXPECT_EQ(answers.at(i, 1, 2) > 0, moving.depth > 0) << where;
       if (!(still.depth > 0)) {
@@ -274,7 +277,7 @@ TEST_F(ReprojectKernel, TapsEqualTheReference) {
     EXPECT_EQ(answers.at(i, 2, 1), taps.y) << where;
     for (size_t t = 0; t < 4; ++t) {
       EXPECT_EQ(answers.at(i, 3, t) > 0, taps.weight[t] > 0) << where << ", tap " << t;
-      // Places are whole 64ths: products and their sum are exact, the quotient is not.
+      // Positions are multiples of 1/64: products and their sum are exact, the quotient is not.
       EXPECT_NEAR(answers.at(i, 3, t), taps.weight[t], 2.5 * ulp * taps.weight[t]) << where << ", tap " << t;
     }
     (used == 0 ? none : used == 4 ? all : some) += 1;

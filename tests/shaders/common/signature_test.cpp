@@ -1,4 +1,4 @@
-// The kernels that ship follow the signatures that descriptor layouts and push constants are made of.
+// The shipped kernels match the signatures that define descriptor layouts and push constants.
 #include "framegraph/vulkan/shader/signature_check.hpp"
 #include "passes/common/environment.hpp"
 #include "passes/common/kernels.hpp"
@@ -9,9 +9,10 @@
 namespace dermis::subsurface {
 namespace {
 
-TEST(Kernels, EveryKernelFitsItsSignatureAndTheEnvironment) {
+TEST(Kernels, EveryKernelMatchesItsSignature) {
   using vulkan::EnvironmentType;
-  constexpr uint64_t any = 1u << 16; // the separable table ends in an array that is as long as the buffer
+  // The separable table ends in an array of the length of the buffer.
+  constexpr uint64_t any = 1u << 16;
   const vulkan::EnvironmentBinding environment[] = {
       {EnvironmentType::uniform_buffer, sizeof(FrameConstants), {}},
       {EnvironmentType::storage_buffer, profile_capacity * sizeof(ProfileEntry), {}},

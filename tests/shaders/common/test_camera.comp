@@ -1,5 +1,5 @@
 #version 460
-// view_normal of a normal that differs in each pixel.
+// Evaluates view_normal of a normal that differs in each pixel.
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,6 +1,7 @@
 #version 460
-// round_to_half of every float that is a half but for its exponent's range, or lies at, or just below or above, the
-// middle between two of them: sign, exponent and ten bits from the place, then the tail of the channel.
+// Evaluates round_to_half for floats whose exponent is in any range and whose value is a half
+// float, or is at, just below or just above the middle between two half floats. Sign, exponent and
+// ten bits come from the position, the tail from the channel.
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
 #include "common/half.glsl"

@@ -1,6 +1,7 @@
 #version 460
-// What the kernels' profile functions say of profile id y / 3 + 1: row 0 2 pi R and row 1 the survival of 2^(x / 16 - 8) d,
-// row 2 the sampler's radius and density for a survival of 2^(-x / 16). Lengths in mm.
+// Evaluates the kernels' profile functions for profile id y / 3 + 1. Row 0: 2 pi R, row 1: the
+// survival of 2^(x / 16 - 8) d, row 2: the sampler's radius and density for a survival of 2^(-x /
+// 16). Lengths in mm.
 #extension GL_GOOGLE_include_directive : require
 #include "common/profile.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

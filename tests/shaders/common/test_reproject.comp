@@ -1,11 +1,11 @@
 #version 460
-// Answers case x with the functions of reproject.glsl, one row a question:
-//   row 0  place_before of a point that stands still: pixel, depth; history_usable
+// Evaluates the functions of reproject.glsl for case x, one row per question:
+//   row 0  place_before of a static point: pixel, depth; history_usable
 //   row 1  place_before of a point with a velocity: pixel, depth; depth_tolerance
-//   row 2  find_history: the first texel, the number of taps that count
+//   row 2  find_history: the first texel, the number of valid taps
 //   row 3  find_history: the weights
-// A case is three rows of the table of questions, after which come depth and profile of the texels of the frame before; see
-// reproject_test.cpp in this folder.
+// A case is three rows of the table of questions, followed by depth and profile of the texels of
+// the previous frame; see reproject_test.cpp in this folder.
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
 vec2 surface_before(ivec2 pixel);

@@ -1,7 +1,8 @@
 #version 460
-// Answers with the functions of tile_edges.glsl for every pixel of 5x4 tiles, one arrangement of tiles below the other:
-// edge_weight for ramps of 4 and 8 pixels, has_samples of the pixel's tile and of the tile that lies two up and two to the
-// left. A row of the table of questions holds a tile's class and its samples.
+// Evaluates the functions of tile_edges.glsl for every pixel of 5x4 tiles, one arrangement of tiles
+// below the other: edge_weight for ramps of 4 and 8 pixels, and has_samples of the pixel's tile and
+// of the tile two up and two to the left. A row of the table of questions holds a tile's class and
+// its samples.
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
 const int tile_count = 20;

@@ -1,6 +1,6 @@
-// The weights with which samples of one tile pass over into the light of tiles without samples, as kernels
-// compute them on a device, against their definition: smoothstep of the distance in the maximum norm to the
-// next tile without samples.
+// Compares the weights that fade samples out towards tiles without samples, as kernels compute them
+// on a device, with their definition: smoothstep of the distance in the maximum norm to the next
+// tile without samples.
 #include "tests/shaders/common/kernel_fixture.hpp"
 
 #include "test_tile_edges.spv.h"
@@ -13,22 +13,24 @@
 namespace dermis::subsurface::tile_edges_kernel {
 namespace {
 
-constexpr int across = 5, down = 4, side = 8, arrangements = 24; // tiles
+constexpr int across = 5, down = 4, side = 8, arrangements = 24; // Tiles.
 constexpr uint32_t width = across * side, height = down * side * arrangements;
-constexpr double ramps[] = {4, 8}; // pixels
+constexpr double ramps[] = {4, 8}; // Pixels.
 
-struct Tile { // as test_tile_edges.comp reads it
+struct Tile { // The layout that test_tile_edges.comp reads.
   float type, samples, unused[2];
 };
 
-// Class 1 scatters; the others are copied or empty and blend nothing, so samples are not missed there.
+// Tiles of class 1 scatter. Other tiles are copied or empty and blend nothing, so their samples are
+// not needed.
 std::vector<Tile> make_tiles() {
   std::mt19937 random(3);
   std::vector<Tile> tiles;
   for (uint32_t a = 0; a < arrangements; ++a)
     for (uint32_t i = 0; i < across * down; ++i) {
-      const bool sampled = a == 0 ? i != 6 : random() % 4 != 0; // 0: a single tile without samples
-      // From arrangement 12 on, tiles of other classes and the bit of tiles that are full are among them.
+      // Arrangement 0 has a single tile without samples.
+      const bool sampled = a == 0 ? i != 6 : random() % 4 != 0;
+      // From arrangement 12 on, other classes and the bit of full tiles occur.
       const auto type = static_cast<float>((a < 12 ? 1 : random() % 4) + 4 * (random() % 2));
       tiles.push_back({type, sampled ? static_cast<float>(1 + random() % 3) : 0.0f, {}});
     }
@@ -41,9 +43,9 @@ struct Arrangement {
     const Tile& tile = tiles[std::clamp(y, 0, down - 1) * across + std::clamp(x, 0, across - 1)];
     return tile.samples > 0 || int(tile.type) % 4 != 1;
   }
-  // 1 where no neighbour is without samples.
+  // Returns the distance in ramps; 1 if no neighbour is without samples.
   double way_in_ramps(int x, int y, double ramp) const {
-    const double px = x + 0.5, py = y + 0.5; // pixel centre
+    const double px = x + 0.5, py = y + 0.5; // Pixel centre.
     double nearest = std::numeric_limits<double>::infinity();
     for (int ty = y / side - 1; ty <= y / side + 1; ++ty)
       for (int tx = x / side - 1; tx <= x / side + 1; ++tx) {
@@ -78,8 +80,8 @@ protected:
 };
 
 TEST_F(TileEdgesKernel, WeightsEqualTheirDefinition) {
-  // The quotient is rounded twice, to two and a half ulp each, and t^2 (3 - 2 t) holds it three times, next
-  // to three products and a difference.
+  // The quotient is rounded twice, to 2.5 ulp each; t^2 (3 - 2 t) contains it three times, plus
+  // three products and a difference.
   constexpr double ulps = 3 * 2 * 2.5 + 4, ulp = std::numeric_limits<float>::epsilon();
   for (int a = 0; a < arrangements; ++a)
     for (int y = 0; y < down * side; ++y)
@@ -102,9 +104,10 @@ TEST_F(TileEdgesKernel, TilesThatBlendNothingCountAsSampled) {
       }
 }
 
-// Two pixels next to each other, also across a corner of four tiles: the weight changes by no more than the
-// steepest part of the ramp, 3/2 of its mean, so that there is no seam. Tiles without samples have weight 0.
-TEST_F(TileEdgesKernel, NeighboursDifferByNoMoreThanTheRamp) {
+// Between adjacent pixels, also across a corner of four tiles, the weight changes by at most the
+// steepest part of the ramp, 3/2 of its mean, so no seam is visible. Tiles without samples have
+// weight 0.
+TEST_F(TileEdgesKernel, AdjacentPixelsDifferByAtMostTheRamp) {
   const auto weight = [&](int a, int x, int y, size_t r) {
     return arrangement(a).has_samples(x / side, y / side) ? at(a, x, y, r) : 0.0;
   };

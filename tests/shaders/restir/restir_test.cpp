@@ -1,4 +1,5 @@
-// The GLSL of ReSTIR on a device against its twins in fp64: the same questions, the same random bits.
+// Compares the GLSL of ReSTIR on a device with the CPU functions in fp64, for equal inputs and
+// random bits.
 #include "tests/passes/restir/cpu/reuse.hpp"
 #include "tests/shaders/common/kernel_fixture.hpp"
 
@@ -10,11 +11,12 @@ namespace dermis::restir {
 namespace {
 
 constexpr uint32_t cases = 512, rows = 40;
-// fp32 has 6e-8 a step. What follows from a handful of them, with exp and log of the driver (within 1e-6),
-// agrees to 1e-5; positions and offsets lose up to a factor of their size over the distance.
+// fp32 has a relative step of 6e-8. Results of a few operations with the driver's exp and log
+// (within 1e-6) agree to 1e-5; positions and offsets lose a factor of up to their size over the
+// distance.
 constexpr double relative = 1e-5;
 
-// test_restir.comp's sheets.
+// The sheets of test_restir.comp.
 constexpr double sheets[] = {0, -0.4, -1}, sheet_size = 64;
 constexpr uint32_t sheet_instance = 16777217;
 
@@ -41,7 +43,7 @@ const Light sheet_lights[] = {
     {{3, 2, 5}, LightType::point, {}, 0.5, {}, 1, {8, 9, 10}, 0.5},
     {{1, 1, -4}, LightType::parallelogram, {2, 0, 0}, 0.5, {0, 2, 0}, 4, {4, 3, 2}, 1},
 };
-// Each moved and took another colour.
+// Each light moved and changed its colour.
 const Light sheet_lights_before[] = {
     {{2.5, 2, 5}, LightType::point, {}, 0.5, {}, 1, {10, 8, 9}, 0.5},
     {{0.5, 1, -4}, LightType::parallelogram, {2, 0, 0}, 0.5, {0, 2, 0}, 4, {2, 4, 3}, 1},
@@ -78,7 +80,7 @@ protected:
     return {at(x, row, first), at(x, row, first + 1), at(x, row, first + 2)};
   }
 
-  // What case x was asked.
+  // The inputs of case x.
   struct Question {
     Domain domain;
     Vector3 x2{}, n2{};
@@ -113,10 +115,11 @@ protected:
   }
 
   static inline std::vector<float>
-      answers; // the kernel takes longer to be compiled than all tests to look at them
+      // Cached, because the kernel takes longer to compile than all tests take to check its output.
+      answers;
 };
 
-TEST_F(RestirKernel, DrawsTheSameProbes) {
+TEST_F(RestirKernel, ProbesAreEqual) {
   ASSERT_FALSE(answers.empty());
   for (uint32_t x = 0; x < cases; ++x) {
     const Question q = question(x);
@@ -136,19 +139,20 @@ TEST_F(RestirKernel, DrawsTheSameProbes) {
   }
 }
 
-TEST_F(RestirKernel, HasTheSameProfileAndDensity) {
+TEST_F(RestirKernel, ProfileAndDensityAreEqual) {
   ASSERT_FALSE(answers.empty());
   for (uint32_t x = 0; x < cases; ++x) {
     const Question q = question(x);
     const double r = length(q.x2 - q.domain.position);
     const Vector3 profile = scattering_profile(q.domain.d, r);
-    // Offsets of length r have errors of 1e-7 r; close to an axis the disc's radius is shorter, R steeper.
+    // Offsets of length r have errors of 1e-7 r. Close to an axis the disc's radius is shorter and
+    // R is steeper.
     expect_near(x, 12, {profile[0], profile[1], profile[2], probe_pdf(q.domain, q.x2, q.n2)}, 1e-12,
                 5 * relative);
   }
 }
 
-TEST_F(RestirKernel, InvertsToTheSameNumbers) {
+TEST_F(RestirKernel, InvertedNumbersAreEqual) {
   ASSERT_FALSE(answers.empty());
   int same = 0, reached = 0;
   for (uint32_t x = 0; x < cases; ++x) {
@@ -160,7 +164,7 @@ TEST_F(RestirKernel, InvertsToTheSameNumbers) {
     }
     ++reached;
     if (at(x, 13, 0) != numbers.axis || at(x, 13, 1) != numbers.channel)
-      continue; // rounding at a choice's border
+      continue; // Rounding at the border of a choice.
     ++same;
     EXPECT_NEAR(at(x, 13, 2), numbers.survival, relative);
     const double turn = std::abs(at(x, 13, 3) - numbers.angle);
@@ -170,7 +174,7 @@ TEST_F(RestirKernel, InvertsToTheSameNumbers) {
   EXPECT_GE(same, reached - 1);
 }
 
-TEST_F(RestirKernel, IsLitTheSame) {
+TEST_F(RestirKernel, LightingIsEqual) {
   ASSERT_FALSE(answers.empty());
   int lit = 0;
   for (uint32_t x = 0; x < cases; ++x) {
@@ -180,8 +184,8 @@ TEST_F(RestirKernel, IsLitTheSame) {
     const Vector3 target = light_target(q.light, q.place, q.x2);
     lit += luminance(irradiance) > 0;
     const Vector3 way = q.light.type == LightType::directional ? q.light.position : target - q.x2;
-    // Cosines are as exact as a difference of the positions, up to 8 from the origin; grazing ones lose
-    // digits.
+    // Cosines are as exact as a difference of positions, up to 8 from the origin; grazing cosines
+    // lose digits.
     const double scale =
         length(q.light.emission) / (q.light.type == LightType::directional ? 1 : dot(way, way));
     expect_near(x, 14, {irradiance[0], irradiance[1], irradiance[2], light_density(q.light)}, scale,
@@ -192,7 +196,7 @@ TEST_F(RestirKernel, IsLitTheSame) {
   EXPECT_GT(lit, static_cast<int>(cases) / 10);
 }
 
-TEST_F(RestirKernel, MergesTheSamePaths) {
+TEST_F(RestirKernel, MergedPathsAreEqual) {
   ASSERT_FALSE(answers.empty());
   int same = 0, with_samples = 0, chosen_elsewhere = 0;
   for (uint32_t x = 0; x < cases; ++x) {
@@ -210,7 +214,8 @@ TEST_F(RestirKernel, MergesTheSamePaths) {
     spatial_add(sheet_scene, settings, here, spatial, there, history, random);
     spatial_add(sheet_scene, settings, here, spatial, beside, other, random);
     const Reservoir last = spatial_end(spatial, random);
-    // A number within rounding of a threshold may decide otherwise on the device: such cases are counted.
+    // A number within rounding of a threshold may decide differently on the device; such cases are
+    // counted.
     bool agrees = true;
     const auto compare = [&](uint32_t row, const std::array<double, 4>& reference) {
       for (size_t c = 0; c < 4; ++c)
@@ -257,12 +262,12 @@ Reservoir packed_case(uint32_t x, const std::array<double, 4>& u, const ProbeNum
   return r;
 }
 
-TEST_F(RestirKernel, PacksTheSameWords) {
+TEST_F(RestirKernel, PackedWordsAreEqual) {
   ASSERT_FALSE(answers.empty());
   for (uint32_t x = 0; x < cases; ++x) {
     const Question q = question(x);
     ProbeNumbers numbers = draw_numbers(q.domain.d, q.u);
-    numbers.survival = at(x, 9, 2); // the device's own rounding
+    numbers.survival = at(x, 9, 2); // The device's own rounding.
     const PackedReservoir words = pack_reservoir(packed_case(x, q.u, numbers, q.light, q.place));
     for (uint32_t i = 0; i < 16; ++i) {
       const uint32_t row = 24 + i / 2;
@@ -273,7 +278,7 @@ TEST_F(RestirKernel, PacksTheSameWords) {
   }
 }
 
-TEST_F(RestirKernel, RemembersAPixelByTheSameWords) {
+TEST_F(RestirKernel, PackedDomainsAreEqual) {
   ASSERT_FALSE(answers.empty());
   for (uint32_t x = 0; x < cases; ++x) {
     const Domain domain = question(x).domain;
@@ -285,13 +290,14 @@ TEST_F(RestirKernel, RemembersAPixelByTheSameWords) {
     EXPECT_EQ(word_of(33, 2), words[3]);
     EXPECT_EQ(word_of(34, 0), words[4]);
     const Vector3 normal = unpack_domain(words).normal, found = three_at(x, 35);
-    EXPECT_LT(length(found - normal), 1e-4) << "case " << x; // a step of 16 bits, where rounding differs
+    // A step of 16 bits where rounding differs.
+    EXPECT_LT(length(found - normal), 1e-4) << "case " << x;
     EXPECT_LT(length(found - domain.normal), 1e-4) << "case " << x;
     EXPECT_EQ(at(x, 35, 3), domain.medium);
   }
 }
 
-TEST_F(RestirKernel, LooksForNeighboursAtTheSamePlaces) {
+TEST_F(RestirKernel, NeighbourOffsetsAreEqual) {
   ASSERT_FALSE(answers.empty());
   int same = 0;
   for (uint32_t x = 0; x < cases; ++x) {
@@ -300,10 +306,10 @@ TEST_F(RestirKernel, LooksForNeighboursAtTheSamePlaces) {
     same += at(x, 36, 0) == near[0] && at(x, 36, 1) == near[1] && at(x, 36, 2) == far[0] &&
             at(x, 36, 3) == far[1];
   }
-  EXPECT_GE(same, static_cast<int>(cases) * 99 / 100); // rounding at a border between pixels
+  EXPECT_GE(same, static_cast<int>(cases) * 99 / 100); // Rounding at a border between pixels.
 }
 
-TEST_F(RestirKernel, TakesNothingThatIsNotANumber) {
+TEST_F(RestirKernel, NaNAndInfinityAreDropped) {
   ASSERT_FALSE(answers.empty());
   constexpr uint32_t spoilt[] = {2, 3, 7, 8, 9, 10, 11, 12, 14, 15};
   constexpr uint32_t bad[] = {0x7fc00000, 0x7f800000, 0xff800000, 0xbf800000}; // NaN, Inf, -Inf, -1

@@ -1,6 +1,7 @@
 #version 460
-// What the functions of shaders/restir say of case x, one answer a row; rows 0 to 8 are what they were asked, so
-// that the twins are asked the same. Rows 17 on pass paths over three sheets of surface.
+// Evaluates the functions of shaders/restir for case x, one result per row. Rows 0 to 8 are the
+// inputs, so that the CPU functions get equal inputs. Rows 17 on merge paths over three sheets of
+// surface.
 #extension GL_GOOGLE_include_directive : require
 #define DERMIS_RESTIR_RELIGHT
 #include "common/environment.glsl"
@@ -9,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, rgba32f) uniform writeonly image2D target;
 layout(push_constant) uniform push_block { uint port_mask; };
 
-// Sheets z = 0, -0.4, -1, seen from both sides; barycentrics are places in [-32, 32]^2.
+// Sheets z = 0, -0.4, -1, visible from both sides; barycentrics are positions in [-32, 32]^2.
 const float sheets[3] = float[3](0.0, -0.4, -1.0);
 const float sheet_size = 64.0;
 
@@ -50,7 +51,7 @@ vec3 three(inout random_state random) {
   return vec3(x, y, z);
 }
 
-// A pixel that sees the first sheet, aslant to its axes.
+// Returns a pixel that sees the first sheet, oblique to its axes.
 scatter_domain pixel_on_sheet(inout random_state random) {
   vec3 at = three(random), tilt = three(random);
   return scatter_domain(vec3(4.0 * at.xy - 2.0, 0.0), normalize(vec3(tilt.xy - 0.5, 0.5)), vec3(1.0, 0.5, 0.25), 1u);
@@ -157,7 +158,7 @@ void main() {
   if (row == 23)
     result = vec4(random_unit(random), random.count, 0.0, 0.0);
 
-  // Words of a reservoir, and what words of any kind unpack to.
+  // Words of a reservoir, and the result of unpacking arbitrary words.
   reservoir r = reservoir(16777217u + uint(pixel.x), 0xfffffffeu - uint(pixel.x), u.xy, 0xfedcba98u, place, numbers, 16u,
                           u.z, light.emission, u.w, light.area);
   if (row >= 24 && row < 32) {
@@ -166,17 +167,18 @@ void main() {
   }
   if (row == 32) {
     packed_reservoir packed_words = pack_reservoir(r);
-    uint bad = uint(pixel.x) % 10u; // the floats among the words
-    uint at = bad < 2u ? 2u + bad : 5u + bad; // barycentrics; survival to irradiance
+    uint bad = uint(pixel.x) % 10u; // Indices of the floats among the words.
+    uint at = bad < 2u ? 2u + bad : 5u + bad; // Barycentrics; survival to irradiance.
     if (bad > 7u)
-      at = 6u + bad; // weight, confidence
-    uint words[4] = uint[4](0x7fc00000u, 0x7f800000u, 0xff800000u, 0xbf800000u); // NaN, Inf, -Inf, -1
+      at = 6u + bad; // Weight, confidence.
+    // NaN, Inf, -Inf, -1
+    uint words[4] = uint[4](0x7fc00000u, 0x7f800000u, 0xff800000u, 0xbf800000u);
     packed_words.words[at / 4u][at % 4u] = words[uint(pixel.x) / 10u % 4u];
     reservoir s = unpack_reservoir(packed_words);
     result = vec4(has_sample(s), s.weight, s.confidence, s.hits);
   }
 
-  // What a pixel is remembered by, and where a neighbour is looked for.
+  // The packed form of a pixel, and the offset of a neighbour.
   if (row == 33 || row == 34 || row == 35) {
     packed_domain kept = pack_domain(domain);
     result = row == 33 ? halves(kept.words[0].x, kept.words[0].w) : halves(kept.words[1].x, kept.words[1].w);
